@@ -1,0 +1,2 @@
+//! stickslip
+fn main() {}

@@ -1,0 +1,50 @@
+//! What a method says of the object, row by row: [`Estimate`] and [`EstimateRow`].
+
+use stickslip_dynamics::{Friction, Pose, Twist};
+
+/// Standard deviations of an estimate row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Of the pose [m, m, rad].
+    pub pose: Pose,
+    /// Of the friction parameters; `None` for methods that do not estimate them.
+    pub friction: Option<Friction>,
+}
+
+/// A method's estimate at one log row. `None` is an empty cell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EstimateRow {
+    /// Pose; theta is unwrapped from the row before.
+    pub pose: Option<Pose>,
+    /// Twist.
+    pub twist: Option<Twist>,
+    /// Friction parameters; `d_tri` is NaN-free: it is ignored where the feet are known (see [`Estimate::has_tripod`]).
+    pub friction: Option<Friction>,
+    /// Posterior probability of contact with the pusher.
+    pub contact_pusher: Option<f64>,
+    /// Posterior probability of contact with each fixel.
+    pub contact_fixels: Option<Vec<f64>>,
+    /// Standard deviations.
+    pub spread: Option<Spread>,
+    /// Effective sample size after weighing.
+    pub ess: Option<f64>,
+    /// Whether this step began with resampling.
+    pub resampled: Option<bool>,
+    /// Whether a camera pose was used.
+    pub visual: bool,
+    /// Number of particles whose step has no certified solution.
+    pub unsolved: Option<u32>,
+}
+
+/// A method's estimates, one row per log row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// Time of each row [s].
+    pub time: Vec<f64>,
+    /// Rows.
+    pub rows: Vec<EstimateRow>,
+    /// Number of fixels.
+    pub fixels: usize,
+    /// Whether d_tri is a parameter (false where the feet are known; its columns are then empty).
+    pub has_tripod: bool,
+}

@@ -1,0 +1,30 @@
+//! One recorded experiment: [`Log`], columns of equal length, one row per camera frame.
+
+use stickslip_dynamics::Pose;
+
+/// A recorded experiment; every column has one entry per row, `None` where nothing was measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Log {
+    /// Time [s], strictly rising.
+    pub time: Vec<f64>,
+    /// Measured object poses.
+    pub object: Vec<Option<Pose>>,
+    /// Measured pusher poses.
+    pub pusher: Vec<Option<Pose>>,
+    /// Tactile readings: one column per fixel sensor, over the interval that ends at the row.
+    pub tactile: Vec<Vec<Option<bool>>>,
+    /// Force of the pusher on the object, world frame [N]; empty where the log has no force columns.
+    pub force: Vec<Option<[f64; 2]>>,
+}
+
+impl Log {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// True where there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}

@@ -1,0 +1,93 @@
+//! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as `scene.toml` holds it.
+
+use stickslip_dynamics::Scene;
+
+/// Noise of the camera and of the pusher's tracker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Standard deviation of one object position [m].
+    pub position_std: f64,
+    /// Standard deviation of one object orientation [rad].
+    pub orientation_std: f64,
+    /// Time by which object poses lag the pusher's [s].
+    pub latency: f64,
+    /// Standard deviation of one pusher position [m]; 0: the log's poses are used as they are.
+    pub pusher_position_std: f64,
+    /// Standard deviation of one pusher orientation [rad]; 0: used as they are.
+    pub pusher_orientation_std: f64,
+}
+
+/// Error rates and threshold of the binary tactile sensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tactile {
+    /// Probability that an untouched sensor reads 1.
+    pub false_positive: f64,
+    /// Probability that a touched sensor reads 0.
+    pub false_negative: f64,
+    /// Force at which the sensor switches [N].
+    pub touch_force: f64,
+}
+
+impl Default for Tactile {
+    fn default() -> Self {
+        Self { false_positive: 0.01, false_negative: 0.05, touch_force: 0.05 }
+    }
+}
+
+/// Closed interval of physically possible values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+/// `[filter]` of a scene file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilterSettings {
+    /// w_app per step of 1/30 s, as a share of μ_s m g h per linear axis, times the radius of gyration for rotation.
+    pub force_std: f64,
+    /// w_β per step of 1/30 s, multiplicative.
+    pub parameter_std: f64,
+    /// Effective sample size / N below which the set is resampled.
+    pub resample_below: f64,
+    /// Widens the camera's standard deviations.
+    pub likelihood_scale: f64,
+    /// Physical limits of μ_s.
+    pub mu_s: Limits,
+    /// Physical limits of μ_p.
+    pub mu_p: Limits,
+    /// Physical limits of μ_f.
+    pub mu_f: Limits,
+    /// Physical limits of d_tri [m].
+    pub d_tri: Limits,
+}
+
+impl Default for FilterSettings {
+    fn default() -> Self {
+        Self {
+            force_std: 0.15,
+            parameter_std: 0.05,
+            resample_below: 0.5,
+            likelihood_scale: 1.5,
+            mu_s: Limits { min: 0.05, max: 1.0 },
+            mu_p: Limits { min: 0.02, max: 1.0 },
+            mu_f: Limits { min: 0.02, max: 1.0 },
+            d_tri: Limits { min: 0.003, max: 0.04 },
+        }
+    }
+}
+
+/// A scene with its sensors and filter settings.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Bodies and nominal friction.
+    pub scene: Scene,
+    /// The camera; needed by the particle and Kalman methods only.
+    pub camera: Option<Camera>,
+    /// The tactile sensors' model (defaults where the scene file has no `[tactile]`).
+    pub tactile: Tactile,
+    /// Filter settings.
+    pub filter: FilterSettings,
+}
