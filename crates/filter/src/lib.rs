@@ -1,1 +1,34 @@
-//! Particle filtering.
+//! Particle filtering over any [`Model`], and the Kalman filter and smoother.
+//!
+//! A [`ParticleFilter`] owns a [`ParticleSet`] (columns of f64 in blocks of [`BLOCK`] particles), its
+//! [`LogWeights`] and counter-based random [`Streams`]; what a particle means is the model's business.
+//!
+//! Invariants:
+//! - every result is a function of (model, inputs, seed, number of particles): random numbers are a pure function
+//!   of (seed, purpose, step, particle, draw), and every sum runs over one fixed tree, whatever the threads;
+//! - a weight is never NaN; a set that no longer explains its observation is a counted outcome, [`Weighing::Collapsed`];
+//! - after the first steps, a step on one thread allocates nothing.
+//!
+//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them.
+
+pub mod constant_velocity;
+mod filter;
+pub mod kalman;
+mod model;
+mod moments;
+mod parallel;
+mod particles;
+mod resample;
+mod streams;
+mod weights;
+
+pub use constant_velocity::{
+    AxisEstimate, ConstantVelocity, Filtered, Optimum, ProcessNoiseFit, SeriesError,
+};
+pub use filter::{ParticleFilter, Settings, SettingsError, StepReport, Weighing};
+pub use kalman::{Gaussian, Update};
+pub use model::Model;
+pub use particles::{BLOCK, Block, BlockMut, ParticleSet};
+pub use resample::Resampling;
+pub use streams::{Draw, Purpose, Streams};
+pub use weights::{LogWeights, WeightError};

@@ -1,0 +1,271 @@
+//! The particle set: N particles of C columns, in blocks of [`BLOCK`] particles.
+//!
+//! Storage is `[block][column][lane]`: a block is contiguous, so that a thread takes whole blocks, and inside it
+//! every column is a contiguous slice, so that SIMD lanes are neighbouring particles. The last block is padded;
+//! padding is never seen from outside.
+
+use crate::parallel;
+
+/// Particles in a block. Part of the determinism contract: never the number of threads.
+pub const BLOCK: usize = 64;
+
+/// Blocks that one thread copies at least when gathering.
+const GATHER_GRAIN: usize = 16;
+
+/// N particles of C columns each.
+#[derive(Clone, Debug)]
+pub struct ParticleSet {
+    particles: usize,
+    columns: usize,
+    data: Vec<f64>,
+    /// The other half of the double buffer.
+    spare: Vec<f64>,
+}
+
+impl ParticleSet {
+    /// `particles` x `columns` zeros. Both are at least 1.
+    pub fn zeros(particles: usize, columns: usize) -> Self {
+        assert!(
+            particles > 0 && columns > 0,
+            "a particle set of {particles} particles x {columns} columns is empty"
+        );
+        assert!(
+            u32::try_from(particles).is_ok(),
+            "particles are numbered in u32"
+        );
+        let data = vec![0.0; particles.div_ceil(BLOCK) * BLOCK * columns];
+        ParticleSet {
+            particles,
+            columns,
+            spare: data.clone(),
+            data,
+        }
+    }
+
+    /// The number N of particles.
+    #[expect(clippy::len_without_is_empty, reason = "a particle set is never empty")]
+    pub fn len(&self) -> usize {
+        self.particles
+    }
+
+    /// The number C of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The number of blocks, ceil(N / BLOCK).
+    pub fn block_count(&self) -> usize {
+        self.particles.div_ceil(BLOCK)
+    }
+
+    /// Block `index`.
+    pub fn block(&self, index: usize) -> Block<'_> {
+        let stride = self.columns * BLOCK;
+        Block {
+            data: &self.data[index * stride..][..stride],
+            span: Span::of(index, self.particles),
+        }
+    }
+
+    /// The blocks in order.
+    pub fn blocks(&self) -> impl ExactSizeIterator<Item = Block<'_>> {
+        (0..self.block_count()).map(|index| self.block(index))
+    }
+
+    /// Column `column` of all particles in order, N values.
+    pub fn column(&self, column: usize) -> impl Iterator<Item = f64> + '_ {
+        self.blocks()
+            .flat_map(move |block| block.column(column).iter().copied())
+    }
+
+    /// One number of one particle.
+    pub fn value(&self, particle: usize, column: usize) -> f64 {
+        assert!(
+            particle < self.particles,
+            "particle {particle} of {}",
+            self.particles
+        );
+        self.block(particle / BLOCK).column(column)[particle % BLOCK]
+    }
+
+    /// Runs `body` on every block with the block's own `scratch` (one per block), in parallel where threads allow.
+    pub fn for_each_block<S: Send>(
+        &mut self,
+        scratch: &mut [S],
+        body: impl Fn(&mut BlockMut<'_>, &mut S) + Sync,
+    ) {
+        let particles = self.particles;
+        parallel::for_each_chunk(
+            &mut self.data,
+            self.columns * BLOCK,
+            scratch,
+            |index, data, scratch| {
+                body(
+                    &mut BlockMut {
+                        data,
+                        span: Span::of(index, particles),
+                    },
+                    scratch,
+                );
+            },
+        );
+    }
+
+    /// Fills `out` (N values) with `body(block, its part of out)`, in parallel where threads allow.
+    pub fn map_blocks(&self, out: &mut [f64], body: impl Fn(&Block<'_>, &mut [f64]) + Sync) {
+        assert_eq!(out.len(), self.particles);
+        parallel::for_each(out, BLOCK, 1, |index, out| body(&self.block(index), out));
+    }
+
+    /// `map` of every block, combined over a fixed tree: the same bits on any number of threads.
+    pub fn reduce<A: Send>(
+        &self,
+        map: impl Fn(&Block<'_>) -> A + Sync,
+        combine: impl Fn(A, A) -> A + Sync,
+    ) -> A {
+        parallel::tree_reduce(
+            0..self.block_count(),
+            &|index| map(&self.block(index)),
+            &combine,
+        )
+    }
+
+    /// Resampling: particle i becomes a copy of particle `ancestors[i]`, all columns of it.
+    pub fn gather(&mut self, ancestors: &[u32]) {
+        assert_eq!(ancestors.len(), self.particles);
+        let (stride, source) = (self.columns * BLOCK, &self.data);
+        parallel::for_each(&mut self.spare, stride, GATHER_GRAIN, |index, target| {
+            let span = Span::of(index, ancestors.len());
+            gather_block(source, &ancestors[span.range()], target);
+        });
+        std::mem::swap(&mut self.data, &mut self.spare);
+    }
+}
+
+fn gather_block(source: &[f64], ancestors: &[u32], target: &mut [f64]) {
+    let stride = target.len();
+    for (column, target) in target.chunks_exact_mut(BLOCK).enumerate() {
+        for (value, &ancestor) in target.iter_mut().zip(ancestors) {
+            let (block, lane) = (ancestor as usize / BLOCK, ancestor as usize % BLOCK);
+            *value = source[block * stride + column * BLOCK + lane];
+        }
+    }
+}
+
+/// Which particles a block holds.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    first: usize,
+    len: usize,
+}
+
+impl Span {
+    fn of(block: usize, particles: usize) -> Self {
+        let first = block * BLOCK;
+        Span {
+            first,
+            len: BLOCK.min(particles - first),
+        }
+    }
+
+    fn range(self) -> std::ops::Range<usize> {
+        self.first..self.first + self.len
+    }
+}
+
+/// Up to [`BLOCK`] neighbouring particles, to read.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    data: &'a [f64],
+    span: Span,
+}
+
+#[expect(clippy::len_without_is_empty, reason = "a block is never empty")]
+impl<'a> Block<'a> {
+    /// The number of particles, in 1..=BLOCK; every column slice has this length.
+    pub fn len(&self) -> usize {
+        self.span.len
+    }
+
+    /// The index of the first particle in its set.
+    pub fn first_particle(&self) -> u32 {
+        self.span.first as u32
+    }
+
+    /// The indices of the block's particles in their set.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.span.range()
+    }
+
+    /// One column.
+    pub fn column(&self, column: usize) -> &'a [f64] {
+        &self.data[column * BLOCK..][..self.span.len]
+    }
+}
+
+/// Up to [`BLOCK`] neighbouring particles, to change.
+#[derive(Debug)]
+pub struct BlockMut<'a> {
+    data: &'a mut [f64],
+    span: Span,
+}
+
+#[expect(clippy::len_without_is_empty, reason = "a block is never empty")]
+impl BlockMut<'_> {
+    /// The number of particles, in 1..=BLOCK; every column slice has this length.
+    pub fn len(&self) -> usize {
+        self.span.len
+    }
+
+    /// The index of the first particle in its set.
+    pub fn first_particle(&self) -> u32 {
+        self.span.first as u32
+    }
+
+    /// (lane, index in the set) of the block's particles; the index is the random streams' `particle`.
+    pub fn particles(&self) -> impl ExactSizeIterator<Item = (usize, u32)> + use<> {
+        let first = self.first_particle();
+        (0..self.span.len).map(move |lane| (lane, first + lane as u32))
+    }
+
+    /// The block, to read.
+    pub fn as_block(&self) -> Block<'_> {
+        Block {
+            data: self.data,
+            span: self.span,
+        }
+    }
+
+    /// One column, to read.
+    pub fn column(&self, column: usize) -> &[f64] {
+        &self.data[column * BLOCK..][..self.span.len]
+    }
+
+    /// One column, to change.
+    pub fn column_mut(&mut self, column: usize) -> &mut [f64] {
+        &mut self.data[column * BLOCK..][..self.span.len]
+    }
+
+    /// Several different columns, to change at once.
+    ///
+    /// # Panics
+    /// If a column is named twice or does not exist.
+    pub fn columns_mut<const K: usize>(&mut self, columns: [usize; K]) -> [&mut [f64]; K] {
+        let len = self.span.len;
+        match self
+            .data
+            .get_disjoint_mut(columns.map(|c| c * BLOCK..c * BLOCK + len))
+        {
+            Ok(slices) => slices,
+            Err(error) => panic!("columns {columns:?}: {error}"),
+        }
+    }
+
+    /// All columns in order, to change at once.
+    pub fn all_columns_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [f64]> {
+        let len = self.span.len;
+        self.data
+            .chunks_exact_mut(BLOCK)
+            .map(move |column| &mut column[..len])
+    }
+}
