@@ -1,0 +1,24 @@
+//! The object on its feet alone: v = T⁻¹(load), the velocity that a load leads to when no contact acts.
+
+use crate::Lanes;
+use crate::homotopy::follow;
+use crate::ncp::{FootRow, Impulses, Ncp};
+use crate::newton::{NewtonWorkspace, newton};
+use crate::rows::{Guess, Rows, Vector};
+
+/// Velocity and foot impulses of the problem without contacts and with free velocity `load`.
+///
+/// It is the minimiser of ½|v − load|² + Σ bound_k |J_k v|, unique, and moves no farther than the load does.
+pub fn drag(rows: &Rows, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
+    let mut ncp = Ncp::<1>::empty();
+    ncp.free = load.map(|x| Lanes([x]));
+    ncp.feet = rows.feet.map(|f| FootRow { jx: Lanes([f.jx]), jy: Lanes([f.jy]), bound: Lanes([f.bound]) });
+    let mut p = Impulses::zero(0);
+    let mut work = NewtonWorkspace::default();
+    let (residual, _) = newton(&ncp, &mut p, &mut work, 1e-11, 12);
+    if residual.0[0] > 1e-11 {
+        follow(&Rows::new(&ncp), Guess::default()).store(&mut p);
+        newton(&ncp, &mut p, &mut work, 1e-11, 12);
+    }
+    (p.v.map(|x| x.0[0]), p.feet.map(|f| f.map(|x| x.0[0])))
+}

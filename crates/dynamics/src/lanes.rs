@@ -1,0 +1,154 @@
+//! `W` particles side by side: [`Lanes`] and [`Mask`].
+//!
+//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and exactly rounded, none is fused,
+//! so a particle's result does not depend on `W` nor on its neighbours; `Lanes<1>` is the scalar reference.
+
+use std::array::from_fn;
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
+
+/// `W` numbers, one per particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lanes<const W: usize>(pub [f64; W]);
+
+/// `W` conditions, one per particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mask<const W: usize>(pub [bool; W]);
+
+impl<const W: usize> Lanes<W> {
+    /// 0 in every lane.
+    pub const ZERO: Self = Self([0.0; W]);
+
+    /// `value` in every lane.
+    #[inline(always)]
+    pub const fn splat(value: f64) -> Self {
+        Self([value; W])
+    }
+
+    /// The larger of two, lane by lane.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        self.gt(other).select(self, other)
+    }
+
+    /// The smaller of two, lane by lane.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        other.gt(self).select(self, other)
+    }
+
+    /// Absolute value.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self(from_fn(|i| self.0[i].abs()))
+    }
+
+    /// Square root, correctly rounded.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self(from_fn(|i| self.0[i].sqrt()))
+    }
+
+    /// Where `self > other`.
+    #[inline(always)]
+    pub fn gt(self, other: Self) -> Mask<W> {
+        Mask(from_fn(|i| self.0[i] > other.0[i]))
+    }
+
+    /// +1 where the number is positive, −1 elsewhere.
+    #[inline(always)]
+    pub fn sign(self) -> Self {
+        self.gt(Self::ZERO).select(Self::splat(1.0), Self::splat(-1.0))
+    }
+}
+
+impl<const W: usize> Mask<W> {
+    /// The same condition in every lane.
+    #[inline(always)]
+    pub const fn splat(value: bool) -> Self {
+        Self([value; W])
+    }
+
+    /// `yes` where the condition holds, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(self, yes: Lanes<W>, no: Lanes<W>) -> Lanes<W> {
+        Lanes(from_fn(|i| if self.0[i] { yes.0[i] } else { no.0[i] }))
+    }
+
+    /// Whether the condition holds in every lane.
+    #[inline(always)]
+    pub fn all(self) -> bool {
+        self.0.iter().all(|&lane| lane)
+    }
+
+    /// Whether the condition holds in some lane.
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        self.0.iter().any(|&lane| lane)
+    }
+}
+
+macro_rules! lane_wise {
+    ($($operator:ident $method:ident $sign:tt),*) => {$(
+        impl<const W: usize> $operator for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(from_fn(|i| self.0[i] $sign other.0[i]))
+            }
+        }
+        impl<const W: usize> $operator<f64> for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                Self(from_fn(|i| self.0[i] $sign other))
+            }
+        }
+    )*};
+}
+lane_wise!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl<const W: usize> Neg for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(from_fn(|i| -self.0[i]))
+    }
+}
+
+impl<const W: usize> AddAssign for Lanes<W> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const W: usize> SubAssign for Lanes<W> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const W: usize> BitAnd for Mask<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(from_fn(|i| self.0[i] && other.0[i]))
+    }
+}
+
+impl<const W: usize> BitOr for Mask<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(from_fn(|i| self.0[i] || other.0[i]))
+    }
+}
+
+impl<const W: usize> Not for Mask<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(from_fn(|i| !self.0[i]))
+    }
+}

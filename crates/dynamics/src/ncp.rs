@@ -1,0 +1,316 @@
+//! The mixed NCP of one step in mass-normalised units, `W` particles side by side: [`Ncp`] and its unknowns [`Impulses`].
+//!
+//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ, so that every number is a speed [m/s]
+//! and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
+//! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
+
+use crate::lanes::{Lanes, Mask};
+use crate::problem::{ContactPoint, StepProblem, StepSolution};
+use crate::Twist;
+
+/// A vector of the scaled velocity space (x, y, ρ θ).
+pub type Triple<const W: usize> = [Lanes<W>; 3];
+
+/// a · b.
+#[inline(always)]
+pub fn dot<const W: usize>(a: &Triple<W>, b: &Triple<W>) -> Lanes<W> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// a += b s.
+#[inline(always)]
+pub fn add_scaled<const W: usize>(a: &mut Triple<W>, b: &Triple<W>, s: Lanes<W>) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += *b * s;
+    }
+}
+
+/// One foot: slip velocity s = (v_x + jx v_θ, v_y + jy v_θ), friction bound μ_s p_ns / m.
+#[derive(Clone, Copy, Debug)]
+pub struct FootRow<const W: usize> {
+    /// −r_y / ρ.
+    pub jx: Lanes<W>,
+    /// r_x / ρ.
+    pub jy: Lanes<W>,
+    /// Largest friction impulse over m [m/s].
+    pub bound: Lanes<W>,
+}
+
+/// One contact: gap velocity γ = n·v + gap + nd y, slip velocity s = t·v + slip + td y.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactRow<const W: usize> {
+    /// Column W_n.
+    pub n: Triple<W>,
+    /// Column W_t.
+    pub t: Triple<W>,
+    /// ψ/h − n·u [m/s].
+    pub gap: Lanes<W>,
+    /// −t·u [m/s].
+    pub slip: Lanes<W>,
+    /// n·d on the pusher, 0 elsewhere.
+    pub nd: Lanes<W>,
+    /// t·d on the pusher, 0 elsewhere.
+    pub td: Lanes<W>,
+    /// Friction coefficient μ.
+    pub mu: Lanes<W>,
+}
+
+/// `W` mixed NCPs with equally many contact rows (rows that a particle does not need are [`ContactRow::OPEN`]).
+#[derive(Clone, Debug)]
+pub struct Ncp<const W: usize> {
+    /// Velocity without contact and friction impulses: v + M⁻¹ p_app.
+    pub free: Triple<W>,
+    /// The feet.
+    pub feet: [FootRow<W>; 3],
+    /// The contacts.
+    pub contacts: Vec<ContactRow<W>>,
+    /// F_stall h / m [m/s]; infinite for a rigid pusher.
+    pub stall: Lanes<W>,
+    /// Compliance κ of the gap rows: 0, or that of model.md's "Jamming" where no exact solution exists.
+    pub compliance: Lanes<W>,
+}
+
+/// Unknowns of an [`Ncp`], all in m/s.
+#[derive(Clone, Debug)]
+pub struct Impulses<const W: usize> {
+    /// Velocity v⁺.
+    pub v: Triple<W>,
+    /// p_n / m per contact.
+    pub normal: Vec<Lanes<W>>,
+    /// p_t / m per contact.
+    pub tangential: Vec<Lanes<W>>,
+    /// p_k / m per foot.
+    pub feet: [[Lanes<W>; 2]; 3],
+    /// Speed y by which the pusher gives way.
+    pub pusher_yield: Lanes<W>,
+}
+
+impl<const W: usize> FootRow<W> {
+    /// Slip velocity of the foot.
+    #[inline(always)]
+    pub fn slip(&self, v: &Triple<W>) -> [Lanes<W>; 2] {
+        [v[0] + self.jx * v[2], v[1] + self.jy * v[2]]
+    }
+
+    /// Jᵀ p.
+    #[inline(always)]
+    pub fn wrench(&self, p: &[Lanes<W>; 2]) -> Triple<W> {
+        [p[0], p[1], self.jx * p[0] + self.jy * p[1]]
+    }
+}
+
+impl<const W: usize> ContactRow<W> {
+    /// A row that never touches.
+    pub const OPEN: Self = Self {
+        n: [Lanes::ZERO; 3],
+        t: [Lanes::ZERO; 3],
+        gap: Lanes::splat(1.0),
+        slip: Lanes::ZERO,
+        nd: Lanes::ZERO,
+        td: Lanes::ZERO,
+        mu: Lanes::ZERO,
+    };
+
+    /// Gap velocity γ.
+    #[inline(always)]
+    pub fn gap_velocity(&self, v: &Triple<W>, pusher_yield: Lanes<W>) -> Lanes<W> {
+        dot(&self.n, v) + self.gap + self.nd * pusher_yield
+    }
+
+    /// Slip velocity s.
+    #[inline(always)]
+    pub fn slip_velocity(&self, v: &Triple<W>, pusher_yield: Lanes<W>) -> Lanes<W> {
+        dot(&self.t, v) + self.slip + self.td * pusher_yield
+    }
+}
+
+impl<const W: usize> Impulses<W> {
+    /// No impulse at all on `contacts` contacts, at rest.
+    pub fn zero(contacts: usize) -> Self {
+        Self {
+            v: [Lanes::ZERO; 3],
+            normal: vec![Lanes::ZERO; contacts],
+            tangential: vec![Lanes::ZERO; contacts],
+            feet: [[Lanes::ZERO; 2]; 3],
+            pusher_yield: Lanes::ZERO,
+        }
+    }
+}
+
+impl<const W: usize> Impulses<W> {
+    /// Makes room for `contacts` contacts; new entries are zero.
+    pub fn resize(&mut self, contacts: usize) {
+        self.normal.resize(contacts, Lanes::ZERO);
+        self.tangential.resize(contacts, Lanes::ZERO);
+    }
+
+    /// Overwrites one lane.
+    pub fn set_lane(&mut self, lane: usize, from: &Impulses<1>) {
+        for (to, from) in self.v.iter_mut().zip(&from.v) {
+            to.0[lane] = from.0[0];
+        }
+        for (to, from) in self.normal.iter_mut().zip(&from.normal).chain(self.tangential.iter_mut().zip(&from.tangential)) {
+            to.0[lane] = from.0[0];
+        }
+        for (to, from) in self.feet.as_flattened_mut().iter_mut().zip(from.feet.as_flattened()) {
+            to.0[lane] = from.0[0];
+        }
+        self.pusher_yield.0[lane] = from.pusher_yield.0[0];
+    }
+}
+
+impl<const W: usize> Ncp<W> {
+    /// Copies one lane into a one-lane problem.
+    pub fn copy_lane(&self, lane: usize, to: &mut Ncp<1>) {
+        let pick = |x: Lanes<W>| Lanes([x.0[lane]]);
+        to.free = self.free.map(pick);
+        to.feet = self.feet.map(|f| FootRow { jx: pick(f.jx), jy: pick(f.jy), bound: pick(f.bound) });
+        to.stall = pick(self.stall);
+        to.compliance = pick(self.compliance);
+        to.contacts.clear();
+        to.contacts.extend(self.contacts.iter().map(|c| ContactRow {
+            n: c.n.map(pick),
+            t: c.t.map(pick),
+            gap: pick(c.gap),
+            slip: pick(c.slip),
+            nd: pick(c.nd),
+            td: pick(c.td),
+            mu: pick(c.mu),
+        }));
+    }
+
+    /// No contact, no friction, at rest; a workspace to fill.
+    pub fn empty() -> Self {
+        let foot = FootRow { jx: Lanes::ZERO, jy: Lanes::ZERO, bound: Lanes::ZERO };
+        Self { free: [Lanes::ZERO; 3], feet: [foot; 3], contacts: Vec::new(), stall: Lanes::splat(f64::INFINITY), compliance: Lanes::ZERO }
+    }
+
+    /// Velocity that follows from the impulses by the Newton–Euler rows.
+    #[inline(always)]
+    pub fn velocity(&self, p: &Impulses<W>) -> Triple<W> {
+        let mut v = self.free;
+        for (foot, p) in self.feet.iter().zip(&p.feet) {
+            add_scaled(&mut v, &foot.wrench(p), Lanes::splat(1.0));
+        }
+        for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
+            add_scaled(&mut v, &row.n, *p_n);
+            add_scaled(&mut v, &row.t, *p_t);
+        }
+        v
+    }
+
+    /// F / m: the impulse with which the object resists the pusher along d.
+    #[inline(always)]
+    pub fn resistance(&self, p: &Impulses<W>) -> Lanes<W> {
+        let mut force = Lanes::ZERO;
+        for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
+            force += *p_n * row.nd + *p_t * row.td;
+        }
+        force
+    }
+
+    /// The natural-map residual [m/s]: the largest violation of any row of eq. (1)–(2), the certificate of a solution.
+    #[inline(always)]
+    pub fn residual(&self, p: &Impulses<W>) -> Lanes<W> {
+        let mut worst = Lanes::ZERO;
+        for (v, expected) in p.v.iter().zip(self.velocity(p)) {
+            worst = worse(worst, *v - expected);
+        }
+        for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
+            let gap = row.gap_velocity(&p.v, p.pusher_yield) + self.compliance * *p_n;
+            worst = worse(worst, p_n.min(gap));
+            let bound = row.mu * p_n.max(Lanes::ZERO);
+            let target = *p_t - row.slip_velocity(&p.v, p.pusher_yield);
+            worst = worse(worst, *p_t - target.min(bound).max(-bound));
+        }
+        for (foot, p_k) in self.feet.iter().zip(&p.feet) {
+            let slip = foot.slip(&p.v);
+            let projected = project_disc([p_k[0] - slip[0], p_k[1] - slip[1]], foot.bound);
+            let off = [p_k[0] - projected[0], p_k[1] - projected[1]];
+            worst = worse(worst, (off[0] * off[0] + off[1] * off[1]).sqrt());
+        }
+        let slack = self.stall - self.resistance(p);
+        worse(worst, slack.min(p.pusher_yield))
+    }
+}
+
+/// The larger of `worst` and |`violation`|; NaN counts as infinite.
+#[inline(always)]
+fn worse<const W: usize>(worst: Lanes<W>, violation: Lanes<W>) -> Lanes<W> {
+    let size = violation.abs();
+    Lanes(std::array::from_fn(|i| if size.0[i] <= worst.0[i] { worst.0[i] } else if size.0[i].is_nan() { f64::INFINITY } else { size.0[i] }))
+}
+
+/// Nearest point of the disc of radius `bound`.
+#[inline(always)]
+fn project_disc<const W: usize>(point: [Lanes<W>; 2], bound: Lanes<W>) -> [Lanes<W>; 2] {
+    let length = (point[0] * point[0] + point[1] * point[1]).sqrt();
+    let outside: Mask<W> = length.gt(bound);
+    let scale = outside.select(bound / outside.select(length, Lanes::splat(1.0)), Lanes::splat(1.0));
+    [point[0] * scale, point[1] * scale]
+}
+
+impl Ncp<1> {
+    /// Fills this problem from one in SI units; `self.contacts` is reused.
+    pub fn assign(&mut self, problem: &StepProblem) {
+        let rho = (problem.inertia / problem.mass).sqrt();
+        let scale = Scale { mass: problem.mass, rho, h: problem.h };
+        let lane = |value: f64| Lanes([value]);
+        self.free = [
+            lane(problem.twist.vx + problem.applied.fx / problem.mass),
+            lane(problem.twist.vy + problem.applied.fy / problem.mass),
+            lane(rho * (problem.twist.omega + problem.applied.torque / problem.inertia)),
+        ];
+        self.feet = problem.feet.map(|foot| FootRow {
+            jx: lane(-foot.arm[1] / rho),
+            jy: lane(foot.arm[0] / rho),
+            bound: lane(foot.bound / problem.mass),
+        });
+        let direction = problem.stall.map_or([0.0; 2], |stall| stall.direction);
+        self.stall = lane(problem.stall.map_or(f64::INFINITY, |stall| stall.impulse / problem.mass));
+        self.compliance = Lanes::ZERO;
+        self.contacts.clear();
+        self.contacts.extend(problem.contacts.iter().map(|contact| scale.contact(contact, direction)));
+    }
+}
+
+/// What turns SI rows into mass-normalised ones.
+struct Scale {
+    mass: f64,
+    rho: f64,
+    h: f64,
+}
+
+impl Scale {
+    fn contact(&self, c: &ContactPoint, direction: [f64; 2]) -> ContactRow<1> {
+        let [nx, ny] = c.normal;
+        let t = [-ny, nx];
+        let plane_dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let moment = |a: [f64; 2]| (c.arm[0] * a[1] - c.arm[1] * a[0]) / self.rho;
+        let d = if c.on_pusher { direction } else { [0.0; 2] };
+        ContactRow {
+            n: [Lanes([nx]), Lanes([ny]), Lanes([moment(c.normal)])],
+            t: [Lanes([t[0]]), Lanes([t[1]]), Lanes([moment(t)])],
+            gap: Lanes([c.gap / self.h - plane_dot(c.normal, c.surface_velocity)]),
+            slip: Lanes([-plane_dot(t, c.surface_velocity)]),
+            nd: Lanes([plane_dot(c.normal, d)]),
+            td: Lanes([plane_dot(t, d)]),
+            mu: Lanes([c.mu]),
+        }
+    }
+}
+
+impl Impulses<1> {
+    /// In SI units, for the problem they solve.
+    pub fn to_solution(&self, problem: &StepProblem) -> StepSolution {
+        let m = problem.mass;
+        let rho = (problem.inertia / problem.mass).sqrt();
+        StepSolution {
+            twist: Twist { vx: self.v[0].0[0], vy: self.v[1].0[0], omega: self.v[2].0[0] / rho },
+            normal: self.normal.iter().map(|p| p.0[0] * m).collect(),
+            tangential: self.tangential.iter().map(|p| p.0[0] * m).collect(),
+            feet: self.feet.map(|p| [p[0].0[0] * m, p[1].0[0] * m]),
+            pusher_yield: self.pusher_yield.0[0],
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! The chain of solvers behind one certificate: [`Solver::solve`].
+//!
+//! The fast Newton iteration answers almost always; a smoothing homotopy, then an exhaustive search over contact modes take what
+//! it leaves. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
+
+use crate::homotopy::follow;
+use crate::lanes::Lanes;
+use crate::modes::{Verdict, search};
+use crate::ncp::{Impulses, Ncp};
+use crate::newton::{NewtonWorkspace, newton};
+use crate::rows::{Guess, Rows};
+
+/// Largest natural-map residual of a solved step [m/s].
+pub const TOLERANCE: f64 = 1e-9;
+
+/// The iterations aim lower than [`TOLERANCE`], so that rounding does not decide.
+const AIM: f64 = 1e-10;
+
+/// Iterations of the fast solver before the next one takes over.
+const FAST_ITERATIONS: u32 = 12;
+
+/// Iterations that polish an end point of a slow solver.
+const POLISH_ITERATIONS: u32 = 40;
+
+/// Compliance κ of the gap rows where no exact solution exists (model.md, "Jamming").
+const COMPLIANCE: f64 = 1e-6;
+
+/// How one step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Outcome {
+    /// The residual is at most [`TOLERANCE`].
+    Solved,
+    /// It is proven that no solution exists; the velocity is that of the compliant problem.
+    Infeasible,
+    /// Neither a solution nor a proof was found; the velocity is that of the compliant problem.
+    Failed,
+}
+
+/// Which solver the answer came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// Semismooth Newton from the warm start.
+    Newton,
+    /// Smoothing homotopy, polished.
+    Homotopy,
+    /// Exhaustive search over contact modes.
+    Modes,
+}
+
+/// What is known of one particle's step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Natural-map residual of the rigid problem [m/s].
+    pub residual: f64,
+    /// Iterations of the fast solver.
+    pub iterations: u32,
+    /// Where the answer came from.
+    pub route: Route,
+}
+
+/// Solves mixed NCPs; holds the working memory.
+#[derive(Clone, Debug)]
+pub struct Solver<const W: usize> {
+    fast: NewtonWorkspace<W>,
+    slow: SlowSolver,
+}
+
+impl<const W: usize> Default for Solver<W> {
+    fn default() -> Self {
+        Self { fast: NewtonWorkspace::default(), slow: SlowSolver::default() }
+    }
+}
+
+impl<const W: usize> Solver<W> {
+    /// Solves `ncp` from the impulses in `p` (the warm start; zero is a cold one) and leaves the solution in `p`.
+    #[inline(always)]
+    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>) -> [Report; W] {
+        assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
+        let (residual, iterations) = newton(ncp, p, &mut self.fast, AIM, FAST_ITERATIONS);
+        let mut reports = std::array::from_fn(|lane| Report {
+            outcome: Outcome::Solved,
+            residual: residual.0[lane],
+            iterations: iterations.0[lane] as u32,
+            route: Route::Newton,
+        });
+        for (lane, report) in reports.iter_mut().enumerate() {
+            if report.residual > TOLERANCE {
+                self.slow.solve(ncp, p, lane, report);
+            }
+            rest_exactly(ncp, p, lane, report);
+        }
+        reports
+    }
+}
+
+/// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a stuck object never drifts.
+fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, report: &mut Report) {
+    let moving = p.v.iter().any(|v| v.0[lane].abs() > TOLERANCE);
+    let exact = p.v.iter().all(|v| v.0[lane] == 0.0);
+    if moving || exact || report.outcome != Outcome::Solved {
+        return;
+    }
+    let velocity = p.v;
+    for v in &mut p.v {
+        v.0[lane] = 0.0;
+    }
+    let residual = ncp.residual(p).0[lane];
+    if residual <= TOLERANCE {
+        report.residual = residual;
+    } else {
+        p.v = velocity;
+    }
+}
+
+/// The slow, sure part of the chain, one particle at a time.
+#[derive(Clone, Debug)]
+struct SlowSolver {
+    ncp: Ncp<1>,
+    p: Impulses<1>,
+    polish: NewtonWorkspace<1>,
+}
+
+impl Default for SlowSolver {
+    fn default() -> Self {
+        Self { ncp: Ncp::empty(), p: Impulses::zero(0), polish: NewtonWorkspace::default() }
+    }
+}
+
+impl SlowSolver {
+    /// Solves one lane of `ncp` and writes impulses and report back.
+    fn solve<const W: usize>(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, report: &mut Report) {
+        ncp.copy_lane(lane, &mut self.ncp);
+        let rows = Rows::new(&self.ncp);
+        let cold = rows.cold_start();
+
+        report.route = Route::Homotopy;
+        report.residual = self.polish(&follow(&rows, cold.clone()));
+        if report.residual > TOLERANCE {
+            report.route = Route::Modes;
+            report.outcome = match search(&rows, &mut |guess| (self.polish(guess) <= TOLERANCE).then(|| guess.clone())) {
+                Verdict::Solved(_) => Outcome::Solved,
+                Verdict::Infeasible => Outcome::Infeasible,
+                Verdict::Unresolved => Outcome::Failed,
+            };
+            if report.outcome != Outcome::Solved {
+                self.solve_compliant(rows, cold);
+            }
+            report.residual = self.ncp.residual(&self.p).0[0];
+        }
+        p.set_lane(lane, &self.p);
+    }
+
+    /// Polishes a guess with the fast solver; returns the residual and leaves the impulses in `self.p`.
+    fn polish(&mut self, guess: &Guess) -> f64 {
+        self.p.resize(self.ncp.contacts.len());
+        guess.store(&mut self.p);
+        newton(&self.ncp, &mut self.p, &mut self.polish, AIM, POLISH_ITERATIONS).0.0[0]
+    }
+
+    /// Leaves the solution with compliant gap rows in `self.p`.
+    fn solve_compliant(&mut self, mut rows: Rows, cold: Guess) {
+        rows.compliance = COMPLIANCE;
+        self.ncp.compliance = Lanes([COMPLIANCE]);
+        let guess = follow(&rows, cold);
+        let residual = self.polish(&guess);
+        if residual > TOLERANCE {
+            guess.store(&mut self.p);
+        }
+        self.ncp.compliance = Lanes::ZERO;
+    }
+}
