@@ -1,1 +1,22 @@
-//! stickslip-formats
+//! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`, `truth.csv` and `truth.json`.
+//!
+//! Nothing here opens a file: readers take text or an [`std::io::Read`] with the name to show in errors, writers an
+//! [`std::io::Write`]. Every refusal names the file, the line, the place in the line, the value found, the rule and what to do.
+//! Input is never repaired: a file is read as it stands or refused.
+
+mod csv_error;
+mod csv_table;
+mod estimate_csv;
+mod log_csv;
+mod nearest;
+mod number;
+mod scene;
+mod truth_csv;
+mod truth_json;
+
+pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
+pub use estimate_csv::{read_estimate, write_estimate};
+pub use log_csv::{LogWarning, SensorError, check_sensors, read_log, write_log};
+pub use scene::{SceneError, SceneProblem, read_scene};
+pub use truth_csv::{Truth, read_truth_csv};
+pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json};

@@ -1,0 +1,242 @@
+//! A CSV file as a header and rows of cells: [`CsvTable`], [`Row`].
+//!
+//! Comma-separated, one record per line (`\n` or `\r\n`), a byte-order mark is skipped, cells may stand in double quotes and be
+//! padded with blanks, blank lines only at the end. Lines and columns are counted from 1 in errors, columns from 0 in code.
+
+use std::io::Read;
+
+use crate::csv_error::{CsvColumn, CsvError, CsvProblem};
+use crate::nearest::nearest;
+
+/// The text of a CSV file with its header taken apart.
+pub(crate) struct CsvTable {
+    file: String,
+    text: String,
+    columns: Vec<String>,
+}
+
+/// One line below the header, with as many cells as the header.
+pub(crate) struct Row<'t> {
+    table: &'t CsvTable,
+    line: usize,
+    cells: Vec<String>,
+}
+
+impl CsvTable {
+    /// Reads all of `reader` and its header; `file` is the name to show in errors.
+    ///
+    /// # Errors
+    /// The bytes cannot be read, are not UTF-8, hold no header or no row, or name a column twice.
+    pub(crate) fn read(reader: impl Read, file: &str) -> Result<Self, CsvError> {
+        let text = read_text(reader).map_err(|(line, problem)| CsvError { file: file.to_owned(), line, column: None, problem })?;
+        let mut table = Self { file: file.to_owned(), text, columns: Vec::new() };
+        let header = table.lines().next().map(|(_, header)| split(header));
+        table.columns = header.ok_or_else(|| table.error(1, None, CsvProblem::Empty))?;
+        table.check_unique()?;
+        Ok(table)
+    }
+
+    /// Names of the columns.
+    pub(crate) fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Display name of the file.
+    pub(crate) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The rows below the header; a row with a wrong number of cells is an error.
+    ///
+    /// # Errors
+    /// [`CsvProblem::NoRows`] if there is none.
+    pub(crate) fn rows(&self) -> Result<impl Iterator<Item = Result<Row<'_>, CsvError>>, CsvError> {
+        if self.lines().nth(1).is_none() {
+            return Err(self.error(1, None, CsvProblem::NoRows));
+        }
+        Ok(self.lines().skip(1).map(|(line, text)| self.row(line, text)))
+    }
+
+    /// Index of a column.
+    pub(crate) fn find(&self, column: &str) -> Option<usize> {
+        self.columns.iter().position(|name| name == column)
+    }
+
+    /// Index of a column that must be there.
+    pub(crate) fn require(&self, column: &str) -> Result<usize, CsvError> {
+        self.find(column).ok_or_else(|| {
+            let problem = CsvProblem::MissingColumn { column: column.to_owned(), hint: self.missing_hint(column) };
+            self.error(1, None, problem)
+        })
+    }
+
+    /// Indices of columns that must be there.
+    pub(crate) fn require_all<const N: usize>(&self, columns: [&str; N]) -> Result<[usize; N], CsvError> {
+        let mut indices = [0; N];
+        for (index, column) in indices.iter_mut().zip(columns) {
+            *index = self.require(column)?;
+        }
+        Ok(indices)
+    }
+
+    /// An error at a line (from 1) and a column (index, from 0).
+    pub(crate) fn error(&self, line: usize, column: Option<usize>, problem: CsvProblem) -> CsvError {
+        let column = column.map(|index| CsvColumn { number: index + 1, name: self.columns[index].clone() });
+        CsvError { file: self.file.clone(), line, column, problem }
+    }
+
+    /// Numbered lines up to the last one that is not blank.
+    fn lines(&self) -> impl Iterator<Item = (usize, &str)> {
+        let text = self.text.trim_end();
+        let lines = text.split('\n').map(|line| line.strip_suffix('\r').unwrap_or(line));
+        (1..).zip(lines).take(if text.is_empty() { 0 } else { usize::MAX })
+    }
+
+    fn row<'t>(&'t self, line: usize, text: &str) -> Result<Row<'t>, CsvError> {
+        let cells = split(text);
+        let (found, expected) = (if text.trim().is_empty() { 0 } else { cells.len() }, self.columns.len());
+        if found != expected {
+            return Err(self.error(line, None, CsvProblem::CellCount { found, expected }));
+        }
+        Ok(Row { table: self, line, cells })
+    }
+
+    fn check_unique(&self) -> Result<(), CsvError> {
+        for (index, name) in self.columns.iter().enumerate() {
+            if let Some(first) = self.find(name).filter(|first| *first < index && !name.is_empty()) {
+                return Err(self.error(1, Some(index), CsvProblem::DuplicateColumn { first: first + 1 }));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a person may have done instead of naming `column`.
+    fn missing_hint(&self, column: &str) -> String {
+        if let [only] = self.columns.as_slice()
+            && let Some(separator) = only.chars().find(|c| matches!(c, ';' | '\t'))
+        {
+            return format!("; the header is separated by {separator:?}");
+        }
+        match nearest(column, self.columns.iter().map(String::as_str)) {
+            Some((name, distance)) if distance <= column.len() / 2 && !name.is_empty() => format!(", the nearest in the header is `{name}`"),
+            _ => String::new(),
+        }
+    }
+}
+
+impl Row<'_> {
+    /// The number in a cell, `None` where it is empty.
+    pub(crate) fn number(&self, column: usize) -> Result<Option<f64>, CsvError> {
+        let found = &self.cells[column];
+        if found.is_empty() {
+            return Ok(None);
+        }
+        let value: f64 = found.parse().map_err(|_| self.error(column, CsvProblem::NotANumber { found: found.clone() }))?;
+        if !value.is_finite() {
+            return Err(self.error(column, CsvProblem::NotFinite { found: found.clone() }));
+        }
+        Ok(Some(value))
+    }
+
+    /// The number in a cell that must be filled.
+    pub(crate) fn required(&self, column: usize) -> Result<f64, CsvError> {
+        self.number(column)?.ok_or_else(|| self.error(column, CsvProblem::EmptyCell))
+    }
+
+    /// The numbers of one measurement: all of its cells are filled or, for `None`, all are empty.
+    pub(crate) fn group(&self, columns: &[usize]) -> Result<Option<Vec<f64>>, CsvError> {
+        let Some(filled) = columns.iter().find(|&&column| !self.cells[column].is_empty()) else { return Ok(None) };
+        let value = |column: usize| {
+            let name = |column: &usize| self.table.columns[*column].clone();
+            let all = || columns.iter().map(name).collect::<Vec<_>>().join(", ");
+            self.number(column)?.ok_or_else(|| self.error(column, CsvProblem::Partial { filled: name(filled), all: all() }))
+        };
+        columns.iter().map(|column| value(*column)).collect::<Result<Vec<f64>, _>>().map(Some)
+    }
+
+    /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them.
+    pub(crate) fn binary(&self, column: usize) -> Result<Option<bool>, CsvError> {
+        let wrong = || self.error(column, CsvProblem::NotBinary { found: self.cells[column].clone(), may_be_empty: true });
+        match self.number(column).map_err(|_| wrong())? {
+            None => Ok(None),
+            Some(0.0) => Ok(Some(false)),
+            Some(1.0) => Ok(Some(true)),
+            Some(_) => Err(wrong()),
+        }
+    }
+
+    /// A whole number from 0 up, or empty.
+    pub(crate) fn count(&self, column: usize) -> Result<Option<u32>, CsvError> {
+        let found = &self.cells[column];
+        if found.is_empty() {
+            return Ok(None);
+        }
+        found.parse().map(Some).map_err(|_| self.error(column, CsvProblem::NotACount { found: found.clone() }))
+    }
+
+    /// The time in a column that must be filled and rise above `before`.
+    pub(crate) fn time(&self, column: usize, before: Option<f64>) -> Result<f64, CsvError> {
+        let found = self.required(column)?;
+        match before {
+            Some(before) if found <= before => Err(self.error(column, CsvProblem::TimeNotRising { found, before })),
+            _ => Ok(found),
+        }
+    }
+
+    /// An error in a cell of this row.
+    pub(crate) fn error(&self, column: usize, problem: CsvProblem) -> CsvError {
+        self.table.error(self.line, Some(column), problem)
+    }
+}
+
+/// All of the bytes as text without a byte-order mark; the error carries its line.
+fn read_text(mut reader: impl Read) -> Result<String, (usize, CsvProblem)> {
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes).map_err(|error| (1, CsvProblem::Unreadable(error.to_string())))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        (1 + good.iter().filter(|byte| **byte == b'\n').count(), CsvProblem::NotText)
+    })?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// The cells of one line; a comma between double quotes does not separate, `""` is a quote.
+fn split(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            ',' if !quoted => cells.push(String::new()),
+            _ => {
+                quoted ^= c == '"';
+                cells.last_mut().expect("there is always a cell").push(c);
+            }
+        }
+    }
+    cells.iter().map(|cell| unquote(cell.trim())).collect()
+}
+
+fn unquote(cell: &str) -> String {
+    match cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
+        Some(inside) => inside.replace("\"\"", "\"").trim().to_owned(),
+        None => cell.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn split_takes_quotes_and_blanks_off() {
+        assert_eq!(split("a, b ,\"c,d\",\"\"\"e\"\"\","), ["a", "b", "c,d", "\"e\"", ""]);
+        assert_eq!(split(""), [""]);
+        assert_eq!(split("\""), ["\""]);
+    }
+
+    #[test]
+    fn bytes_that_are_not_utf_8_are_refused_with_their_line() {
+        let error = CsvTable::read(&b"time\n0\n\xff\n"[..], "log.csv").err().unwrap();
+        assert_eq!(error.to_string(), "log.csv:3: the line is not UTF-8 text. Save the file as plain text in UTF-8");
+    }
+}

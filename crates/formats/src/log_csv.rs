@@ -1,0 +1,181 @@
+//! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and its sensors against the scene's fixels: [`check_sensors`].
+//!
+//! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y]`, the
+//! columns found by name, in any order. An empty cell is a missing measurement.
+
+use std::fmt;
+use std::io::{Read, Write};
+
+use stickslip::{Log, Setup};
+use stickslip_dynamics::Pose;
+
+use crate::csv_error::{CsvProblem, LogError};
+use crate::csv_table::{CsvTable, Row};
+use crate::number;
+
+const OBJECT: [&str; 3] = ["object_x", "object_y", "object_theta"];
+const PUSHER: [&str; 3] = ["pusher_x", "pusher_y", "pusher_theta"];
+const FORCE: [&str; 2] = ["pusher_force_x", "pusher_force_y"];
+const TACTILE: &str = "tactile_";
+
+/// Something in a log that was read over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LogWarning {
+    /// Columns that the format does not have.
+    ExtraColumns {
+        /// Display name of the file.
+        file: String,
+        /// Their names.
+        columns: Vec<String>,
+    },
+}
+
+impl fmt::Display for LogWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ExtraColumns { file, columns } => write!(f, "{file}:1: extra columns are ignored: {}", columns.join(", ")),
+        }
+    }
+}
+
+/// A log has more tactile sensors than its scene has fixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the log has {sensors} tactile sensors and the scene {fixels} fixels; sensor k is the k-th fixel. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
+    .fixels + 1
+)]
+pub struct SensorError {
+    /// Tactile columns of the log.
+    pub sensors: usize,
+    /// Fixels of the scene.
+    pub fixels: usize,
+}
+
+/// Where the columns of a log stand.
+struct Columns {
+    time: usize,
+    object: [usize; 3],
+    pusher: [usize; 3],
+    tactile: Vec<usize>,
+    force: Option<[usize; 2]>,
+}
+
+/// Reads a log; `name` is shown in errors and warnings.
+///
+/// # Errors
+/// A required column is missing or named twice, a row has a wrong number of cells, a cell is no finite number, time does not rise,
+/// a pose or force is given in part, a tactile cell is neither 0 nor 1, or there is no row.
+///
+/// ```
+/// let text = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta\n0,0.1,0,0,0,0,0\n0.03,,,,0.01,0,0\n";
+/// let (log, warnings) = stickslip_formats::read_log(text.as_bytes(), "log.csv")?;
+/// assert_eq!((log.len(), log.object[1], warnings.len()), (2, None, 0));
+/// # Ok::<(), stickslip_formats::LogError>(())
+/// ```
+pub fn read_log(reader: impl Read, name: &str) -> Result<(Log, Vec<LogWarning>), LogError> {
+    let table = CsvTable::read(reader, name)?;
+    let columns = Columns::find(&table)?;
+    let mut log = Log { tactile: vec![Vec::new(); columns.tactile.len()], ..Log::default() };
+    for row in table.rows()? {
+        columns.read_row(&row?, &mut log)?;
+    }
+    Ok((log, columns.warnings(&table)))
+}
+
+/// Checks that the log has no more tactile sensors than the scene has fixels; fewer are allowed.
+///
+/// # Errors
+/// [`SensorError`] with both numbers.
+pub fn check_sensors(log: &Log, setup: &Setup) -> Result<(), SensorError> {
+    let (sensors, fixels) = (log.tactile.len(), setup.scene.fixels.len());
+    if sensors > fixels { Err(SensorError { sensors, fixels }) } else { Ok(()) }
+}
+
+/// Writes a log; every number reads back to the same bits.
+///
+/// # Errors
+/// Those of `writer`.
+///
+/// # Panics
+/// If the columns differ in length.
+pub fn write_log(mut writer: impl Write, log: &Log) -> std::io::Result<()> {
+    let rows = log.len();
+    assert!(log.object.len() == rows && log.pusher.len() == rows, "columns of equal length");
+    assert!(log.tactile.iter().all(|column| column.len() == rows), "columns of equal length");
+    assert!(log.force.is_empty() || log.force.len() == rows, "columns of equal length");
+
+    writeln!(writer, "{}", header(log).join(","))?;
+    (0..rows).try_for_each(|row| writeln!(writer, "{}", cells(log, row).join(",")))
+}
+
+impl Columns {
+    fn find(table: &CsvTable) -> Result<Self, LogError> {
+        Ok(Self {
+            time: table.require("time")?,
+            object: table.require_all(OBJECT)?,
+            pusher: table.require_all(PUSHER)?,
+            tactile: tactile_columns(table)?,
+            force: force_columns(table)?,
+        })
+    }
+
+    fn read_row(&self, row: &Row<'_>, log: &mut Log) -> Result<(), LogError> {
+        log.time.push(row.time(self.time, log.time.last().copied())?);
+        log.object.push(pose(row, self.object)?);
+        log.pusher.push(pose(row, self.pusher)?);
+        for (readings, column) in log.tactile.iter_mut().zip(&self.tactile) {
+            readings.push(row.binary(*column)?);
+        }
+        if let Some(force) = self.force {
+            log.force.push(row.group(&force)?.map(|f| [f[0], f[1]]));
+        }
+        Ok(())
+    }
+
+    fn warnings(&self, table: &CsvTable) -> Vec<LogWarning> {
+        let force = self.force.iter().flatten();
+        let used: Vec<usize> = self.object.iter().chain(&self.pusher).chain(&self.tactile).chain(force).copied().chain([self.time]).collect();
+        let names = table.columns().iter().enumerate();
+        let columns: Vec<String> = names.filter(|(index, _)| !used.contains(index)).map(|(_, name)| name.clone()).collect();
+        if columns.is_empty() { Vec::new() } else { vec![LogWarning::ExtraColumns { file: table.file().to_owned(), columns }] }
+    }
+}
+
+/// The columns tactile_1 ... tactile_n; a gap in the numbers, a zero or a leading zero is an error.
+fn tactile_columns(table: &CsvTable) -> Result<Vec<usize>, LogError> {
+    let numbered = |name: &String| name.strip_prefix(TACTILE).is_some_and(|k| !k.is_empty() && k.bytes().all(|c| c.is_ascii_digit()));
+    let sensors: Vec<usize> = (0..table.columns().len()).filter(|index| numbered(&table.columns()[*index])).collect();
+    let names: Vec<String> = (1..=sensors.len()).map(|k| format!("{TACTILE}{k}")).collect();
+    let wrong = sensors.iter().find(|index| !names.contains(&table.columns()[**index]));
+    let in_order =
+        names.iter().map(|name| table.find(name).ok_or_else(|| table.error(1, wrong.copied(), CsvProblem::SensorNumber { missing: name.clone() })));
+    in_order.collect()
+}
+
+/// The two force columns, or none where neither is there.
+fn force_columns(table: &CsvTable) -> Result<Option<[usize; 2]>, LogError> {
+    if FORCE.iter().any(|name| table.find(name).is_some()) { table.require_all(FORCE).map(Some) } else { Ok(None) }
+}
+
+fn pose(row: &Row<'_>, columns: [usize; 3]) -> Result<Option<Pose>, LogError> {
+    Ok(row.group(&columns)?.map(|v| Pose::new(v[0], v[1], v[2])))
+}
+
+fn header(log: &Log) -> Vec<String> {
+    let tactile = (1..=log.tactile.len()).map(|k| format!("{TACTILE}{k}"));
+    let force = FORCE.into_iter().filter(|_| !log.force.is_empty());
+    let poses = ["time"].into_iter().chain(OBJECT).chain(PUSHER);
+    poses.map(str::to_owned).chain(tactile).chain(force.map(str::to_owned)).collect()
+}
+
+fn cells(log: &Log, row: usize) -> Vec<String> {
+    let pose_cells = |pose: Option<Pose>| match pose {
+        Some(pose) => [pose.x, pose.y, pose.theta].map(number::text),
+        None => Default::default(),
+    };
+    let tactile = log.tactile.iter().map(|column| column[row].map_or(String::new(), |touch| u8::from(touch).to_string()));
+    let force = log.force.get(row).map(|force| force.map_or(Default::default(), |f| f.map(number::text)));
+    let poses = [number::text(log.time[row])].into_iter().chain(pose_cells(log.object[row])).chain(pose_cells(log.pusher[row]));
+    poses.chain(tactile).chain(force.into_iter().flatten()).collect()
+}

@@ -1,0 +1,238 @@
+//! A TOML document whose every value knows its place: [`Source`], [`Table`], [`Node`].
+//!
+//! Reading by hand rather than by derive keeps the place of each number in nested lists, and the words for it.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{SceneError, SceneProblem};
+use crate::nearest::nearest;
+
+type Result<T> = std::result::Result<T, SceneError>;
+
+/// The text of a scene file with its name.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) name: &'a str,
+    pub(super) text: &'a str,
+}
+
+/// What a number must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    Finite,
+    Positive,
+    NotNegative,
+    /// In (0, 1).
+    Probability,
+    /// In [0, 1].
+    Share,
+}
+
+/// A key that holds a number: its name, what it means, its unit (empty for none) and its rule.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quantity {
+    pub(super) key: &'static str,
+    pub(super) what: &'static str,
+    pub(super) unit: &'static str,
+    pub(super) rule: Rule,
+}
+
+/// A table with the keys it may have.
+pub(super) struct Table<'a> {
+    source: Source<'a>,
+    path: String,
+    span: Range<usize>,
+    entries: &'a DeTable<'a>,
+}
+
+/// A value with the way to it.
+pub(super) struct Node<'a> {
+    source: Source<'a>,
+    path: String,
+    value: &'a Spanned<DeValue<'a>>,
+}
+
+impl Source<'_> {
+    /// An error at a byte of the text.
+    pub(super) fn error(&self, byte: usize, problem: SceneProblem) -> SceneError {
+        let end = (0..=byte.min(self.text.len())).rev().find(|end| self.text.is_char_boundary(*end)).unwrap_or(0);
+        let before = &self.text[..end];
+        let line = 1 + before.matches('\n').count();
+        let column = 1 + before.rsplit('\n').next().unwrap_or("").chars().filter(|c| *c != '\u{feff}').count();
+        SceneError { file: self.name.to_owned(), line, column, problem }
+    }
+}
+
+impl Rule {
+    fn holds(self, value: f64) -> bool {
+        match self {
+            Self::Finite => true,
+            Self::Positive => value > 0.0,
+            Self::NotNegative => value >= 0.0,
+            Self::Probability => value > 0.0 && value < 1.0,
+            Self::Share => (0.0..=1.0).contains(&value),
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Finite => "finite",
+            Self::Positive => "positive",
+            Self::NotNegative => "zero or positive",
+            Self::Probability => "between 0 and 1, both excluded",
+            Self::Share => "from 0 to 1",
+        }
+    }
+}
+
+impl Quantity {
+    pub(super) const fn new(key: &'static str, what: &'static str, unit: &'static str, rule: Rule) -> Self {
+        Self { key, what, unit, rule }
+    }
+
+    /// What to give, with the unit.
+    fn order(&self) -> String {
+        if self.unit.is_empty() { self.what.to_owned() } else { format!("{} in {}", self.what, self.unit) }
+    }
+}
+
+impl<'a> Table<'a> {
+    /// The whole document.
+    pub(super) fn root(source: Source<'a>, document: &'a Spanned<DeTable<'a>>, known: &[&str]) -> Result<Self> {
+        let table = Self { source, path: String::new(), span: 0..0, entries: document.get_ref() };
+        table.check_keys(known)?;
+        Ok(table)
+    }
+
+    /// The value of a key, if it is there.
+    pub(super) fn optional(&self, key: &str) -> Option<Node<'a>> {
+        let value = self.entries.get(key)?;
+        Some(Node { source: self.source, path: self.path_to(key), value })
+    }
+
+    /// The value of a key that must be there; `what` completes "Give ...".
+    pub(super) fn required(&self, key: &str, what: &str) -> Result<Node<'a>> {
+        self.optional(key).ok_or_else(|| {
+            let problem = SceneProblem::Missing { key: self.path_to(key), what: what.to_owned() };
+            self.source.error(self.span.start, problem)
+        })
+    }
+
+    /// A number that must be there.
+    pub(super) fn number(&self, quantity: &Quantity) -> Result<f64> {
+        self.required(quantity.key, &quantity.order())?.number(quantity)
+    }
+
+    /// A number, if it is there.
+    pub(super) fn number_if(&self, quantity: &Quantity) -> Result<Option<f64>> {
+        self.optional(quantity.key).map(|node| node.number(quantity)).transpose()
+    }
+
+    /// A number, or the default where it is not there.
+    pub(super) fn number_or(&self, quantity: &Quantity, default: f64) -> Result<f64> {
+        Ok(self.number_if(quantity)?.unwrap_or(default))
+    }
+
+    /// The first key, in the order of the file, that is not known is an error.
+    fn check_keys(&self, known: &[&str]) -> Result<()> {
+        let unknown = self.entries.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
+        let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else { return Ok(()) };
+        let nearest = nearest(key.get_ref(), known.iter().copied()).map_or("", |(name, _)| name).to_owned();
+        let problem = SceneProblem::UnknownKey { key: self.path_to(key.get_ref()), nearest };
+        Err(self.source.error(key.span().start, problem))
+    }
+
+    fn path_to(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+}
+
+impl<'a> Node<'a> {
+    /// The way to the value.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The value as it stands in the file.
+    pub(super) fn text(&self) -> &'a str {
+        self.source.text.get(self.value.span()).unwrap_or("")
+    }
+
+    /// An error at this value.
+    pub(super) fn error(&self, problem: SceneProblem) -> SceneError {
+        self.source.error(self.value.span().start, problem)
+    }
+
+    /// The value as a table that has no other keys than `known`; `what` completes "Give ...".
+    pub(super) fn table(&self, known: &[&str], what: &str) -> Result<Table<'a>> {
+        let DeValue::Table(entries) = self.value.get_ref() else { return Err(self.wrong_type("a table", what)) };
+        let table = Table { source: self.source, path: self.path.clone(), span: self.value.span(), entries };
+        table.check_keys(known)?;
+        Ok(table)
+    }
+
+    /// The items of a list; `what` completes "Give ...".
+    pub(super) fn items(&self, what: &str) -> Result<Vec<Node<'a>>> {
+        let DeValue::Array(items) = self.value.get_ref() else { return Err(self.wrong_type("a list", what)) };
+        let node = |(index, value)| Node { source: self.source, path: format!("{}[{}]", self.path, index + 1), value };
+        Ok(items.iter().enumerate().map(node).collect())
+    }
+
+    /// A list of exactly N items.
+    pub(super) fn exactly<const N: usize>(&self, what: &str) -> Result<[Node<'a>; N]> {
+        let items = self.items(what)?;
+        let count = items.len();
+        items.try_into().map_err(|_| {
+            let (key, found, expected) = (self.path.clone(), format!("a list of {count}"), format!("a list of {N}"));
+            self.error(SceneProblem::WrongType { key, found, expected, what: what.to_owned() })
+        })
+    }
+
+    /// A list of two numbers under one rule.
+    pub(super) fn pair(&self, quantity: &Quantity) -> Result<[f64; 2]> {
+        let [first, second] = self.exactly::<2>(&quantity.order())?;
+        Ok([first.number(quantity)?, second.number(quantity)?])
+    }
+
+    /// A number, whole numbers included, under the quantity's rule.
+    pub(super) fn number(&self, quantity: &Quantity) -> Result<f64> {
+        let value = self.float().ok_or_else(|| self.wrong_type("a number", &quantity.order()))?;
+        if !value.is_finite() {
+            return Err(self.out_of_range(Rule::Finite.words(), quantity));
+        }
+        if quantity.rule.holds(value) { Ok(value) } else { Err(self.out_of_range(quantity.rule.words(), quantity)) }
+    }
+
+    /// The value is against a rule, put in words.
+    pub(super) fn out_of_range(&self, rule: &'static str, quantity: &Quantity) -> SceneError {
+        let found = format!("{} {}", self.text(), quantity.unit).trim_end().to_owned();
+        self.error(SceneProblem::OutOfRange { key: self.path.clone(), found, rule, what: quantity.order() })
+    }
+
+    fn float(&self) -> Option<f64> {
+        match self.value.get_ref() {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|value| value as f64),
+            _ => None,
+        }
+    }
+
+    fn wrong_type(&self, expected: &str, what: &str) -> SceneError {
+        let (key, found, expected) = (self.path.clone(), self.kind(), expected.to_owned());
+        self.error(SceneProblem::WrongType { key, found, expected, what: what.to_owned() })
+    }
+
+    /// The value in words: as it stands where that is short, else its type.
+    fn kind(&self) -> String {
+        match self.value.get_ref() {
+            DeValue::Array(_) => "a list".to_owned(),
+            DeValue::Table(_) => "a table".to_owned(),
+            DeValue::Integer(_) => format!("the number {}, which is too large", self.text()),
+            DeValue::String(_) => format!("the text {}", self.text()),
+            DeValue::Boolean(_) | DeValue::Float(_) | DeValue::Datetime(_) => self.text().to_owned(),
+        }
+    }
+}

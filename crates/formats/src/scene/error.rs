@@ -1,0 +1,101 @@
+//! Why a scene file was refused: [`SceneError`].
+
+use stickslip_dynamics::ShapeError;
+
+/// Why a scene file was refused, and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{file}:{line}:{column}: {problem}")]
+pub struct SceneError {
+    /// Display name of the file.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, in characters, from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub problem: SceneProblem,
+}
+
+/// What is wrong with a scene file. `key` is the way to the value, as `object.shape[2].polygon`; items of lists count from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneProblem {
+    /// The text is not TOML.
+    #[error("this is not TOML: {0}")]
+    Syntax(String),
+    /// A key that the format does not have.
+    #[error("`{key}` is not a known key; the nearest one is `{nearest}`. Correct or remove it")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The known key at this place with the fewest edits to it.
+        nearest: String,
+    },
+    /// A key that must be there.
+    #[error("`{key}` is missing. Give {what}")]
+    Missing {
+        /// The key.
+        key: String,
+        /// What to give.
+        what: String,
+    },
+    /// A value of another type.
+    #[error("{key} is {found}; it must be {expected}. Give {what}")]
+    WrongType {
+        /// The key.
+        key: String,
+        /// The value found.
+        found: String,
+        /// The type expected.
+        expected: String,
+        /// What to give.
+        what: String,
+    },
+    /// A number against its rule.
+    #[error("{key} is {found}; it must be {rule}. Give {what}")]
+    OutOfRange {
+        /// The key.
+        key: String,
+        /// The value found, with its unit.
+        found: String,
+        /// The rule.
+        rule: &'static str,
+        /// What to give.
+        what: String,
+    },
+    /// A part of a shape that is none or several of the three kinds.
+    #[error("{key} has {found} of the keys `polygon`, `disc` and `ellipse`; a part is exactly one of them. Give each part its own braces")]
+    PartKind {
+        /// The part.
+        key: String,
+        /// How many of the three it has.
+        found: usize,
+    },
+    /// A part or a whole shape that is no shape.
+    #[error("{key}: {source}")]
+    Shape {
+        /// The part or the shape.
+        key: String,
+        /// Why.
+        source: ShapeError,
+    },
+    /// Feet and a tripod are both given.
+    #[error("`support.{key}` and `support.feet` are both given; known feet leave no tripod to estimate. Remove one of the two")]
+    FeetAndTripod {
+        /// The tripod's key.
+        key: &'static str,
+    },
+    /// The feet stand on one line.
+    #[error("support.feet are on one line; three feet carry an object only as a triangle. Give their positions in the object frame in m")]
+    FeetOnLine,
+    /// The centre of mass is not over the feet.
+    #[error(
+        "the centre of mass (the origin of the object frame) is outside the triangle of support.feet; foot {foot} would carry {load:.3} of the weight. Give the positions of the feet relative to the centre of mass in m"
+    )]
+    FeetTip {
+        /// The foot with the most negative load, from 1.
+        foot: usize,
+        /// Its share of the weight.
+        load: f64,
+    },
+}

@@ -1,0 +1,128 @@
+//! `scene.toml`, what is known before the experiment: [`read_scene`].
+//!
+//! SI units, angles counter-clockwise; the object's frame has its origin in the centre of mass.
+
+mod document;
+mod error;
+mod feet;
+mod sensing;
+mod shapes;
+
+use std::f64::consts::FRAC_PI_2;
+
+use stickslip::Setup;
+use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
+use toml::de::DeTable;
+
+use document::{Node, Quantity, Rule, Source, Table};
+pub use error::{SceneError, SceneProblem};
+use shapes::shape;
+
+type Result<T> = std::result::Result<T, SceneError>;
+
+const KEYS: [&str; 9] = ["gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile", "filter"];
+const GRAVITY: Quantity = Quantity::new("gravity", "the gravity that presses the object on the support", "m/s^2", Rule::Positive);
+const MASS: Quantity = Quantity::new("mass", "the object's mass", "kg", Rule::Positive);
+const INERTIA: Quantity = Quantity::new("inertia", "the object's moment of inertia about its centre of mass", "kg m^2", Rule::Positive);
+const MU_S: Quantity = Quantity::new("friction", "the nominal friction coefficient between object and support", "", Rule::NotNegative);
+const MU_P: Quantity = Quantity::new("friction", "the nominal friction coefficient between object and pusher", "", Rule::NotNegative);
+const MU_F: Quantity = Quantity::new("friction", "the nominal friction coefficient between object and fixels", "", Rule::NotNegative);
+const TRIPOD_RADIUS: Quantity = Quantity::new("tripod_radius", "the nominal radius of the support tripod", "m", Rule::Positive);
+const TRIPOD_ANGLE: Quantity = Quantity::new("tripod_angle", "the direction of the first foot in the object frame", "rad", Rule::Finite);
+const FOOT: Quantity = Quantity::new("feet", "three feet as [[x, y], [x, y], [x, y]] in the object frame", "m", Rule::Finite);
+const STALL_FORCE: Quantity = Quantity::new("stall_force", "the force at which the pusher gives way", "N", Rule::Positive);
+const POSITION: Quantity = Quantity::new("position", "the fixel's position in the world as [x, y]", "m", Rule::Finite);
+const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", "rad", Rule::Finite);
+
+/// Reads a scene file; `name` is shown in errors.
+///
+/// # Errors
+/// The first of: no TOML, an unknown key, a missing key, a value of a wrong type or against its rule, a shape or feet that cannot
+/// be; with line and column.
+///
+/// ```
+/// let error = stickslip_formats::read_scene("gravity = 0\n", "scene.toml").unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "scene.toml:1:11: gravity is 0 m/s^2; it must be positive. Give the gravity that presses the object on the support in m/s^2"
+/// );
+/// ```
+pub fn read_scene(text: &str, name: &str) -> Result<Setup> {
+    let source = Source { name, text };
+    let document = DeTable::parse(text).map_err(|error| {
+        let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
+        source.error(error.span().map_or(0, |span| span.start), SceneProblem::Syntax(message))
+    })?;
+    setup(&Table::root(source, &document, &KEYS)?)
+}
+
+fn setup(root: &Table<'_>) -> Result<Setup> {
+    Ok(Setup {
+        scene: scene(root)?,
+        camera: root.optional("camera").as_ref().map(sensing::camera).transpose()?,
+        tactile: root.optional("tactile").as_ref().map(sensing::tactile).transpose()?.unwrap_or_default(),
+        filter: root.optional("filter").as_ref().map(sensing::filter).transpose()?.unwrap_or_default(),
+    })
+}
+
+fn scene(root: &Table<'_>) -> Result<Scene> {
+    let gravity = root.number(&GRAVITY)?;
+    let object = object(&section(root, "object", &["mass", "inertia", "shape"])?)?;
+    let support = section(root, "support", &["friction", "tripod_radius", "tripod_angle", "feet"])?;
+    let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support)?);
+    let (mu_p, pusher) = pusher(&section(root, "pusher", &["shape", "friction", "stall_force"])?)?;
+    let mu_f = section(root, "fixels", &["friction"])?.number(&MU_F)?;
+    Ok(Scene { gravity, object, feet, pusher, fixels: fixels(root)?, nominal: Friction { mu_s, mu_p, mu_f, d_tri } })
+}
+
+/// A table that must be there.
+fn section<'a>(root: &Table<'a>, key: &str, known: &[&str]) -> Result<Table<'a>> {
+    let what = format!("the table [{key}] with the keys {}", known.join(", "));
+    root.required(key, &what)?.table(known, &what)
+}
+
+fn object(table: &Table<'_>) -> Result<Object> {
+    Ok(Object { mass: table.number(&MASS)?, inertia: table.number(&INERTIA)?, shape: shape(table)? })
+}
+
+/// The pusher with its friction.
+fn pusher(table: &Table<'_>) -> Result<(f64, Pusher)> {
+    let pusher = Pusher { shape: shape(table)?, stall_force: table.number_if(&STALL_FORCE)? };
+    Ok((table.number(&MU_P)?, pusher))
+}
+
+/// The feet with the nominal d_tri.
+fn feet(support: &Table<'_>) -> Result<(Feet, f64)> {
+    match support.optional(FOOT.key) {
+        Some(feet) => known_feet(support, &feet),
+        None => {
+            let angle = support.number_or(&TRIPOD_ANGLE, FRAC_PI_2)?;
+            Ok((Feet::Tripod { angle }, support.number(&TRIPOD_RADIUS)?))
+        }
+    }
+}
+
+/// Known feet; their mean radius stands in for the d_tri that nothing uses.
+fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
+    for key in [TRIPOD_RADIUS.key, TRIPOD_ANGLE.key] {
+        if let Some(tripod) = support.optional(key) {
+            return Err(tripod.error(SceneProblem::FeetAndTripod { key }));
+        }
+    }
+    let [a, b, c] = node.exactly::<3>(&format!("{} in {}", FOOT.what, FOOT.unit))?;
+    let positions = [a.pair(&FOOT)?, b.pair(&FOOT)?, c.pair(&FOOT)?];
+    let loads = feet::loads(positions).map_err(|problem| node.error(problem))?;
+    let [a, b, c] = positions.map(|[x, y]| (x * x + y * y).sqrt());
+    Ok((Feet::Known { positions, loads }, (a + b + c) / 3.0))
+}
+
+fn fixels(root: &Table<'_>) -> Result<Vec<Fixel>> {
+    let what = "each fixel as a table [[fixel]] with the keys position, angle, shape";
+    let Some(node) = root.optional("fixel") else { return Ok(Vec::new()) };
+    let fixel = |node: &Node<'_>| {
+        let table = node.table(&["position", "angle", "shape"], what)?;
+        let [x, y] = table.required(POSITION.key, &format!("{} in {}", POSITION.what, POSITION.unit))?.pair(&POSITION)?;
+        Ok(Fixel { pose: Pose::new(x, y, table.number_or(&ANGLE, 0.0)?), shape: shape(&table)? })
+    };
+    node.items(what)?.iter().map(fixel).collect()
+}

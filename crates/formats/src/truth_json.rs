@@ -1,0 +1,97 @@
+//! `truth.json`, the true friction values and what happened when: [`TruthFacts`], [`read_truth_json`]. For scoring only.
+
+use serde::Deserialize;
+use stickslip_dynamics::Pose;
+
+/// What is known of an experiment after it; `None` where the file does not say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TruthFacts {
+    /// True μ_s.
+    pub mu_s: Option<f64>,
+    /// True μ_p.
+    pub mu_p: Option<f64>,
+    /// True μ_f.
+    pub mu_f: Option<f64>,
+    /// True radius of the support tripod [m].
+    pub d_tri: Option<f64>,
+    /// Log row of the first contact with the pusher, from 0.
+    pub first_pusher_contact: Option<usize>,
+    /// Log row of the first contact with each fixel; empty where the file does not say.
+    pub first_fixel_contacts: Vec<Option<usize>>,
+    /// First log row without the camera.
+    pub occlude_from: Option<usize>,
+    /// The object's pose after the last row.
+    pub final_pose: Option<Pose>,
+}
+
+/// Why a `truth.json` was refused, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}:{column}: {}{problem}. Write one JSON object with numbers, row indices from 0 and null where nothing is known", if .key.is_empty() { String::new() } else { format!("`{key}`: ") })]
+pub struct TruthFactsError {
+    /// Display name of the file.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+    /// The key, empty where the text is no JSON object.
+    pub key: String,
+    /// The value found and the one expected.
+    pub problem: String,
+}
+
+/// The file as it stands; keys that are not here are ignored.
+#[derive(Deserialize)]
+#[serde(expecting = "an object with the keys mu_s, mu_p, ...")]
+struct Document {
+    mu_s: Option<f64>,
+    mu_p: Option<f64>,
+    mu_f: Option<f64>,
+    d_tri: Option<f64>,
+    first_pusher_contact: Option<usize>,
+    first_fixel_contacts: Option<Vec<Option<usize>>>,
+    occlude_from: Option<usize>,
+    final_pose: Option<[f64; 3]>,
+}
+
+/// Reads the known keys; others are ignored, missing ones and `null` are `None`. `name` is shown in errors.
+///
+/// # Errors
+/// The text is no JSON object, or a known key has a value of another type.
+///
+/// ```
+/// let facts = stickslip_formats::read_truth_json(r#"{ "mu_s": 0.2, "source": "a table" }"#, "truth.json")?;
+/// assert_eq!((facts.mu_s, facts.mu_p), (Some(0.2), None));
+/// # Ok::<(), stickslip_formats::TruthFactsError>(())
+/// ```
+pub fn read_truth_json(text: &str, name: &str) -> Result<TruthFacts, TruthFactsError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let document: Document =
+        serde_path_to_error::deserialize(&mut deserializer).map_err(|error| error_at(name, error.path().to_string(), error.inner()))?;
+    deserializer.end().map_err(|error| error_at(name, String::new(), &error))?;
+    Ok(document.into())
+}
+
+fn error_at(file: &str, path: String, error: &serde_json::Error) -> TruthFactsError {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let problem = text.strip_suffix(&place).unwrap_or(&text).to_owned();
+    let key = if path == "." || path == "?" { String::new() } else { path };
+    TruthFactsError { file: file.to_owned(), line: error.line().max(1), column: error.column().max(1), key, problem }
+}
+
+impl From<Document> for TruthFacts {
+    fn from(document: Document) -> Self {
+        Self {
+            mu_s: document.mu_s,
+            mu_p: document.mu_p,
+            mu_f: document.mu_f,
+            d_tri: document.d_tri,
+            first_pusher_contact: document.first_pusher_contact,
+            first_fixel_contacts: document.first_fixel_contacts.unwrap_or_default(),
+            occlude_from: document.occlude_from,
+            final_pose: document.final_pose.map(|[x, y, theta]| Pose::new(x, y, theta)),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Every file of the data folder reads without an error: `STICKSLIP_DATA`, by default `../shared/data` beside the workspace.
+
+use std::path::{Path, PathBuf};
+
+use stickslip_formats::{check_sensors, read_log, read_scene, read_truth_csv, read_truth_json};
+
+fn data_folder() -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("STICKSLIP_DATA").map_or_else(beside, PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    assert!(std::env::var_os("STICKSLIP_REQUIRE_DATA").is_none_or(|value| value != "1"), "no data at {}", folder.display());
+    println!("ignored: no data at {}", folder.display());
+    None
+}
+
+/// Files below `folder` whose name passes, sorted.
+fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.file_name().and_then(|name| name.to_str()).is_some_and(wanted) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn bytes(path: &Path) -> std::fs::File {
+    std::fs::File::open(path).unwrap()
+}
+
+#[test]
+fn every_scene_of_the_data_folder_reads() {
+    let Some(folder) = data_folder() else { return };
+    let scenes = files(&folder, &|name| name.starts_with("scene") && name.ends_with(".toml"));
+    assert!(!scenes.is_empty());
+    for path in scenes {
+        read_scene(&text(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+#[test]
+fn every_log_of_the_data_folder_reads_and_fits_its_scene() {
+    let Some(folder) = data_folder() else { return };
+    let logs = files(&folder, &|name| name == "log.csv");
+    assert!(!logs.is_empty());
+    for path in logs {
+        let (log, warnings) = read_log(bytes(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(warnings, []);
+        let setup = read_scene(&text(&path.with_file_name("scene.toml")), "scene.toml").unwrap();
+        check_sensors(&log, &setup).unwrap();
+        assert_eq!(log.len() + 1, text(&path).lines().count());
+    }
+}
+
+#[test]
+fn every_truth_of_the_data_folder_reads() {
+    let Some(folder) = data_folder() else { return };
+    for path in files(&folder, &|name| name == "truth.csv") {
+        let truth = read_truth_csv(bytes(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(truth.time.len(), truth.pose.len());
+    }
+    for path in files(&folder, &|name| name == "truth.json") {
+        read_truth_json(&text(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
