@@ -1,4 +1,4 @@
-//! One axis that moves at nearly constant velocity: Kalman filter, smoother and maximum-likelihood noise.
+//! One axis that moves at nearly constant velocity: Kalman filter and smoother.
 //!
 //! State (position, velocity); the acceleration is white noise of level q [unit²/s³]. Over a step h, exactly
 //! (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.2):
@@ -10,6 +10,7 @@
 use nalgebra::{Matrix1, Matrix2, RowVector2, Vector1, Vector2};
 
 use crate::Gaussian;
+use crate::series::{Series, SeriesError};
 
 /// A constant-velocity model of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,95 +45,13 @@ pub struct Filtered {
     pub log_likelihood: f64,
 }
 
-/// The process noise that makes a series of measurements most probable.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProcessNoiseFit {
-    /// q [unit²/s³].
-    pub process_noise: f64,
-    /// ln p(measurements after the first | the first, q).
-    pub log_likelihood: f64,
-    /// Where q lies in the range searched.
-    pub optimum: Optimum,
-}
-
-/// Where an optimum was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[must_use]
-pub enum Optimum {
-    /// Inside the range.
-    Interior,
-    /// At the lower end: the series moves at constant velocity as far as its noise tells.
-    LowerEnd,
-    /// At the upper end: the measurement noise is negligible beside the motion.
-    UpperEnd,
-}
-
-/// Why a series was refused.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SeriesError {
-    /// Times and measurements differ in number.
-    #[error("there are {times} times but {measurements} measurements; give one (or None) per time")]
-    Length {
-        /// Number of times.
-        times: usize,
-        /// Number of measurements.
-        measurements: usize,
-    },
-    /// Times do not rise.
-    #[error(
-        "row {row}: time {time} s does not rise above {before} s of the row before; sort the rows"
-    )]
-    Time {
-        /// The later row.
-        row: usize,
-        /// Its time.
-        time: f64,
-        /// The time before.
-        before: f64,
-    },
-    /// A measurement is NaN or infinite.
-    #[error(
-        "row {row}: the measurement is {value}; it must be finite; give None where there is none"
-    )]
-    Measurement {
-        /// The row.
-        row: usize,
-        /// The value.
-        value: f64,
-    },
-    /// A parameter of the model is out of range.
-    #[error("`{name}` is {value}; it must be finite and {rule}")]
-    Parameter {
-        /// The field's name.
-        name: &'static str,
-        /// The value.
-        value: f64,
-        /// What it must be.
-        rule: &'static str,
-    },
-    /// Rounding made a predicted covariance singular.
-    #[error(
-        "row {row}: the predicted covariance is singular to rounding; `initial_velocity_std` must be nearer the speeds that occur"
-    )]
-    Singular {
-        /// The row.
-        row: usize,
-    },
-    /// Too few measurements to tell the process noise.
-    #[error("there are {measurements} measurements; fitting the process noise takes at least 3")]
-    TooFew {
-        /// Their number.
-        measurements: usize,
-    },
-}
-
 /// One row of the forward pass: the state before its measurement and after.
 #[derive(Clone, Copy)]
-struct Step {
+pub(crate) struct Step {
     predicted: Gaussian<2>,
     filtered: Gaussian<2>,
-    log_likelihood: f64,
+    /// ln p(measurement | rows before), 0 where there is none.
+    pub(crate) log_likelihood: f64,
 }
 
 impl ConstantVelocity {
@@ -187,10 +106,10 @@ impl ConstantVelocity {
         measurements: &[Option<f64>],
     ) -> Result<Filtered, SeriesError> {
         self.check()?;
-        check_series(times, measurements)?;
+        let series = Series::new(times, measurements)?;
         let mut log_likelihood = 0.0;
         let mut rows = vec![None; times.len()];
-        self.forward(times, measurements, |row, step| {
+        self.forward(&series, |row, step| {
             log_likelihood += step.log_likelihood;
             rows[row] = Some(AxisEstimate::from(step.filtered));
         });
@@ -220,9 +139,9 @@ impl ConstantVelocity {
         measurements: &[Option<f64>],
     ) -> Result<Vec<Option<AxisEstimate>>, SeriesError> {
         self.check()?;
-        check_series(times, measurements)?;
+        let series = Series::new(times, measurements)?;
         let mut steps = Vec::with_capacity(times.len());
-        self.forward(times, measurements, |row, step| steps.push((row, step)));
+        self.forward(&series, |row, step| steps.push((row, step)));
 
         let mut rows = vec![None; times.len()];
         let mut later: Option<(Gaussian<2>, Gaussian<2>)> = None;
@@ -244,60 +163,10 @@ impl ConstantVelocity {
         Ok(rows)
     }
 
-    /// The process noise of greatest likelihood; this model's own is not used.
-    ///
-    /// The search is over ln q within nine decades either side of measurement_std²/h³ (h the median step), where a step's
-    /// process noise equals the measurement's: a grid of half-decades, then golden section about its best point. The
-    /// result depends on the arguments alone.
-    ///
-    /// # Errors
-    /// If the model or the series is out of range or has fewer than 3 measurements.
-    pub fn fit_process_noise(
-        &self,
-        times: &[f64],
-        measurements: &[Option<f64>],
-    ) -> Result<ProcessNoiseFit, SeriesError> {
-        ConstantVelocity {
-            process_noise: 0.0,
-            ..*self
-        }
-        .check()?;
-        check_series(times, measurements)?;
-        let found = measurements.iter().flatten().count();
-        if found < 3 {
-            return Err(SeriesError::TooFew {
-                measurements: found,
-            });
-        }
-        let centre = libm::log(square(self.measurement_std)) - 3.0 * libm::log(median_step(times));
-        let objective = |log_q: f64| self.log_likelihood_at(libm::exp(log_q), times, measurements);
-        Ok(search(centre, objective))
-    }
-
-    fn log_likelihood_at(
-        &self,
-        process_noise: f64,
-        times: &[f64],
-        measurements: &[Option<f64>],
-    ) -> f64 {
-        let mut sum = 0.0;
-        let model = ConstantVelocity {
-            process_noise,
-            ..*self
-        };
-        model.forward(times, measurements, |_, step| sum += step.log_likelihood);
-        sum
-    }
-
     /// Calls `visit(row, step)` on every row from the first measurement on.
-    fn forward(
-        &self,
-        times: &[f64],
-        measurements: &[Option<f64>],
-        mut visit: impl FnMut(usize, Step),
-    ) {
+    pub(crate) fn forward(&self, series: &Series<'_>, mut visit: impl FnMut(usize, Step)) {
         let mut before: Option<(f64, Gaussian<2>)> = None;
-        for (row, (&time, &measurement)) in times.iter().zip(measurements).enumerate() {
+        for (row, time, measurement) in series.rows() {
             let step = match (before, measurement) {
                 (Some((then, state)), _) => {
                     self.step(&self.predict(&state, time - then), measurement)
@@ -322,7 +191,7 @@ impl ConstantVelocity {
         }
     }
 
-    fn check(&self) -> Result<(), SeriesError> {
+    pub(crate) fn check(&self) -> Result<(), SeriesError> {
         let positive = |name, value: f64| match value {
             v if square(v).is_normal() && v > 0.0 => Ok(()),
             _ => Err(SeriesError::Parameter {
@@ -372,84 +241,4 @@ fn transition(h: f64) -> Matrix2<f64> {
 
 fn square(x: f64) -> f64 {
     x * x
-}
-
-fn check_series(times: &[f64], measurements: &[Option<f64>]) -> Result<(), SeriesError> {
-    if times.len() != measurements.len() {
-        return Err(SeriesError::Length {
-            times: times.len(),
-            measurements: measurements.len(),
-        });
-    }
-    for (row, pair) in times.windows(2).enumerate() {
-        let h = pair[1] - pair[0];
-        if !(h.is_finite() && h > 0.0) {
-            return Err(SeriesError::Time {
-                row: row + 1,
-                time: pair[1],
-                before: pair[0],
-            });
-        }
-    }
-    let broken = measurements
-        .iter()
-        .enumerate()
-        .find_map(|(row, m)| m.filter(|v| !v.is_finite()).map(|v| (row, v)));
-    match broken {
-        Some((row, value)) => Err(SeriesError::Measurement { row, value }),
-        None => Ok(()),
-    }
-}
-
-fn median_step(times: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps[steps.len() / 2]
-}
-
-/// Maximises `objective(ln q)` around `centre`.
-fn search(centre: f64, objective: impl Fn(f64) -> f64) -> ProcessNoiseFit {
-    const HALF_DECADE: f64 = std::f64::consts::LN_10 / 2.0;
-    const REACH: i32 = 18;
-    let at = |i: i32| centre + f64::from(i) * HALF_DECADE;
-    let (mut best, mut highest) = (-REACH, objective(at(-REACH)));
-    for i in 1 - REACH..=REACH {
-        let value = objective(at(i));
-        if value > highest {
-            (best, highest) = (i, value);
-        }
-    }
-    let optimum = match best {
-        i if i == -REACH => Optimum::LowerEnd,
-        REACH => Optimum::UpperEnd,
-        _ => Optimum::Interior,
-    };
-    let log_q = match optimum {
-        Optimum::Interior => golden_section(at(best - 1), at(best + 1), &objective),
-        _ => at(best),
-    };
-    ProcessNoiseFit {
-        process_noise: libm::exp(log_q),
-        log_likelihood: objective(log_q),
-        optimum,
-    }
-}
-
-/// The maximum of a function with one peak in [low, high], to 1e-6.
-fn golden_section(mut low: f64, mut high: f64, objective: impl Fn(f64) -> f64) -> f64 {
-    const SHARE: f64 = 0.618_033_988_749_894_9;
-    let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
-    let (mut at_a, mut at_b) = (objective(a), objective(b));
-    while high - low > 1e-6 {
-        if at_a > at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - SHARE * (high - low);
-            at_a = objective(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + SHARE * (high - low);
-            at_b = objective(b);
-        }
-    }
-    0.5 * (low + high)
 }

@@ -11,24 +11,27 @@
 //!
 //! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them.
 
-pub mod constant_velocity;
+mod box_muller;
+mod constant_velocity;
 mod filter;
-pub mod kalman;
+mod kalman;
 mod model;
 mod moments;
 mod parallel;
 mod particles;
+mod process_noise;
 mod resample;
+mod series;
 mod streams;
 mod weights;
 
-pub use constant_velocity::{
-    AxisEstimate, ConstantVelocity, Filtered, Optimum, ProcessNoiseFit, SeriesError,
-};
+pub use constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
 pub use filter::{ParticleFilter, Settings, SettingsError, StepReport, Weighing};
 pub use kalman::{Gaussian, Update};
 pub use model::Model;
 pub use particles::{BLOCK, Block, BlockMut, ParticleSet};
+pub use process_noise::{Optimum, ProcessNoiseFit};
 pub use resample::Resampling;
+pub use series::SeriesError;
 pub use streams::{Draw, Purpose, Streams};
 pub use weights::{LogWeights, WeightError};

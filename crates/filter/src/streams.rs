@@ -11,10 +11,13 @@
 //! so different arguments never share a counter. One counter gives 128 bits: two uniform numbers, or by
 //! Box–Muller two independent normal ones; the kind keeps the two families apart.
 
-use std::f64::consts::TAU;
+use crate::box_muller::box_muller;
 
 const STEP_BITS: u32 = 56;
 const ROUNDS: usize = 10;
+const LOW_WORD: u64 = 0xFFFF_FFFF;
+/// Particles side by side in [`Draw::normal_columns`].
+const LANES: usize = 8;
 
 /// What a random number is for. Streams of different purposes are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,27 +139,54 @@ impl Draw {
     /// A number uniform in the open interval (0, 1).
     #[inline]
     pub fn uniform(self, particle: u32, draw: u32) -> f64 {
-        self.uniform_pair(Kind::Uniform, particle, draw / 2)[(draw % 2) as usize]
+        self.uniform_lanes::<1>(Kind::Uniform, particle, draw / 2)[(draw % 2) as usize][0]
     }
 
-    /// Box & Muller (1958).
+    /// The standard normal numbers `2 * pair` and `2 * pair + 1` of neighbouring particles, a column of each: the
+    /// same numbers as [`normal`](Self::normal), faster, and inlined, so that a caller that
+    /// dispatches on the instruction set has it compiled for that set.
+    ///
+    /// # Panics
+    /// If the columns differ in length.
+    #[inline(always)]
+    pub fn normal_columns(self, first_particle: u32, pair: u32, even: &mut [f64], odd: &mut [f64]) {
+        assert_eq!(even.len(), odd.len());
+        let mut first = first_particle;
+        for (even, odd) in even.chunks_mut(LANES).zip(odd.chunks_mut(LANES)) {
+            let [u, v] = self.uniform_lanes::<LANES>(Kind::Normal, first, pair);
+            even.copy_from_slice(&u[..even.len()]);
+            odd.copy_from_slice(&v[..odd.len()]);
+            first = first.wrapping_add(LANES as u32);
+        }
+        // a loop of its own, over memory: fused with the one above it does not vectorise
+        for (even, odd) in even.iter_mut().zip(odd) {
+            [*even, *odd] = box_muller(*even, *odd);
+        }
+    }
+
     #[inline]
     fn normal_pair(self, particle: u32, pair: u32) -> [f64; 2] {
-        let [u, v] = self.uniform_pair(Kind::Normal, particle, pair);
-        let radius = (-2.0 * libm::log(u)).sqrt();
-        let (sin, cos) = libm::sincos(TAU * v);
-        [radius * cos, radius * sin]
+        let [[u], [v]] = self.uniform_lanes(Kind::Normal, particle, pair);
+        box_muller(u, v)
     }
 
-    #[inline]
-    fn uniform_pair(self, kind: Kind, particle: u32, pair: u32) -> [f64; 2] {
+    /// The uniform numbers `2 * pair` and `2 * pair + 1` of L neighbouring particles.
+    #[inline(always)]
+    fn uniform_lanes<const L: usize>(
+        self,
+        kind: Kind,
+        first_particle: u32,
+        pair: u32,
+    ) -> [[f64; L]; 2] {
         let Streams { seed, purpose } = self.streams;
-        let tag = (purpose as u32) << 25 | (kind as u32) << 24;
+        let tag = (purpose as u64) << 25 | (kind as u64) << 24;
+        let particles =
+            std::array::from_fn(|lane| u64::from(first_particle.wrapping_add(lane as u32)));
         let counter = [
-            pair,
-            particle,
-            self.step as u32,
-            (self.step >> 32) as u32 | tag,
+            [u64::from(pair); L],
+            particles,
+            [self.step & LOW_WORD; L],
+            [self.step >> 32 | tag; L],
         ];
         let [a, b, c, d] = philox4x32_10(counter, [seed as u32, (seed >> 32) as u32]);
         [open_unit(a, b), open_unit(c, d)]
@@ -164,18 +194,22 @@ impl Draw {
 }
 
 /// The middle of one of 2^52 equal cells of (0, 1): never 0, never 1, and exact in f64.
-#[inline]
-fn open_unit(low: u32, high: u32) -> f64 {
-    const CELL: f64 = 1.0 / (1u64 << 52) as f64;
-    let bits = (u64::from(high) << 32 | u64::from(low)) >> 12;
-    (bits as f64 + 0.5) * CELL
+#[inline(always)]
+fn open_unit<const L: usize>(low: [u64; L], high: [u64; L]) -> [f64; L] {
+    const HALF_CELL: f64 = f64::EPSILON / 2.0;
+    std::array::from_fn(|i| {
+        let mantissa = (high[i] << 32 | low[i]) >> 12;
+        f64::from_bits(mantissa | 1.0f64.to_bits()) - (1.0 - HALF_CELL)
+    })
 }
 
-/// Philox4x32 with 10 rounds (Salmon et al. 2011, section 3.3).
-#[inline]
-fn philox4x32_10(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+/// Philox4x32 with 10 rounds (Salmon et al. 2011, section 3.3) on L counters side by side.
+///
+/// The 32-bit words are held in u64, whose products SIMD has.
+#[inline(always)]
+fn philox4x32_10<const L: usize>(mut counter: [[u64; L]; 4], mut key: [u32; 2]) -> [[u64; L]; 4] {
     for _ in 0..ROUNDS {
-        counter = philox_round(counter, key);
+        counter = philox_round(counter, key.map(u64::from));
         key = [
             key[0].wrapping_add(0x9E37_79B9),
             key[1].wrapping_add(0xBB67_AE85),
@@ -184,16 +218,21 @@ fn philox4x32_10(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     counter
 }
 
-#[inline]
-fn philox_round([c0, c1, c2, c3]: [u32; 4], [k0, k1]: [u32; 2]) -> [u32; 4] {
-    let a = u64::from(c0) * 0xD251_1F53;
-    let b = u64::from(c2) * 0xCD9E_8D57;
-    [
-        (b >> 32) as u32 ^ c1 ^ k0,
-        b as u32,
-        (a >> 32) as u32 ^ c3 ^ k1,
-        a as u32,
-    ]
+#[inline(always)]
+fn philox_round<const L: usize>(
+    [c0, c1, c2, c3]: [[u64; L]; 4],
+    [k0, k1]: [u64; 2],
+) -> [[u64; L]; 4] {
+    let mut out = [[0; L]; 4];
+    for i in 0..L {
+        let a = (c0[i] & LOW_WORD) * 0xD251_1F53;
+        let b = (c2[i] & LOW_WORD) * 0xCD9E_8D57;
+        out[0][i] = (b >> 32) ^ c1[i] ^ k0;
+        out[1][i] = b & LOW_WORD;
+        out[2][i] = (a >> 32) ^ c3[i] ^ k1;
+        out[3][i] = a & LOW_WORD;
+    }
+    out
 }
 
 #[cfg(test)]
@@ -221,13 +260,16 @@ mod tests {
                 [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1],
             ),
         ] {
-            assert_eq!(philox4x32_10(counter, key), answer);
+            assert_eq!(
+                philox4x32_10(counter.map(|c: u32| [u64::from(c); 3]), key),
+                answer.map(|a: u32| [u64::from(a); 3])
+            );
         }
     }
 
     #[test]
     fn open_unit_stays_inside_the_open_interval() {
-        assert!(open_unit(0, 0) > 0.0);
-        assert!(open_unit(u32::MAX, u32::MAX) < 1.0);
+        assert!(open_unit([0], [0])[0] > 0.0);
+        assert!(open_unit([LOW_WORD], [LOW_WORD])[0] < 1.0);
     }
 }

@@ -101,7 +101,8 @@ impl LogWeights {
             broken.is_none(),
             "the log-likelihood of particle {broken:?} is NaN or +inf"
         );
-        if self.best(log_likelihood) == f64::NEG_INFINITY {
+        let mut joint = self.log.iter().zip(log_likelihood).map(|(w, l)| w + l);
+        if joint.all(|w| w == f64::NEG_INFINITY) {
             return None;
         }
         for (w, l) in self.log.iter_mut().zip(log_likelihood) {
