@@ -96,29 +96,31 @@ impl LogWeights {
     /// If a likelihood is NaN or +inf: then the model is broken.
     pub fn multiply(&mut self, log_likelihood: &[f64]) -> Option<f64> {
         assert_eq!(log_likelihood.len(), self.log.len());
-        let broken = log_likelihood.iter().position(|&l| is_broken(l));
-        assert!(
-            broken.is_none(),
-            "the log-likelihood of particle {broken:?} is NaN or +inf"
-        );
+        assert_sound(log_likelihood);
         let mut joint = self.log.iter().zip(log_likelihood).map(|(w, l)| w + l);
         if joint.all(|w| w == f64::NEG_INFINITY) {
             return None;
         }
-        for (w, l) in self.log.iter_mut().zip(log_likelihood) {
-            *w += l;
-        }
+        self.log
+            .iter_mut()
+            .zip(log_likelihood)
+            .for_each(|(w, l)| *w += l);
         self.normalise()
     }
 
-    /// The largest of `values` (N,) among the particles of positive weight.
-    pub fn best(&self, values: &[f64]) -> f64 {
+    /// The largest of `log_likelihood` (N,) among the particles of positive weight.
+    ///
+    /// # Panics
+    /// If one is NaN or +inf: then the model is broken.
+    pub fn best(&self, log_likelihood: &[f64]) -> f64 {
+        assert_eq!(log_likelihood.len(), self.log.len());
+        assert_sound(log_likelihood);
         let alive = self
             .log
             .iter()
-            .zip(values)
+            .zip(log_likelihood)
             .filter(|(w, _)| **w > f64::NEG_INFINITY);
-        alive.fold(f64::NEG_INFINITY, |best, (_, &value)| larger(best, value))
+        alive.fold(f64::NEG_INFINITY, |best, (_, &l)| larger(best, l))
     }
 
     /// Makes the linear weights sum to 1; the logarithm of the sum before, or `None` if all weights are zero.
@@ -157,6 +159,13 @@ impl LogWeights {
     /// The natural logarithms of the weights, (N,).
     pub fn log_weights(&self) -> &[f64] {
         &self.log
+    }
+}
+
+fn assert_sound(log_likelihood: &[f64]) {
+    if let Some(particle) = log_likelihood.iter().position(|&l| is_broken(l)) {
+        let value = log_likelihood[particle];
+        panic!("the log-likelihood of particle {particle} is {value}; it must be finite or -inf");
     }
 }
 

@@ -1,0 +1,130 @@
+//! Particle sets: blocks, columns, gathering.
+
+use stickslip_filter::{BLOCK, ParticleFilter, ParticleSet, Settings, SettingsError};
+
+mod common;
+
+/// Particle i's column c is 1000 c + i.
+fn numbered(particles: usize, columns: usize) -> ParticleSet {
+    let mut set = ParticleSet::zeros(particles, columns);
+    let mut scratch = vec![(); set.block_count()];
+    set.for_each_block(&mut scratch, |block, ()| {
+        let first = block.first_particle() as usize;
+        for (c, column) in block.all_columns_mut().enumerate() {
+            for (lane, x) in column.iter_mut().enumerate() {
+                *x = (1000 * c + first + lane) as f64;
+            }
+        }
+    });
+    set
+}
+
+#[test]
+fn blocks_cover_every_particle_once_and_hide_the_padding() {
+    for particles in [1, BLOCK - 1, BLOCK, BLOCK + 1, 3 * BLOCK + 5] {
+        let set = numbered(particles, 2);
+        let covered: Vec<usize> = set.blocks().flat_map(|block| block.range()).collect();
+        assert_eq!(covered, (0..particles).collect::<Vec<_>>());
+        let column: Vec<f64> = set.column(1).collect();
+        assert_eq!(
+            column,
+            (0..particles)
+                .map(|i| (1000 + i) as f64)
+                .collect::<Vec<_>>()
+        );
+        assert_eq!(set.value(particles - 1, 1), (1000 + particles - 1) as f64);
+    }
+}
+
+#[test]
+fn gather_copies_whole_particles() {
+    let n = 20 * BLOCK + 7;
+    let ancestors: Vec<u32> = (0..n).map(|i| ((i * 7919 + 3) % n) as u32).collect();
+    let mut set = numbered(n, 3);
+    set.gather(&ancestors);
+    for (i, &ancestor) in ancestors.iter().enumerate() {
+        for c in 0..3 {
+            assert_eq!(set.value(i, c), f64::from(1000 * c as u32 + ancestor));
+        }
+    }
+}
+
+#[test]
+fn columns_mut_lends_different_columns_in_the_order_asked() {
+    let mut set = numbered(BLOCK + 3, 4);
+    let mut scratch = vec![(); set.block_count()];
+    set.for_each_block(&mut scratch, |block, ()| {
+        let [c, a] = block.columns_mut([3, 1]);
+        assert_eq!(c.len(), a.len());
+        a.copy_from_slice(c);
+    });
+    assert_eq!(set.value(BLOCK + 2, 1), (3000 + BLOCK + 2) as f64);
+}
+
+#[test]
+#[should_panic(expected = "columns [1, 1]")]
+fn columns_mut_with_a_column_twice_panics() {
+    numbered(3, 2).for_each_block(&mut [()], |block, ()| {
+        let _ = block.columns_mut([1, 1]);
+    });
+}
+
+#[test]
+fn weighted_circular_mean_crosses_the_seam() {
+    use stickslip_filter::{Block, BlockMut, Draw, Model};
+    struct Angles;
+    impl Model for Angles {
+        type Input = ();
+        type Observation = ();
+        type Scratch = ();
+        fn columns(&self) -> usize {
+            1
+        }
+        fn scratch(&self) {}
+        fn initialise(&self, _: Draw, block: &mut BlockMut<'_>) {
+            for (lane, particle) in block.particles() {
+                let side = if particle % 2 == 0 { 1.0 } else { -1.0 };
+                block.column_mut(0)[lane] = side * (std::f64::consts::PI - 0.1);
+            }
+        }
+        fn propagate(&self, (): &(), _: Draw, _: &mut BlockMut<'_>, (): &mut ()) {}
+        fn log_likelihood(&self, (): &(), _: &Block<'_>, _: &mut [f64]) {}
+        fn redraw(&self, (): &(), _: Draw, _: &mut BlockMut<'_>) {}
+    }
+    let filter = ParticleFilter::new(Angles, common::settings(100, 0)).unwrap();
+    assert!((filter.weighted_circular_mean(0).abs() - std::f64::consts::PI).abs() < 1e-12);
+    assert!((filter.weighted_circular_std(0) - 0.1).abs() < 1e-12);
+    assert!(filter.weighted_mean(0).abs() < 1e-12);
+}
+
+#[test]
+fn new_with_settings_out_of_range_is_refused() {
+    let refuse = |settings| ParticleFilter::new(common::Axis::OPEN, settings).err();
+    let none = Settings {
+        particles: 0,
+        ..Settings::default()
+    };
+    assert_eq!(
+        refuse(none),
+        Some(SettingsError::Particles { particles: 0 })
+    );
+    let above = Settings {
+        resample_below: 1.5,
+        ..Settings::default()
+    };
+    assert_eq!(
+        refuse(above),
+        Some(SettingsError::ResampleBelow { share: 1.5 })
+    );
+    assert!(
+        refuse(Settings {
+            resample_below: f64::NAN,
+            ..Settings::default()
+        })
+        .is_some()
+    );
+    assert_eq!(
+        SettingsError::Particles { particles: 0 }.to_string(),
+        "`particles` is 0; it must be at least 1 and below 2^32; try 500"
+    );
+}

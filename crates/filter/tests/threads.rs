@@ -1,0 +1,73 @@
+//! The same bits on any number of threads.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::{Axis, POSITION, VELOCITY, series, settings};
+use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
+
+const PARTICLES: usize = 5003;
+
+#[derive(Debug, PartialEq)]
+struct Outcome {
+    reports: Vec<StepReport>,
+    /// Bits of particles, weights and moments.
+    bits: Vec<u64>,
+}
+
+fn run(resampling: Resampling) -> Outcome {
+    let (times, measurements) = series(30, 9);
+    let settings = Settings {
+        resampling,
+        ..settings(PARTICLES, 5)
+    };
+    let mut filter = ParticleFilter::new(Axis::GATED, settings).unwrap();
+    let (mut reports, mut bits) = (Vec::new(), Vec::new());
+    for row in 1..times.len() {
+        // row 20 cannot be explained
+        let observation = if row == 20 {
+            Some(100.0)
+        } else {
+            measurements[row]
+        };
+        reports.push(filter.step(&(times[row] - times[row - 1]), observation.as_ref()));
+        bits.extend(numbers(&filter).into_iter().map(f64::to_bits));
+    }
+    Outcome { reports, bits }
+}
+
+fn numbers(filter: &ParticleFilter<Axis>) -> Vec<f64> {
+    let mut out: Vec<f64> = [POSITION, VELOCITY]
+        .iter()
+        .flat_map(|&c| filter.particles().column(c))
+        .collect();
+    out.extend(filter.weights().weights());
+    out.extend(filter.weights().log_weights());
+    out.push(filter.weighted_mean(POSITION));
+    out.push(filter.weighted_std(VELOCITY));
+    out.push(filter.weighted_circular_mean(POSITION));
+    out.push(filter.weighted_circular_std(POSITION));
+    out
+}
+
+#[test]
+fn step_on_one_two_three_and_eight_threads_gives_the_same_bits() {
+    for resampling in [Resampling::Systematic, Resampling::Residual] {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| run(resampling))
+        };
+        let reference = on(1);
+        assert!(reference.reports.iter().any(|r| r.resampled));
+        assert!(reference.reports.iter().any(StepReport::collapsed));
+        for threads in [2, 3, 8] {
+            assert!(
+                on(threads) == reference,
+                "{threads} threads differ from one, {resampling:?}"
+            );
+        }
+    }
+}
