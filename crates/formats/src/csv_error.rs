@@ -88,7 +88,7 @@ pub enum CsvProblem {
         missing: String,
     },
     /// A number of cells that is not the header's.
-    #[error("the line has {found} cells and the header has {expected}. Give every column a cell, an empty one where nothing was measured")]
+    #[error("the line has {found} cells, the header {expected}. Give every column a cell, an empty one where nothing was measured")]
     CellCount {
         /// Cells in the line.
         found: usize,
@@ -127,9 +127,9 @@ pub enum CsvProblem {
     /// Time does not rise.
     #[error("time {found} s comes after {before} s; it must rise strictly from row to row. Sort the rows and remove repeated ones")]
     TimeNotRising {
-        /// Time of this row [s].
+        /// Time of this row \[s\].
         found: f64,
-        /// Time of the row before [s].
+        /// Time of the row before \[s\].
         before: f64,
     },
     /// Some cells of one measurement are filled and others not.

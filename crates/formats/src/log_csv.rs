@@ -136,8 +136,11 @@ impl Columns {
     fn warnings(&self, table: &CsvTable) -> Vec<LogWarning> {
         let force = self.force.iter().flatten();
         let used: Vec<usize> = self.object.iter().chain(&self.pusher).chain(&self.tactile).chain(force).copied().chain([self.time]).collect();
-        let names = table.columns().iter().enumerate();
-        let columns: Vec<String> = names.filter(|(index, _)| !used.contains(index)).map(|(_, name)| name.clone()).collect();
+        let shown = |index: usize| match table.columns()[index].as_str() {
+            "" => format!("(number {}, without a name)", index + 1),
+            name => name.to_owned(),
+        };
+        let columns: Vec<String> = (0..table.columns().len()).filter(|index| !used.contains(index)).map(shown).collect();
         if columns.is_empty() { Vec::new() } else { vec![LogWarning::ExtraColumns { file: table.file().to_owned(), columns }] }
     }
 }

@@ -10,7 +10,7 @@ use crate::csv_table::CsvTable;
 /// The object's exact motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Truth {
-    /// Time [s], strictly rising.
+    /// Time \[s\], strictly rising.
     pub time: Vec<f64>,
     /// Pose at each time.
     pub pose: Vec<Pose>,

@@ -12,7 +12,7 @@ pub struct TruthFacts {
     pub mu_p: Option<f64>,
     /// True μ_f.
     pub mu_f: Option<f64>,
-    /// True radius of the support tripod [m].
+    /// True radius of the support tripod \[m\].
     pub d_tri: Option<f64>,
     /// Log row of the first contact with the pusher, from 0.
     pub first_pusher_contact: Option<usize>,
@@ -42,7 +42,6 @@ pub struct TruthFactsError {
 
 /// The file as it stands; keys that are not here are ignored.
 #[derive(Deserialize)]
-#[serde(expecting = "an object with the keys mu_s, mu_p, ...")]
 struct Document {
     mu_s: Option<f64>,
     mu_p: Option<f64>,
@@ -66,11 +65,24 @@ struct Document {
 /// ```
 pub fn read_truth_json(text: &str, name: &str) -> Result<TruthFacts, TruthFactsError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    check_object(text, name)?;
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let document: Document =
         serde_path_to_error::deserialize(&mut deserializer).map_err(|error| error_at(name, error.path().to_string(), error.inner()))?;
     deserializer.end().map_err(|error| error_at(name, String::new(), &error))?;
     Ok(document.into())
+}
+
+/// The text begins as an object: serde would also take the values as a list, in the order of the fields.
+fn check_object(text: &str, file: &str) -> Result<(), TruthFactsError> {
+    let blank = text.len() - text.trim_start().len();
+    let problem = match text[blank..].chars().next() {
+        Some('{') => return Ok(()),
+        Some(found) => format!("the text begins with `{found}`, an object with `{{`"),
+        None => "the file is empty".to_owned(),
+    };
+    let (line, column) = (1 + text[..blank].matches('\n').count(), 1 + text[..blank].chars().rev().take_while(|c| *c != '\n').count());
+    Err(TruthFactsError { file: file.to_owned(), line, column, key: String::new(), problem })
 }
 
 fn error_at(file: &str, path: String, error: &serde_json::Error) -> TruthFactsError {

@@ -20,8 +20,8 @@ fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(folder) = open.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
+        for entry in std::fs::read_dir(folder).expect("a readable folder") {
+            let path = entry.expect("a readable folder").path();
             if path.is_dir() {
                 open.push(path);
             } else if path.file_name().and_then(|name| name.to_str()).is_some_and(wanted) {
@@ -34,11 +34,11 @@ fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
 }
 
 fn text(path: &Path) -> String {
-    std::fs::read_to_string(path).unwrap()
+    std::fs::read_to_string(path).expect("a readable file")
 }
 
 fn bytes(path: &Path) -> std::fs::File {
-    std::fs::File::open(path).unwrap()
+    std::fs::File::open(path).expect("a readable file")
 }
 
 #[test]

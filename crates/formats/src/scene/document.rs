@@ -12,6 +12,24 @@ use crate::nearest::nearest;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
+/// The keys of each table of the format; the first one is the document itself.
+const TABLES: [(&str, &[&str]); 9] = [
+    ("", &["gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile", "filter"]),
+    ("object", &["mass", "inertia", "shape"]),
+    ("support", &["friction", "tripod_radius", "tripod_angle", "feet"]),
+    ("pusher", &["shape", "friction", "stall_force"]),
+    ("fixels", &["friction"]),
+    ("fixel", &["position", "angle", "shape"]),
+    ("camera", &["position_std", "orientation_std", "latency", "pusher_position_std", "pusher_orientation_std"]),
+    ("tactile", &["false_positive", "false_negative", "touch_force"]),
+    ("filter", &["force_std", "parameter_std", "resample_below", "likelihood_scale", "mu_s", "mu_p", "mu_f", "d_tri"]),
+];
+
+/// The keys that a table of the format may have; `""` is the document itself.
+pub(super) fn keys_of(table: &str) -> &'static [&'static str] {
+    TABLES.iter().find(|(name, _)| *name == table).map_or(&[], |(_, keys)| keys)
+}
+
 /// The text of a scene file with its name.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
@@ -56,13 +74,19 @@ pub(super) struct Node<'a> {
 }
 
 impl Source<'_> {
+    /// The line that a byte is on, without blanks around it.
+    pub(super) fn line_at(&self, byte: usize) -> &str {
+        let before = self.text.get(..byte).unwrap_or(self.text);
+        self.text.lines().nth(before.matches('\n').count()).unwrap_or("").trim()
+    }
+
     /// An error at a byte of the text.
     pub(super) fn error(&self, byte: usize, problem: SceneProblem) -> SceneError {
         let end = (0..=byte.min(self.text.len())).rev().find(|end| self.text.is_char_boundary(*end)).unwrap_or(0);
         let before = &self.text[..end];
         let line = 1 + before.matches('\n').count();
         let column = 1 + before.rsplit('\n').next().unwrap_or("").chars().filter(|c| *c != '\u{feff}').count();
-        SceneError { file: self.name.to_owned(), line, column, problem }
+        SceneError { file: self.name.to_owned(), line, column, problem: Box::new(problem) }
     }
 }
 
@@ -101,9 +125,9 @@ impl Quantity {
 
 impl<'a> Table<'a> {
     /// The whole document.
-    pub(super) fn root(source: Source<'a>, document: &'a Spanned<DeTable<'a>>, known: &[&str]) -> Result<Self> {
+    pub(super) fn root(source: Source<'a>, document: &'a Spanned<DeTable<'a>>) -> Result<Self> {
         let table = Self { source, path: String::new(), span: 0..0, entries: document.get_ref() };
-        table.check_keys(known)?;
+        table.check_keys(keys_of(""))?;
         Ok(table)
     }
 
@@ -119,6 +143,17 @@ impl<'a> Table<'a> {
             let problem = SceneProblem::Missing { key: self.path_to(key), what: what.to_owned() };
             self.source.error(self.span.start, problem)
         })
+    }
+
+    /// A table of the format that must be there.
+    pub(super) fn section(&self, key: &str) -> Result<Table<'a>> {
+        let what = format!("the table [{key}] with keys among {}", keys_of(key).join(", "));
+        self.required(key, &what)?.table(keys_of(key), &what)
+    }
+
+    /// A table of the format, if it is there.
+    pub(super) fn section_if(&self, key: &str) -> Result<Option<Table<'a>>> {
+        self.optional(key).map(|node| node.table(keys_of(key), &format!("it as the table [{key}]"))).transpose()
     }
 
     /// A number that must be there.
@@ -140,13 +175,29 @@ impl<'a> Table<'a> {
     fn check_keys(&self, known: &[&str]) -> Result<()> {
         let unknown = self.entries.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
         let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else { return Ok(()) };
-        let nearest = nearest(key.get_ref(), known.iter().copied()).map_or("", |(name, _)| name).to_owned();
+        let nearest = nearest_key(key.get_ref(), known);
         let problem = SceneProblem::UnknownKey { key: self.path_to(key.get_ref()), nearest };
         Err(self.source.error(key.span().start, problem))
     }
 
     fn path_to(&self, key: &str) -> String {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+}
+
+/// The known key that was probably meant: a near miss at this place, else the same key in the table it belongs to.
+fn nearest_key(key: &str, known: &[&str]) -> String {
+    let (here, distance) = nearest(key, known.iter().copied()).unwrap_or_default();
+    let elsewhere = TABLES.iter().find(|(_, keys)| keys.contains(&key));
+    match elsewhere {
+        Some((table, _)) if distance > 1 => {
+            if table.is_empty() {
+                format!("{key} above all tables")
+            } else {
+                format!("{table}.{key}")
+            }
+        }
+        _ => here.to_owned(),
     }
 }
 
@@ -230,9 +281,9 @@ impl<'a> Node<'a> {
         match self.value.get_ref() {
             DeValue::Array(_) => "a list".to_owned(),
             DeValue::Table(_) => "a table".to_owned(),
-            DeValue::Integer(_) => format!("the number {}, which is too large", self.text()),
+            DeValue::Integer(_) if self.float().is_none() => format!("the number {}, which is too large", self.text()),
             DeValue::String(_) => format!("the text {}", self.text()),
-            DeValue::Boolean(_) | DeValue::Float(_) | DeValue::Datetime(_) => self.text().to_owned(),
+            DeValue::Integer(_) | DeValue::Boolean(_) | DeValue::Float(_) | DeValue::Datetime(_) => self.text().to_owned(),
         }
     }
 }

@@ -13,7 +13,7 @@ pub struct SceneError {
     /// Column, in characters, from 1.
     pub column: usize,
     /// What is wrong.
-    pub problem: SceneProblem,
+    pub problem: Box<SceneProblem>,
 }
 
 /// What is wrong with a scene file. `key` is the way to the value, as `object.shape[2].polygon`; items of lists count from 1.
@@ -21,14 +21,19 @@ pub struct SceneError {
 #[non_exhaustive]
 pub enum SceneProblem {
     /// The text is not TOML.
-    #[error("this is not TOML: {0}")]
-    Syntax(String),
+    #[error("`{found}` is not TOML: {message}. Write `key = value` with one value a line, numbers without a unit, and tables as [name]")]
+    Syntax {
+        /// The line as it stands.
+        found: String,
+        /// What the parser says.
+        message: String,
+    },
     /// A key that the format does not have.
     #[error("`{key}` is not a known key; the nearest one is `{nearest}`. Correct or remove it")]
     UnknownKey {
         /// The key.
         key: String,
-        /// The known key at this place with the fewest edits to it.
+        /// The known key at this place with the fewest edits to it, or the same key where it belongs, as `object.mass`.
         nearest: String,
     },
     /// A key that must be there.

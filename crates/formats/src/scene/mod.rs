@@ -14,13 +14,12 @@ use stickslip::Setup;
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
-use document::{Node, Quantity, Rule, Source, Table};
+use document::{Node, Quantity, Rule, Source, Table, keys_of};
 pub use error::{SceneError, SceneProblem};
 use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
-const KEYS: [&str; 9] = ["gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile", "filter"];
 const GRAVITY: Quantity = Quantity::new("gravity", "the gravity that presses the object on the support", "m/s^2", Rule::Positive);
 const MASS: Quantity = Quantity::new("mass", "the object's mass", "kg", Rule::Positive);
 const INERTIA: Quantity = Quantity::new("inertia", "the object's moment of inertia about its centre of mass", "kg m^2", Rule::Positive);
@@ -49,36 +48,33 @@ const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", "rad", Rule:
 /// ```
 pub fn read_scene(text: &str, name: &str) -> Result<Setup> {
     let source = Source { name, text };
-    let document = DeTable::parse(text).map_err(|error| {
-        let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
-        source.error(error.span().map_or(0, |span| span.start), SceneProblem::Syntax(message))
-    })?;
-    setup(&Table::root(source, &document, &KEYS)?)
+    let document = DeTable::parse(text).map_err(|error| syntax_error(source, &error))?;
+    setup(&Table::root(source, &document)?)
+}
+
+fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> SceneError {
+    let place = error.span().map_or(0, |span| span.start);
+    let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
+    source.error(place, SceneProblem::Syntax { found: source.line_at(place).to_owned(), message })
 }
 
 fn setup(root: &Table<'_>) -> Result<Setup> {
     Ok(Setup {
         scene: scene(root)?,
-        camera: root.optional("camera").as_ref().map(sensing::camera).transpose()?,
-        tactile: root.optional("tactile").as_ref().map(sensing::tactile).transpose()?.unwrap_or_default(),
-        filter: root.optional("filter").as_ref().map(sensing::filter).transpose()?.unwrap_or_default(),
+        camera: root.section_if("camera")?.as_ref().map(sensing::camera).transpose()?,
+        tactile: root.section_if("tactile")?.as_ref().map(sensing::tactile).transpose()?.unwrap_or_default(),
+        filter: root.section_if("filter")?.as_ref().map(sensing::filter).transpose()?.unwrap_or_default(),
     })
 }
 
 fn scene(root: &Table<'_>) -> Result<Scene> {
     let gravity = root.number(&GRAVITY)?;
-    let object = object(&section(root, "object", &["mass", "inertia", "shape"])?)?;
-    let support = section(root, "support", &["friction", "tripod_radius", "tripod_angle", "feet"])?;
+    let object = object(&root.section("object")?)?;
+    let support = root.section("support")?;
     let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support)?);
-    let (mu_p, pusher) = pusher(&section(root, "pusher", &["shape", "friction", "stall_force"])?)?;
-    let mu_f = section(root, "fixels", &["friction"])?.number(&MU_F)?;
+    let (mu_p, pusher) = pusher(&root.section("pusher")?)?;
+    let mu_f = root.section("fixels")?.number(&MU_F)?;
     Ok(Scene { gravity, object, feet, pusher, fixels: fixels(root)?, nominal: Friction { mu_s, mu_p, mu_f, d_tri } })
-}
-
-/// A table that must be there.
-fn section<'a>(root: &Table<'a>, key: &str, known: &[&str]) -> Result<Table<'a>> {
-    let what = format!("the table [{key}] with the keys {}", known.join(", "));
-    root.required(key, &what)?.table(known, &what)
 }
 
 fn object(table: &Table<'_>) -> Result<Object> {
@@ -120,7 +116,7 @@ fn fixels(root: &Table<'_>) -> Result<Vec<Fixel>> {
     let what = "each fixel as a table [[fixel]] with the keys position, angle, shape";
     let Some(node) = root.optional("fixel") else { return Ok(Vec::new()) };
     let fixel = |node: &Node<'_>| {
-        let table = node.table(&["position", "angle", "shape"], what)?;
+        let table = node.table(keys_of("fixel"), what)?;
         let [x, y] = table.required(POSITION.key, &format!("{} in {}", POSITION.what, POSITION.unit))?.pair(&POSITION)?;
         Ok(Fixel { pose: Pose::new(x, y, table.number_or(&ANGLE, 0.0)?), shape: shape(&table)? })
     };

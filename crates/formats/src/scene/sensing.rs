@@ -2,7 +2,7 @@
 
 use stickslip::{Camera, FilterSettings, Limits, Tactile};
 
-use super::document::{Node, Quantity, Rule, Table};
+use super::document::{Quantity, Rule, Table};
 use super::error::SceneError;
 
 type Result<T> = std::result::Result<T, SceneError>;
@@ -32,9 +32,7 @@ const MU_F: Quantity = Quantity::new("mu_f", "the limits of mu_f as [smallest, l
 const D_TRI: Quantity = Quantity::new("d_tri", "the limits of the tripod radius as [smallest, largest]", "m", Rule::Positive);
 
 /// `[camera]`; the pusher's deviations default to 1e-4 m and 2e-3 rad, the latency to 0.
-pub(super) fn camera(node: &Node<'_>) -> Result<Camera> {
-    let known = [POSITION_STD, ORIENTATION_STD, LATENCY, PUSHER_POSITION_STD, PUSHER_ORIENTATION_STD].map(|quantity| quantity.key);
-    let table = node.table(&known, "the table [camera]")?;
+pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
     Ok(Camera {
         position_std: table.number(&POSITION_STD)?,
         orientation_std: table.number(&ORIENTATION_STD)?,
@@ -45,8 +43,7 @@ pub(super) fn camera(node: &Node<'_>) -> Result<Camera> {
 }
 
 /// `[tactile]`.
-pub(super) fn tactile(node: &Node<'_>) -> Result<Tactile> {
-    let table = node.table(&[FALSE_POSITIVE.key, FALSE_NEGATIVE.key, TOUCH_FORCE.key], "the table [tactile]")?;
+pub(super) fn tactile(table: &Table<'_>) -> Result<Tactile> {
     let default = Tactile::default();
     Ok(Tactile {
         false_positive: table.number_or(&FALSE_POSITIVE, default.false_positive)?,
@@ -56,19 +53,17 @@ pub(super) fn tactile(node: &Node<'_>) -> Result<Tactile> {
 }
 
 /// `[filter]`.
-pub(super) fn filter(node: &Node<'_>) -> Result<FilterSettings> {
-    let known = [FORCE_STD, PARAMETER_STD, RESAMPLE_BELOW, LIKELIHOOD_SCALE, MU_S, MU_P, MU_F, D_TRI].map(|quantity| quantity.key);
-    let table = node.table(&known, "the table [filter]")?;
+pub(super) fn filter(table: &Table<'_>) -> Result<FilterSettings> {
     let default = FilterSettings::default();
     Ok(FilterSettings {
         force_std: table.number_or(&FORCE_STD, default.force_std)?,
         parameter_std: table.number_or(&PARAMETER_STD, default.parameter_std)?,
         resample_below: table.number_or(&RESAMPLE_BELOW, default.resample_below)?,
         likelihood_scale: table.number_or(&LIKELIHOOD_SCALE, default.likelihood_scale)?,
-        mu_s: limits(&table, &MU_S, default.mu_s)?,
-        mu_p: limits(&table, &MU_P, default.mu_p)?,
-        mu_f: limits(&table, &MU_F, default.mu_f)?,
-        d_tri: limits(&table, &D_TRI, default.d_tri)?,
+        mu_s: limits(table, &MU_S, default.mu_s)?,
+        mu_p: limits(table, &MU_P, default.mu_p)?,
+        mu_f: limits(table, &MU_F, default.mu_f)?,
+        d_tri: limits(table, &D_TRI, default.d_tri)?,
     })
 }
 
