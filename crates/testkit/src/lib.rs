@@ -1,13 +1,34 @@
 //! Independent oracles for the tests of the other crates. Nothing here shares code with the solver, only the problem's types.
 //!
 //! - [`residual_si`]: the certificate of a step, by a second route.
+//! - [`enumerate_modes`]: all solutions of a small step, by trying every contact mode.
+//! - [`cone_program_step`]: the solution where no contact has friction, by convex optimisation.
+//! - [`impulses_for_twist`]: whether a twist is a solution, and by which impulses.
+//! - [`gap_margin`], [`may_jam`]: whether a step certainly has no solution, or certainly has one.
 //! - [`Block`]: closed forms of the time-stepping scheme.
+//! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`data_root`]: where recorded experiments lie.
 
 mod closed_form;
+mod cone;
+mod conic;
 mod data;
+mod draft;
+mod impulses;
+mod jam;
+mod manufactured;
+mod mode_system;
+mod modes;
+mod random_problem;
 mod residual;
+mod rng;
+mod scaled;
 
 pub use closed_form::{Block, Stop};
+pub use cone::{cone_program_step, cone_program_twist};
 pub use data::data_root;
+pub use impulses::impulses_for_twist;
+pub use jam::{gap_margin, may_jam};
+pub use modes::enumerate_modes;
+pub use random_problem::{Corpus, Family};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
