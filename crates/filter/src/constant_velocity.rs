@@ -1,6 +1,6 @@
 //! One axis that moves at nearly constant velocity: Kalman filter and smoother.
 //!
-//! State (position, velocity); the acceleration is white noise of level q [unit²/s³]. Over a step h, exactly
+//! State (position, velocity); the acceleration is white noise of level q \[unit²/s³\]. Over a step h, exactly
 //! (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.2):
 //!
 //! F = [1 h; 0 1],  Q = q [h³/3 h²/2; h²/2 h],  H = [1 0],  R = measurement_std².
@@ -15,24 +15,24 @@ use crate::series::{Series, SeriesError};
 /// A constant-velocity model of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstantVelocity {
-    /// q, the level of the white-noise acceleration [unit²/s³], >= 0.
+    /// q, the level of the white-noise acceleration \[unit²/s³\], >= 0.
     pub process_noise: f64,
-    /// Standard deviation of one position measurement [unit], > 0.
+    /// Standard deviation of one position measurement \[unit\], > 0.
     pub measurement_std: f64,
-    /// Standard deviation of the velocity about 0 at the first measurement [unit/s], > 0.
+    /// Standard deviation of the velocity about 0 at the first measurement \[unit/s\], > 0.
     pub initial_velocity_std: f64,
 }
 
 /// The estimate of one axis at one row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisEstimate {
-    /// Position [unit].
+    /// Position \[unit\].
     pub position: f64,
-    /// Velocity [unit/s].
+    /// Velocity \[unit/s\].
     pub velocity: f64,
-    /// Variance of the position [unit²].
+    /// Variance of the position \[unit²\].
     pub position_variance: f64,
-    /// Variance of the velocity [unit²/s²].
+    /// Variance of the velocity \[unit²/s²\].
     pub velocity_variance: f64,
 }
 
@@ -69,7 +69,7 @@ impl ConstantVelocity {
         }
     }
 
-    /// The state `h` [s] later.
+    /// The state `h` \[s\] later.
     #[must_use]
     pub fn predict(&self, state: &Gaussian<2>, h: f64) -> Gaussian<2> {
         let noise = Matrix2::new(h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h) * self.process_noise;
@@ -94,7 +94,7 @@ impl ConstantVelocity {
         (update.posterior, update.log_likelihood)
     }
 
-    /// The Kalman filter over a series: `times` [s] rise, a measurement may be missing.
+    /// The Kalman filter over a series: `times` \[s\] rise, a measurement may be missing.
     ///
     /// Each row is estimated from the rows up to it; missing rows are extrapolated.
     ///

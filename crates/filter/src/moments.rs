@@ -30,7 +30,7 @@ impl<M: Model> ParticleFilter<M> {
         self.expectation(column, |x| (x - mean) * (x - mean)).sqrt()
     }
 
-    /// The weighted mean direction of a column of angles [rad], in (-pi, pi]: the direction of the mean unit
+    /// The weighted mean direction of a column of angles \[rad\], in (-pi, pi]: the direction of the mean unit
     /// vector. 0 where that vector vanishes exactly.
     pub fn weighted_circular_mean(&self, column: usize) -> f64 {
         let (sin, cos) = self.reduce(
@@ -49,7 +49,7 @@ impl<M: Model> ParticleFilter<M> {
         libm::atan2(sin, cos)
     }
 
-    /// The weighted root mean square of a column of angles [rad] about their mean direction, differenced on the
+    /// The weighted root mean square of a column of angles \[rad\] about their mean direction, differenced on the
     /// circle.
     pub fn weighted_circular_std(&self, column: usize) -> f64 {
         let mean = self.weighted_circular_mean(column);

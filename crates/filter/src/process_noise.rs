@@ -6,7 +6,7 @@ use crate::series::{Series, SeriesError};
 /// The process noise that makes a series of measurements most probable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProcessNoiseFit {
-    /// q [unit²/s³].
+    /// q \[unit²/s³\].
     pub process_noise: f64,
     /// ln p(measurements after the first | the first, q).
     pub log_likelihood: f64,

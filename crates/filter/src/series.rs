@@ -66,7 +66,7 @@ pub enum SeriesError {
     },
 }
 
-/// Times [s] that rise, and a measurement or none at each.
+/// Times \[s\] that rise, and a measurement or none at each.
 pub(crate) struct Series<'a> {
     times: &'a [f64],
     measurements: &'a [Option<f64>],
