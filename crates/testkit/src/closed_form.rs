@@ -8,17 +8,17 @@ use stickslip_dynamics::{Foot, StepProblem, StepSolution, Twist, Wrench};
 /// A block on three equally loaded feet, the first one in direction +x from the centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
-    /// Mass m [kg].
+    /// Mass m in kg.
     pub mass: f64,
     /// Moment of inertia J [kg m²].
     pub inertia: f64,
-    /// Step h [s].
+    /// Step h in s.
     pub h: f64,
     /// Support friction μ_s.
     pub mu_s: f64,
     /// Gravity g [m/s²].
     pub gravity: f64,
-    /// Tripod radius d [m].
+    /// Tripod radius d in m.
     pub d_tri: f64,
 }
 
@@ -27,7 +27,7 @@ pub struct Block {
 pub struct Stop {
     /// The first step at whose end the speed is zero; 0 for a motion that never began.
     pub steps: u64,
-    /// The way until then [m] or [rad]: h Σ v_k.
+    /// The way until then in m or rad, h Σ v_k.
     pub travel: f64,
 }
 

@@ -22,7 +22,7 @@ const ACCURACY: f64 = 1e-6;
 const YIELD: usize = 3;
 const EPIGRAPH: usize = 4;
 
-/// The unique twist of a step whose contacts are all frictionless; `None` where there is none (or Clarabel fails).
+/// The unique twist of a step whose contacts are all frictionless; `None` where there is none, or only an absurdly fast one.
 ///
 /// # Panics
 /// Where a contact has friction.
@@ -31,7 +31,7 @@ pub fn cone_program_twist(problem: &StepProblem) -> Option<Twist> {
     cone_program_step(problem).map(|solution| solution.twist)
 }
 
-/// The whole solution of a step whose contacts are all frictionless; `None` where there is none (or Clarabel fails).
+/// The whole solution of a step whose contacts are all frictionless; `None` where there is none, or only an absurdly fast one.
 ///
 /// Its residual is below 1e-6 of the fastest speed in the problem, usually near 1e-9 of it.
 ///

@@ -1,8 +1,10 @@
 //! When a step can fail to have a solution: [`gap_margin`] and [`may_jam`].
 //!
-//! Two one-sided answers. Below zero margin the gap rows exclude each other: certainly no solution. Where the friction cones admit no
-//! impulses that cancel each other (their sum is a pointed cone) there is always a solution: impulses p that grow without bound
-//! along a homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent.
+//! Two one-sided answers. Below zero margin the gap rows exclude each other, at any reasonable speed: no solution. Where the friction
+//! cones admit no impulses that cancel each other (their sum is a pointed cone) there is always a solution: impulses p that grow
+//! without bound along a homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent. Faces that
+//! close on an object at a slight angle meet both conditions: their solution squeezes it out at an absurd speed. So a step *must* be
+//! solved where `!may_jam(p) && gap_margin(p, cap) > 0`.
 
 use stickslip_dynamics::StepProblem;
 
@@ -17,7 +19,7 @@ const CANCELLED: f64 = 1e-5;
 
 /// How fast all gaps can open at once [m/s], at most `cap`, with twists up to 100 times the fastest speed in the problem.
 ///
-/// Negative where the gap rows exclude each other: then there is no solution, whatever the friction.
+/// Negative where the gap rows exclude each other: then there is no solution of such a speed, whatever the friction.
 ///
 /// # Panics
 /// Where Clarabel fails on this bounded linear program.
@@ -52,7 +54,8 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
 
 /// Whether impulses within the friction cones can cancel each other while a drive with a force limit does not push.
 ///
-/// Where they cannot, a solution exists, and a solver that reports none is at fault.
+/// Where they cannot, a solution exists; one of reasonable speed where [`gap_margin`] is positive too, and a solver that then reports
+/// none is at fault. Impulses that cancel to 1e-5 of their size count as cancelling, open contacts as closed.
 ///
 /// # Panics
 /// Where Clarabel fails on this bounded quadratic program.

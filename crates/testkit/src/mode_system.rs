@@ -70,6 +70,8 @@ const HALVINGS: usize = 10;
 /// Rows are met where the largest is below this times the largest term in them.
 const CONVERGED: f64 = 1e-11;
 const ROUNDING_ERROR: f64 = 1e-15;
+/// Slips are not divided by less than this, whose inverse still has a square.
+const SHORTEST: f64 = 1e-60;
 /// Singular values below this count as zero: directions in which a mode determines nothing.
 const RANK: f64 = 1e-11;
 
@@ -110,7 +112,7 @@ impl<'a> System<'a> {
             if rows.amax() < ROUNDING_ERROR * self.largest_term {
                 break;
             }
-            let svd = SVD::try_new(self.jacobian(x, rounding), true, true, f64::EPSILON, 400)?;
+            let svd = SVD::try_new_unordered(self.jacobian(x, rounding), true, true, f64::EPSILON, 400)?;
             let step = svd.solve(&rows, RANK).ok()?;
             let Some(next) = self.damped(x, &step, rounding, rows.norm()) else { break };
             *x = next;
@@ -127,7 +129,7 @@ impl<'a> System<'a> {
         let rows = self.scaled.foot(k);
         let slip = rows.map(|row| dot3(&row, &[x[0], x[1], x[2]]));
         let length = libm::hypot(libm::hypot(slip[0], slip[1]), rounding);
-        (rows, slip, length.max(f64::MIN_POSITIVE))
+        (rows, slip, length.max(SHORTEST))
     }
 
     fn rows(&self, x: &DVector<f64>, rounding: f64) -> DVector<f64> {

@@ -67,7 +67,8 @@ fn cone_program_certifies_itself_with_any_number_of_contacts() {
     for index in indices() {
         let problem = frictionless(CORPUS.problem(index));
         let solution = cone_program_step(&problem);
-        assert!(solution.is_some() || may_jam(&problem), "problem {index}: a step without jam has a solution");
+        let certain = !may_jam(&problem) && gap_margin(&problem, 1.0) > 0.0;
+        assert!(solution.is_some() || !certain, "problem {index}: a step without jam has a solution");
         let residual = solution.map_or(0.0, |solution| residual_si(&problem, &solution));
         assert!(residual < 1e-6 * fastest(&problem), "problem {index}: {residual:e}");
     }
@@ -125,6 +126,16 @@ fn impulses_for_twist_recovers_witnesses_and_refuses_other_twists() {
 }
 
 #[test]
+fn gap_margin_and_cone_program_report_an_object_squeezed_out_between_tilted_faces() {
+    // The faces enclose 1e-3 rad, so the object would have to leave a thousand times as fast as they close.
+    let mut problem = between_fixels([0.0, 0.0], 0.0, -1e-4);
+    problem.contacts[1].normal = [-(1.0 - 1e-6_f64).sqrt(), 1e-3];
+    assert!(!may_jam(&problem));
+    assert!(gap_margin(&problem, 1.0) < 0.0);
+    assert!(cone_program_twist(&problem).is_none_or(|twist| twist.vy > 1.0));
+}
+
+#[test]
 fn gap_margin_is_negative_exactly_where_opposed_fixels_overlap() {
     // Both gaps are to grow by 0.1 mm in 10 ms, one by moving right, the other by moving left: each falls 0.01 m/s short.
     let margin = gap_margin(&between_fixels([0.0, 0.0], 0.3, -1e-4), 1.0);
@@ -138,7 +149,6 @@ fn gap_margin_below_zero_means_that_enumeration_finds_nothing() {
     for index in indices() {
         let problem = CORPUS.problem(index);
         if gap_margin(&problem, 1.0) < -1e-7 {
-            assert!(may_jam(&problem), "problem {index}");
             assert!(problem.contacts.len() > 2 || enumerate_modes(&problem).is_empty(), "problem {index}");
         }
     }
