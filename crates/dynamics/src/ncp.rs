@@ -250,67 +250,78 @@ fn project_disc<const W: usize>(point: [Lanes<W>; 2], bound: Lanes<W>) -> [Lanes
     [point[0] * scale, point[1] * scale]
 }
 
-impl Ncp<1> {
-    /// Fills this problem from one in SI units; `self.contacts` is reused.
-    pub fn assign(&mut self, problem: &StepProblem) {
-        let rho = (problem.inertia / problem.mass).sqrt();
-        let scale = Scale { mass: problem.mass, rho, h: problem.h };
-        let lane = |value: f64| Lanes([value]);
-        self.free = [
-            lane(problem.twist.vx + problem.applied.fx / problem.mass),
-            lane(problem.twist.vy + problem.applied.fy / problem.mass),
-            lane(rho * (problem.twist.omega + problem.applied.torque / problem.inertia)),
-        ];
-        self.feet = problem.feet.map(|foot| FootRow {
-            jx: lane(-foot.arm[1] / rho),
-            jy: lane(foot.arm[0] / rho),
-            bound: lane(foot.bound / problem.mass),
-        });
-        let direction = problem.stall.map_or([0.0; 2], |stall| stall.direction);
-        self.stall = lane(problem.stall.map_or(f64::INFINITY, |stall| stall.impulse / problem.mass));
-        self.compliance = Lanes::ZERO;
+impl<const W: usize> Ncp<W> {
+    /// Fills these problems from ones in SI units; memory is reused, shorter contact lists are padded with open rows.
+    pub fn assign(&mut self, problems: &[StepProblem; W]) {
+        let rows = problems.iter().map(|p| p.contacts.len()).max().unwrap_or(0);
         self.contacts.clear();
-        self.contacts.extend(problem.contacts.iter().map(|contact| scale.contact(contact, direction)));
+        self.contacts.resize(rows, ContactRow::OPEN);
+        self.compliance = Lanes::ZERO;
+        for (lane, problem) in problems.iter().enumerate() {
+            self.assign_lane(lane, problem);
+        }
     }
-}
 
-/// What turns SI rows into mass-normalised ones.
-struct Scale {
-    mass: f64,
-    rho: f64,
-    h: f64,
-}
-
-impl Scale {
-    fn contact(&self, c: &ContactPoint, direction: [f64; 2]) -> ContactRow<1> {
-        let [nx, ny] = c.normal;
-        let t = [-ny, nx];
-        let plane_dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
-        let moment = |a: [f64; 2]| (c.arm[0] * a[1] - c.arm[1] * a[0]) / self.rho;
-        let d = if c.on_pusher { direction } else { [0.0; 2] };
-        ContactRow {
-            n: [Lanes([nx]), Lanes([ny]), Lanes([moment(c.normal)])],
-            t: [Lanes([t[0]]), Lanes([t[1]]), Lanes([moment(t)])],
-            gap: Lanes([c.gap / self.h - plane_dot(c.normal, c.surface_velocity)]),
-            slip: Lanes([-plane_dot(t, c.surface_velocity)]),
-            nd: Lanes([plane_dot(c.normal, d)]),
-            td: Lanes([plane_dot(t, d)]),
-            mu: Lanes([c.mu]),
+    fn assign_lane(&mut self, lane: usize, problem: &StepProblem) {
+        let m = problem.mass;
+        let rho = (problem.inertia / m).sqrt();
+        self.free[0].0[lane] = problem.twist.vx + problem.applied.fx / m;
+        self.free[1].0[lane] = problem.twist.vy + problem.applied.fy / m;
+        self.free[2].0[lane] = rho * (problem.twist.omega + problem.applied.torque / problem.inertia);
+        self.stall.0[lane] = problem.stall.map_or(f64::INFINITY, |stall| stall.impulse / m);
+        for (row, foot) in self.feet.iter_mut().zip(&problem.feet) {
+            row.jx.0[lane] = -foot.arm[1] / rho;
+            row.jy.0[lane] = foot.arm[0] / rho;
+            row.bound.0[lane] = foot.bound / m;
+        }
+        let direction = problem.stall.map_or([0.0; 2], |stall| stall.direction);
+        for (row, contact) in self.contacts.iter_mut().zip(&problem.contacts) {
+            let d = if contact.on_pusher { direction } else { [0.0; 2] };
+            row.set_lane(lane, contact, d, Scale { rho, h: problem.h });
         }
     }
 }
 
-impl Impulses<1> {
-    /// In SI units, for the problem they solve.
-    pub fn to_solution(&self, problem: &StepProblem) -> StepSolution {
+/// What turns SI rows into mass-normalised ones.
+#[derive(Clone, Copy)]
+struct Scale {
+    rho: f64,
+    h: f64,
+}
+
+impl<const W: usize> ContactRow<W> {
+    /// Overwrites one lane; `d` is the direction in which the other body may give way.
+    fn set_lane(&mut self, lane: usize, c: &ContactPoint, d: [f64; 2], scale: Scale) {
+        let n = c.normal;
+        let t = [-n[1], n[0]];
+        let along = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let moment = |a: [f64; 2]| (c.arm[0] * a[1] - c.arm[1] * a[0]) / scale.rho;
+        for (column, direction) in [(&mut self.n, n), (&mut self.t, t)] {
+            column[0].0[lane] = direction[0];
+            column[1].0[lane] = direction[1];
+            column[2].0[lane] = moment(direction);
+        }
+        self.gap.0[lane] = c.gap / scale.h - along(n, c.surface_velocity);
+        self.slip.0[lane] = -along(t, c.surface_velocity);
+        self.nd.0[lane] = along(n, d);
+        self.td.0[lane] = along(t, d);
+        self.mu.0[lane] = c.mu;
+    }
+}
+
+impl<const W: usize> Impulses<W> {
+    /// One lane in SI units, for the problem it solves.
+    pub fn to_solution(&self, lane: usize, problem: &StepProblem) -> StepSolution {
         let m = problem.mass;
-        let rho = (problem.inertia / problem.mass).sqrt();
+        let rho = (problem.inertia / m).sqrt();
+        let contacts = problem.contacts.len();
+        let newton_seconds = |column: &[Lanes<W>]| column[..contacts].iter().map(|p| p.0[lane] * m).collect();
         StepSolution {
-            twist: Twist { vx: self.v[0].0[0], vy: self.v[1].0[0], omega: self.v[2].0[0] / rho },
-            normal: self.normal.iter().map(|p| p.0[0] * m).collect(),
-            tangential: self.tangential.iter().map(|p| p.0[0] * m).collect(),
-            feet: self.feet.map(|p| [p[0].0[0] * m, p[1].0[0] * m]),
-            pusher_yield: self.pusher_yield.0[0],
+            twist: Twist { vx: self.v[0].0[lane], vy: self.v[1].0[lane], omega: self.v[2].0[lane] / rho },
+            normal: newton_seconds(&self.normal),
+            tangential: newton_seconds(&self.tangential),
+            feet: self.feet.map(|p| p.map(|x| x.0[lane] * m)),
+            pusher_yield: self.pusher_yield.0[lane],
         }
     }
 }

@@ -79,6 +79,8 @@ pub fn newton<const W: usize>(
 #[inline(always)]
 fn iterate<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, work: &mut NewtonWorkspace<W>, open: Mask<W>) {
     let mut system = Condensed::identity();
+    system.rhs = ncp.velocity(p);
+    add_scaled(&mut system.rhs, &p.v, Lanes::splat(-1.0));
 
     // linearise feet and contacts and eliminate their impulses
     let feet = [0, 1, 2].map(|k| {
@@ -96,7 +98,7 @@ fn iterate<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, work: &mut NewtonW
     }
     let (dv, dy) = system.solve(ncp.stall - ncp.resistance(p), p.pusher_yield);
 
-    // recover the impulses; the twist then follows from them exactly
+    // recover the impulses; the twist is updated rather than summed from them, which would round at the size of the impulses
     for ((foot, step), p_k) in ncp.feet.iter().zip(&feet).zip(&mut p.feet) {
         let ds = foot.slip(&dv);
         let dp = [step.r[0] - step.kxx * ds[0] - step.kxy * ds[1], step.r[1] - step.kxy * ds[0] - step.kyy * ds[1]];
@@ -109,9 +111,8 @@ fn iterate<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, work: &mut NewtonW
         p.tangential[i] = open.select(p.tangential[i] + step.b - step.kt * ds - step.kc * dgamma, p.tangential[i]);
     }
     p.pusher_yield = open.select(p.pusher_yield + dy, p.pusher_yield);
-    let v = ncp.velocity(p);
-    for (old, new) in p.v.iter_mut().zip(v) {
-        *old = open.select(new, *old);
+    for (v, dv) in p.v.iter_mut().zip(dv) {
+        *v = open.select(*v + dv, *v);
     }
 }
 

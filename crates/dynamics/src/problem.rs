@@ -50,7 +50,7 @@ pub struct Stall {
 }
 
 /// One time step's mixed NCP, SI units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepProblem {
     /// Mass [kg].
     pub mass: f64,

@@ -7,6 +7,7 @@ use crate::homotopy::follow;
 use crate::lanes::Lanes;
 use crate::modes::{Verdict, search};
 use crate::ncp::{Impulses, Ncp};
+use crate::polish::polish;
 use crate::newton::{NewtonWorkspace, newton};
 use crate::rows::{Guess, Rows};
 
@@ -120,12 +121,12 @@ fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, 
 struct SlowSolver {
     ncp: Ncp<1>,
     p: Impulses<1>,
-    polish: NewtonWorkspace<1>,
+    fast: NewtonWorkspace<1>,
 }
 
 impl Default for SlowSolver {
     fn default() -> Self {
-        Self { ncp: Ncp::empty(), p: Impulses::zero(0), polish: NewtonWorkspace::default() }
+        Self { ncp: Ncp::empty(), p: Impulses::zero(0), fast: NewtonWorkspace::default() }
     }
 }
 
@@ -137,10 +138,10 @@ impl SlowSolver {
         let cold = rows.cold_start();
 
         report.route = Route::Homotopy;
-        report.residual = self.polish(&follow(&rows, cold.clone()));
+        report.residual = self.polish(&rows, &follow(&rows, cold.clone()));
         if report.residual > TOLERANCE {
             report.route = Route::Modes;
-            report.outcome = match search(&rows, &mut |guess| (self.polish(guess) <= TOLERANCE).then(|| guess.clone())) {
+            report.outcome = match search(&rows, &mut |guess| (self.polish(&rows, guess) <= TOLERANCE).then(|| guess.clone())) {
                 Verdict::Solved(_) => Outcome::Solved,
                 Verdict::Infeasible => Outcome::Infeasible,
                 Verdict::Unresolved => Outcome::Failed,
@@ -153,11 +154,17 @@ impl SlowSolver {
         p.set_lane(lane, &self.p);
     }
 
-    /// Polishes a guess with the fast solver; returns the residual and leaves the impulses in `self.p`.
-    fn polish(&mut self, guess: &Guess) -> f64 {
+    /// Polishes a guess, in its own modes and then by the fast solver; returns the residual, the impulses are in `self.p`.
+    fn polish(&mut self, rows: &Rows, guess: &Guess) -> f64 {
         self.p.resize(self.ncp.contacts.len());
-        guess.store(&mut self.p);
-        newton(&self.ncp, &mut self.p, &mut self.polish, AIM, POLISH_ITERATIONS).0.0[0]
+        for candidate in [polish(rows, guess), guess.clone()] {
+            candidate.store(&mut self.p);
+            let residual = self.ncp.residual(&self.p).0[0];
+            if residual <= TOLERANCE {
+                return residual;
+            }
+        }
+        newton(&self.ncp, &mut self.p, &mut self.fast, AIM, POLISH_ITERATIONS).0.0[0]
     }
 
     /// Leaves the solution with compliant gap rows in `self.p`.
@@ -165,7 +172,7 @@ impl SlowSolver {
         rows.compliance = COMPLIANCE;
         self.ncp.compliance = Lanes([COMPLIANCE]);
         let guess = follow(&rows, cold);
-        let residual = self.polish(&guess);
+        let residual = self.polish(&rows, &guess);
         if residual > TOLERANCE {
             guess.store(&mut self.p);
         }

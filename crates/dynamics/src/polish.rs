@@ -1,0 +1,86 @@
+//! Newton's method with the modes of a guess held fixed: [`polish`].
+//!
+//! The homotopy ends where every contact's and foot's mode shows plainly (an impulse well inside its bound sticks, one on it
+//! slides), also at speeds so small that the natural map of the fast solver, which weighs impulses against speeds, cannot tell.
+
+use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
+use crate::rows::{Contact, Foot, Guess, Rows, Vector};
+
+/// Stiffness of held rows; their impulses are kept from one iteration to the next.
+const STIFFNESS: f64 = 1.0e6;
+
+/// Share of its bound above which an impulse counts as sliding.
+const SLIDING: f64 = 0.8;
+
+const ITERATIONS: usize = 8;
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    Open,
+    Stick,
+    /// p_t = ratio p_n.
+    Slide { ratio: f64 },
+}
+
+/// Newton steps from `guess` in its own modes.
+pub fn polish(rows: &Rows, guess: &Guess) -> Guess {
+    let contacts: Vec<Mode> = rows.contacts.iter().zip(&guess.contacts).map(|(c, p)| contact_mode(rows, c, *p, &guess.v)).collect();
+    let slides: [bool; 3] = std::array::from_fn(|k| guess.feet[k][0].hypot(guess.feet[k][1]) > SLIDING * rows.feet[k].bound);
+    let yields = rows.stall.is_finite() && guess.v[3] > rows.stall - rows.resistance(guess);
+    let mut best = guess.clone();
+    for _ in 0..ITERATIONS {
+        let linearised = Linearised {
+            contacts: rows.contacts.iter().zip(&best.contacts).zip(&contacts).map(|((c, p), m)| contact(rows, c, *p, &best.v, *m)).collect(),
+            feet: std::array::from_fn(|k| foot(&rows.feet[k], best.feet[k], &best.v, slides[k])),
+            stall: stall(rows, &best, yields),
+        };
+        let Some(next) = linearised.step(rows, &best) else { break };
+        best = next;
+    }
+    best
+}
+
+fn contact_mode(rows: &Rows, c: &Contact, p: [f64; 2], v: &Vector<4>) -> Mode {
+    let (gamma, _) = rows.contact_velocity(c, v, p[0]);
+    if p[0] <= gamma {
+        Mode::Open
+    } else if p[1].abs() > SLIDING * c.mu * p[0] {
+        Mode::Slide { ratio: c.mu.copysign(p[1]) }
+    } else {
+        Mode::Stick
+    }
+}
+
+fn contact(rows: &Rows, c: &Contact, p: [f64; 2], v: &Vector<4>, mode: Mode) -> ContactStep {
+    let (gamma, s) = rows.contact_velocity(c, v, p[0]);
+    let k = 1.0 / (1.0 / STIFFNESS + rows.compliance);
+    let normal = -k * gamma;
+    match mode {
+        Mode::Open => ContactStep { r: [-p[0], -p[1]], nn: 0.0, tn: 0.0, tt: 0.0 },
+        Mode::Stick => ContactStep { r: [normal, -STIFFNESS * s], nn: k, tn: 0.0, tt: STIFFNESS },
+        Mode::Slide { ratio } => ContactStep { r: [normal, ratio * (p[0] + normal) - p[1]], nn: k, tn: ratio * k, tt: 0.0 },
+    }
+}
+
+fn foot(foot: &Foot, p: [f64; 2], v: &Vector<4>, slides: bool) -> FootStep {
+    let s = foot.slip(v);
+    let speed = s[0].hypot(s[1]);
+    if !slides || speed == 0.0 {
+        return FootStep { r: s.map(|s| -STIFFNESS * s), k: [[STIFFNESS, 0.0], [0.0, STIFFNESS]] };
+    }
+    let unit = [s[0] / speed, s[1] / speed];
+    let turn = foot.bound / speed;
+    FootStep {
+        r: [-foot.bound * unit[0] - p[0], -foot.bound * unit[1] - p[1]],
+        k: [[turn * unit[1] * unit[1], -turn * unit[0] * unit[1]], [-turn * unit[0] * unit[1], turn * unit[0] * unit[0]]],
+    }
+}
+
+fn stall(rows: &Rows, guess: &Guess, yields: bool) -> StallStep {
+    if yields {
+        StallStep { slack: 1.0, pusher: 0.0, rhs: rows.resistance(guess) - rows.stall }
+    } else {
+        StallStep { slack: 0.0, pusher: 1.0, rhs: -guess.v[3] }
+    }
+}
