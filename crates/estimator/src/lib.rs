@@ -1,10 +1,29 @@
 //! Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 
+mod angle;
+mod columns;
+mod contact_model;
+mod error;
 mod estimate;
+mod kalman_baseline;
 mod log;
+mod nominal;
+mod occlusion;
+mod particle_run;
+mod run;
+mod schedule;
+mod score;
 mod setup;
+mod track;
 
+pub use contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
+pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
 pub use log::Log;
+pub use occlusion::Occlusion;
+pub use run::{Method, Run, RunOptions, TactileUse, run};
+pub use schedule::Schedule;
+pub use score::{Reference, Scores, score};
 pub use setup::{Camera, FilterSettings, Limits, Setup, Tactile};
 pub use stickslip_dynamics as dynamics;
+pub use track::{PusherTrack, TrackedPose, Tracking};

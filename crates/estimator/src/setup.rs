@@ -1,6 +1,6 @@
 //! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as `scene.toml` holds it.
 
-use stickslip_dynamics::Scene;
+use stickslip_dynamics::{Feet, Scene};
 
 /// Noise of the camera and of the pusher's tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,4 +90,11 @@ pub struct Setup {
     pub tactile: Tactile,
     /// Filter settings.
     pub filter: FilterSettings,
+}
+
+impl Setup {
+    /// Whether the tripod radius is a parameter (false where the feet are known).
+    pub fn has_tripod(&self) -> bool {
+        matches!(self.scene.feet, Feet::Tripod { .. })
+    }
 }

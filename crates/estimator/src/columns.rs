@@ -1,0 +1,51 @@
+//! Which column of the particle set holds what: [`Columns`].
+
+/// Columns of a warm start.
+const WARM: usize = stickslip_dynamics::WarmStart::LEN;
+
+/// Layout of a particle: pose, twist, friction, contacts, outcome, warm start, past poses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Columns {
+    fixels: usize,
+    history: usize,
+}
+
+impl Columns {
+    /// x, y, θ.
+    pub const POSE: usize = 0;
+    /// vx, vy, ω.
+    pub const TWIST: usize = 3;
+    /// μ_s, μ_p, μ_f, d_tri.
+    pub const FRICTION: usize = 6;
+    /// 1 where the pusher touches.
+    pub const CONTACT_PUSHER: usize = 10;
+    /// 1 where the last step of a particle had no certified solution.
+    pub const UNSOLVED: usize = 11;
+    /// First column of the warm start.
+    pub const WARM_START: usize = 12;
+
+    /// For `fixels` fixels and `history` past poses.
+    pub fn new(fixels: usize, history: usize) -> Self {
+        Self { fixels, history }
+    }
+
+    /// c_j, 1 where fixel j touches.
+    pub fn contact_fixel(&self, fixel: usize) -> usize {
+        Self::WARM_START + WARM + fixel
+    }
+
+    /// x of the past pose in ring slot `slot`; y and θ follow.
+    pub fn past_pose(&self, slot: usize) -> usize {
+        Self::WARM_START + WARM + self.fixels + 3 * slot
+    }
+
+    /// Number of columns.
+    pub fn count(&self) -> usize {
+        self.past_pose(self.history)
+    }
+
+    /// Number of past poses kept.
+    pub fn history(&self) -> usize {
+        self.history
+    }
+}

@@ -1,0 +1,32 @@
+//! Why a run was refused: [`RunError`].
+
+use stickslip_filter::{SeriesError, SettingsError};
+
+/// Why a method could not be run on a log.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The log has no object pose at all (or all are hidden).
+    #[error("the log has no visible object pose in any of its {rows} rows; at least the first pose is needed to start from")]
+    NoObjectPose {
+        /// Rows of the log.
+        rows: usize,
+    },
+    /// The method weighs camera poses but the scene has no `[camera]`.
+    #[error("the scene has no [camera] table, which this method needs; add position_std and orientation_std")]
+    NoCamera,
+    /// The pusher's or the object's poses could not be filtered.
+    #[error("tracking by the constant-velocity Kalman filter failed: {0}")]
+    Track(#[from] SeriesError),
+    /// Filter settings out of range.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// More sensors than fixels.
+    #[error("the log has {sensors} tactile columns but the scene has {fixels} fixels; sensor k is the k-th [[fixel]]")]
+    Sensors {
+        /// Tactile columns.
+        sensors: usize,
+        /// Fixels of the scene.
+        fixels: usize,
+    },
+}

@@ -1,0 +1,56 @@
+//! The nominal simulation: Γ with fixed nominal friction from the first observed pose, driven by the recorded pusher.
+
+use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepInput, StepWork};
+
+use crate::run::Prepared;
+use crate::{Estimate, EstimateRow, Setup};
+
+/// Simulates the rows of `prepared` once.
+pub(crate) fn simulate(setup: &Setup, prepared: &Prepared<'_>, progress: &mut dyn FnMut(usize)) -> Estimate {
+    let dynamics = Dynamics::new(setup.scene.clone());
+    let mut particle = Particle { pose: prepared.start, ..Particle::default() };
+    let mut work = StepWork::<1>::default();
+    let mut estimate = prepared.empty_estimate(setup);
+    estimate.rows[prepared.first] = row(&particle, None, 0);
+    for k in prepared.first..prepared.log.len() - 1 {
+        let unsolved = advance(&dynamics, prepared.schedule.step(k), &mut particle, &mut work);
+        let touch = touch_flags(setup, &work, prepared.schedule.step(k).last().map_or(0.0, |s| s.h));
+        estimate.rows[k + 1] = row(&particle, Some(touch), u32::from(unsolved));
+        progress(k + 1);
+    }
+    estimate
+}
+
+/// Runs the substeps of one row; true where one of them had no certified solution.
+fn advance(dynamics: &Dynamics, substeps: &[StepInput], particle: &mut Particle, work: &mut StepWork<1>) -> bool {
+    let friction = [dynamics.scene().nominal];
+    let mut unsolved = false;
+    for input in substeps {
+        let mut one = [*particle];
+        let [report] = dynamics.step(input, &friction, &mut one, work);
+        unsolved |= report.outcome != Outcome::Solved;
+        [*particle] = one;
+    }
+    unsolved
+}
+
+fn touch_flags(setup: &Setup, work: &StepWork<1>, h: f64) -> (f64, Vec<f64>) {
+    let flag = |touches: bool| f64::from(u8::from(touches));
+    let fixels = 0..setup.scene.fixels.len();
+    let touch_impulse = setup.tactile.touch_force * h;
+    let pusher = flag(work.normal_impulse(0, Body::Pusher) > 0.0);
+    (pusher, fixels.map(|j| flag(work.normal_impulse(0, Body::Fixel(j)) > touch_impulse)).collect())
+}
+
+fn row(particle: &Particle, touch: Option<(f64, Vec<f64>)>, unsolved: u32) -> EstimateRow {
+    let (contact_pusher, contact_fixels) = touch.unzip();
+    let pose: Pose = particle.pose;
+    EstimateRow {
+        pose: Some(pose),
+        twist: Some(particle.twist),
+        contact_pusher,
+        contact_fixels,
+        unsolved: Some(unsolved),
+        ..EstimateRow::default()
+    }
+}

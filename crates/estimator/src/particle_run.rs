@@ -1,0 +1,105 @@
+//! The particle filter over a log, in the paper's mode: grasp acquisition as section III-D has it.
+
+use stickslip_dynamics::{Friction, Pose, Twist};
+use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
+
+use crate::angle::unwrapped;
+use crate::columns::Columns;
+use crate::contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
+use crate::run::Prepared;
+use crate::{Camera, Estimate, EstimateRow, RunError, RunOptions, Setup, Spread, TactileUse};
+
+/// Tracks the object of `prepared`; also the number of collapses.
+pub(crate) fn track(
+    setup: &Setup,
+    camera: Camera,
+    prepared: &Prepared<'_>,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(usize),
+) -> Result<(Estimate, u32), RunError> {
+    let history = prepared.rows_within(camera.latency);
+    let model = ContactModel::new(setup, camera, prepared.start, history);
+    let settings = Settings {
+        particles: options.particles,
+        seed: options.seed,
+        resample_below: setup.filter.resample_below,
+        resampling: Resampling::Systematic,
+    };
+    let mut filter = ParticleFilter::new(model, settings)?;
+    let mut estimate = prepared.empty_estimate(setup);
+    let mut collapses = 0;
+    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, setup, prepared.start.theta) };
+    for row in prepared.first + 1..prepared.log.len() {
+        let plan = plan(prepared, row, history);
+        let observation = observation(prepared, &camera, options.tactile, row, history);
+        let report = filter.step(&plan, Some(&observation).filter(|o| !o.is_empty()));
+        collapses += u32::from(report.collapsed());
+        let near = estimate.rows[row - 1].pose.map_or(0.0, |pose| pose.theta);
+        estimate.rows[row] = reported(summary(&filter, setup, near), &report, observation.pose.is_some());
+        progress(row);
+    }
+    Ok((estimate, collapses))
+}
+
+/// The step that leads to `row`.
+fn plan(prepared: &Prepared<'_>, row: usize, history: usize) -> StepPlan {
+    let parameter_noise = if prepared.visible(row).is_some() { ParameterNoise::Drawn } else { ParameterNoise::Frozen };
+    StepPlan { substeps: prepared.schedule.step(row - 1).to_vec(), parameter_noise, slot: slot(row, history) }
+}
+
+fn slot(row: usize, history: usize) -> usize {
+    if history == 0 { 0 } else { row % history }
+}
+
+fn observation(prepared: &Prepared<'_>, camera: &Camera, tactile: TactileUse, row: usize, history: usize) -> Observation {
+    let readings = match tactile {
+        TactileUse::Used => prepared.log.tactile.iter().map(|sensor| sensor[row]).collect(),
+        TactileUse::Ignored => Vec::new(),
+    };
+    Observation { pose: prepared.visible(row), lookback: lookback(prepared, camera, row, history), tactile: readings }
+}
+
+/// Between which stored poses the time lies that the camera shows at `row`; before the first row, the first pose counts.
+fn lookback(prepared: &Prepared<'_>, camera: &Camera, row: usize, history: usize) -> Option<Lookback> {
+    if history == 0 {
+        return None;
+    }
+    let time = &prepared.log.time;
+    let shown = camera.shown_time(time[row]).max(time[prepared.first]);
+    let later = (prepared.first..=row).find(|&k| time[k] >= shown).unwrap_or(row);
+    let earlier = later.saturating_sub(1).max(prepared.first);
+    let span = time[later] - time[earlier];
+    let fraction = if span > 0.0 { (shown - time[earlier]) / span } else { 0.0 };
+    Some(Lookback { earlier: slot(earlier, history), later: slot(later, history), fraction })
+}
+
+fn reported(row: EstimateRow, report: &StepReport, visual: bool) -> EstimateRow {
+    EstimateRow { ess: Some(report.effective_sample_size), resampled: Some(report.resampled), visual, ..row }
+}
+
+/// Weighted means and standard deviations of the particle set; θ is unwrapped from `near`.
+fn summary(filter: &ParticleFilter<ContactModel>, setup: &Setup, near: f64) -> EstimateRow {
+    let layout = filter.model().layout();
+    let mean = |column: usize| filter.weighted_mean(column);
+    let std = |column: usize| filter.weighted_std(column);
+    let friction = |of: &dyn Fn(usize) -> f64| {
+        let [mu_s, mu_p, mu_f, d_tri] = [0, 1, 2, 3].map(|k| of(Columns::FRICTION + k));
+        Friction { mu_s, mu_p, mu_f, d_tri }
+    };
+    let theta = unwrapped(filter.weighted_circular_mean(Columns::POSE + 2), near);
+    let unsolved: f64 = filter.particles().column(Columns::UNSOLVED).sum();
+    EstimateRow {
+        pose: Some(Pose::new(mean(Columns::POSE), mean(Columns::POSE + 1), theta)),
+        twist: Some(Twist { vx: mean(Columns::TWIST), vy: mean(Columns::TWIST + 1), omega: mean(Columns::TWIST + 2) }),
+        friction: Some(friction(&mean)),
+        contact_pusher: Some(mean(Columns::CONTACT_PUSHER)),
+        contact_fixels: Some((0..setup.scene.fixels.len()).map(|j| mean(layout.contact_fixel(j))).collect()),
+        spread: Some(Spread {
+            pose: Pose::new(std(Columns::POSE), std(Columns::POSE + 1), filter.weighted_circular_std(Columns::POSE + 2)),
+            friction: Some(friction(&std)),
+        }),
+        unsolved: Some(unsolved as u32),
+        ess: Some(filter.weights().effective_sample_size()),
+        ..EstimateRow::default()
+    }
+}

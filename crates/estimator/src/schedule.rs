@@ -1,0 +1,61 @@
+//! How a log's rows become steps: [`Schedule`], the substeps that lead from each row to the next.
+
+use stickslip_dynamics::{Pose, PusherMotion, StepInput};
+
+use crate::track::PusherTrack;
+
+/// A step is split where it is longer than this [s].
+const LONGEST_STEP: f64 = 0.055;
+
+/// Length that the parts of a split step do not exceed [s].
+const SPLIT_TO: f64 = 0.05;
+
+/// The substeps of every step of a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    steps: Vec<Vec<StepInput>>,
+}
+
+impl Schedule {
+    /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts.
+    pub fn new(time: &[f64], track: &PusherTrack, substeps: Option<u32>) -> Self {
+        let mut direction = first_direction(time, track);
+        let steps = time.windows(2).enumerate().map(|(row, pair)| {
+            let h = pair[1] - pair[0];
+            let motion = track.motion(row, h, direction);
+            if let Some(motion) = &motion {
+                direction = motion.direction;
+            }
+            split(h, motion, substeps.unwrap_or_else(|| parts(h)))
+        });
+        Self { steps: steps.collect() }
+    }
+
+    /// The substeps from `row` to the next.
+    pub fn step(&self, row: usize) -> &[StepInput] {
+        &self.steps[row]
+    }
+}
+
+/// The direction before the pusher has moved: that of its first motion.
+fn first_direction(time: &[f64], track: &PusherTrack) -> [f64; 2] {
+    let undecided = [0.0; 2];
+    let found = time.windows(2).enumerate().find_map(|(row, pair)| {
+        track.motion(row, pair[1] - pair[0], undecided).map(|m| m.direction).filter(|d| *d != undecided)
+    });
+    found.unwrap_or([1.0, 0.0])
+}
+
+fn parts(h: f64) -> u32 {
+    if h > LONGEST_STEP { (h / SPLIT_TO).ceil() as u32 } else { 1 }
+}
+
+fn split(h: f64, motion: Option<PusherMotion>, parts: u32) -> Vec<StepInput> {
+    let h = h / f64::from(parts);
+    let at = |part: u32| motion.map(|m| PusherMotion { pose: advanced(m, h * f64::from(part)), ..m });
+    (0..parts).map(|part| StepInput { h, pusher: at(part) }).collect()
+}
+
+fn advanced(motion: PusherMotion, t: f64) -> Pose {
+    motion.pose.advance(motion.twist, t)
+}

@@ -1,0 +1,114 @@
+//! How far an estimate is from a reference: [`Scores`] (WMSE and final errors, formats.md "Scoring").
+
+use stickslip_dynamics::Pose;
+
+use crate::angle::wrapped;
+use crate::{Estimate, Log};
+
+/// The trajectory an estimate is scored against.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// Time of each row [s].
+    pub time: Vec<f64>,
+    /// Pose of each row, where there is one.
+    pub pose: Vec<Option<Pose>>,
+    /// Time by which its poses lag [s]: the camera's latency for a log's own poses, 0 for the truth.
+    pub latency: f64,
+    /// Row of the first contact with the pusher, where it is known.
+    pub first_pusher_contact: Option<usize>,
+    /// Distance below which the reference counts as having come to rest [m].
+    pub rest: f64,
+}
+
+impl Reference {
+    /// The poses of a log itself, hidden ones included.
+    pub fn of_log(log: &Log, latency: f64, position_std: f64) -> Self {
+        Self {
+            time: log.time.clone(),
+            pose: log.object.clone(),
+            latency,
+            first_pusher_contact: None,
+            rest: (4.0 * position_std).max(1e-5),
+        }
+    }
+}
+
+/// Scores of one run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scores {
+    /// WMSE over all scored rows [mm].
+    pub wmse_mm: Option<f64>,
+    /// WMSE over the rows whose pose was hidden [mm].
+    pub wmse_occluded_mm: Option<f64>,
+    /// WMSE from the first pusher contact to the last motion of the reference [mm].
+    pub wmse_moving_mm: Option<f64>,
+    /// Distance of the last scored positions [mm].
+    pub final_error_mm: Option<f64>,
+    /// Difference of the last scored angles, on the circle [degrees].
+    pub final_error_deg: Option<f64>,
+}
+
+/// Scores `estimate` against `reference`; `hidden` are the rows that were occluded, `virtual_radius` is r_v [m].
+pub fn score(estimate: &Estimate, reference: &Reference, hidden: &[bool], virtual_radius: f64) -> Scores {
+    let errors: Vec<Option<Error>> = (0..reference.time.len()).map(|row| error_at(estimate, reference, row)).collect();
+    let moving = moving_rows(reference, virtual_radius);
+    let over = |keep: &dyn Fn(usize) -> bool| {
+        let kept = errors.iter().enumerate().filter(|(row, _)| keep(*row)).filter_map(|(_, error)| *error);
+        wmse(kept, virtual_radius)
+    };
+    let last = errors.iter().rev().flatten().next();
+    Scores {
+        wmse_mm: over(&|_| true),
+        wmse_occluded_mm: over(&|row| hidden.get(row).copied().unwrap_or(false)),
+        wmse_moving_mm: over(&|row| moving.contains(&row)),
+        final_error_mm: last.map(|e| 1e3 * e.dx.hypot(e.dy)),
+        final_error_deg: last.map(|e| e.turn.abs().to_degrees()),
+    }
+}
+
+/// Estimate minus reference at one row.
+#[derive(Clone, Copy, Debug)]
+struct Error {
+    dx: f64,
+    dy: f64,
+    turn: f64,
+}
+
+fn error_at(estimate: &Estimate, reference: &Reference, row: usize) -> Option<Error> {
+    let truth = reference.pose[row]?;
+    let guess = estimate.pose_at(reference.time[row] - reference.latency)?;
+    Some(Error { dx: guess.x - truth.x, dy: guess.y - truth.y, turn: wrapped(guess.theta - truth.theta) })
+}
+
+/// sqrt of the mean of dx² + dy² + r_v² dθ² [mm]; `None` over no rows.
+fn wmse(errors: impl Iterator<Item = Error>, virtual_radius: f64) -> Option<f64> {
+    let eta = virtual_radius * virtual_radius;
+    let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| (sum + e.dx * e.dx + e.dy * e.dy + eta * e.turn * e.turn, count + 1));
+    (count > 0).then(|| 1e3 * (sum / f64::from(count)).sqrt())
+}
+
+/// Rows from the first pusher contact to the last motion of the reference.
+fn moving_rows(reference: &Reference, virtual_radius: f64) -> std::ops::Range<usize> {
+    let seen: Vec<(usize, Pose)> = reference.pose.iter().enumerate().filter_map(|(row, pose)| pose.map(|p| (row, p))).collect();
+    let (Some(&(_, first)), Some(&(_, last))) = (seen.first(), seen.last()) else { return 0..0 };
+    let away = |from: &Pose, pose: &Pose| {
+        (pose.x - from.x).hypot(pose.y - from.y).max(virtual_radius * wrapped(pose.theta - from.theta).abs()) > reference.rest
+    };
+    let starts = seen.iter().find(|(_, pose)| away(&first, pose)).map(|(row, _)| *row);
+    let ends = seen.iter().rev().find(|(_, pose)| away(&last, pose)).map_or(0, |(row, _)| row + 1);
+    let start = reference.first_pusher_contact.or(starts).unwrap_or(ends);
+    start..(ends + 1).max(start)
+}
+
+impl Estimate {
+    /// The pose at `time` [s], linear between rows; `None` outside the estimated rows.
+    pub fn pose_at(&self, time: f64) -> Option<Pose> {
+        let later = self.time.partition_point(|t| *t < time);
+        let after = self.rows.get(later)?.pose;
+        if self.time.get(later) == Some(&time) || later == 0 {
+            return after.filter(|_| self.time[later] == time);
+        }
+        let (t0, t1) = (self.time[later - 1], self.time[later]);
+        Some(self.rows[later - 1].pose?.interpolate(after?, (time - t0) / (t1 - t0)))
+    }
+}
