@@ -13,7 +13,7 @@ pub fn drag(rows: &Rows, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
     let mut ncp = Ncp::<1>::empty();
     ncp.free = load.map(|x| Lanes([x]));
     ncp.feet = rows.feet.map(|f| FootRow { jx: Lanes([f.jx]), jy: Lanes([f.jy]), bound: Lanes([f.bound]) });
-    let mut p = Impulses::zero(0);
+    let mut p = Impulses { v: ncp.free, ..Impulses::zero(0) };
     let mut work = NewtonWorkspace::default();
     let (residual, _) = newton(&ncp, &mut p, &mut work, 1e-11, 12);
     if residual.0[0] > 1e-11 {

@@ -139,6 +139,7 @@ fn finish(object: &Placed<'_>, other: &Placed<'_>, back: &Frame, first: usize, o
 /// to the surface is: the way out.
 #[inline(always)]
 fn round_on_edges(round: &Round, shape: &Shape, reach: f64, mut report: impl FnMut(&Edge, f64, [f64; 2])) {
+    let mut outside = false;
     let mut way_out: Option<(&Edge, f64, [f64; 2])> = None;
     for edge in &shape.features().edges {
         let outward = edge.normal;
@@ -156,12 +157,14 @@ fn round_on_edges(round: &Round, shape: &Shape, reach: f64, mut report: impl FnM
             continue;
         }
         if height >= 0.0 {
+            outside = true;
             report(edge, gap, touch);
         } else if way_out.is_none_or(|(_, best, _)| gap > best) {
             way_out = Some((edge, gap, touch));
         }
     }
     if let Some((edge, gap, touch)) = way_out
+        && !outside
         && shape.contains(round.centre)
     {
         report(edge, gap, touch);

@@ -48,7 +48,7 @@ pub struct NewtonWorkspace<const W: usize> {
     steps: Vec<ContactStep<W>>,
 }
 
-/// Iterates from `p` until every lane's residual is at most `tolerance`, or `limit` iterations.
+/// Iterates from `p` (velocity and impulses) until every lane's residual is at most `tolerance`, or `limit` iterations.
 ///
 /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on its neighbours.
 /// Returns the residual and the iterations of each lane.
@@ -60,7 +60,6 @@ pub fn newton<const W: usize>(
     tolerance: f64,
     limit: u32,
 ) -> (Lanes<W>, Lanes<W>) {
-    p.v = ncp.velocity(p);
     let mut residual = ncp.residual(p);
     let mut iterations = Lanes::ZERO;
     for _ in 0..limit {

@@ -148,12 +148,16 @@ impl<const W: usize> StepWork<W> {
         self.impulses.to_solution(lane, &self.problems[lane])
     }
 
-    fn assign_warm_starts(&mut self, particles: &[Particle; W]) {
+    fn assign_warm_starts(&mut self, particles: &[Particle; W], gyration_radius: f64) {
         let rows = self.ncp.contacts.len();
         self.impulses.normal.clear();
         self.impulses.tangential.clear();
         self.impulses.resize(rows);
         for (lane, particle) in particles.iter().enumerate() {
+            let Twist { vx, vy, omega } = particle.twist;
+            for (v, value) in self.impulses.v.iter_mut().zip([vx, vy, gyration_radius * omega]) {
+                v.0[lane] = value;
+            }
             self.impulses.pusher_yield.0[lane] = particle.warm.pusher_yield;
             for k in 0..3 {
                 self.impulses.feet[k][0].0[lane] = particle.warm.feet[k][0];
@@ -212,7 +216,7 @@ impl Dynamics {
                 self.collect(input, &friction[lane], &particles[lane], search[lane], &mut Lane::of(work, lane));
             }
             work.ncp.assign(&work.problems);
-            work.assign_warm_starts(particles);
+            work.assign_warm_starts(particles, self.scene.object.gyration_radius());
             let reports = work.solver.solve(&work.ncp, &mut work.impulses);
             if !self.widen(input, work, &mut search) {
                 self.integrate(input.h, particles, work);
