@@ -10,7 +10,7 @@ use crate::rows::{Contact, Foot, Guess, Rows, Vector, plus};
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;
 
-/// Follows ε from the problem's speed scale down to 1e-9 of it; the result is meant to be polished by the fast solver.
+/// Follows ε from the problem's speed scale down to 1e-11 of it; the result is meant to be polished by the fast solver.
 ///
 /// `start` seeds the path. Where a reduction of ε is too bold to recover from, a milder one is tried from the last good point.
 pub fn follow(rows: &Rows, start: Guess) -> Guess {
@@ -24,7 +24,7 @@ pub fn follow(rows: &Rows, start: Guess) -> Guess {
         match settle(rows, &guess, epsilon) {
             Some(settled) => {
                 guess = settled;
-                if epsilon < 1e-9 * scale {
+                if epsilon < 1e-11 * scale {
                     break;
                 }
                 reduction = f64::max(reduction * reduction, 0.03);

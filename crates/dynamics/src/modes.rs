@@ -26,7 +26,10 @@ pub enum Verdict {
 const SLACK: f64 = 1e-9;
 
 /// Pieces of a search that may be looked at before it gives up.
-const PIECES: usize = 20_000;
+const PIECES: usize = 4_000;
+
+/// Candidates of one line or curve that are polished; its pieces differ little, so that more would not help.
+const ATTEMPTS: u32 = 6;
 
 /// An extreme direction of a friction cone (`sign` = ±1 or 0 where μ = 0), or the stall pair (`contact` = None).
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +100,8 @@ impl Search {
             }
         }
         let mut generators = vec![Generator { contact: None, sign: 0.0, g: [0.0, 0.0, 0.0, 1.0] }];
-        for (i, c) in rows.contacts.iter().enumerate() {
+        let repeats = |i: usize| (0..i).any(|j| rows.contacts[j].repeats(&rows.contacts[i]));
+        for (i, c) in rows.contacts.iter().enumerate().filter(|(i, _)| !repeats(*i)) {
             let signs: &[f64] = if c.mu > 0.0 { &[1.0, -1.0] } else { &[0.0] };
             generators.extend(signs.iter().map(|&sign| Generator { contact: Some(i), sign, g: plus(&c.n, sign * c.mu, &c.t) }));
         }
@@ -335,21 +339,23 @@ enum Piece {
 fn bisect(low: f64, high: f64, examine: &mut dyn FnMut(f64, f64) -> Piece, accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
     let mut stack = vec![(low, high)];
     let mut unclear = false;
+    let mut attempts = ATTEMPTS;
     let mut budget = PIECES;
     while let Some((low, high)) = stack.pop() {
+        if budget == 0 {
+            return Finding::Unclear;
+        }
         budget -= 1;
         let Piece::Candidate(guess) = examine(low, high) else { continue };
         let width = (high - low) / (1.0 + low.abs().max(high.abs()));
-        if width < 1e-5
-            && let Some(solution) = accept(&guess)
-        {
-            return Finding::Solved(solution);
-        }
-        if width < 1e-12 || budget == 0 {
-            unclear = true;
-            if budget == 0 {
-                break;
+        if width < 1e-5 && attempts > 0 {
+            attempts -= 1;
+            if let Some(solution) = accept(&guess) {
+                return Finding::Solved(solution);
             }
+        }
+        if width < 1e-12 {
+            unclear = true;
             continue;
         }
         let middle = 0.5 * (low + high);

@@ -144,13 +144,15 @@ impl<const W: usize> Impulses<W> {
         self.tangential.resize(contacts, Lanes::ZERO);
     }
 
-    /// Overwrites one lane.
+    /// Overwrites one lane; contacts that `from` does not have carry nothing.
     pub fn set_lane(&mut self, lane: usize, from: &Impulses<1>) {
         for (to, from) in self.v.iter_mut().zip(&from.v) {
             to.0[lane] = from.0[0];
         }
-        for (to, from) in self.normal.iter_mut().zip(&from.normal).chain(self.tangential.iter_mut().zip(&from.tangential)) {
-            to.0[lane] = from.0[0];
+        for (to, from) in [(&mut self.normal, &from.normal), (&mut self.tangential, &from.tangential)] {
+            for (i, to) in to.iter_mut().enumerate() {
+                to.0[lane] = from.get(i).map_or(0.0, |p| p.0[0]);
+            }
         }
         for (to, from) in self.feet.as_flattened_mut().iter_mut().zip(from.feet.as_flattened()) {
             to.0[lane] = from.0[0];
@@ -160,7 +162,7 @@ impl<const W: usize> Impulses<W> {
 }
 
 impl<const W: usize> Ncp<W> {
-    /// Copies one lane into a one-lane problem.
+    /// Copies one lane into a one-lane problem, without the open rows that pad it.
     pub fn copy_lane(&self, lane: usize, to: &mut Ncp<1>) {
         let pick = |x: Lanes<W>| Lanes([x.0[lane]]);
         to.free = self.free.map(pick);
@@ -168,7 +170,8 @@ impl<const W: usize> Ncp<W> {
         to.stall = pick(self.stall);
         to.compliance = pick(self.compliance);
         to.contacts.clear();
-        to.contacts.extend(self.contacts.iter().map(|c| ContactRow {
+        let touching = self.contacts.iter().take_while(|c| c.n.iter().any(|x| x.0[lane] != 0.0));
+        to.contacts.extend(touching.map(|c| ContactRow {
             n: c.n.map(pick),
             t: c.t.map(pick),
             gap: pick(c.gap),

@@ -70,10 +70,13 @@ fn foot(foot: &Foot, p: [f64; 2], v: &Vector<4>, slides: bool) -> FootStep {
         return FootStep { r: s.map(|s| -STIFFNESS * s), k: [[STIFFNESS, 0.0], [0.0, STIFFNESS]] };
     }
     let unit = [s[0] / speed, s[1] / speed];
-    let turn = foot.bound / speed;
+    // primal–dual: the impulse turns with the slip's new direction, p kept inside its disc
+    let size = p[0].hypot(p[1]);
+    let shrink = if size > foot.bound { foot.bound / size } else { 1.0 };
+    let entry = |i: usize, j: usize| ((if i == j { foot.bound } else { 0.0 }) + shrink * p[i] * unit[j]) / speed;
     FootStep {
         r: [-foot.bound * unit[0] - p[0], -foot.bound * unit[1] - p[1]],
-        k: [[turn * unit[1] * unit[1], -turn * unit[0] * unit[1]], [-turn * unit[0] * unit[1], turn * unit[0] * unit[0]]],
+        k: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
     }
 }
 

@@ -36,6 +36,15 @@ pub struct Contact {
     pub mu: f64,
 }
 
+impl Contact {
+    /// Whether the other contact says the same, to rounding.
+    pub fn repeats(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-14 * (1.0 + a.abs());
+        let columns = self.n.iter().zip(&other.n).chain(self.t.iter().zip(&other.t));
+        columns.into_iter().all(|(a, b)| near(*a, *b)) && near(self.gap, other.gap) && near(self.slip, other.slip) && self.mu == other.mu
+    }
+}
+
 /// One foot.
 #[derive(Clone, Copy, Debug)]
 pub struct Foot {

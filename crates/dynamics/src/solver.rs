@@ -9,6 +9,7 @@ use crate::modes::{Verdict, search};
 use crate::ncp::{Impulses, Ncp};
 use crate::polish::polish;
 use crate::newton::{NewtonWorkspace, newton};
+use crate::problem::{StepProblem, StepSolution};
 use crate::rows::{Guess, Rows};
 
 /// Largest natural-map residual of a solved step [m/s].
@@ -60,6 +61,24 @@ pub struct Report {
     pub iterations: u32,
     /// Where the answer came from.
     pub route: Route,
+}
+
+/// Solves one step's problem from a cold start.
+///
+/// ```
+/// # use stickslip_dynamics::{Foot, Outcome, StepProblem, Twist, solve};
+/// // a block that slides at 1 m/s on three frictionless feet keeps its speed
+/// let twist = Twist { vx: 1.0, ..Twist::default() };
+/// let problem = StepProblem { mass: 1.0, inertia: 1.0, h: 0.01, twist, ..StepProblem::default() };
+/// let (solution, report) = solve(&problem);
+/// assert_eq!((report.outcome, solution.twist), (Outcome::Solved, twist));
+/// ```
+pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
+    let mut ncp = Ncp::<1>::empty();
+    ncp.assign(std::array::from_ref(problem));
+    let mut p = Impulses { v: ncp.free, ..Impulses::zero(problem.contacts.len()) };
+    let [report] = Solver::default().solve(&ncp, &mut p);
+    (p.to_solution(0, problem), report)
 }
 
 /// Solves mixed NCPs; holds the working memory.

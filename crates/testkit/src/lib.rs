@@ -7,6 +7,7 @@
 //! - [`gap_margin`], [`may_jam`]: whether a step certainly has no solution, or certainly has one.
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
+//! - [`survey`]: how the solver does on it.
 //! - [`data_root`]: where recorded experiments lie.
 
 mod closed_form;
@@ -23,6 +24,7 @@ mod random_problem;
 mod residual;
 mod rng;
 mod scaled;
+mod survey;
 
 pub use closed_form::{Block, Stop};
 pub use cone::{cone_program_step, cone_program_twist};
@@ -32,3 +34,4 @@ pub use jam::{gap_margin, may_jam};
 pub use modes::enumerate_modes;
 pub use random_problem::{Corpus, Family};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
+pub use survey::{Tally, survey};
