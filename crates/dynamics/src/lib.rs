@@ -2,6 +2,7 @@
 
 mod condensed;
 mod drag;
+mod feature;
 mod homotopy;
 mod modes;
 mod lanes;
@@ -9,6 +10,8 @@ mod narrow;
 mod ncp;
 mod newton;
 mod outline;
+mod overlap;
+mod plane;
 mod polish;
 mod problem;
 mod rows;
@@ -16,6 +19,9 @@ mod scene;
 mod se2;
 mod separation;
 mod shape;
+mod shape_error;
+mod smooth;
+mod solid;
 mod solver;
 mod step;
 
@@ -25,6 +31,7 @@ pub use ncp::{ContactRow, FootRow, Impulses, Ncp};
 pub use problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};
 pub use scene::{Feet, Fixel, Friction, Object, Pusher, Scene};
 pub use se2::{Pose, Twist, Wrench};
-pub use shape::{Part, Shape, ShapeError};
-pub use solver::{Outcome, Report, Route, Solver, TOLERANCE};
+pub use shape::{Part, Shape};
+pub use shape_error::ShapeError;
+pub use solver::{Outcome, Report, Route, Solver, TOLERANCE, solve};
 pub use step::{Body, Dynamics, Particle, PusherMotion, StepInput, StepWork, WarmStart};

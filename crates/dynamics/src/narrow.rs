@@ -1,18 +1,31 @@
 //! Contacts between two placed shapes: gap, normal and contact point ([`narrow_phase`]).
 //!
-//! Normals point INTO the object; a positive gap means apart. Pairs of features that can touch are an edge with a round one
-//! (corner, disc, ellipse), either way round, and two round ones. A round feature faces an edge where its own normal cone, a
-//! little widened, holds the edge's opposite normal: so faces that meet, slightly tilted, give two points.
+//! Signs: the normal points INTO the object; the gap is positive where the bodies are apart. With the twists v of the object and v'
+//! of the other body, the rate of the gap is (n, r × n)·v − n·u, r the contact's arm and u the other surface's velocity there.
+//!
+//! Pairs that can touch: an edge with a round vertex (corner or disc) or an ellipse, either way round, and two of the latter.
+//! - A corner meets every edge that it stands over and faces, its normal cone widened a little: faces that meet give two points.
+//! - Two corners meet along the line of their centres where it lies in both cones; the borders of a cone are those of the edges
+//!   beside it, so that a corner that is passed is always answered for by one of them.
+//! - A centre inside the other body meets only the edge of least penetration (and those in a reflex corner with it); edges whose
+//!   back it sees from outside are not met.
+//! - Where polygons overlap with no corner of one in the other, their parts' least penetration (by separating axes) is a contact; of
+//!   two convex polygons no gap is deeper than that, and one is as deep.
 
-use crate::outline::{Edge, Round, RoundKind};
-use crate::separation::widest;
+use crate::feature::{Edge, Round};
+use crate::outline::Outline;
+use crate::overlap::least_penetration;
+use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
 use crate::{Pose, Shape};
 
-/// Sine of the angle by which a corner's normal cone is widened when it meets an edge.
-const TILT: f64 = 0.1;
+/// Width of the borders between features, as a share of the bodies' size: at least one of two neighbours always answers.
+const BORDER: f64 = 1e-12;
 
-/// Slack of borders between features, as a share of length or a sine, so that one of two neighbours always answers.
-const BORDER: f64 = 1e-9;
+/// Contacts nearer than this share of the object's size, with normals within about 0.1 rad, are one.
+const SAME_POINT: f64 = 1e-4;
+
+/// Cosine of the largest angle between the normals of one contact.
+const SAME_NORMAL: f64 = 0.995;
 
 /// A contact of the object with another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,159 +45,242 @@ pub struct Placed<'a> {
     frame: Frame,
 }
 
-/// A rigid motion: p ↦ origin + R p.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    origin: [f64; 2],
-    cos: f64,
-    sin: f64,
-}
-
 impl<'a> Placed<'a> {
     /// Places a shape.
     pub fn new(shape: &'a Shape, pose: Pose) -> Self {
-        let (sin, cos) = libm::sincos(pose.theta);
-        Self { shape, frame: Frame { origin: [pose.x, pose.y], cos, sin } }
-    }
-}
-
-impl Frame {
-    #[inline(always)]
-    fn rotate(&self, v: [f64; 2]) -> [f64; 2] {
-        [self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1]]
-    }
-
-    #[inline(always)]
-    fn point(&self, p: [f64; 2]) -> [f64; 2] {
-        let [x, y] = self.rotate(p);
-        [self.origin[0] + x, self.origin[1] + y]
-    }
-
-    /// This frame as seen from `base`.
-    fn relative_to(&self, base: &Frame) -> Frame {
-        let d = [self.origin[0] - base.origin[0], self.origin[1] - base.origin[1]];
-        Frame {
-            origin: [base.cos * d[0] + base.sin * d[1], base.cos * d[1] - base.sin * d[0]],
-            cos: base.cos * self.cos + base.sin * self.sin,
-            sin: base.cos * self.sin - base.sin * self.cos,
-        }
-    }
-
-    fn inverse(&self) -> Frame {
-        let [x, y] = self.origin;
-        Frame { origin: [-self.cos * x - self.sin * y, self.sin * x - self.cos * y], cos: self.cos, sin: -self.sin }
-    }
-
-    fn round(&self, round: &Round) -> Round {
-        let kind = match round.kind {
-            RoundKind::Corner { from, to } => RoundKind::Corner { from: self.rotate(from), to: self.rotate(to) },
-            RoundKind::Disc { radius } => RoundKind::Disc { radius },
-            RoundKind::Ellipse { semi_axes, axis } => RoundKind::Ellipse { semi_axes, axis: self.rotate(axis) },
-        };
-        Round { centre: self.point(round.centre), kind }
+        Self { shape, frame: Frame::new(pose) }
     }
 }
 
 /// Appends every contact of `object` with `other` whose gap is below `reach` (m).
 ///
-/// Nothing is allocated but what `out` grows by.
+/// Nothing is allocated but what `out` grows by. The order of contacts is fixed by the shapes' features.
+///
+/// ```
+/// # use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};
+/// let disc = |radius| Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]);
+/// let (object, pusher) = (disc(0.03)?, disc(0.005)?);
+/// let mut gaps = Vec::new();
+/// let pose = Pose::new(-0.036, 0.0, 0.0);
+/// narrow_phase(&Placed::new(&object, Pose::default()), &Placed::new(&pusher, pose), 0.002, &mut gaps);
+/// assert_eq!((gaps[0].normal, gaps[0].arm), ([1.0, 0.0], [-0.03, 0.0]));
+/// assert!((gaps[0].gap - 0.001).abs() < 1e-15);
+/// # Ok::<(), stickslip_dynamics::ShapeError>(())
+/// ```
 pub fn narrow_phase(object: &Placed<'_>, other: &Placed<'_>, reach: f64, out: &mut Vec<Gap>) {
-    let view = other.frame.relative_to(&object.frame);
-    let apart = view.origin[0].hypot(view.origin[1]) - object.shape.bounding_radius() - other.shape.bounding_radius();
-    if apart >= reach {
+    let apart = sub(other.frame.origin, object.frame.origin);
+    let near = object.shape.bounding_radius() + other.shape.bounding_radius() + reach;
+    if near > 0.0 && dot(apart, apart) < near * near {
+        Pair::new(object, other, reach, out).meet();
+    }
+}
+
+/// Two placed shapes and where their contacts go.
+pub(crate) struct Pair<'a> {
+    pub object: &'a Shape,
+    pub other: &'a Shape,
+    /// Object and other in the world.
+    object_frame: Frame,
+    other_frame: Frame,
+    /// The other's frame seen from the object's, and the inverse.
+    pub in_object: Frame,
+    pub in_other: Frame,
+    /// Gap below which a contact counts (m).
+    pub reach: f64,
+    /// Width of borders (m).
+    pub slack: f64,
+    out: &'a mut Vec<Gap>,
+    first: usize,
+}
+
+/// Where the centre of a round vertex stands over an edge.
+#[derive(Clone, Copy)]
+struct Stand<'a> {
+    edge: &'a Edge,
+    /// Distance of its foot along the edge, and height above the edge's line (m).
+    s: f64,
+    height: f64,
+}
+
+impl<'a> Pair<'a> {
+    #[inline]
+    fn new(object: &'a Placed<'a>, other: &'a Placed<'a>, reach: f64, out: &'a mut Vec<Gap>) -> Self {
+        let in_object = other.frame.seen_from(&object.frame);
+        let slack = BORDER * (object.shape.bounding_radius() + other.shape.bounding_radius());
+        let (object_frame, other_frame, first) = (object.frame, other.frame, out.len());
+        let in_other = in_object.inverse();
+        Self { object: object.shape, other: other.shape, object_frame, other_frame, in_object, in_other, reach, slack, out, first }
+    }
+
+    #[inline]
+    fn meet(&mut self) {
+        let (mine, theirs) = (self.object.outline(), self.other.outline());
+        self.rounds_on_object(mine, theirs);
+        if !theirs.edges.is_empty() {
+            self.rounds_on_other(mine, theirs);
+        }
+        if !mine.ellipses.is_empty() || !theirs.ellipses.is_empty() {
+            self.ellipses(mine, theirs);
+        }
+        if !mine.edges.is_empty() && !theirs.edges.is_empty() {
+            self.polygons();
+        }
+    }
+
+    /// The other's corners and discs against the object's edges, corners and discs, in the object's frame.
+    #[inline]
+    fn rounds_on_object(&mut self, mine: &Outline, theirs: &Outline) {
+        let frame = self.in_object;
+        for round in &theirs.rounds {
+            let centre = frame.point(round.centre);
+            if !self.within(centre, self.object, round.radius) {
+                continue;
+            }
+            let faces = |edge: &Edge| round.cone.faces(frame.turn_back(negate(edge.normal())));
+            let (object, limits) = (self.object, [self.reach + round.radius, self.slack]);
+            stands(object, centre, limits, faces, |Stand { edge, s, height }| {
+                let touch = add(round.centre, scale(-round.radius, frame.turn_back(edge.normal())));
+                if !(round.covered && self.other.hides(touch)) {
+                    self.push_in_object(negate(edge.normal()), edge.at(s), height - round.radius);
+                }
+            });
+            for own in &mine.rounds {
+                self.round_on_round(own, round, centre);
+            }
+        }
+    }
+
+    /// The object's corners and discs against the other's edges, in the other's frame.
+    #[inline]
+    fn rounds_on_other(&mut self, mine: &Outline, theirs: &Outline) {
+        debug_assert!(!theirs.edges.is_empty());
+        let frame = self.in_other;
+        for round in &mine.rounds {
+            let centre = frame.point(round.centre);
+            if !self.within(centre, self.other, round.radius) {
+                continue;
+            }
+            let faces = |edge: &Edge| round.cone.faces(frame.turn_back(negate(edge.normal())));
+            let (other, limits) = (self.other, [self.reach + round.radius, self.slack]);
+            stands(other, centre, limits, faces, |Stand { edge, height, .. }| {
+                let touch = add(round.centre, scale(-round.radius, frame.turn_back(edge.normal())));
+                if !(round.covered && self.object.hides(touch)) {
+                    self.push_on_other(edge.normal(), touch, height - round.radius);
+                }
+            });
+        }
+    }
+
+    /// Whether a disc about `centre`, in the frame of `shape`, comes near the shape's bounding disc.
+    #[inline(always)]
+    fn within(&self, centre: Vec2, shape: &Shape, radius: f64) -> bool {
+        let limit = shape.bounding_radius() + self.reach + radius;
+        limit > 0.0 && dot(centre, centre) < limit * limit
+    }
+
+    /// Two corners or discs; `centre` is that of the other's one in the object's frame.
+    #[inline(always)]
+    fn round_on_round(&mut self, own: &Round, round: &Round, centre: Vec2) {
+        let d = sub(own.centre, centre);
+        let limit = own.radius + round.radius + self.reach;
+        if limit > 0.0 && dot(d, d) < limit * limit && own.cone.holds(negate(d), self.slack) && round.cone.holds(self.in_object.turn_back(d), self.slack) {
+            self.push_rounds(own, round, d);
+        }
+    }
+
+    /// `d` leads from the other's centre to the object's one.
+    fn push_rounds(&mut self, own: &Round, round: &Round, d: Vec2) {
+        let distance = length(d);
+        let middle = || round.cone.middle().map(|m| self.in_object.turn(m)).or(own.cone.middle().map(negate)).unwrap_or([1.0, 0.0]);
+        let normal = if distance > 0.0 { scale(1.0 / distance, d) } else { middle() };
+        let touch = add(own.centre, scale(-own.radius, normal));
+        let theirs = add(round.centre, scale(round.radius, self.in_object.turn_back(normal)));
+        if !(own.covered && self.object.hides(touch) || round.covered && self.other.hides(theirs)) {
+            self.push_in_object(normal, touch, distance - own.radius - round.radius);
+        }
+    }
+
+    /// Polygons that overlap although no feature answered for it; of two convex ones, the least penetration bounds all gaps.
+    fn polygons(&mut self) {
+        let overlap = self.out[self.first..].iter().any(|contact| contact.gap < 0.0);
+        let convex = self.object.parts().len() == 1 && self.other.parts().len() == 1;
+        if overlap && !convex {
+            return;
+        }
+        let Some(least) = least_penetration(self.object.solids(), self.other.solids(), &self.in_object) else { return };
+        let mut kept = self.first;
+        for k in self.first..self.out.len() {
+            if self.out[k].gap >= least.gap - self.slack {
+                self.out[kept] = self.out[k];
+                kept += 1;
+            }
+        }
+        self.out.truncate(kept);
+        self.push_in_object(least.normal, least.touch, least.gap);
+    }
+
+    /// A contact in the object's frame.
+    #[inline(always)]
+    pub fn push_in_object(&mut self, normal: Vec2, touch: Vec2, gap: f64) {
+        self.push(Gap { normal: self.object_frame.turn(normal), arm: self.object_frame.turn(touch), gap });
+    }
+
+    /// A contact with its normal in the other's frame and its point in the object's.
+    #[inline(always)]
+    pub fn push_on_other(&mut self, normal: Vec2, touch: Vec2, gap: f64) {
+        self.push(Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap });
+    }
+
+    /// Keeps the nearer one of two contacts that are one.
+    #[inline(always)]
+    fn push(&mut self, new: Gap) {
+        let near = SAME_POINT * self.object.bounding_radius();
+        let same = |old: &&mut Gap| {
+            let d = sub(old.arm, new.arm);
+            dot(d, d) < near * near && dot(old.normal, new.normal) > SAME_NORMAL
+        };
+        match self.out[self.first..].iter_mut().find(same) {
+            Some(old) if new.gap < old.gap => *old = new,
+            Some(_) => {}
+            None => self.out.push(new),
+        }
+    }
+}
+
+/// Reports the edges of `shape` over which `centre` stands, less than `limit` high, among those that the round vertex faces.
+///
+/// From outside these are all that see it on their outward side; from inside, the edge of least penetration and those that meet it
+/// in a reflex corner as well.
+#[inline(always)]
+fn stands<'s>(shape: &'s Shape, centre: Vec2, [limit, slack]: [f64; 2], faces: impl Fn(&Edge) -> bool, mut report: impl FnMut(Stand<'s>)) {
+    let edges = &shape.outline().edges;
+    let (mut highest, mut beside) = (f64::NEG_INFINITY, false);
+    let mut way_out: Option<Stand<'s>> = None;
+    for edge in edges {
+        let (s, height) = edge.coordinates(centre);
+        highest = if height > highest { height } else { highest };
+        if height >= limit || !edge.holds(s, slack) {
+            continue;
+        }
+        beside |= height >= 0.0 && height < shape.tolerance() && s >= 0.0 && s <= edge.length;
+        if height >= 0.0 {
+            if faces(edge) {
+                report(Stand { edge, s, height });
+            }
+        } else if way_out.is_none_or(|way| height > way.height) && faces(edge) {
+            way_out = Some(Stand { edge, s, height });
+        }
+    }
+    let Some(way) = way_out else { return };
+    let inside = if shape.parts().len() == 1 { highest < 0.0 } else { !beside && shape.contains(centre) };
+    if !inside {
         return;
     }
-    let back = view.inverse();
-    let first = out.len();
-
-    // the other's corners and discs against the object's edges, in the object's frame
-    for round in &other.shape.features().rounds {
-        let near = |centre: [f64; 2]| centre[0].hypot(centre[1]) - round.radius() < object.shape.bounding_radius() + reach;
-        if near(view.point(round.centre)) {
-            round_on_edges(&view.round(round), object.shape, reach, |edge, gap, touch| {
-                out.push(Gap { normal: [-edge.normal[0], -edge.normal[1]], arm: [touch[0] - gap * edge.normal[0], touch[1] - gap * edge.normal[1]], gap });
-            });
-        }
-    }
-    // the object's corners and discs against the other's edges, in the other's frame
-    for round in &object.shape.features().rounds {
-        let centre = back.point(round.centre);
-        if centre[0].hypot(centre[1]) - round.radius() < other.shape.bounding_radius() + reach {
-            round_on_edges(&back.round(round), other.shape, reach, |edge, gap, touch| {
-                out.push(Gap { normal: view.rotate(edge.normal), arm: view.point(touch), gap });
-            });
-            round_on_rounds(round, other.shape, &view, reach, out);
-        }
-    }
-    finish(object, other, &back, first, out);
-}
-
-/// Drops contacts inside a sibling part and turns the rest into the world frame.
-fn finish(object: &Placed<'_>, other: &Placed<'_>, back: &Frame, first: usize, out: &mut Vec<Gap>) {
-    let mut kept = first;
-    for k in first..out.len() {
-        let gap = out[k];
-        let on_other = [gap.arm[0] - gap.gap * gap.normal[0], gap.arm[1] - gap.gap * gap.normal[1]];
-        if !object.shape.hides(gap.arm) && !other.shape.hides(back.point(on_other)) {
-            out[kept] = Gap { normal: object.frame.rotate(gap.normal), arm: object.frame.rotate(gap.arm), gap: gap.gap };
-            kept += 1;
-        }
-    }
-    out.truncate(kept);
-}
-
-/// Reports (edge, gap, touching point of the round feature) for every edge of `shape` that the round feature meets.
-///
-/// From outside, every edge that it stands over is met. Where its centre is inside the shape, only the edge that is nearest
-/// to the surface is: the way out.
-#[inline(always)]
-fn round_on_edges(round: &Round, shape: &Shape, reach: f64, mut report: impl FnMut(&Edge, f64, [f64; 2])) {
-    let mut outside = false;
-    let mut way_out: Option<(&Edge, f64, [f64; 2])> = None;
-    for edge in &shape.features().edges {
-        let outward = edge.normal;
-        let (_, height) = edge.coordinates(round.centre);
-        let gap = height - round.support(outward);
-        if gap >= reach {
-            continue;
-        }
-        let inward = [-outward[0], -outward[1]];
-        let offset = round.support_point(inward);
-        let touch = [round.centre[0] + offset[0], round.centre[1] + offset[1]];
-        let (along, _) = edge.coordinates(touch);
-        let over = along >= -BORDER * edge.length && along <= (1.0 + BORDER) * edge.length;
-        if !over || !round.faces(inward, TILT) {
-            continue;
-        }
-        if height >= 0.0 {
-            outside = true;
-            report(edge, gap, touch);
-        } else if way_out.is_none_or(|(_, best, _)| gap > best) {
-            way_out = Some((edge, gap, touch));
-        }
-    }
-    if let Some((edge, gap, touch)) = way_out
-        && !outside
-        && shape.contains(round.centre)
-    {
-        report(edge, gap, touch);
-    }
-}
-
-/// Contacts of one round feature of the object with the other's round features, in the object's frame.
-fn round_on_rounds(round: &Round, other: &Shape, view: &Frame, reach: f64, out: &mut Vec<Gap>) {
-    for theirs in &other.features().rounds {
-        let centre = view.point(theirs.centre);
-        let d = [round.centre[0] - centre[0], round.centre[1] - centre[1]];
-        if d[0].hypot(d[1]) >= reach + round.radius() + theirs.radius() {
-            continue;
-        }
-        let theirs = view.round(theirs);
-        let (normal, gap) = widest(round, &theirs, d);
-        let inward = [-normal[0], -normal[1]];
-        if gap < reach && theirs.faces(normal, BORDER) && round.faces(inward, BORDER) {
-            let offset = round.support_point(inward);
-            out.push(Gap { normal, arm: [round.centre[0] + offset[0], round.centre[1] + offset[1]], gap });
+    report(way);
+    for edge in way.edge.reflex.iter().flatten().map(|k| &edges[*k as usize]) {
+        let (s, height) = edge.coordinates(centre);
+        if height < 0.0 && edge.holds(s, slack) && faces(edge) {
+            report(Stand { edge, s, height });
         }
     }
 }

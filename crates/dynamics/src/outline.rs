@@ -1,205 +1,192 @@
-//! The boundary of a union of parts as features that can touch: [`Features`].
+//! The boundary of a union of convex parts as features that can touch: [`Outline`].
 //!
-//! Polygon edges that parts share are seams, not boundary; what is left is chained, and neighbours in line are merged, so that no
-//! vertex stands on a straight seam. A convex corner keeps the normal cone of the union; a reflex corner is no feature.
+//! Polygon edges are cut where another part covers them: seams, back to back with a sibling's edge, and overlaps. What is left is
+//! chained, and neighbours in line are merged, so that no vertex stands on a straight seam. A convex joint is a corner with the
+//! union's own normal cone; a reflex one is no feature, but both its edges are known to run on inside the body.
 
-use crate::shape::{Part, edges};
+use crate::feature::{Cone, Edge, Ellipse, Round};
+use crate::plane::{Vec2, cross, dot, length, sub};
+use crate::solid::Solid;
+use crate::Part;
+
+/// Share of a shape's extent within which the joint of two collinear edges of one part is on their common line.
+const STRAIGHT: f64 = 1e-9;
 
 /// Boundary features of a shape in its own frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Features {
+pub(crate) struct Outline {
     pub edges: Vec<Edge>,
     pub rounds: Vec<Round>,
+    pub ellipses: Vec<Ellipse>,
 }
 
-/// A straight piece of boundary.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
-    pub start: [f64; 2],
-    /// Unit direction, the body on its left.
-    pub along: [f64; 2],
-    /// Unit outward normal.
-    pub normal: [f64; 2],
-    pub length: f64,
-}
-
-/// A convex corner, a disc or an ellipse: a centre with a support function and a cone of outward normals.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Round {
-    pub centre: [f64; 2],
-    pub kind: RoundKind,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum RoundKind {
-    /// A polygon's corner with the outward normals of the edges that end and begin there, counter-clockwise in this order.
-    Corner { from: [f64; 2], to: [f64; 2] },
-    Disc { radius: f64 },
-    /// Semi-axes and the unit vector of the first one.
-    Ellipse { semi_axes: [f64; 2], axis: [f64; 2] },
-}
-
-/// A directed piece of a polygon's edge.
+/// A directed piece of boundary, and the parts that its ends come from.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    a: [f64; 2],
-    b: [f64; 2],
+    ends: [Vec2; 2],
+    parts: [usize; 2],
+    next: Option<usize>,
 }
 
-/// The features of a union; points nearer than `tolerance` (m) are one.
-pub(crate) fn features(parts: &[Part], tolerance: f64) -> Features {
-    let mut features = Features::default();
-    for part in parts {
+impl Outline {
+    /// The outline of the union of `parts`; lengths below `tolerance` (m) are rounding. Marks the exposed sides of the solids.
+    pub fn new(parts: &[Part], solids: &mut [Solid], tolerance: f64) -> Self {
+        let mut pieces = exposed(solids, tolerance);
+        chain(&mut pieces, tolerance);
+        merge(&mut pieces, tolerance);
+        let mut outline = Self { edges: edges(&pieces, solids, tolerance), ..Self::default() };
+        outline.rounds = corners(&outline.edges, &pieces);
+        for (part, covered) in parts.iter().zip(covered(solids, tolerance)) {
+            outline.push_smooth(part, covered);
+        }
+        outline
+    }
+
+    fn push_smooth(&mut self, part: &Part, covered: bool) {
         match part {
             Part::Polygon { .. } => {}
-            Part::Disc { radius, centre } => features.rounds.push(Round { centre: *centre, kind: RoundKind::Disc { radius: *radius } }),
+            Part::Disc { radius, centre } => self.rounds.push(Round { centre: *centre, radius: *radius, cone: Cone::full(), covered }),
             Part::Ellipse { semi_axes, centre, angle } => {
                 let (sin, cos) = libm::sincos(*angle);
-                let kind = RoundKind::Ellipse { semi_axes: *semi_axes, axis: [cos, sin] };
-                features.rounds.push(Round { centre: *centre, kind });
+                self.ellipses.push(Ellipse { centre: *centre, axis: [cos, sin], semi_axes: *semi_axes, covered });
             }
         }
     }
-    let pieces = merged(boundary_pieces(parts, tolerance), tolerance);
-    for piece in &pieces {
-        features.edges.extend(edge(piece));
-    }
-    features.rounds.extend(pieces.iter().filter_map(|piece| corner_at_end(piece, &pieces, tolerance)));
-    features
 }
 
-/// All polygon edges without the stretches that lie on another polygon's edge, back to back.
-fn boundary_pieces(parts: &[Part], tolerance: f64) -> Vec<Piece> {
-    let polygons: Vec<&Vec<[f64; 2]>> = parts.iter().filter_map(|p| if let Part::Polygon { vertices } = p { Some(vertices) } else { None }).collect();
-    let mut pieces = Vec::new();
-    for (i, polygon) in polygons.iter().enumerate() {
-        let others = polygons.iter().enumerate().filter(|(j, _)| *j != i).flat_map(|(_, other)| edges(other));
-        let others: Vec<Piece> = others.map(|(a, b)| Piece { a, b }).collect();
-        for (a, b) in edges(polygon) {
-            pieces.extend(without_seams(Piece { a, b }, &others, tolerance));
-        }
-    }
-    pieces
-}
-
-fn without_seams(piece: Piece, others: &[Piece], tolerance: f64) -> Vec<Piece> {
-    let Some(line) = edge(&piece) else { return Vec::new() };
-    let mut open = vec![(0.0f64, line.length)];
-    for other in others {
-        let (s0, d0) = line.coordinates(other.b);
-        let (s1, d1) = line.coordinates(other.a);
-        if d0.abs() <= tolerance && d1.abs() <= tolerance && s0 < s1 {
-            open = open.into_iter().flat_map(|(low, high)| [(low, high.min(s0)), (low.max(s1), high)]).filter(|(l, h)| h - l > tolerance).collect();
-        }
-    }
-    open.into_iter().map(|(low, high)| Piece { a: line.snapped(low, &piece, tolerance), b: line.snapped(high, &piece, tolerance) }).collect()
-}
-
-/// Joins neighbours whose common point lies on the line between their far ends.
-fn merged(mut pieces: Vec<Piece>, tolerance: f64) -> Vec<Piece> {
-    let joint = |pieces: &[Piece]| {
-        (0..pieces.len()).find_map(|i| {
-            let j = successor(&pieces[i], pieces, tolerance)?;
-            let chord = edge(&Piece { a: pieces[i].a, b: pieces[j].b })?;
-            let (s, d) = chord.coordinates(pieces[i].b);
-            (i != j && d.abs() <= tolerance && s > 0.0 && s < chord.length).then_some((i, j))
-        })
+/// Whether a sibling may hide some of each solid: their bounding discs overlap.
+fn covered(solids: &[Solid], tolerance: f64) -> Vec<bool> {
+    let disc = |solid: &Solid| match solid {
+        Solid::Polygon(polygon) => (polygon.centre, polygon.radius),
+        Solid::Oval { centre, semi_axes: [a, b], .. } => (*centre, a.max(*b)),
     };
-    while let Some((i, j)) = joint(&pieces) {
-        pieces[i].b = pieces[j].b;
-        pieces.remove(j);
+    let meet = |a: &Solid, b: &Solid| {
+        let ((p, r), (q, s)) = (disc(a), disc(b));
+        length(sub(p, q)) < r + s - tolerance
+    };
+    let other = |i: usize| (0..solids.len()).any(|j| j != i && meet(&solids[i], &solids[j]));
+    (0..solids.len()).map(other).collect()
+}
+
+/// All polygon edges without what other parts cover. Where two parts share a stretch of boundary, the first one keeps it.
+fn exposed(solids: &mut [Solid], tolerance: f64) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    for i in 0..solids.len() {
+        let Solid::Polygon(polygon) = &solids[i] else { continue };
+        let mut bare = Vec::new();
+        for k in 0..polygon.corners.len() {
+            let edge = Edge::between(polygon.corners[k], polygon.corners[(k + 1) % polygon.corners.len()]);
+            let mut open = vec![[0.0, edge.length]];
+            for (j, sibling) in solids.iter().enumerate().filter(|(j, _)| *j != i) {
+                let cover = sibling.cover(&edge, tolerance).filter(|cover| !cover.flush || j < i);
+                open = cover.map_or(open.clone(), |cover| open.iter().flat_map(|gap| without(*gap, cover.near, cover.exact)).collect());
+            }
+            open.retain(|[low, high]| high - low > 2.0 * tolerance);
+            bare.push((!open.is_empty(), open.iter().map(|[low, high]| high - low).sum::<f64>() < edge.length - tolerance));
+            pieces.extend(open.iter().map(|&[low, high]| piece(polygon.corners[k], &edge, [low, high], polygon.corners[(k + 1) % polygon.corners.len()], i)));
+        }
+        if let Solid::Polygon(polygon) = &mut solids[i] {
+            polygon.sides.iter_mut().zip(bare).for_each(|(side, bare)| (side.exposed, side.seam) = bare);
+        }
     }
     pieces
 }
 
-/// The piece that begins where this one ends.
-fn successor(piece: &Piece, pieces: &[Piece], tolerance: f64) -> Option<usize> {
-    pieces.iter().position(|next| (next.a[0] - piece.b[0]).hypot(next.a[1] - piece.b[1]) <= 2.0 * tolerance)
+/// What is left of an interval without a covered one: decided by the cover with tolerance, cut at the exact one.
+fn without([low, high]: [f64; 2], near: [f64; 2], exact: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let apart = near[1] <= low || near[0] >= high;
+    let before = if near[0] > low { [low, exact[0].min(high)] } else { [low, low] };
+    let after = if near[1] < high { [exact[1].max(low), high] } else { [high, high] };
+    let pieces = if apart { [[low, high], [high, high]] } else { [before, after] };
+    pieces.into_iter().filter(|[a, b]| b > a)
 }
 
-fn corner_at_end(piece: &Piece, pieces: &[Piece], tolerance: f64) -> Option<Round> {
-    let next = &pieces[successor(piece, pieces, tolerance)?];
-    let (before, after) = (edge(piece)?, edge(next)?);
-    let turn = before.along[0] * after.along[1] - before.along[1] * after.along[0];
-    (turn > 0.0).then_some(Round { centre: piece.b, kind: RoundKind::Corner { from: before.normal, to: after.normal } })
+/// The stretch of an edge from corner `from` to corner `to`, whose own ends are kept bit for bit.
+fn piece(from: Vec2, edge: &Edge, [low, high]: [f64; 2], to: Vec2, part: usize) -> Piece {
+    let start = if low > 0.0 { edge.at(low) } else { from };
+    let end = if high < edge.length { edge.at(high) } else { to };
+    Piece { ends: [start, end], parts: [part; 2], next: None }
 }
 
-fn edge(piece: &Piece) -> Option<Edge> {
-    let d = [piece.b[0] - piece.a[0], piece.b[1] - piece.a[1]];
-    let length = d[0].hypot(d[1]);
-    let along = [d[0] / length, d[1] / length];
-    (length > 0.0).then_some(Edge { start: piece.a, along, normal: [along[1], -along[0]], length })
-}
-
-impl Edge {
-    /// (distance along the edge from its start, signed distance outward).
-    #[inline(always)]
-    pub fn coordinates(&self, point: [f64; 2]) -> (f64, f64) {
-        let d = [point[0] - self.start[0], point[1] - self.start[1]];
-        (d[0] * self.along[0] + d[1] * self.along[1], d[0] * self.normal[0] + d[1] * self.normal[1])
+/// Finds for each piece the one that goes on where it ends; where several do, the one that turns most to the left.
+fn chain(pieces: &mut [Piece], tolerance: f64) {
+    for i in 0..pieces.len() {
+        let follows = |j: &usize| *j != i && length(sub(pieces[*j].ends[0], pieces[i].ends[1])) <= 4.0 * tolerance;
+        let turn = |j: usize| {
+            let (t, u) = (sub(pieces[i].ends[1], pieces[i].ends[0]), sub(pieces[j].ends[1], pieces[j].ends[0]));
+            libm::atan2(cross(t, u), dot(t, u))
+        };
+        pieces[i].next = (0..pieces.len()).filter(follows).max_by(|a, b| turn(*a).total_cmp(&turn(*b)));
     }
-
-    /// The point at distance `s`, which is the piece's own end point where it is near one.
-    fn snapped(&self, s: f64, piece: &Piece, tolerance: f64) -> [f64; 2] {
-        if s <= tolerance {
-            piece.a
-        } else if s >= self.length - tolerance {
-            piece.b
-        } else {
-            [self.start[0] + s * self.along[0], self.start[1] + s * self.along[1]]
+    for i in 0..pieces.len() {
+        if let Some(j) = pieces[i].next {
+            pieces[i].ends[1] = pieces[j].ends[0];
         }
     }
 }
 
-impl Round {
-    /// Distance from the centre to the tangent line with outward normal `n`.
-    #[inline(always)]
-    pub fn support(&self, n: [f64; 2]) -> f64 {
-        match self.kind {
-            RoundKind::Corner { .. } => 0.0,
-            RoundKind::Disc { radius } => radius,
-            RoundKind::Ellipse { semi_axes: [a, b], axis } => {
-                let (c, s) = (n[0] * axis[0] + n[1] * axis[1], n[1] * axis[0] - n[0] * axis[1]);
-                (a * a * c * c + b * b * s * s).sqrt()
+/// Joins neighbours in line: exactly so within one part, within the tolerance across a seam.
+fn merge(pieces: &mut Vec<Piece>, tolerance: f64) {
+    while let Some((i, j)) = (0..pieces.len()).find_map(|i| straight_joint(pieces, i, tolerance)) {
+        pieces[i] = Piece { ends: [pieces[i].ends[0], pieces[j].ends[1]], parts: [pieces[i].parts[0], pieces[j].parts[1]], next: pieces[j].next };
+        pieces.remove(j);
+        for piece in pieces.iter_mut() {
+            piece.next = piece.next.map(|k| if k == j { i } else { k }).map(|k| if k > j { k - 1 } else { k });
+        }
+    }
+}
+
+fn straight_joint(pieces: &[Piece], i: usize, tolerance: f64) -> Option<(usize, usize)> {
+    let j = pieces[i].next.filter(|j| *j != i)?;
+    let sole = pieces.iter().filter(|piece| piece.next == Some(j)).count() == 1;
+    let (from, joint, to) = (pieces[i].ends[0], pieces[i].ends[1], pieces[j].ends[1]);
+    let (s, height) = Edge::between(from, to).coordinates(joint);
+    let same_part = pieces[i].parts[1] == pieces[j].parts[0];
+    let limit = if same_part { STRAIGHT / crate::shape::TOLERANCE * tolerance } else { tolerance };
+    // a dent of rounding is straightened like a seam: it would be a reflex corner that no convex part can have
+    let dent = same_part && height < 0.0 && -height <= 2.0 * tolerance;
+    (sole && s > 0.0 && s < length(sub(to, from)) && (height.abs() <= limit || dent)).then_some((i, j))
+}
+
+/// The edges of chained pieces, with their reflex neighbours and how far their lines run on inside the body.
+fn edges(pieces: &[Piece], solids: &[Solid], tolerance: f64) -> Vec<Edge> {
+    let mut edges: Vec<Edge> = pieces.iter().map(|piece| Edge::between(piece.ends[0], piece.ends[1])).collect();
+    let before = |i: usize| pieces.iter().position(|piece| piece.next == Some(i));
+    for i in 0..edges.len() {
+        let neighbours = [before(i), pieces[i].next];
+        let turns = [neighbours[0].map(|j| turn(&edges[j], &edges[i])), neighbours[1].map(|j| turn(&edges[i], &edges[j]))];
+        for end in 0..2 {
+            if turns[end].is_some_and(|turn| turn > 0.0) {
+                continue;
             }
+            edges[i].buried[end] = buried(&edges[i], end, solids, tolerance);
+            edges[i].reflex[end] = neighbours[end].map(|j| j as u32);
         }
     }
+    edges
+}
 
-    /// The boundary point with outward normal `n`, from the centre.
-    #[inline(always)]
-    pub fn support_point(&self, n: [f64; 2]) -> [f64; 2] {
-        match self.kind {
-            RoundKind::Corner { .. } => [0.0; 2],
-            RoundKind::Disc { radius } => [radius * n[0], radius * n[1]],
-            RoundKind::Ellipse { semi_axes: [a, b], axis } => {
-                let (c, s) = (n[0] * axis[0] + n[1] * axis[1], n[1] * axis[0] - n[0] * axis[1]);
-                let h = (a * a * c * c + b * b * s * s).sqrt();
-                let (x, y) = (a * a * c / h, b * b * s / h);
-                [x * axis[0] - y * axis[1], x * axis[1] + y * axis[0]]
-            }
-        }
-    }
+fn turn(before: &Edge, after: &Edge) -> f64 {
+    cross(before.along, after.along)
+}
 
-    /// Largest support.
-    pub fn radius(&self) -> f64 {
-        match self.kind {
-            RoundKind::Corner { .. } => 0.0,
-            RoundKind::Disc { radius } => radius,
-            RoundKind::Ellipse { semi_axes: [a, b], .. } => a.max(b),
-        }
-    }
+/// How far (m, up to the edge's own length) its line runs on inside the body beyond its start (end 0) or its end (1).
+fn buried(edge: &Edge, end: usize, solids: &[Solid], tolerance: f64) -> f64 {
+    const STEPS: u32 = 32;
+    let inside = |share: f64| {
+        let s = if end == 0 { -share * edge.length } else { (1.0 + share) * edge.length };
+        solids.iter().any(|solid| solid.depth(edge.at(s)) > -tolerance)
+    };
+    let steps = (1..=STEPS).take_while(|k| inside(f64::from(*k) / f64::from(STEPS))).count();
+    edge.length * steps as f64 / f64::from(STEPS)
+}
 
-    /// Whether `n` lies in the cone of outward normals, widened by an angle of sine `slack`.
-    #[inline(always)]
-    pub fn faces(&self, n: [f64; 2], slack: f64) -> bool {
-        match self.kind {
-            RoundKind::Corner { from, to } => {
-                let after = from[0] * n[1] - from[1] * n[0];
-                let before = n[0] * to[1] - n[1] * to[0];
-                // the cone is narrower than a half turn: inside it both crosses are positive
-                after >= -slack && before >= -slack && n[0] * (from[0] + to[0]) + n[1] * (from[1] + to[1]) > 0.0
-            }
-            _ => true,
-        }
-    }
+/// The convex corners, each at the end of its edge.
+fn corners(edges: &[Edge], pieces: &[Piece]) -> Vec<Round> {
+    let corner = |(i, piece): (usize, &Piece)| {
+        let j = piece.next?;
+        let cone = Cone::corner(edges[i].along, edges[j].along);
+        (turn(&edges[i], &edges[j]) > 0.0).then_some(Round { centre: piece.ends[1], radius: 0.0, cone, covered: false })
+    };
+    pieces.iter().enumerate().filter_map(corner).collect()
 }

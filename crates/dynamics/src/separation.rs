@@ -1,59 +1,131 @@
-//! The direction in which two round features are farthest apart: [`widest`].
+//! Largest separation of two smooth convex features over the direction: [`Separation`].
+//!
+//! g(n) = n·d − h₁(n) − h₂(n) − r for unit n, d from the centre of one feature to that of the other, h the support functions of the
+//! ellipses among them and r the sum of the radii of the round vertices. Apart, the only local maximum with g > 0 is their distance;
+//! in overlap, the largest local maximum is minus the least penetration. n points from the first feature to the second.
+//! Scaled to any length, g is concave, which is why a positive local maximum is the only one.
 
-use crate::outline::{Round, RoundKind};
+use crate::feature::{Cone, Ellipse, SAMPLES};
+use crate::plane::{Vec2, add, cross, dot, left, negate, scale, unit};
 
-/// Directions tried before the best one is refined.
-const SAMPLES: usize = 32;
+/// Newton steps with bisection as its guard; twice what bisection alone needs from a quarter turn.
+const STEPS: u32 = 100;
 
-/// The unit normal n (towards `ours`) that maximises the separation n·d − h_ours(−n) − h_theirs(n), and that separation;
-/// `d` leads from their centre to ours.
-///
-/// For points and discs it is the line of centres. With an ellipse it is found by bisection of the derivative, bracketed by
-/// samples of the whole turn, so that it is the least penetration where the two overlap.
-pub(crate) fn widest(ours: &Round, theirs: &Round, d: [f64; 2]) -> ([f64; 2], f64) {
-    let curved = |round: &Round| matches!(round.kind, RoundKind::Ellipse { .. });
-    if !curved(ours) && !curved(theirs) {
-        return between_centres(ours, theirs, d);
-    }
-    let separation = |angle: f64| {
-        let n = unit(angle);
-        n[0] * d[0] + n[1] * d[1] - ours.support(n) - theirs.support(n)
-    };
-    // d/dangle: the tangent's product with d less the support points' (a support function's gradient is its point)
-    let slope = |angle: f64| {
-        let (n, t) = (unit(angle), unit(angle + std::f64::consts::FRAC_PI_2));
-        let (p, q) = (ours.support_point(n), theirs.support_point(n));
-        t[0] * (d[0] - p[0] - q[0]) + t[1] * (d[1] - p[1] - q[1])
-    };
-    let step = std::f64::consts::TAU / SAMPLES as f64;
-    let best = (0..SAMPLES).map(|k| step * k as f64).fold((0.0, f64::NEG_INFINITY), |best, angle| {
-        let value = separation(angle);
-        if value > best.1 { (angle, value) } else { best }
-    });
-    let angle = bisect(best.0 - step, best.0 + step, slope);
-    (unit(angle), separation(angle))
+/// Cosine and sine of 0.1 rad, the stride in which a bracket is sought uphill.
+const STRIDE: Vec2 = [0.995_004_165_278_025_8, 0.099_833_416_646_828_15];
+
+/// g(n) of one pair of features.
+pub(crate) struct Separation<'a> {
+    /// From the first centre to the second one (m).
+    pub d: Vec2,
+    pub ellipses: [Option<&'a Ellipse>; 2],
+    /// Sum of the radii of the round vertices (m).
+    pub radius: f64,
 }
 
-fn between_centres(ours: &Round, theirs: &Round, d: [f64; 2]) -> ([f64; 2], f64) {
-    let distance = d[0].hypot(d[1]);
-    let normal = if distance > 0.0 { [d[0] / distance, d[1] / distance] } else { [1.0, 0.0] };
-    (normal, distance - ours.radius() - theirs.radius())
+/// A local maximum.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Peak {
+    pub normal: Vec2,
+    pub gap: f64,
 }
 
-fn unit(angle: f64) -> [f64; 2] {
-    let (sin, cos) = libm::sincos(angle);
-    [cos, sin]
-}
-
-/// Root of a function that falls through zero between `low` and `high`.
-fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if f(middle) > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
+impl Separation<'_> {
+    /// The largest local maximum in the cone, of the first feature's normals; `None` where g only falls from the cone's borders.
+    pub fn widest(&self, cone: &Cone, slack: f64) -> Option<Peak> {
+        let start = unit(self.d);
+        if self.gap(start) > 0.0 {
+            let peak = self.climb(start);
+            return cone.holds(self.lever(peak.normal), slack).then_some(peak);
         }
+        self.best_sampled(cone)
     }
-    0.5 * (low + high)
+
+    /// Brackets every local maximum between neighbouring samples of the cone and refines the best one.
+    fn best_sampled(&self, cone: &Cone) -> Option<Peak> {
+        let mut best: Option<Peak> = None;
+        let (mut low, mut slope) = (cone.first, self.slope(cone.first));
+        for _ in 0..SAMPLES {
+            let high = turned(low, cone.step);
+            let next = self.slope(high);
+            if slope >= 0.0 && next <= 0.0 {
+                let peak = self.refine(low, high);
+                if best.is_none_or(|best| peak.gap > best.gap) {
+                    best = Some(peak);
+                }
+            }
+            (low, slope) = (high, next);
+        }
+        best
+    }
+
+    /// The local maximum uphill of a direction.
+    fn climb(&self, start: Vec2) -> Peak {
+        let slope = self.slope(start);
+        let stride = if slope > 0.0 { STRIDE } else { [STRIDE[0], -STRIDE[1]] };
+        let mut from = start;
+        for _ in 0..63 {
+            let to = turned(from, stride);
+            if self.slope(to) * slope <= 0.0 {
+                return if slope > 0.0 { self.refine(from, to) } else { self.refine(to, from) };
+            }
+            from = to;
+        }
+        Peak { normal: start, gap: self.gap(start) }
+    }
+
+    /// Newton's method on g' = 0 between `low`, where g rises, and `high`, where it falls (counter-clockwise from low).
+    fn refine(&self, mut low: Vec2, mut high: Vec2) -> Peak {
+        let mut n = unit(add(low, high));
+        for _ in 0..STEPS {
+            let (slope, curvature) = self.derivatives(n);
+            let step = -slope / curvature;
+            if step.abs() < 1e-16 {
+                break;
+            }
+            if slope > 0.0 { low = n } else { high = n }
+            let newton = unit(add(n, scale(step, left(n))));
+            let inside = curvature < 0.0 && cross(low, newton) > 0.0 && cross(newton, high) > 0.0;
+            let next = if inside { newton } else { unit(add(low, high)) };
+            if next == n {
+                break;
+            }
+            n = next;
+        }
+        Peak { normal: n, gap: self.gap(n) }
+    }
+
+    fn gap(&self, n: Vec2) -> f64 {
+        self.ellipses.iter().flatten().fold(dot(n, self.d) - self.radius, |g, e| g - e.support(n))
+    }
+
+    fn slope(&self, n: Vec2) -> f64 {
+        self.derivatives(n).0
+    }
+
+    /// (g', g'') by the angle of n.
+    fn derivatives(&self, n: Vec2) -> (f64, f64) {
+        let mut g = (cross(n, self.d), -dot(n, self.d));
+        for ellipse in self.ellipses.iter().flatten() {
+            let [a, b] = ellipse.semi_axes;
+            let (c, s) = (dot(ellipse.axis, n), cross(ellipse.axis, n));
+            let h = ellipse.support(n);
+            let excess = (b - a) * (b + a);
+            let slope = excess * c * s / h;
+            g.0 -= slope;
+            g.1 -= (excess * (c * c - s * s) - slope * slope) / h;
+        }
+        g
+    }
+
+    /// From the first centre to the second feature's nearest point, were all the first one's radius given to the second.
+    fn lever(&self, n: Vec2) -> Vec2 {
+        let inward = negate(n);
+        self.ellipses.iter().flatten().fold(self.d, |d, e| add(d, add(e.point(inward), negate(e.centre))))
+    }
 }
+
+fn turned(n: Vec2, [cos, sin]: Vec2) -> Vec2 {
+    [cos * n[0] - sin * n[1], cos * n[1] + sin * n[0]]
+}
+

@@ -1,9 +1,15 @@
 //! Planar shapes: unions of discs, convex polygons and ellipses, checked once at [`Shape::new`].
 
-use crate::outline::{Features, features};
+use crate::outline::Outline;
+use crate::plane::Vec2;
+use crate::shape_error::{ShapeError, check};
+use crate::solid::Solid;
 
 /// Two boundary points nearer than this share of the shape's extent are one point; files are rounded to 1 µm.
-const TOLERANCE: f64 = 2e-5;
+pub(crate) const TOLERANCE: f64 = 2e-5;
+
+/// A part's boundary point deeper than this share of the shape's size in another part is not on the union's boundary.
+const HIDDEN: f64 = 1e-9;
 
 /// One convex part of a [`Shape`], in the body frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,69 +41,19 @@ pub enum Part {
 #[derive(Clone, Debug)]
 pub struct Shape {
     parts: Vec<Part>,
-    features: Features,
+    solids: Vec<Solid>,
+    outline: Outline,
     bounding_radius: f64,
     tolerance: f64,
-}
-
-/// Why parts do not make a shape. Parts and vertices are counted from 1.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShapeError {
-    /// No part.
-    #[error("the shape has no parts; give at least one polygon, disc or ellipse")]
-    Empty,
-    /// A number is NaN or infinite.
-    #[error("part {part} has a number that is not finite; give metres and radians as plain numbers")]
-    NotFinite {
-        /// The part.
-        part: usize,
-    },
-    /// A radius or semi-axis is not positive.
-    #[error("part {part} has a radius or semi-axis of {value} m; it must be positive")]
-    Size {
-        /// The part.
-        part: usize,
-        /// The value found.
-        value: f64,
-    },
-    /// Fewer than three vertices.
-    #[error("part {part} is a polygon of {vertices} vertices; it needs at least 3")]
-    TooFewVertices {
-        /// The part.
-        part: usize,
-        /// Vertices found.
-        vertices: usize,
-    },
-    /// Two neighbouring vertices coincide.
-    #[error("part {part}: vertex {vertex} repeats the one before it; leave it out (a polygon closes by itself)")]
-    RepeatedVertex {
-        /// The part.
-        part: usize,
-        /// The vertex.
-        vertex: usize,
-    },
-    /// Clockwise.
-    #[error("part {part} is a polygon in clockwise order; list its vertices counter-clockwise")]
-    Clockwise {
-        /// The part.
-        part: usize,
-    },
-    /// Not convex.
-    #[error("part {part} is not convex at vertex {vertex}; cut a concave outline into convex parts that share edges")]
-    NotConvex {
-        /// The part.
-        part: usize,
-        /// The vertex.
-        vertex: usize,
-    },
 }
 
 impl Shape {
     /// A shape from its parts.
     ///
+    /// Parts may share edges, wholly or in part, and may overlap; only the boundary of their union touches anything.
+    ///
     /// # Errors
-    /// [`ShapeError`], which names the part (counted from 1), the rule and what to do.
+    /// [`ShapeError`], which names the part and the vertex (counted from 1), the value found, the rule and what to do.
     ///
     /// ```
     /// # use stickslip_dynamics::{Part, Shape};
@@ -105,15 +61,13 @@ impl Shape {
     /// assert!(Shape::new(vec![clockwise]).unwrap_err().to_string().contains("counter-clockwise"));
     /// ```
     pub fn new(parts: Vec<Part>) -> Result<Self, ShapeError> {
-        if parts.is_empty() {
-            return Err(ShapeError::Empty);
-        }
-        for (index, part) in parts.iter().enumerate() {
-            check(part, index + 1)?;
-        }
+        check(&parts)?;
         let bounding_radius = parts.iter().map(Part::reach).fold(0.0, f64::max);
-        let tolerance = TOLERANCE * bounding_radius;
-        Ok(Self { features: features(&parts, tolerance), parts, bounding_radius, tolerance })
+        let tolerance = TOLERANCE * extent(&parts);
+        let mut solids: Vec<Solid> = parts.iter().map(Solid::new).collect();
+        let outline = Outline::new(&parts, &mut solids, tolerance);
+        solids.iter_mut().for_each(|solid| solid.close_seams(tolerance));
+        Ok(Self { parts, solids, outline, bounding_radius, tolerance })
     }
 
     /// The parts it was made of.
@@ -121,29 +75,41 @@ impl Shape {
         &self.parts
     }
 
-    /// Radius of the smallest disc about the frame's origin that holds the shape (m).
+    /// Radius of the smallest disc about the frame's origin that holds the shape (m); of an ellipse off the origin, a bound.
     pub fn bounding_radius(&self) -> f64 {
         self.bounding_radius
     }
 
-    /// The boundary features of the union.
-    pub(crate) fn features(&self) -> &Features {
-        &self.features
+    /// The boundary of the union.
+    #[inline(always)]
+    pub(crate) fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
+    /// The parts as solids.
+    pub(crate) fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    /// Lengths below this are rounding of the input (m).
+    #[inline(always)]
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
     /// Whether a boundary point of one part lies inside another one, and so not on the union's boundary.
-    pub(crate) fn hides(&self, point: [f64; 2]) -> bool {
-        self.parts.len() > 1 && self.parts.iter().any(|part| part.depth(point) > self.tolerance)
+    pub(crate) fn hides(&self, point: Vec2) -> bool {
+        self.solids.iter().any(|solid| solid.depth(point) > HIDDEN * self.bounding_radius)
     }
 
-    /// Whether the union holds a point.
-    pub(crate) fn contains(&self, point: [f64; 2]) -> bool {
-        self.parts.iter().any(|part| part.depth(point) > -self.tolerance)
+    /// Whether a point lies inside the union, seams included.
+    pub(crate) fn contains(&self, point: Vec2) -> bool {
+        self.solids.iter().any(|solid| solid.depth(point) > 0.0)
     }
 }
 
 impl Part {
-    /// Largest distance of its points from the frame's origin.
+    /// Largest distance of its points from the frame's origin (m).
     fn reach(&self) -> f64 {
         match self {
             Part::Polygon { vertices } => vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max),
@@ -152,63 +118,23 @@ impl Part {
         }
     }
 
-    /// How deep a point lies inside (m, about; exact in sign): negative outside.
-    fn depth(&self, point: [f64; 2]) -> f64 {
+    /// Corners of a box that holds it.
+    fn bounds(&self) -> [Vec2; 2] {
+        let about = |c: &Vec2, r: f64| [[c[0] - r, c[1] - r], [c[0] + r, c[1] + r]];
         match self {
-            Part::Polygon { vertices } => edges(vertices).map(|(a, b)| left_of(a, b, point)).fold(f64::INFINITY, f64::min),
-            Part::Disc { radius, centre } => radius - (point[0] - centre[0]).hypot(point[1] - centre[1]),
-            Part::Ellipse { semi_axes, centre, angle } => {
-                let (sin, cos) = libm::sincos(*angle);
-                let d = [point[0] - centre[0], point[1] - centre[1]];
-                let [x, y] = [(cos * d[0] + sin * d[1]) / semi_axes[0], (cos * d[1] - sin * d[0]) / semi_axes[1]];
-                (1.0 - x.hypot(y)) * semi_axes[0].min(semi_axes[1])
+            Part::Polygon { vertices } => {
+                let fold = |f: fn(f64, f64) -> f64| vertices.iter().skip(1).fold(vertices[0], |m, v| [f(m[0], v[0]), f(m[1], v[1])]);
+                [fold(f64::min), fold(f64::max)]
             }
+            Part::Disc { radius, centre } => about(centre, *radius),
+            Part::Ellipse { semi_axes, centre, .. } => about(centre, semi_axes[0].max(semi_axes[1])),
         }
     }
 }
 
-/// The directed edges of a polygon.
-pub(crate) fn edges(vertices: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
-    vertices.iter().zip(vertices.iter().cycle().skip(1)).map(|(a, b)| (*a, *b))
-}
-
-/// Distance of `point` to the left of the line from a to b.
-fn left_of(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
-    let t = [b[0] - a[0], b[1] - a[1]];
-    (t[0] * (point[1] - a[1]) - t[1] * (point[0] - a[0])) / t[0].hypot(t[1])
-}
-
-fn check(part: &Part, index: usize) -> Result<(), ShapeError> {
-    match part {
-        Part::Polygon { vertices } => check_polygon(vertices, index),
-        Part::Disc { radius, centre } => check_sizes(&[*radius], &[centre[0], centre[1]], index),
-        Part::Ellipse { semi_axes, centre, angle } => check_sizes(semi_axes, &[centre[0], centre[1], *angle], index),
-    }
-}
-
-fn check_sizes(sizes: &[f64], others: &[f64], part: usize) -> Result<(), ShapeError> {
-    if sizes.iter().chain(others).any(|x| !x.is_finite()) {
-        return Err(ShapeError::NotFinite { part });
-    }
-    sizes.iter().find(|size| **size <= 0.0).map_or(Ok(()), |&value| Err(ShapeError::Size { part, value }))
-}
-
-fn check_polygon(vertices: &[[f64; 2]], part: usize) -> Result<(), ShapeError> {
-    if vertices.as_flattened().iter().any(|x| !x.is_finite()) {
-        return Err(ShapeError::NotFinite { part });
-    }
-    if vertices.len() < 3 {
-        return Err(ShapeError::TooFewVertices { part, vertices: vertices.len() });
-    }
-    if let Some(vertex) = edges(vertices).position(|(a, b)| a == b) {
-        return Err(ShapeError::RepeatedVertex { part, vertex: (vertex + 1) % vertices.len() + 1 });
-    }
-    let area: f64 = edges(vertices).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
-    if area <= 0.0 {
-        return Err(ShapeError::Clockwise { part });
-    }
-    // convex: no vertex lies to the right of any edge (rounding to a micrometre is forgiven)
-    let extent = vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
-    let dents = |(a, b)| vertices.iter().position(|v| left_of(a, b, *v) < -TOLERANCE * extent);
-    edges(vertices).find_map(dents).map_or(Ok(()), |vertex| Err(ShapeError::NotConvex { part, vertex: vertex + 1 }))
+/// The longer side of a box about all parts (m).
+fn extent(parts: &[Part]) -> f64 {
+    let boxes = || parts.iter().map(Part::bounds);
+    let side = |k: usize| boxes().map(|b| b[1][k]).fold(f64::MIN, f64::max) - boxes().map(|b| b[0][k]).fold(f64::MAX, f64::min);
+    side(0).max(side(1))
 }

@@ -1,0 +1,66 @@
+//! Least penetration of overlapping polygons by separating axes ([`least_penetration`]).
+
+use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
+use crate::solid::{Polygon, Solid};
+
+/// A contact in the object's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Overlap {
+    /// Unit normal into the object.
+    pub normal: Vec2,
+    /// Point of the object's boundary.
+    pub touch: Vec2,
+    /// Gap (m), negative.
+    pub gap: f64,
+}
+
+/// The deepest one of the least penetrations of all pairs of polygons that overlap; `frame` is that of `theirs` seen from `mine`.
+pub(crate) fn least_penetration(mine: &[Solid], theirs: &[Solid], frame: &Frame) -> Option<Overlap> {
+    let inverse = frame.inverse();
+    let mut deepest: Option<Overlap> = None;
+    for a in mine.iter().filter_map(polygon) {
+        for b in theirs.iter().filter_map(polygon) {
+            let overlap = of_pair(a, b, frame, &inverse);
+            if overlap.is_some_and(|new| deepest.is_none_or(|old| new.gap < old.gap)) {
+                deepest = overlap;
+            }
+        }
+    }
+    deepest
+}
+
+fn polygon(solid: &Solid) -> Option<&Polygon> {
+    if let Solid::Polygon(polygon) = solid { Some(polygon) } else { None }
+}
+
+fn of_pair(a: &Polygon, b: &Polygon, frame: &Frame, inverse: &Frame) -> Option<Overlap> {
+    if length(sub(frame.point(b.centre), a.centre)) >= a.radius + b.radius {
+        return None;
+    }
+    let (normal, corner, gap) = shallowest(a, b, inverse)?;
+    let by_a = Overlap { normal: negate(normal), touch: add(frame.point(corner), scale(-gap, normal)), gap };
+    let (normal, corner, gap) = shallowest(b, a, frame)?;
+    let by_b = Overlap { normal: frame.turn(normal), touch: corner, gap };
+    Some(if by_a.gap >= by_b.gap { by_a } else { by_b })
+}
+
+/// Among the sides of `a`, the one that `b` reaches least far behind: its normal in a's frame, b's deepest corner in b's frame, and
+/// the gap. `None` where a side has all of `b` before it. Seams are no way out. `frame` is that of `a` seen from `b`.
+fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f64)> {
+    let mut best: Option<(Vec2, Vec2, f64)> = None;
+    for (side, start) in a.sides.iter().zip(&a.corners) {
+        let (normal, on_line) = (frame.turn(side.normal), frame.point(*start));
+        let mut deepest = (b.corners[0], f64::INFINITY);
+        for corner in &b.corners {
+            let height = dot(normal, sub(*corner, on_line));
+            deepest = if height < deepest.1 { (*corner, height) } else { deepest };
+        }
+        if deepest.1 >= 0.0 {
+            return None;
+        }
+        if side.exposed && best.is_none_or(|(_, _, gap)| deepest.1 > gap) {
+            best = Some((side.normal, deepest.0, deepest.1));
+        }
+    }
+    best
+}
