@@ -3,6 +3,7 @@
 mod angle;
 mod columns;
 mod contact_model;
+pub mod diagnosis;
 mod error;
 mod estimate;
 mod kalman_baseline;

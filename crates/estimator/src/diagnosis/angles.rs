@@ -1,0 +1,62 @@
+//! Angles: radians, not degrees, and not wrapped.
+
+use std::f64::consts::{PI, TAU};
+
+use stickslip_dynamics::Pose;
+
+use super::evidence::Evidence;
+use super::finding::{Finding, Subject};
+
+/// Angles beyond this are degrees (rad): nobody turns an object twice around on a table.
+const LARGEST: f64 = 2.0 * TAU;
+
+/// Noise of an angle at the object's radius, as a multiple of the position's, from which on it is in degrees.
+const NOISE_RATIO: f64 = 10.0;
+
+const RADIANS: &str = "give angles in radians: multiply by pi / 180";
+
+pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let bodies = [("object_theta", &evidence.log.object), ("pusher_theta", &evidence.log.pusher)];
+    let mut found: Vec<Finding> =
+        bodies.iter().filter_map(|(name, poses)| in_degrees(name, poses).or_else(|| wrapped(name, poses))).collect();
+    found.extend(noise_in_degrees(evidence).filter(|_| found.is_empty()));
+    if found.is_empty() {
+        let (low, high) = range(&evidence.log.object);
+        found.push(Finding::ok(Subject::Angles, format!("object_theta goes from {low:.2} to {high:.2} rad")));
+    }
+    found
+}
+
+fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
+    let (low, high) = range(poses);
+    let found = || format!("{name} goes from {low:.1} to {high:.1}: these seem to be degrees");
+    (low.abs().max(high.abs()) > LARGEST).then(|| Finding::problem(Subject::Angles, found(), RADIANS))
+}
+
+/// A jump by about a full turn.
+fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
+    let seen: Vec<f64> = poses.iter().flatten().map(|pose| pose.theta).collect();
+    let jumps = seen.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > PI).count();
+    let found = format!("{name} jumps by a full turn at {jumps} rows: it is wrapped to one turn");
+    (jumps > 0).then(|| Finding::warning(Subject::Angles, found, "write angles unwrapped, so that they go on smoothly"))
+}
+
+/// Small angles in degrees: only their noise gives them away.
+fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
+    let noise = evidence.noise?;
+    let ratio = noise.angle * evidence.size() / noise.position.max(1e-6);
+    let stated = evidence.setup.camera.map_or(0.0, |camera| camera.orientation_std);
+    let found = || {
+        let twice = "at the object's rim";
+        format!(
+            "object_theta scatters by {:.3} from row to row, {twice} {ratio:.0} times the positions' noise: it seems to be in degrees",
+            noise.angle
+        )
+    };
+    (ratio > NOISE_RATIO && noise.angle > 5.0 * stated && noise.angle > 0.02).then(|| Finding::problem(Subject::Angles, found(), RADIANS))
+}
+
+fn range(poses: &[Option<Pose>]) -> (f64, f64) {
+    let angles = || poses.iter().flatten().map(|pose| pose.theta);
+    (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max))
+}

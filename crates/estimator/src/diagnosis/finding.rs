@@ -1,0 +1,106 @@
+//! One thing that was looked at: [`Finding`].
+
+use std::fmt;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// As it should be.
+    Ok,
+    /// Estimates may be worse than they could be.
+    Warning,
+    /// Estimates will be wrong.
+    Problem,
+}
+
+/// What was looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Subject {
+    /// Units of lengths and masses.
+    Units,
+    /// Units and wrapping of angles.
+    Angles,
+    /// Nominal values within the filter's limits.
+    Limits,
+    /// Time steps.
+    Timing,
+    /// Missing object poses.
+    ObjectPoses,
+    /// The pusher off the plane.
+    PusherPoses,
+    /// Repeated camera frames.
+    RepeatedFrames,
+    /// Noise of the camera.
+    Noise,
+    /// Frames of object and pusher.
+    Frames,
+    /// Overlap at the start.
+    Overlap,
+    /// Delay of the camera behind the pusher.
+    Latency,
+    /// The gap between object and pusher while it pushes.
+    PushingGap,
+    /// One tactile sensor, counted from 1.
+    Sensor(usize),
+}
+
+/// One thing that was looked at, what was found and what to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What was looked at.
+    pub subject: Subject,
+    /// How bad it is.
+    pub severity: Severity,
+    /// What was found, with its number.
+    pub found: String,
+    /// What to do; `None` where all is well.
+    pub advice: Option<String>,
+}
+
+impl Finding {
+    /// All is well.
+    pub(super) fn ok(subject: Subject, found: impl Into<String>) -> Self {
+        Self { subject, severity: Severity::Ok, found: found.into(), advice: None }
+    }
+
+    /// Estimates may be worse than they could be.
+    pub(super) fn warning(subject: Subject, found: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self { subject, severity: Severity::Warning, found: found.into(), advice: Some(advice.into()) }
+    }
+
+    /// Estimates will be wrong.
+    pub(super) fn problem(subject: Subject, found: impl Into<String>, advice: impl Into<String>) -> Self {
+        Self { subject, severity: Severity::Problem, found: found.into(), advice: Some(advice.into()) }
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ok => "ok",
+            Self::Warning => "warning",
+            Self::Problem => "problem",
+        })
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Units => "units",
+            Self::Angles => "angles",
+            Self::Limits => "limits",
+            Self::Timing => "timing",
+            Self::ObjectPoses => "object poses",
+            Self::PusherPoses => "pusher poses",
+            Self::RepeatedFrames => "repeated frames",
+            Self::Noise => "noise",
+            Self::Frames => "frames",
+            Self::Overlap => "overlap",
+            Self::Latency => "latency",
+            Self::PushingGap => "pushing gap",
+            Self::Sensor(k) => return write!(f, "sensor {k}"),
+        })
+    }
+}

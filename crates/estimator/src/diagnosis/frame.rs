@@ -1,0 +1,82 @@
+//! Frames: whether object and pusher are told in the same one.
+//!
+//! What moves the object is the pusher, so while the object moves their gap is near zero. Where it is not, the same is tried with
+//! axes mirrored, swapped or turned; a variant that brings the gap to zero names the slip.
+
+use std::f64::consts::FRAC_PI_2;
+
+use stickslip_dynamics::Pose;
+
+use super::evidence::{Evidence, median, mm, quantile};
+use super::finding::{Finding, Subject};
+
+/// Gaps above this share of the object's radius are no contact.
+const APART: f64 = 0.35;
+
+/// A variant must be this much better to be named.
+const BETTER: f64 = 3.0;
+
+/// Fewest rows that tell.
+const FEWEST: usize = 10;
+
+type Change = fn(Pose, Pose) -> (Pose, Pose);
+
+/// A slip and how it is undone: from the poses of object and pusher as they are in the log.
+const SLIPS: [(&str, Change); 9] = [
+    ("the object's y axis is mirrored (y and theta change sign)", |o, p| (mirrored(o), p)),
+    ("the pusher's y axis is mirrored (y and theta change sign)", |o, p| (o, mirrored(p))),
+    ("both y axes are mirrored against the outline (y and theta change sign)", |o, p| (mirrored(o), mirrored(p))),
+    ("the object's angle is clockwise (theta changes sign)", |o, p| (Pose::new(o.x, o.y, -o.theta), p)),
+    ("the object's angle is off by a quarter turn (+90 degrees)", |o, p| (Pose::new(o.x, o.y, o.theta + FRAC_PI_2), p)),
+    ("the object's angle is off by a quarter turn (-90 degrees)", |o, p| (Pose::new(o.x, o.y, o.theta - FRAC_PI_2), p)),
+    ("the object's angle is off by half a turn", |o, p| (Pose::new(o.x, o.y, o.theta + 2.0 * FRAC_PI_2), p)),
+    ("the object's x and y are swapped", |o, p| (Pose::new(o.y, o.x, o.theta), p)),
+    ("object and pusher are swapped", |o, p| (p, o)),
+];
+
+fn mirrored(pose: Pose) -> Pose {
+    Pose::new(pose.x, -pose.y, -pose.theta)
+}
+
+pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let gaps = gaps(evidence, |object, pusher| (object, pusher));
+    if gaps.len() < FEWEST {
+        return vec![Finding::ok(Subject::Frames, "the object hardly moves while the pusher is there: nothing to tell")];
+    }
+    let (off, nearest) = (distance(&gaps), median(gaps.clone()));
+    if off < APART * evidence.size() {
+        return vec![Finding::ok(
+            Subject::Frames,
+            format!("the pusher is there whenever the object moves (half the time within {})", mm(off)),
+        )];
+    }
+    let found =
+        format!("while the object moves the pusher's surface is {} from its own (median): they are not in the same frame", mm(nearest));
+    let advice = slip(evidence, off)
+        .unwrap_or("give object and pusher poses in the same world frame, x and y right-handed, angles counter-clockwise");
+    vec![Finding::problem(Subject::Frames, found, advice)]
+}
+
+/// The slip that explains the gap best, if one does.
+fn slip(evidence: &Evidence<'_>, off: f64) -> Option<&'static str> {
+    let tried = SLIPS.iter().map(|(name, change)| (*name, distance(&gaps(evidence, change))));
+    let (name, best) = tried.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (best * BETTER < off && best < APART * evidence.size()).then_some(name)
+}
+
+/// How far gaps are from zero, for most rows (m).
+fn distance(gaps: &[f64]) -> f64 {
+    let far = quantile(gaps.iter().map(|gap| gap.abs()).collect(), 0.75);
+    if far.is_nan() { f64::INFINITY } else { far }
+}
+
+/// Gaps (m) while the object moves, with the poses changed.
+fn gaps(evidence: &Evidence<'_>, change: impl Fn(Pose, Pose) -> (Pose, Pose)) -> Vec<f64> {
+    let rows = (0..evidence.log.len()).filter(|&row| evidence.moving[row]);
+    let gap = |row: usize| {
+        let pusher = evidence.pusher_at(evidence.log.time[row] - evidence.latency())?;
+        let (object, pusher) = change(evidence.log.object[row]?, pusher);
+        evidence.gap_to(object, &evidence.setup.scene.pusher.shape, pusher)
+    };
+    rows.filter_map(gap).collect()
+}

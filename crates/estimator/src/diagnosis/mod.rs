@@ -1,0 +1,62 @@
+//! What is wrong with a scene and a log, told from the data alone: [`diagnose`].
+//!
+//! Each finding measures one thing (a gap, a delay, a share of rows), compares it with what the scene says or with what can be
+//! on a table top, and tells what to do. Nothing is repaired. Findings that need the geometry are left out where units or angles
+//! are wrong: they would only repeat it.
+
+mod angles;
+mod evidence;
+mod finding;
+mod frame;
+mod latency;
+mod limits;
+mod lost_poses;
+mod noise;
+mod overlap;
+mod pushing;
+mod repeats;
+mod sensors;
+mod timing;
+mod units;
+
+pub use finding::{Finding, Severity, Subject};
+
+use crate::{Log, Setup};
+use evidence::Evidence;
+
+/// Checks a log against its scene.
+///
+/// The findings come in a fixed order; at least one for every subject that the data can speak of.
+///
+/// ```
+/// # use stickslip::diagnosis::{diagnose, Severity};
+/// # use stickslip::dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape};
+/// # use stickslip::{Log, Setup};
+/// # let disc = |radius| Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]);
+/// # let (object, finger) = (disc(0.03)?, disc(0.005)?);
+/// # let nominal = Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 };
+/// # let object = Object { mass: 0.5, inertia: 2e-4, shape: object };
+/// # let pusher = Pusher { shape: finger, stall_force: None };
+/// # let scene = Scene { gravity: 9.81, object, feet: Feet::Tripod { angle: 0.0 }, pusher, fixels: vec![], nominal };
+/// # let setup = Setup { scene, camera: None, tactile: Default::default(), filter: Default::default() };
+/// let in_millimetres = Log {
+///     time: vec![0.0, 0.1],
+///     object: vec![Some(Pose::new(40.0, 0.0, 0.0)); 2],
+///     pusher: vec![Some(Pose::new(0.0, 0.0, 0.0)), Some(Pose::new(3.0, 0.0, 0.0))],
+///     ..Log::default()
+/// };
+/// let findings = diagnose(&setup, &in_millimetres);
+/// assert!(findings.iter().any(|finding| finding.severity == Severity::Problem && finding.found.contains("millimetres")));
+/// # Ok::<(), stickslip::dynamics::ShapeError>(())
+/// ```
+pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
+    let evidence = Evidence::new(setup, log);
+    let plain = [units::check, angles::check, limits::check, timing::check, lost_poses::check, repeats::check, noise::check];
+    let geometric = [frame::check, overlap::check, latency::check, pushing::check, sensors::check];
+    let mut findings: Vec<Finding> = plain.iter().flat_map(|check| check(&evidence)).collect();
+    let misread = |finding: &Finding| finding.severity == Severity::Problem && matches!(finding.subject, Subject::Units | Subject::Angles);
+    if !findings.iter().any(misread) {
+        findings.extend(geometric.iter().flat_map(|check| check(&evidence)));
+    }
+    findings
+}
