@@ -1,2 +1,29 @@
-//! stickslip
-fn main() {}
+//! The program `stickslip`: arguments, files, progress and exit codes around the library of the same name.
+
+mod args;
+mod check;
+mod compare;
+mod contest;
+mod experiment;
+mod failure;
+mod filter;
+mod parameters;
+mod progress;
+mod quantile;
+mod table;
+mod verdict;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::args::{Command, Program};
+
+fn main() -> ExitCode {
+    let result = match Program::parse().command {
+        Command::Filter(args) => filter::filter(&args),
+        Command::Compare(args) => compare::compare(&args),
+        Command::Check(args) => check::check(&args),
+    };
+    result.unwrap_or_else(|error| failure::tell(&error)).exit_code()
+}

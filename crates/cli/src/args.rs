@@ -1,0 +1,248 @@
+//! The command line: [`Program`].
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
+
+/// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
+#[derive(Debug, Parser)]
+#[command(name = "stickslip", version, max_term_width = 120)]
+pub struct Program {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Estimate the object's pose and the friction over one recorded experiment
+    Filter(FilterArgs),
+    /// Run every method on experiment folders and compare their errors
+    Compare(CompareArgs),
+    /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
+    Check(CheckArgs),
+}
+
+/// Arguments of `stickslip filter`.
+#[derive(Debug, Args)]
+pub struct FilterArgs {
+    /// The recorded experiment (log.csv)
+    pub log: PathBuf,
+    /// What is known before the experiment (scene.toml)
+    #[arg(long)]
+    pub scene: PathBuf,
+    /// How to estimate
+    #[arg(long, value_enum, default_value_t = MethodName::Particle)]
+    pub method: MethodName,
+    /// Rules of the particle filter
+    #[arg(long, value_enum, default_value_t = Mode::Paper)]
+    pub mode: Mode,
+    /// Ignore the tactile readings
+    #[arg(long)]
+    pub no_tactile: bool,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Split every step into N substeps, instead of by its length
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub substeps: Option<u32>,
+    /// Score against this motion, instead of truth.csv beside the log or the log's own poses
+    #[arg(long, value_name = "CSV")]
+    pub truth: Option<PathBuf>,
+    /// Weight of an angle in the scores, as a radius [default: the radius of gyration]
+    #[arg(long, value_name = "M", value_parser = positive)]
+    pub virtual_radius: Option<f64>,
+    /// Write estimate.csv into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Options shared with `compare`
+    #[command(flatten)]
+    pub shared: SharedArgs,
+}
+
+/// Arguments of `stickslip compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Experiment folders (scene.toml, log.csv and what is known of the truth), or folders of such folders
+    #[arg(required = true, value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+    /// Run the particle filter with the seeds 0 to K - 1 and take the median of each score
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub seeds: u64,
+    /// Name of the scene file in each folder
+    #[arg(long, value_name = "FILE", default_value = "scene.toml")]
+    pub scene_name: String,
+    /// Options shared with `filter`
+    #[command(flatten)]
+    pub shared: SharedArgs,
+}
+
+/// Arguments of `stickslip check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// What is known before the experiment (scene.toml)
+    pub scene: PathBuf,
+    /// The recorded experiment (log.csv)
+    pub log: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of every command that runs methods.
+#[derive(Debug, Args)]
+pub struct SharedArgs {
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
+    pub particles: usize,
+    /// Hide the camera's object poses of the rows FROM to TO (excluded; to the end without TO) and still score on them
+    #[arg(long, value_name = "FROM[:TO]", conflicts_with = "occlude_middle")]
+    pub occlude: Option<Rows>,
+    /// Hide the camera's object poses for SECONDS about the middle of the log
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub occlude_middle: Option<f64>,
+    /// Track the pusher from the rows up to each one only, as live
+    #[arg(long)]
+    pub causal: bool,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How to estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Particle filter over contact dynamics
+    Particle,
+    /// Constant-velocity Kalman filter that knows nothing of contact
+    Kalman,
+    /// Simulation with the nominal friction, blind after the first pose
+    Nominal,
+}
+
+/// Rules of the particle filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Mode {
+    /// As published
+    Paper,
+    /// Proposals that meet the contacts (not there yet)
+    Contact,
+}
+
+/// A range of log rows, `FROM[:TO]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rows {
+    /// First row.
+    pub from: usize,
+    /// First row after them; `None`: to the end.
+    pub to: Option<usize>,
+}
+
+impl FromStr for Rows {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let row = |part: &str| part.parse::<usize>().map_err(|_| format!("`{part}` is not a row number from 0 up"));
+        let (from, to) = match text.split_once(':') {
+            Some((from, to)) => (row(from)?, Some(row(to)?)),
+            None => (row(text)?, None),
+        };
+        if to.is_some_and(|to| to <= from) { Err("TO must come after FROM".to_owned()) } else { Ok(Self { from, to }) }
+    }
+}
+
+impl SharedArgs {
+    /// What the options hide.
+    pub fn occlusion(&self) -> Occlusion {
+        match (self.occlude, self.occlude_middle) {
+            (Some(rows), _) => Occlusion::Rows { from: rows.from, to: rows.to },
+            (None, Some(seconds)) => Occlusion::Middle { seconds },
+            (None, None) => Occlusion::None,
+        }
+    }
+
+    /// How the pusher is tracked.
+    pub fn tracking(&self) -> Tracking {
+        if self.causal { Tracking::Causal } else { Tracking::Smoothed }
+    }
+
+    /// Threads with the requested number of workers.
+    pub fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
+        let threads = self.threads.map_or(0, usize::from);
+        Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?)
+    }
+}
+
+impl FilterArgs {
+    /// Options of the run.
+    pub fn run_options(&self) -> RunOptions {
+        RunOptions {
+            method: self.method.into(),
+            particles: self.shared.particles,
+            seed: self.seed,
+            tactile: if self.no_tactile { TactileUse::Ignored } else { TactileUse::Used },
+            tracking: self.shared.tracking(),
+            substeps: self.substeps,
+            occlusion: self.shared.occlusion(),
+        }
+    }
+}
+
+impl MethodName {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Particle => "particle filter",
+            Self::Kalman => "Kalman filter",
+            Self::Nominal => "nominal simulation",
+        }
+    }
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Particle => Self::Particle,
+            MethodName::Kalman => Self::Kalman,
+            MethodName::Nominal => Self::Nominal,
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be positive".to_owned()) }
+}
+
+fn particles(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("must be a whole number from 1 up".to_owned()),
+        Ok(count) => Ok(count),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_parse_from_and_to() {
+        assert_eq!("3".parse(), Ok(Rows { from: 3, to: None }));
+        assert_eq!("3:7".parse(), Ok(Rows { from: 3, to: Some(7) }));
+        for bad in ["", "x", "7:3", "3:3", "3:", "-1"] {
+            assert!(bad.parse::<Rows>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn command_line_is_consistent() {
+        use clap::CommandFactory;
+        Program::command().debug_assert();
+    }
+}

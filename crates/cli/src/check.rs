@@ -1,0 +1,70 @@
+//! `stickslip check`: what is wrong with a scene and a log.
+
+use anyhow::Result;
+use serde::Serialize;
+use stickslip::diagnosis::{Finding, Severity, diagnose};
+
+use crate::args::CheckArgs;
+use crate::experiment::{read_log_file, read_scene_file};
+use crate::verdict::Verdict;
+
+/// A finding as JSON has it.
+#[derive(Debug, Serialize)]
+struct JsonFinding {
+    subject: String,
+    severity: String,
+    found: String,
+    advice: Option<String>,
+}
+
+/// All findings with their counts.
+#[derive(Debug, Serialize)]
+struct Report {
+    problems: usize,
+    warnings: usize,
+    findings: Vec<JsonFinding>,
+}
+
+/// Runs the command.
+pub fn check(args: &CheckArgs) -> Result<Verdict> {
+    let setup = read_scene_file(&args.scene)?;
+    let log = read_log_file(&args.log)?;
+    let findings = diagnose(&setup, &log);
+    let report = Report::new(&findings);
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        report.print();
+    }
+    Ok(if report.problems == 0 { Verdict::Done } else { Verdict::Failed })
+}
+
+impl Report {
+    fn new(findings: &[Finding]) -> Self {
+        let count = |severity: Severity| findings.iter().filter(|finding| finding.severity == severity).count();
+        let (problems, warnings) = (count(Severity::Problem), count(Severity::Warning));
+        Self { problems, warnings, findings: findings.iter().map(JsonFinding::new).collect() }
+    }
+
+    fn print(&self) {
+        for finding in &self.findings {
+            println!("{:<8} {:<16} {}", finding.severity, finding.subject, finding.found);
+            if let Some(advice) = &finding.advice {
+                println!("{:<8} {:<16} help: {advice}", "", "");
+            }
+        }
+        println!();
+        println!("{} problems, {} warnings", self.problems, self.warnings);
+    }
+}
+
+impl JsonFinding {
+    fn new(finding: &Finding) -> Self {
+        Self {
+            subject: finding.subject.to_string(),
+            severity: finding.severity.to_string(),
+            found: finding.found.clone(),
+            advice: finding.advice.clone(),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! `stickslip filter`: one method over one log, its scores and its estimates.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use clap::CommandFactory;
+use serde::Serialize;
+use stickslip::dynamics::Pose;
+use stickslip::{Estimate, Occlusion, Run, Scores, run, score};
+use stickslip_formats::write_estimate;
+
+use crate::args::{FilterArgs, MethodName, Mode, Program};
+use crate::experiment::Experiment;
+use crate::failure::hinted;
+use crate::parameters::Parameter;
+use crate::progress::{Work, bar};
+use crate::table::{Table, number};
+use crate::verdict::Verdict;
+
+/// Particle steps above which a person would wait.
+const LONG: usize = 200_000;
+
+/// What is told of a run.
+#[derive(Debug, Serialize)]
+struct Summary {
+    wmse_mm: Option<f64>,
+    wmse_occluded_mm: Option<f64>,
+    wmse_moving_mm: Option<f64>,
+    final_error_mm: Option<f64>,
+    final_error_deg: Option<f64>,
+    frames: usize,
+    unsolved: u64,
+    collapses: u32,
+    real_time_factor: f64,
+    friction: BTreeMap<&'static str, Parameter>,
+}
+
+/// Runs the command.
+pub fn filter(args: &FilterArgs) -> Result<Verdict> {
+    if args.mode == Mode::Contact {
+        let text = "--mode contact does not exist yet; --mode paper is the only one";
+        return Err(Program::command().error(clap::error::ErrorKind::InvalidValue, text).into());
+    }
+    let experiment = Experiment::read(&args.scene, &args.log, args.truth.as_deref())?;
+    check_occlusion(args.shared.occlusion(), &experiment)?;
+    let (run, seconds) = timed_run(args, &experiment).with_context(|| args.log.display().to_string())?;
+    let scores = scores(args, &experiment, &run.estimate);
+    let written = args.out.as_deref().map(|folder| write(folder, &run.estimate)).transpose()?;
+    let summary = Summary::new(&experiment, &run, &scores, seconds);
+    if args.shared.json {
+        println!("{}", serde_json::to_string_pretty(&summary)?);
+    } else {
+        print_tables(args, &experiment, &run.estimate, &summary);
+    }
+    if let Some(path) = written {
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(Verdict::Done)
+}
+
+/// An occlusion that hides no pose is a slip of the pen.
+fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
+    let hides = occlusion.hidden(&experiment.log).iter().zip(&experiment.log.object).any(|(hidden, pose)| *hidden && pose.is_some());
+    if occlusion == Occlusion::None || hides {
+        return Ok(());
+    }
+    let rows = experiment.log.len();
+    Err(hinted(
+        format!("the occlusion hides no object pose of the log's {rows} rows"),
+        format!("rows go from 0 to {}; choose a range among them", rows - 1),
+    ))
+}
+
+/// The run and the wall time of its loop (s).
+fn timed_run(args: &FilterArgs, experiment: &Experiment) -> Result<(Run, f64)> {
+    let options = args.run_options();
+    let long = args.method == MethodName::Particle && experiment.log.len() * options.particles > LONG;
+    let progress = bar(experiment.log.len(), "frames", if long { Work::Long } else { Work::Short });
+    let pool = args.shared.pool()?;
+    let start = Instant::now();
+    let result = pool.install(|| run(&experiment.setup, &experiment.log, &options, &mut |row| progress.set_position(row as u64)));
+    let seconds = start.elapsed().as_secs_f64();
+    progress.finish_and_clear();
+    Ok((result?, seconds))
+}
+
+fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {
+    let hidden = args.shared.occlusion().hidden(&experiment.log);
+    score(estimate, &experiment.reference(), &hidden, experiment.virtual_radius(args.virtual_radius))
+}
+
+/// Writes estimate.csv into `folder`; other files there stay as they are.
+fn write(folder: &Path, estimate: &Estimate) -> Result<PathBuf> {
+    let path = folder.join("estimate.csv");
+    let write = || -> std::io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let mut file = BufWriter::new(File::create(&path)?);
+        write_estimate(&mut file, estimate)?;
+        file.flush()
+    };
+    write().map_err(|error| {
+        hinted(format!("{}: cannot be written: {error}", path.display()), "give a folder that can be written to with --out")
+    })?;
+    Ok(path)
+}
+
+impl Summary {
+    fn new(experiment: &Experiment, run: &Run, scores: &Scores, seconds: f64) -> Self {
+        Self {
+            wmse_mm: scores.wmse_mm,
+            wmse_occluded_mm: scores.wmse_occluded_mm,
+            wmse_moving_mm: scores.wmse_moving_mm,
+            final_error_mm: scores.final_error_mm,
+            final_error_deg: scores.final_error_deg,
+            frames: experiment.log.len(),
+            unsolved: run.unsolved,
+            collapses: run.collapses,
+            real_time_factor: experiment.duration() / seconds,
+            friction: Parameter::at_end(&run.estimate).into_iter().map(|parameter| (parameter.name, parameter)).collect(),
+        }
+    }
+}
+
+fn print_tables(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate, summary: &Summary) {
+    println!("{}, {} against {}", args.log.display(), args.method.name(), experiment.reference_name());
+    println!();
+    print!("{}", score_table(summary));
+    let parameters = Parameter::at_end(estimate);
+    if !parameters.is_empty() {
+        println!();
+        print!("{}", friction_table(experiment, &parameters));
+    }
+    if let Some(line) = final_pose_line(experiment, estimate) {
+        println!();
+        println!("{line}");
+    }
+}
+
+fn score_table(summary: &Summary) -> Table {
+    let mut table = Table::new(["score", "value", "unit"]);
+    let mut row = |name: &str, value: String, unit: &str| table.push([name.to_owned(), value, unit.to_owned()]);
+    row("WMSE", number(summary.wmse_mm, 3), "mm");
+    row("WMSE, hidden rows", number(summary.wmse_occluded_mm, 3), "mm");
+    row("WMSE, moving", number(summary.wmse_moving_mm, 3), "mm");
+    row("final position error", number(summary.final_error_mm, 3), "mm");
+    row("final angle error", number(summary.final_error_deg, 3), "deg");
+    row("frames", summary.frames.to_string(), "");
+    row("unsolved particle steps", summary.unsolved.to_string(), "");
+    row("collapses", summary.collapses.to_string(), "");
+    row("real-time factor", format!("{:.1}", summary.real_time_factor), "");
+    table
+}
+
+fn friction_table(experiment: &Experiment, parameters: &[Parameter]) -> Table {
+    let mut table = Table::new(["friction", "estimate", "nominal"]);
+    for parameter in parameters {
+        let nominal = parameter.shown_value(parameter.nominal(&experiment.setup.scene.nominal));
+        table.push([parameter.name.to_owned(), parameter.shown(), nominal]);
+    }
+    table
+}
+
+/// The last estimate beside the measured final pose, where only that is known of the truth.
+fn final_pose_line(experiment: &Experiment, estimate: &Estimate) -> Option<String> {
+    let measured = experiment.facts.final_pose.filter(|_| experiment.truth.is_none())?;
+    let predicted = estimate.rows.iter().rev().find_map(|row| row.pose)?;
+    let shown = |pose: &Pose| format!("({:.1} mm, {:.1} mm, {:.2} deg)", 1e3 * pose.x, 1e3 * pose.y, pose.theta.to_degrees());
+    Some(format!("final pose: estimated {}, measured {}", shown(&predicted), shown(&measured)))
+}

@@ -1,0 +1,26 @@
+//! Progress on standard error, only where that is a terminal.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// A bar of `length` steps, counted in `unit`; `Work::Short` shows nothing.
+pub fn bar(length: usize, unit: &str, work: Work) -> ProgressBar {
+    let target = match work {
+        Work::Short => ProgressDrawTarget::hidden(),
+        Work::Long => ProgressDrawTarget::stderr(),
+    };
+    let style = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} left"));
+    let bar = ProgressBar::with_draw_target(Some(length as u64), target);
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Whether a person would wait for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// A second or so.
+    Short,
+    /// Longer.
+    Long,
+}
