@@ -16,7 +16,7 @@ pub struct ContactStep {
 }
 
 /// Linear model of one foot: dp = r − K ds.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct FootStep {
     /// Increment at ds = 0.
     pub r: [f64; 2],
@@ -25,7 +25,7 @@ pub struct FootStep {
 }
 
 /// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct StallStep {
     /// Coefficient of the slack.
     pub slack: f64,
@@ -36,7 +36,7 @@ pub struct StallStep {
 }
 
 /// All rows of a problem, linearised at a guess.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Linearised {
     /// One per contact.
     pub contacts: Vec<ContactStep>,
@@ -47,11 +47,11 @@ pub struct Linearised {
 }
 
 impl Linearised {
-    /// The full Newton step from `guess`; `None` where the condensed system is singular.
-    pub fn step(&self, rows: &Rows, guess: &Guess) -> Option<Guess> {
+    /// Writes the full Newton step from `guess` to `full`; false where the condensed system is singular.
+    pub fn step(&self, rows: &Rows, guess: &Guess, full: &mut Guess) -> bool {
         let (matrix, rhs) = self.condense(rows, guess);
-        let dv = solve_dense(matrix, rhs)?;
-        let mut full = guess.clone();
+        let Some(dv) = solve_dense(matrix, rhs, 0.0) else { return false };
+        full.clone_from(guess);
         for ((p, c), step) in full.contacts.iter_mut().zip(&rows.contacts).zip(&self.contacts) {
             let (dgamma, ds) = (dot(&c.n, &dv), dot(&c.t, &dv));
             p[0] += step.r[0] - step.nn * dgamma;
@@ -64,7 +64,7 @@ impl Linearised {
             }
         }
         full.v = plus(&guess.v, 1.0, &dv);
-        full.v.iter().all(|x| x.is_finite()).then_some(full)
+        full.v.iter().all(|x| x.is_finite())
     }
 
     /// (I + Σ WᵀKW) d(v, y) = rhs, with the stall pair as the fourth row.

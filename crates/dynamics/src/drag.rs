@@ -1,7 +1,7 @@
 //! The object on its feet alone: v = T⁻¹(load), the velocity that a load leads to when no contact acts.
 
 use crate::Lanes;
-use crate::homotopy::follow;
+use crate::homotopy::Homotopy;
 use crate::ncp::{FootRow, Impulses, Ncp};
 use crate::newton::{NewtonWorkspace, newton};
 use crate::rows::{Guess, Rows, Vector};
@@ -17,7 +17,11 @@ pub fn drag(rows: &Rows, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
     let mut work = NewtonWorkspace::default();
     let (residual, _) = newton(&ncp, &mut p, &mut work, 1e-11, 12);
     if residual.0[0] > 1e-11 {
-        follow(&Rows::new(&ncp), Guess::default()).store(&mut p);
+        let mut alone = Rows::default();
+        alone.assign(&ncp);
+        let mut start = Guess::default();
+        alone.cold_start(&mut start);
+        Homotopy::default().follow(&alone, &start, 1.0).store(&mut p);
         newton(&ncp, &mut p, &mut work, 1e-11, 12);
     }
     (p.v.map(|x| x.0[0]), p.feet.map(|f| f.map(|x| x.0[0])))

@@ -12,10 +12,10 @@ use crate::drag::drag;
 use crate::rows::{Guess, Rows, Vector, dot, norm, plus, solve_dense};
 
 /// How the search ended.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// `accept` took this one.
-    Solved(Guess),
+    /// `accept` took a candidate.
+    Solved,
     /// Every mode was excluded: the problem has no solution.
     Infeasible,
     /// Some piece of some mode could be neither excluded nor accepted.
@@ -25,8 +25,11 @@ pub enum Verdict {
 /// Violations below this [m/s, relative to the speed scale] do not exclude a mode.
 const SLACK: f64 = 1e-9;
 
-/// Pieces of a search that may be looked at before it gives up.
-const PIECES: usize = 4_000;
+/// Pivots below this share of the largest entry make vectors dependent.
+const DEPENDENT: f64 = 1e-13;
+
+/// Pieces of a line or curve that may be looked at before it counts as unclear: in a first and a second round.
+const PIECES: [usize; 2] = [2_000, 1_000_000];
 
 /// Candidates of one line or curve that are polished; its pieces differ little, so that more would not help.
 const ATTEMPTS: u32 = 6;
@@ -49,25 +52,24 @@ struct Equation {
 /// What one subset of generators has to say.
 enum Finding {
     Excluded,
-    Solved(Guess),
+    Solved,
     Unclear,
 }
 
-/// Searches all modes; `accept` polishes and certifies a candidate.
-pub fn search(rows: &Rows, accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Verdict {
-    let search = Search::new(rows);
-    let mut clear = true;
-    for size in 1..=4 {
-        for subset in subsets(search.generators.len(), size) {
-            let chosen: Vec<Generator> = subset.iter().map(|i| search.generators[*i]).collect();
-            match search.examine(&chosen, accept) {
-                Finding::Solved(guess) => return Verdict::Solved(guess),
-                Finding::Unclear => clear = false,
-                Finding::Excluded => {}
-            }
+fn offered(accepted: bool) -> Finding {
+    if accepted { Finding::Solved } else { Finding::Unclear }
+}
+
+/// Searches all modes, and those again with more patience where something was unclear; see [`Search::run`].
+pub fn search(rows: &Rows, accept: &mut dyn FnMut(&Guess) -> bool) -> Verdict {
+    let mut verdict = Verdict::Unresolved;
+    for pieces in PIECES {
+        verdict = Search::new(rows, pieces).run(accept);
+        if verdict != Verdict::Unresolved {
+            break;
         }
     }
-    if clear { Verdict::Infeasible } else { Verdict::Unresolved }
+    verdict
 }
 
 /// All index sets of `size` out of `n`, in lexical order.
@@ -86,10 +88,11 @@ struct Search {
     generators: Vec<Generator>,
     rigid: bool,
     slack: f64,
+    pieces: usize,
 }
 
 impl Search {
-    fn new(rows: &Rows) -> Self {
+    fn new(rows: &Rows, pieces: usize) -> Self {
         let rigid = !rows.stall.is_finite();
         let mut rows = rows.clone();
         if rigid {
@@ -106,10 +109,26 @@ impl Search {
             generators.extend(signs.iter().map(|&sign| Generator { contact: Some(i), sign, g: plus(&c.n, sign * c.mu, &c.t) }));
         }
         let slack = SLACK * rows.speed_scale().max(1.0);
-        Self { rows, generators, rigid, slack }
+        Self { rows, generators, rigid, slack, pieces }
     }
 
-    fn examine(&self, chosen: &[Generator], accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
+    /// Goes through all subsets of generators; `accept` polishes and certifies a candidate.
+    fn run(&self, accept: &mut dyn FnMut(&Guess) -> bool) -> Verdict {
+        let mut clear = true;
+        for size in 1..=4 {
+            for subset in subsets(self.generators.len(), size) {
+                let chosen: Vec<Generator> = subset.iter().map(|i| self.generators[*i]).collect();
+                match self.examine(&chosen, accept) {
+                    Finding::Solved => return Verdict::Solved,
+                    Finding::Unclear => clear = false,
+                    Finding::Excluded => {}
+                }
+            }
+        }
+        if clear { Verdict::Infeasible } else { Verdict::Unresolved }
+    }
+
+    fn examine(&self, chosen: &[Generator], accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         if self.rigid && chosen[0].contact.is_some() {
             return Finding::Excluded;
         }
@@ -171,7 +190,7 @@ impl Search {
     }
 
     /// One generator: only the stall pair, or a single cone edge that carries the whole stall force.
-    fn single(&self, generator: &Generator, accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
+    fn single(&self, generator: &Generator, accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         let alpha = if generator.contact.is_none() || self.rows.stall == 0.0 { 0.0 } else { self.rows.stall / generator.g[3] };
         if alpha < 0.0 || !alpha.is_finite() {
             return Finding::Excluded;
@@ -187,14 +206,14 @@ impl Search {
             return Finding::Excluded;
         }
         let guess = Guess { feet, ..self.candidate(&[*generator], &[alpha], v) };
-        accept(&guess).map_or(Finding::Unclear, Finding::Solved)
+        offered(accept(&guess))
     }
 
     /// Four generators: V is a point.
-    fn point(&self, chosen: [Generator; 4], accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
+    fn point(&self, chosen: [Generator; 4], accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         let Some(dual) = dual_basis(&chosen.map(|c| c.g)) else { return Finding::Excluded };
         let equations = self.equations(&chosen);
-        let Some(v) = solve_dense(equations.map(|e| e.row), equations.map(|e| e.value)) else {
+        let Some(v) = solve_dense(equations.map(|e| e.row), equations.map(|e| e.value), DEPENDENT) else {
             return self.degenerate(&chosen, accept);
         };
         let inequalities = self.inequalities(&chosen);
@@ -206,22 +225,22 @@ impl Search {
             return Finding::Excluded;
         }
         let alpha = ranges.map(|r| 0.5 * (r.0 + r.1));
-        accept(&self.candidate(&chosen, &alpha, v)).map_or(Finding::Unclear, Finding::Solved)
+        offered(accept(&self.candidate(&chosen, &alpha, v)))
     }
 
     /// Dependent rows: excluded where they contradict each other, else unclear.
-    fn degenerate<const N: usize>(&self, chosen: &[Generator; N], accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
+    fn degenerate<const N: usize>(&self, chosen: &[Generator; N], accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         let equations = self.equations(chosen);
         let v = least_squares(&equations);
         let miss = equations.iter().fold(0.0f64, |worst, e| worst.max((dot(&e.row, &v) - e.value).abs()));
         if miss > 10.0 * self.slack {
             return Finding::Excluded;
         }
-        accept(&self.candidate(chosen, &[0.0; N], v)).map_or(Finding::Unclear, Finding::Solved)
+        offered(accept(&self.candidate(chosen, &[0.0; N], v)))
     }
 
     /// Three generators: V on a line V0 + τ d.
-    fn line(&self, chosen: [Generator; 3], accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
+    fn line(&self, chosen: [Generator; 3], accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         let equations = self.equations(&chosen);
         let direction = null_vector(&equations.map(|e| e.row));
         let normal = null_vector(&chosen.map(|c| c.g));
@@ -233,7 +252,7 @@ impl Search {
         let Some((low, high)) = self.line_interval(&origin, &d, &m, &inequalities) else { return Finding::Excluded };
         let Some(dual) = dual_basis(&[chosen[0].g, chosen[1].g, chosen[2].g, m]) else { return Finding::Excluded };
 
-        bisect(low, high, &mut |low, high| {
+        self.bisect((low, high), &mut |low, high| {
             let (a, b) = (plus(&origin, low, &d), plus(&origin, high, &d));
             let ranges = dual.map(|w| self.functional_range(&w, &a, &b));
             let balanced = ranges[3].0 <= self.slack && ranges[3].1 >= -self.slack;
@@ -280,7 +299,7 @@ impl Search {
     }
 
     /// Two generators: α_a a + α_b b with the fourth balance fixing one of them; v(λ) = T⁻¹ is 1-Lipschitz in its load.
-    fn curve(&self, chosen: [Generator; 2], accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
+    fn curve(&self, chosen: [Generator; 2], accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         let swap = chosen[0].g[3].abs() > chosen[1].g[3].abs();
         let (free, tied) = if swap { (chosen[1], chosen[0]) } else { (chosen[0], chosen[1]) };
         if tied.g[3] == 0.0 {
@@ -311,7 +330,7 @@ impl Search {
         }
         let inequalities = self.inequalities(&chosen);
         let y_gain = norm(&first_three(&gives_y.row)) / gives_y.row[3].abs();
-        bisect(interval.0, interval.1.min(1e6), &mut |low, high| {
+        self.bisect((interval.0, interval.1.min(1e6)), &mut |low, high| {
             let middle = 0.5 * (low + high);
             let reach = 0.5 * (high - low) * norm(&load);
             let (v, feet) = drag(&self.rows, &plus(&load0, middle, &load));
@@ -327,42 +346,42 @@ impl Search {
             Piece::Candidate(Guess { feet, ..self.candidate(&chosen, &alpha, v) })
         }, accept)
     }
+
+    /// Halves the whole interval until every piece is excluded or a candidate is accepted.
+    fn bisect(&self, whole: (f64, f64), examine: &mut dyn FnMut(f64, f64) -> Piece, accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
+        let mut stack = vec![whole];
+        let mut unclear = false;
+        let mut attempts = ATTEMPTS;
+        let mut budget = self.pieces;
+        while let Some((low, high)) = stack.pop() {
+            if budget == 0 {
+                return Finding::Unclear;
+            }
+            budget -= 1;
+            let Piece::Candidate(guess) = examine(low, high) else { continue };
+            let width = (high - low) / (1.0 + low.abs().max(high.abs()));
+            if width < 1e-5 && attempts > 0 {
+                attempts -= 1;
+                if accept(&guess) {
+                    return Finding::Solved;
+                }
+            }
+            if width < 1e-12 {
+                unclear = true;
+                continue;
+            }
+            let middle = 0.5 * (low + high);
+            stack.push((middle, high));
+            stack.push((low, middle));
+        }
+        if unclear { Finding::Unclear } else { Finding::Excluded }
+    }
 }
 
 /// What is known of one piece of a line or curve.
 enum Piece {
     Excluded,
     Candidate(Guess),
-}
-
-/// Halves [low, high] until every piece is excluded or a candidate is accepted.
-fn bisect(low: f64, high: f64, examine: &mut dyn FnMut(f64, f64) -> Piece, accept: &mut dyn FnMut(&Guess) -> Option<Guess>) -> Finding {
-    let mut stack = vec![(low, high)];
-    let mut unclear = false;
-    let mut attempts = ATTEMPTS;
-    let mut budget = PIECES;
-    while let Some((low, high)) = stack.pop() {
-        if budget == 0 {
-            return Finding::Unclear;
-        }
-        budget -= 1;
-        let Piece::Candidate(guess) = examine(low, high) else { continue };
-        let width = (high - low) / (1.0 + low.abs().max(high.abs()));
-        if width < 1e-5 && attempts > 0 {
-            attempts -= 1;
-            if let Some(solution) = accept(&guess) {
-                return Finding::Solved(solution);
-            }
-        }
-        if width < 1e-12 {
-            unclear = true;
-            continue;
-        }
-        let middle = 0.5 * (low + high);
-        stack.push((middle, high));
-        stack.push((low, middle));
-    }
-    if unclear { Finding::Unclear } else { Finding::Excluded }
 }
 
 fn first_three(v: &Vector<4>) -> Vector<3> {
@@ -422,7 +441,7 @@ fn null_vector(rows: &[Vector<4>; 3]) -> Option<Vector<4>> {
 fn dual_basis(g: &[Vector<4>; 4]) -> Option<[Vector<4>; 4]> {
     let mut dual = [[0.0; 4]; 4];
     for j in 0..4 {
-        dual[j] = solve_dense(*g, std::array::from_fn(|i| f64::from(u8::from(i == j))))?;
+        dual[j] = solve_dense(*g, std::array::from_fn(|i| f64::from(u8::from(i == j))), DEPENDENT)?;
     }
     Some(dual)
 }
@@ -436,7 +455,7 @@ fn least_squares<const N: usize>(equations: &[Equation; N]) -> Vector<4> {
     let mut v = [0.0; 4];
     for _ in 0..3 {
         let miss: [f64; N] = std::array::from_fn(|i| equations[i].value - dot(&equations[i].row, &v));
-        let Some(z) = solve_dense(gram, miss) else { break };
+        let Some(z) = solve_dense(gram, miss, 0.0) else { break };
         for (e, z) in equations.iter().zip(z) {
             v = plus(&v, z, &e.row);
         }

@@ -9,10 +9,10 @@ use crate::rows::{Contact, Foot, Guess, Rows, Vector};
 /// Stiffness of held rows; their impulses are kept from one iteration to the next.
 const STIFFNESS: f64 = 1.0e6;
 
-/// Share of its bound above which an impulse counts as sliding.
-const SLIDING: f64 = 0.8;
+/// Relative change of the velocity at which the iteration ends.
+const CONVERGED: f64 = 1e-14;
 
-const ITERATIONS: usize = 8;
+const ITERATIONS: usize = 30;
 
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,29 +23,51 @@ enum Mode {
     Slide { ratio: f64 },
 }
 
-/// Newton steps from `guess` in its own modes.
-pub fn polish(rows: &Rows, guess: &Guess) -> Guess {
-    let contacts: Vec<Mode> = rows.contacts.iter().zip(&guess.contacts).map(|(c, p)| contact_mode(rows, c, *p, &guess.v)).collect();
-    let slides: [bool; 3] = std::array::from_fn(|k| guess.feet[k][0].hypot(guess.feet[k][1]) > SLIDING * rows.feet[k].bound);
-    let yields = rows.stall.is_finite() && guess.v[3] > rows.stall - rows.resistance(guess);
-    let mut best = guess.clone();
-    for _ in 0..ITERATIONS {
-        let linearised = Linearised {
-            contacts: rows.contacts.iter().zip(&best.contacts).zip(&contacts).map(|((c, p), m)| contact(rows, c, *p, &best.v, *m)).collect(),
-            feet: std::array::from_fn(|k| foot(&rows.feet[k], best.feet[k], &best.v, slides[k])),
-            stall: stall(rows, &best, yields),
-        };
-        let Some(next) = linearised.step(rows, &best) else { break };
-        best = next;
-    }
-    best
+/// Newton's method in fixed modes, with its working memory.
+#[derive(Clone, Debug, Default)]
+pub struct Polish {
+    linearised: Linearised,
+    modes: Vec<Mode>,
+    best: Guess,
+    next: Guess,
 }
 
-fn contact_mode(rows: &Rows, c: &Contact, p: [f64; 2], v: &Vector<4>) -> Mode {
+impl Polish {
+    /// Newton steps from `guess` in its own modes; returns where they end.
+    ///
+    /// An impulse above the share `sliding` of its bound counts as sliding.
+    pub fn polish(&mut self, rows: &Rows, guess: &Guess, sliding: f64) -> &Guess {
+        self.modes.clear();
+        self.modes.extend(rows.contacts.iter().zip(&guess.contacts).map(|(c, p)| contact_mode(rows, c, *p, &guess.v, sliding)));
+        let slides: [bool; 3] = std::array::from_fn(|k| guess.feet[k][0].hypot(guess.feet[k][1]) > sliding * rows.feet[k].bound);
+        let yields = rows.stall.is_finite() && guess.v[3] > rows.stall - rows.resistance(guess);
+        self.best.clone_from(guess);
+        for _ in 0..ITERATIONS {
+            let best = &self.best;
+            let contacts = rows.contacts.iter().zip(&best.contacts).zip(&self.modes);
+            self.linearised.contacts.clear();
+            self.linearised.contacts.extend(contacts.map(|((c, p), mode)| contact(rows, c, *p, &best.v, *mode)));
+            self.linearised.feet = std::array::from_fn(|k| foot(&rows.feet[k], best.feet[k], &best.v, slides[k]));
+            self.linearised.stall = stall(rows, best, yields);
+            if !self.linearised.step(rows, best, &mut self.next) {
+                break;
+            }
+            std::mem::swap(&mut self.best, &mut self.next);
+            // the step that led here, relative to the speed reached
+            let moved = self.best.v.iter().zip(&self.next.v).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            if moved <= CONVERGED * self.best.v.iter().fold(0.0f64, |most, v| most.max(v.abs())) {
+                break;
+            }
+        }
+        &self.best
+    }
+}
+
+fn contact_mode(rows: &Rows, c: &Contact, p: [f64; 2], v: &Vector<4>, sliding: f64) -> Mode {
     let (gamma, _) = rows.contact_velocity(c, v, p[0]);
     if p[0] <= gamma {
         Mode::Open
-    } else if p[1].abs() > SLIDING * c.mu * p[0] {
+    } else if p[1].abs() > sliding * c.mu * p[0] {
         Mode::Slide { ratio: c.mu.copysign(p[1]) }
     } else {
         Mode::Stick

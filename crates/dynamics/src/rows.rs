@@ -1,6 +1,6 @@
 //! One particle's problem as plain numbers: [`Rows`], what the slow solvers work on.
 
-use crate::ncp::{Impulses, Ncp};
+use crate::ncp::{ContactRow, Impulses, Ncp};
 use crate::Lanes;
 
 /// A vector of the scaled velocity space (x, y, ρ θ), or of (x, y, ρ θ, y) with the pusher's yield speed appended.
@@ -46,7 +46,7 @@ impl Contact {
 }
 
 /// One foot.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Foot {
     /// Slip velocity is (v_x + jx v_θ, v_y + jy v_θ).
     pub jx: f64,
@@ -69,7 +69,7 @@ impl Foot {
 }
 
 /// One particle's problem, mass-normalised as in [`Ncp`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Rows {
     /// Velocity without contact and friction impulses.
     pub free: Vector<3>,
@@ -84,25 +84,24 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Reads a one-lane problem.
-    pub fn new(ncp: &Ncp<1>) -> Self {
+    /// Reads a one-lane problem; memory is reused.
+    pub fn assign(&mut self, ncp: &Ncp<1>) {
         let column = |c: &[Lanes<1>; 3], d: Lanes<1>| [c[0].0[0], c[1].0[0], c[2].0[0], d.0[0]];
-        Self {
-            free: ncp.free.map(|x| x.0[0]),
-            feet: ncp.feet.map(|f| Foot { jx: f.jx.0[0], jy: f.jy.0[0], bound: f.bound.0[0] }),
-            contacts: ncp
-                .contacts
-                .iter()
-                .map(|c| Contact { n: column(&c.n, c.nd), t: column(&c.t, c.td), gap: c.gap.0[0], slip: c.slip.0[0], mu: c.mu.0[0] })
-                .collect(),
-            stall: ncp.stall.0[0],
-            compliance: ncp.compliance.0[0],
-        }
+        self.free = ncp.free.map(|x| x.0[0]);
+        self.feet = ncp.feet.map(|f| Foot { jx: f.jx.0[0], jy: f.jy.0[0], bound: f.bound.0[0] });
+        self.stall = ncp.stall.0[0];
+        self.compliance = ncp.compliance.0[0];
+        let contact = |c: &ContactRow<1>| Contact { n: column(&c.n, c.nd), t: column(&c.t, c.td), gap: c.gap.0[0], slip: c.slip.0[0], mu: c.mu.0[0] };
+        self.contacts.clear();
+        self.contacts.extend(ncp.contacts.iter().map(contact));
     }
 
-    /// No impulse at all.
-    pub fn cold_start(&self) -> Guess {
-        Guess { contacts: vec![[0.0; 2]; self.contacts.len()], ..Guess::default() }
+    /// Writes the state without any impulse to `guess`.
+    pub fn cold_start(&self, guess: &mut Guess) {
+        guess.v = [self.free[0], self.free[1], self.free[2], 0.0];
+        guess.feet = [[0.0; 2]; 3];
+        guess.contacts.clear();
+        guess.contacts.resize(self.contacts.len(), [0.0; 2]);
     }
 
     /// The largest speed that appears in the problem [m/s]; its natural scale.
@@ -114,7 +113,7 @@ impl Rows {
 }
 
 /// Plain-number impulses.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Guess {
     /// Velocity and pusher yield.
     pub v: Vector<4>,
@@ -124,7 +123,28 @@ pub struct Guess {
     pub feet: [[f64; 2]; 3],
 }
 
+impl Clone for Guess {
+    fn clone(&self) -> Self {
+        Self { v: self.v, contacts: self.contacts.clone(), feet: self.feet }
+    }
+
+    /// Keeps the memory of `self`.
+    fn clone_from(&mut self, source: &Self) {
+        self.v = source.v;
+        self.feet = source.feet;
+        self.contacts.clone_from(&source.contacts);
+    }
+}
+
 impl Guess {
+    /// Reads impulses of a one-lane problem.
+    pub fn load(&mut self, p: &Impulses<1>) {
+        self.v = [p.v[0].0[0], p.v[1].0[0], p.v[2].0[0], p.pusher_yield.0[0]];
+        self.feet = p.feet.map(|f| f.map(|x| x.0[0]));
+        self.contacts.clear();
+        self.contacts.extend(p.normal.iter().zip(&p.tangential).map(|(n, t)| [n.0[0], t.0[0]]));
+    }
+
     /// Writes the impulses where the certificate reads them.
     pub fn store(&self, p: &mut Impulses<1>) {
         p.v = [0, 1, 2].map(|i| Lanes([self.v[i]]));
@@ -137,15 +157,15 @@ impl Guess {
     }
 }
 
-/// Solves the dense N×N system m x = b by elimination with row pivoting; `None` where a pivot is below 1e-13 of its row's scale.
-pub fn solve_dense<const N: usize>(mut m: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
-    let scale: [f64; N] = std::array::from_fn(|i| m[i].iter().fold(0.0f64, |a, x| a.max(x.abs())));
-    let largest = scale.iter().fold(0.0f64, |a, x| a.max(*x));
+/// Solves the dense N×N system m x = b by elimination with row pivoting; `None` where a pivot is at most `singular` times the
+/// largest entry.
+pub fn solve_dense<const N: usize>(mut m: [[f64; N]; N], mut b: [f64; N], singular: f64) -> Option<[f64; N]> {
+    let largest = m.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs()));
     for c in 0..N {
         let pivot = (c..N).fold(c, |best, r| if m[r][c].abs() > m[best][c].abs() { r } else { best });
         m.swap(c, pivot);
         b.swap(c, pivot);
-        if m[c][c].abs() <= 1e-13 * largest || !m[c][c].is_finite() {
+        if m[c][c].abs() <= singular * largest || !m[c][c].is_finite() {
             return None;
         }
         for r in c + 1..N {

@@ -3,12 +3,12 @@
 //! The fast Newton iteration answers almost always; a smoothing homotopy, then an exhaustive search over contact modes take what
 //! it leaves. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
 
-use crate::homotopy::follow;
+use crate::homotopy::Homotopy;
 use crate::lanes::Lanes;
 use crate::modes::{Verdict, search};
 use crate::ncp::{Impulses, Ncp};
-use crate::polish::polish;
 use crate::newton::{NewtonWorkspace, newton};
+use crate::polish::Polish;
 use crate::problem::{StepProblem, StepSolution};
 use crate::rows::{Guess, Rows};
 
@@ -23,6 +23,9 @@ const FAST_ITERATIONS: u32 = 12;
 
 /// Iterations that polish an end point of a slow solver.
 const POLISH_ITERATIONS: u32 = 40;
+
+/// Shares of its bound above which an impulse is taken to slide, tried in turn.
+const SLIDING: [f64; 3] = [0.8, 0.98, 0.9999];
 
 /// Compliance κ of the gap rows where no exact solution exists (model.md, "Jamming").
 const COMPLIANCE: f64 = 1e-6;
@@ -139,13 +142,21 @@ fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, 
 #[derive(Clone, Debug)]
 struct SlowSolver {
     ncp: Ncp<1>,
-    p: Impulses<1>,
-    fast: NewtonWorkspace<1>,
+    rows: Rows,
+    start: Guess,
+    homotopy: Homotopy,
+    polisher: Polisher,
 }
 
 impl Default for SlowSolver {
     fn default() -> Self {
-        Self { ncp: Ncp::empty(), p: Impulses::zero(0), fast: NewtonWorkspace::default() }
+        Self {
+            ncp: Ncp::empty(),
+            rows: Rows::default(),
+            start: Guess::default(),
+            homotopy: Homotopy::default(),
+            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), fast: NewtonWorkspace::default() },
+        }
     }
 }
 
@@ -153,48 +164,67 @@ impl SlowSolver {
     /// Solves one lane of `ncp` and writes impulses and report back.
     fn solve<const W: usize>(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, report: &mut Report) {
         ncp.copy_lane(lane, &mut self.ncp);
-        let rows = Rows::new(&self.ncp);
-        let cold = rows.cold_start();
-
+        self.rows.assign(&self.ncp);
         report.route = Route::Homotopy;
-        report.residual = self.polish(&rows, &follow(&rows, cold.clone()));
+        report.residual = self.follow();
         if report.residual > TOLERANCE {
             report.route = Route::Modes;
-            report.outcome = match search(&rows, &mut |guess| (self.polish(&rows, guess) <= TOLERANCE).then(|| guess.clone())) {
-                Verdict::Solved(_) => Outcome::Solved,
-                Verdict::Infeasible => Outcome::Infeasible,
-                Verdict::Unresolved => Outcome::Failed,
-            };
+            report.outcome = self.search();
             if report.outcome != Outcome::Solved {
-                self.solve_compliant(rows, cold);
+                self.solve_compliant();
             }
-            report.residual = self.ncp.residual(&self.p).0[0];
+            report.residual = self.ncp.residual(&self.polisher.p).0[0];
         }
-        p.set_lane(lane, &self.p);
+        p.set_lane(lane, &self.polisher.p);
     }
 
-    /// Polishes a guess, in its own modes and then by the fast solver; returns the residual, the impulses are in `self.p`.
-    fn polish(&mut self, rows: &Rows, guess: &Guess) -> f64 {
-        self.p.resize(self.ncp.contacts.len());
-        for candidate in [polish(rows, guess), guess.clone()] {
-            candidate.store(&mut self.p);
-            let residual = self.ncp.residual(&self.p).0[0];
+    /// The homotopy from a cold start; the residual of its polished end.
+    fn follow(&mut self) -> f64 {
+        self.rows.cold_start(&mut self.start);
+        let end = self.homotopy.follow(&self.rows, &self.start, 1.0);
+        self.polisher.polish(&self.ncp, &self.rows, end)
+    }
+
+    fn search(&mut self) -> Outcome {
+        let (ncp, rows, polisher) = (&self.ncp, &self.rows, &mut self.polisher);
+        match search(rows, &mut |guess| polisher.polish(ncp, rows, guess) <= TOLERANCE) {
+            Verdict::Solved => Outcome::Solved,
+            Verdict::Infeasible => Outcome::Infeasible,
+            Verdict::Unresolved => Outcome::Failed,
+        }
+    }
+
+    /// Leaves the solution with compliant gap rows in the polisher.
+    fn solve_compliant(&mut self) {
+        self.rows.compliance = COMPLIANCE;
+        self.ncp.compliance = Lanes::ZERO + COMPLIANCE;
+        if self.follow() > TOLERANCE {
+            self.homotopy.end().store(&mut self.polisher.p);
+        }
+        self.ncp.compliance = Lanes::ZERO;
+    }
+}
+
+/// Turns a guess into certified impulses, where it is near enough.
+#[derive(Clone, Debug)]
+struct Polisher {
+    p: Impulses<1>,
+    modes: Polish,
+    fast: NewtonWorkspace<1>,
+}
+
+impl Polisher {
+    /// Polishes a guess, in its own modes, as it is, and by the fast solver; returns the residual, the impulses are in `self.p`.
+    fn polish(&mut self, ncp: &Ncp<1>, rows: &Rows, guess: &Guess) -> f64 {
+        self.p.resize(ncp.contacts.len());
+        for sliding in SLIDING {
+            self.modes.polish(rows, guess, sliding).store(&mut self.p);
+            let residual = ncp.residual(&self.p).0[0];
             if residual <= TOLERANCE {
                 return residual;
             }
         }
-        newton(&self.ncp, &mut self.p, &mut self.fast, AIM, POLISH_ITERATIONS).0.0[0]
-    }
-
-    /// Leaves the solution with compliant gap rows in `self.p`.
-    fn solve_compliant(&mut self, mut rows: Rows, cold: Guess) {
-        rows.compliance = COMPLIANCE;
-        self.ncp.compliance = Lanes([COMPLIANCE]);
-        let guess = follow(&rows, cold);
-        let residual = self.polish(&rows, &guess);
-        if residual > TOLERANCE {
-            guess.store(&mut self.p);
-        }
-        self.ncp.compliance = Lanes::ZERO;
+        guess.store(&mut self.p);
+        newton(ncp, &mut self.p, &mut self.fast, TOLERANCE, POLISH_ITERATIONS).0.0[0]
     }
 }
