@@ -10,6 +10,9 @@ use crate::rows::{Contact, Foot, Guess, Rows, Vector, plus};
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;
 
+/// Full steps without decrease that are allowed at one ε.
+const BOLD_STEPS: u32 = 3;
+
 /// The smoothing homotopy with its working memory.
 #[derive(Clone, Debug, Default)]
 pub struct Homotopy {
@@ -63,12 +66,21 @@ impl Homotopy {
             }
         }
         let mut merit = smoothed_residual(rows, &self.guess, epsilon);
-        for _ in 0..8 {
+        let mut bold = BOLD_STEPS;
+        for _ in 0..10 {
             if merit < 0.1 * epsilon {
                 return true;
             }
-            let Some(next) = self.damped_step(rows, epsilon, merit) else { return false };
-            merit = next;
+            merit = match self.damped_step(rows, epsilon, merit) {
+                Some(next) => next,
+                None if bold > 0 => {
+                    // near a kink the residual must rise before it can fall
+                    bold -= 1;
+                    std::mem::swap(&mut self.guess, &mut self.full);
+                    smoothed_residual(rows, &self.guess, epsilon)
+                }
+                None => return false,
+            };
         }
         merit < 0.1 * epsilon
     }

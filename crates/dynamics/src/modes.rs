@@ -29,7 +29,7 @@ const SLACK: f64 = 1e-9;
 const DEPENDENT: f64 = 1e-13;
 
 /// Pieces of a line or curve that may be looked at before it counts as unclear: in a first and a second round.
-const PIECES: [usize; 2] = [2_000, 1_000_000];
+const PIECES: [usize; 2] = [2_000, 50_000];
 
 /// Candidates of one line or curve that are polished; its pieces differ little, so that more would not help.
 const ATTEMPTS: u32 = 6;
