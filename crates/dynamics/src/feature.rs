@@ -5,8 +5,8 @@ use crate::plane::{Frame, Vec2, add, cross, dot, length, right, scale, sub, unit
 /// Angle by which a corner's normal cone is widened where it meets an edge (rad): faces that meet, slightly tilted, give two points.
 const TILT: f64 = 0.1;
 
-/// Directions at which a cone is sampled for local maxima of the separation.
-pub(crate) const SAMPLES: u32 = 24;
+/// Directions at which a full circle of normals is sampled for local maxima of the separation.
+const SAMPLES: f64 = 24.0;
 
 /// A straight piece of boundary with the body on its left.
 #[derive(Clone, Copy, Debug)]
@@ -61,25 +61,27 @@ pub(crate) struct Cone {
     along: [Vec2; 2],
     middle: Vec2,
     cos_tilted: f64,
-    /// First sampled direction, and cosine and sine of the angle between samples.
+    /// First sampled direction, cosine and sine of the angle between samples, and how many steps lead through the cone.
     pub first: Vec2,
     pub step: Vec2,
+    pub steps: u32,
 }
 
 impl Cone {
     pub fn full() -> Self {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU / f64::from(SAMPLES));
-        Self { along: [[0.0; 2]; 2], middle: [0.0; 2], cos_tilted: -1.0, first: [1.0, 0.0], step: [cos, sin] }
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU / SAMPLES);
+        Self { along: [[0.0; 2]; 2], middle: [0.0; 2], cos_tilted: -1.0, first: [1.0, 0.0], step: [cos, sin], steps: SAMPLES as u32 }
     }
 
     /// The cone of a convex corner between edges along `before` and `after`.
     pub fn corner(before: Vec2, after: Vec2) -> Self {
         let turn = libm::atan2(cross(before, after), dot(before, after));
-        let (sin, cos) = libm::sincos(turn / f64::from(SAMPLES));
+        let steps = (SAMPLES * turn.abs() / std::f64::consts::TAU).ceil() + 1.0;
+        let (sin, cos) = libm::sincos(turn / steps);
         let (half_sin, half_cos) = libm::sincos(turn / 2.0);
         let first = right(before);
         let middle = [half_cos * first[0] - half_sin * first[1], half_sin * first[0] + half_cos * first[1]];
-        Self { along: [before, after], middle, cos_tilted: libm::cos(turn / 2.0 + TILT), first, step: [cos, sin] }
+        Self { along: [before, after], middle, cos_tilted: libm::cos(turn / 2.0 + TILT), first, step: [cos, sin], steps: steps as u32 }
     }
 
     /// Whether a direction, of any length, lies in the cone; `slack` has its unit. The borders are those of the edges beside it.
@@ -94,9 +96,17 @@ impl Cone {
         dot(self.middle, normal) >= self.cos_tilted
     }
 
-    /// A direction in its middle; `None` for a full circle.
-    pub fn middle(&self) -> Option<Vec2> {
-        (self.cos_tilted > -1.0).then_some(self.middle)
+    /// The largest n·d over the unit vectors n of the cone.
+    pub fn support(&self, d: Vec2) -> f64 {
+        if self.holds(d, 0.0) {
+            return length(d);
+        }
+        let [first, last] = self.along.map(|along| dot(right(along), d));
+        if first > last { first } else { last }
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.along == [[0.0; 2]; 2]
     }
 }
 
@@ -142,6 +152,12 @@ impl Ellipse {
 
     pub fn seen_from(&self, frame: &Frame) -> Self {
         Self { centre: frame.point(self.centre), axis: frame.turn(self.axis), ..*self }
+    }
+
+    /// Smallest distance of its boundary from its centre (m).
+    pub fn inner_radius(&self) -> f64 {
+        let [a, b] = self.semi_axes;
+        if a < b { a } else { b }
     }
 
     /// Largest distance of its points from its centre (m).

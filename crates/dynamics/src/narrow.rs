@@ -9,20 +9,24 @@
 //!   beside it, so that a corner that is passed is always answered for by one of them.
 //! - A centre inside the other body meets only the edge of least penetration (and those in a reflex corner with it); edges whose
 //!   back it sees from outside are not met.
+//! - A point of a disc or an ellipse that lies inside a sibling part touches only where an overlap would have no contact else.
 //! - Where polygons overlap with no corner of one in the other, their parts' least penetration (by separating axes) is a contact; of
 //!   two convex polygons no gap is deeper than that, and one is as deep.
 
 use crate::feature::{Edge, Round};
 use crate::outline::Outline;
 use crate::overlap::least_penetration;
-use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
+use crate::plane::{Frame, Vec2, add, cross, dot, length, negate, scale, sub};
 use crate::{Pose, Shape};
 
 /// Width of the borders between features, as a share of the bodies' size: at least one of two neighbours always answers.
 const BORDER: f64 = 1e-12;
 
-/// Contacts nearer than this share of the object's size, with normals within about 0.1 rad, are one.
-const SAME_POINT: f64 = 1e-4;
+/// Slack of the borders of a cone (rad).
+const ANGLE: f64 = 1e-9;
+
+/// Contacts whose lines of action are nearer than this share of the object's size, with normals within about 0.1 rad, are one.
+const SAME_LINE: f64 = 1e-4;
 
 /// Cosine of the largest angle between the normals of one contact.
 const SAME_NORMAL: f64 = 0.995;
@@ -91,6 +95,8 @@ pub(crate) struct Pair<'a> {
     pub slack: f64,
     out: &'a mut Vec<Gap>,
     first: usize,
+    /// The deepest overlap at a boundary point that a sibling part hides.
+    hidden: Option<Gap>,
 }
 
 /// Where the centre of a round vertex stands over an edge.
@@ -109,7 +115,19 @@ impl<'a> Pair<'a> {
         let slack = BORDER * (object.shape.bounding_radius() + other.shape.bounding_radius());
         let (object_frame, other_frame, first) = (object.frame, other.frame, out.len());
         let in_other = in_object.inverse();
-        Self { object: object.shape, other: other.shape, object_frame, other_frame, in_object, in_other, reach, slack, out, first }
+        Self {
+            object: object.shape,
+            other: other.shape,
+            object_frame,
+            other_frame,
+            in_object,
+            in_other,
+            reach,
+            slack,
+            out,
+            first,
+            hidden: None,
+        }
     }
 
     #[inline]
@@ -125,6 +143,17 @@ impl<'a> Pair<'a> {
         if !mine.edges.is_empty() && !theirs.edges.is_empty() {
             self.polygons();
         }
+        if let Some(hidden) = self.hidden
+            && !self.overlaps()
+        {
+            self.push(hidden);
+        }
+    }
+
+    /// Whether a contact found so far is an overlap.
+    #[inline(always)]
+    fn overlaps(&self) -> bool {
+        self.out[self.first..].iter().any(|contact| contact.gap < 0.0)
     }
 
     /// The other's corners and discs against the object's edges, corners and discs, in the object's frame.
@@ -140,9 +169,8 @@ impl<'a> Pair<'a> {
             let (object, limits) = (self.object, [self.reach + round.radius, self.slack]);
             stands(object, centre, limits, faces, |Stand { edge, s, height }| {
                 let touch = add(round.centre, scale(-round.radius, frame.turn_back(edge.normal())));
-                if !(round.covered && self.other.hides(touch)) {
-                    self.push_in_object(negate(edge.normal()), edge.at(s), height - round.radius);
-                }
+                let contact = self.contact(negate(edge.normal()), edge.at(s), height - round.radius);
+                self.push_unless(round.covered && self.other.hides(touch), contact);
             });
             for own in &mine.rounds {
                 self.round_on_round(own, round, centre);
@@ -164,9 +192,8 @@ impl<'a> Pair<'a> {
             let (other, limits) = (self.other, [self.reach + round.radius, self.slack]);
             stands(other, centre, limits, faces, |Stand { edge, height, .. }| {
                 let touch = add(round.centre, scale(-round.radius, frame.turn_back(edge.normal())));
-                if !(round.covered && self.object.hides(touch)) {
-                    self.push_on_other(edge.normal(), touch, height - round.radius);
-                }
+                let contact = self.contact_on_other(edge.normal(), touch, height - round.radius);
+                self.push_unless(round.covered && self.object.hides(touch), contact);
             });
         }
     }
@@ -183,28 +210,35 @@ impl<'a> Pair<'a> {
     fn round_on_round(&mut self, own: &Round, round: &Round, centre: Vec2) {
         let d = sub(own.centre, centre);
         let limit = own.radius + round.radius + self.reach;
-        if limit > 0.0 && dot(d, d) < limit * limit && own.cone.holds(negate(d), self.slack) && round.cone.holds(self.in_object.turn_back(d), self.slack) {
+        if limit > 0.0
+            && dot(d, d) < limit * limit
+            && own.cone.holds(negate(d), self.slack)
+            && round.cone.holds(self.in_object.turn_back(d), self.slack)
+        {
             self.push_rounds(own, round, d);
         }
     }
 
-    /// `d` leads from the other's centre to the object's one.
+    /// `d` leads from the other's centre to the object's one. A corner's own edges answer for what is right at it.
     fn push_rounds(&mut self, own: &Round, round: &Round, d: Vec2) {
         let distance = length(d);
-        let middle = || round.cone.middle().map(|m| self.in_object.turn(m)).or(own.cone.middle().map(negate)).unwrap_or([1.0, 0.0]);
-        let normal = if distance > 0.0 { scale(1.0 / distance, d) } else { middle() };
+        if distance <= self.slack && !(own.cone.is_full() && round.cone.is_full()) {
+            return;
+        }
+        let normal = if distance > 0.0 { scale(1.0 / distance, d) } else { [1.0, 0.0] };
+        if !own.cone.holds(negate(normal), ANGLE) || !round.cone.holds(self.in_object.turn_back(normal), ANGLE) {
+            return;
+        }
         let touch = add(own.centre, scale(-own.radius, normal));
         let theirs = add(round.centre, scale(round.radius, self.in_object.turn_back(normal)));
-        if !(own.covered && self.object.hides(touch) || round.covered && self.other.hides(theirs)) {
-            self.push_in_object(normal, touch, distance - own.radius - round.radius);
-        }
+        let contact = self.contact(normal, touch, distance - own.radius - round.radius);
+        self.push_unless(own.covered && self.object.hides(touch) || round.covered && self.other.hides(theirs), contact);
     }
 
     /// Polygons that overlap although no feature answered for it; of two convex ones, the least penetration bounds all gaps.
     fn polygons(&mut self) {
-        let overlap = self.out[self.first..].iter().any(|contact| contact.gap < 0.0);
         let convex = self.object.parts().len() == 1 && self.other.parts().len() == 1;
-        if overlap && !convex {
+        if !convex && self.overlaps() {
             return;
         }
         let Some(least) = least_penetration(self.object.solids(), self.other.solids(), &self.in_object) else { return };
@@ -216,28 +250,41 @@ impl<'a> Pair<'a> {
             }
         }
         self.out.truncate(kept);
-        self.push_in_object(least.normal, least.touch, least.gap);
+        let answered = self.out[self.first..].iter().any(|contact| contact.gap <= least.gap + self.slack);
+        if least.gap < self.reach && !answered {
+            self.push(self.contact(least.normal, least.touch, least.gap));
+        }
     }
 
-    /// A contact in the object's frame.
+    /// A contact given in the object's frame.
     #[inline(always)]
-    pub fn push_in_object(&mut self, normal: Vec2, touch: Vec2, gap: f64) {
-        self.push(Gap { normal: self.object_frame.turn(normal), arm: self.object_frame.turn(touch), gap });
+    pub fn contact(&self, normal: Vec2, touch: Vec2, gap: f64) -> Gap {
+        Gap { normal: self.object_frame.turn(normal), arm: self.object_frame.turn(touch), gap }
     }
 
-    /// A contact with its normal in the other's frame and its point in the object's.
+    /// A contact given by its normal in the other's frame and its point in the object's.
     #[inline(always)]
-    pub fn push_on_other(&mut self, normal: Vec2, touch: Vec2, gap: f64) {
-        self.push(Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap });
+    pub fn contact_on_other(&self, normal: Vec2, touch: Vec2, gap: f64) -> Gap {
+        Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap }
     }
 
-    /// Keeps the nearer one of two contacts that are one.
+    /// A contact whose point a sibling part hides counts only in overlap, and only if there is no other.
+    #[inline(always)]
+    pub fn push_unless(&mut self, hidden: bool, contact: Gap) {
+        if !hidden {
+            self.push(contact);
+        } else if contact.gap < 0.0 && self.hidden.is_none_or(|old| contact.gap < old.gap) {
+            self.hidden = Some(contact);
+        }
+    }
+
+    /// Of two contacts with one line of action, which have one row W_n, keeps that with the smaller gap.
     #[inline(always)]
     fn push(&mut self, new: Gap) {
-        let near = SAME_POINT * self.object.bounding_radius();
+        let near = SAME_LINE * self.object.bounding_radius();
         let same = |old: &&mut Gap| {
             let d = sub(old.arm, new.arm);
-            dot(d, d) < near * near && dot(old.normal, new.normal) > SAME_NORMAL
+            cross(d, old.normal).abs() < near && cross(d, new.normal).abs() < near && dot(old.normal, new.normal) > SAME_NORMAL
         };
         match self.out[self.first..].iter_mut().find(same) {
             Some(old) if new.gap < old.gap => *old = new,
@@ -262,24 +309,26 @@ fn stands<'s>(shape: &'s Shape, centre: Vec2, [limit, slack]: [f64; 2], faces: i
         if height >= limit || !edge.holds(s, slack) {
             continue;
         }
-        beside |= height >= 0.0 && height < shape.tolerance() && s >= 0.0 && s <= edge.length;
+        if !faces(edge) {
+            continue;
+        }
         if height >= 0.0 {
-            if faces(edge) {
-                report(Stand { edge, s, height });
-            }
-        } else if way_out.is_none_or(|way| height > way.height) && faces(edge) {
+            beside |= height < shape.tolerance() && s >= 0.0 && s <= edge.length;
+            report(Stand { edge, s, height });
+        } else if way_out.is_none_or(|way| height > way.height) {
             way_out = Some(Stand { edge, s, height });
         }
     }
     let Some(way) = way_out else { return };
-    let inside = if shape.parts().len() == 1 { highest < 0.0 } else { !beside && shape.contains(centre) };
-    if !inside {
+    // a corner flush with one face may lie behind the next; what rests on a face that it faces is outside
+    let inside = if shape.parts().len() == 1 { highest <= slack } else { shape.contains(centre) };
+    if beside || !inside {
         return;
     }
     report(way);
     for edge in way.edge.reflex.iter().flatten().map(|k| &edges[*k as usize]) {
         let (s, height) = edge.coordinates(centre);
-        if height < 0.0 && edge.holds(s, slack) && faces(edge) {
+        if height < 0.0 && height < limit && edge.holds(s, slack) && faces(edge) {
             report(Stand { edge, s, height });
         }
     }

@@ -4,10 +4,10 @@
 //! chained, and neighbours in line are merged, so that no vertex stands on a straight seam. A convex joint is a corner with the
 //! union's own normal cone; a reflex one is no feature, but both its edges are known to run on inside the body.
 
+use crate::Part;
 use crate::feature::{Cone, Edge, Ellipse, Round};
 use crate::plane::{Vec2, cross, dot, length, sub};
 use crate::solid::Solid;
-use crate::Part;
 
 /// Share of a shape's extent within which the joint of two collinear edges of one part is on their common line.
 const STRAIGHT: f64 = 1e-9;
@@ -83,7 +83,10 @@ fn exposed(solids: &mut [Solid], tolerance: f64) -> Vec<Piece> {
             }
             open.retain(|[low, high]| high - low > 2.0 * tolerance);
             bare.push((!open.is_empty(), open.iter().map(|[low, high]| high - low).sum::<f64>() < edge.length - tolerance));
-            pieces.extend(open.iter().map(|&[low, high]| piece(polygon.corners[k], &edge, [low, high], polygon.corners[(k + 1) % polygon.corners.len()], i)));
+            pieces
+                .extend(open.iter().map(|&[low, high]| {
+                    piece(polygon.corners[k], &edge, [low, high], polygon.corners[(k + 1) % polygon.corners.len()], i)
+                }));
         }
         if let Solid::Polygon(polygon) = &mut solids[i] {
             polygon.sides.iter_mut().zip(bare).for_each(|(side, bare)| (side.exposed, side.seam) = bare);
@@ -128,7 +131,8 @@ fn chain(pieces: &mut [Piece], tolerance: f64) {
 /// Joins neighbours in line: exactly so within one part, within the tolerance across a seam.
 fn merge(pieces: &mut Vec<Piece>, tolerance: f64) {
     while let Some((i, j)) = (0..pieces.len()).find_map(|i| straight_joint(pieces, i, tolerance)) {
-        pieces[i] = Piece { ends: [pieces[i].ends[0], pieces[j].ends[1]], parts: [pieces[i].parts[0], pieces[j].parts[1]], next: pieces[j].next };
+        pieces[i] =
+            Piece { ends: [pieces[i].ends[0], pieces[j].ends[1]], parts: [pieces[i].parts[0], pieces[j].parts[1]], next: pieces[j].next };
         pieces.remove(j);
         for piece in pieces.iter_mut() {
             piece.next = piece.next.map(|k| if k == j { i } else { k }).map(|k| if k > j { k - 1 } else { k });

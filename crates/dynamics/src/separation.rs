@@ -5,11 +5,14 @@
 //! in overlap, the largest local maximum is minus the least penetration. n points from the first feature to the second.
 //! Scaled to any length, g is concave, which is why a positive local maximum is the only one.
 
-use crate::feature::{Cone, Ellipse, SAMPLES};
-use crate::plane::{Vec2, add, cross, dot, left, negate, scale, unit};
+use crate::feature::{Cone, Ellipse};
+use crate::plane::{Vec2, add, cross, dot, left, scale, unit};
 
 /// Newton steps with bisection as its guard; twice what bisection alone needs from a quarter turn.
 const STEPS: u32 = 100;
+
+/// Slack of a cone's borders (rad).
+const ANGLE: f64 = 1e-9;
 
 /// Cosine and sine of 0.1 rad, the stride in which a bracket is sought uphill.
 const STRIDE: Vec2 = [0.995_004_165_278_025_8, 0.099_833_416_646_828_15];
@@ -36,19 +39,22 @@ impl Separation<'_> {
         let start = unit(self.d);
         if self.gap(start) > 0.0 {
             let peak = self.climb(start);
-            return cone.holds(self.lever(peak.normal), slack).then_some(peak);
+            if cone.holds(peak.normal, ANGLE) {
+                return Some(peak);
+            }
         }
-        self.best_sampled(cone)
+        self.best_sampled(cone, slack)
     }
 
-    /// Brackets every local maximum between neighbouring samples of the cone and refines the best one.
-    fn best_sampled(&self, cone: &Cone) -> Option<Peak> {
+    /// Brackets every local maximum between neighbouring samples of the cone and refines it; a slope at a border of the cone is the
+    /// distance by which the ellipse's lowest point misses the edge there, so it has the same slack.
+    fn best_sampled(&self, cone: &Cone, slack: f64) -> Option<Peak> {
         let mut best: Option<Peak> = None;
         let (mut low, mut slope) = (cone.first, self.slope(cone.first));
-        for _ in 0..SAMPLES {
+        for _ in 0..cone.steps {
             let high = turned(low, cone.step);
             let next = self.slope(high);
-            if slope >= 0.0 && next <= 0.0 {
+            if slope >= -slack && next <= slack {
                 let peak = self.refine(low, high);
                 if best.is_none_or(|best| peak.gap > best.gap) {
                     best = Some(peak);
@@ -83,7 +89,11 @@ impl Separation<'_> {
             if step.abs() < 1e-16 {
                 break;
             }
-            if slope > 0.0 { low = n } else { high = n }
+            if slope > 0.0 {
+                low = n
+            } else {
+                high = n
+            }
             let newton = unit(add(n, scale(step, left(n))));
             let inside = curvature < 0.0 && cross(low, newton) > 0.0 && cross(newton, high) > 0.0;
             let next = if inside { newton } else { unit(add(low, high)) };
@@ -117,15 +127,8 @@ impl Separation<'_> {
         }
         g
     }
-
-    /// From the first centre to the second feature's nearest point, were all the first one's radius given to the second.
-    fn lever(&self, n: Vec2) -> Vec2 {
-        let inward = negate(n);
-        self.ellipses.iter().flatten().fold(self.d, |d, e| add(d, add(e.point(inward), negate(e.centre))))
-    }
 }
 
 fn turned(n: Vec2, [cos, sin]: Vec2) -> Vec2 {
     [cos * n[0] - sin * n[1], cos * n[1] + sin * n[0]]
 }
-

@@ -53,7 +53,9 @@ pub enum ShapeError {
         y: f64,
     },
     /// Clockwise.
-    #[error("part {part} is a polygon in clockwise order (signed area {area:e} m^2); list its vertices counter-clockwise, that is, reverse them")]
+    #[error(
+        "part {part} is a polygon in clockwise order (signed area {area:e} m^2); list its vertices counter-clockwise, that is, reverse them"
+    )]
     Clockwise {
         /// The part.
         part: usize,
@@ -61,7 +63,9 @@ pub enum ShapeError {
         area: f64,
     },
     /// No area.
-    #[error("part {part} is a polygon without area ({area:e} m^2): its vertices lie on one line or its outline crosses itself. Check their order")]
+    #[error(
+        "part {part} is a polygon without area ({area:e} m^2): its vertices lie on one line or its outline crosses itself. Check their order"
+    )]
     Flat {
         /// The part.
         part: usize,
@@ -86,7 +90,9 @@ pub enum ShapeError {
         dent: f64,
     },
     /// The outline winds more than once.
-    #[error("part {part} is a polygon whose outline crosses itself (it winds {turns} times); list its vertices in the order of its boundary")]
+    #[error(
+        "part {part} is a polygon whose outline crosses itself (it winds {turns} times); list its vertices in the order of its boundary"
+    )]
     SelfIntersecting {
         /// The part.
         part: usize,

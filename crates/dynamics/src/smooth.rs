@@ -1,11 +1,11 @@
 //! Pairs with an ellipse: closed form over an edge, Newton's method on the separation otherwise ([`crate::separation`]).
 
-use crate::feature::{Cone, Ellipse};
+use crate::Shape;
+use crate::feature::{Cone, Edge, Ellipse, Round};
 use crate::narrow::Pair;
 use crate::outline::Outline;
 use crate::plane::{Vec2, add, dot, length, negate, scale, sub};
 use crate::separation::{Peak, Separation};
-use crate::Shape;
 
 /// An ellipse against a feature, in the frame of the feature's body.
 #[derive(Clone, Copy)]
@@ -16,6 +16,8 @@ struct Meeting {
     touch: Vec2,
     /// Gap (m).
     gap: f64,
+    /// Whether the feature's own point is inside a sibling part.
+    hidden: bool,
 }
 
 impl Pair<'_> {
@@ -35,20 +37,17 @@ impl Pair<'_> {
 
     /// An ellipse of the other body, in the object's frame.
     fn ellipse_on_object(&mut self, ellipse: &Ellipse) {
-        meetings(ellipse, self.object, [self.reach, self.slack], |Meeting { normal, touch, gap }| {
-            if !(ellipse.covered && self.other.hides(self.in_other.point(touch))) {
-                self.push_in_object(negate(normal), add(touch, scale(-gap, normal)), gap);
-            }
+        meetings(ellipse, self.object, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
+            let contact = self.contact(negate(normal), add(touch, scale(-gap, normal)), gap);
+            self.push_unless(hidden || ellipse.covered && self.other.hides(self.in_other.point(touch)), contact);
         });
     }
 
     fn ellipse_on_other(&mut self, own: &Ellipse) {
         let ellipse = own.seen_from(&self.in_other);
-        meetings(&ellipse, self.other, [self.reach, self.slack], |Meeting { normal, touch, gap }| {
+        meetings(&ellipse, self.other, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
             let touch = self.in_object.point(touch);
-            if !(own.covered && self.object.hides(touch)) {
-                self.push_on_other(normal, touch, gap);
-            }
+            self.push_unless(hidden || own.covered && self.object.hides(touch), self.contact_on_other(normal, touch, gap));
         });
     }
 
@@ -60,19 +59,54 @@ impl Pair<'_> {
         }
         let Some(Peak { normal, gap }) = separation.widest(&Cone::full(), 0.0) else { return };
         let touch = own.point(negate(normal));
-        let hidden = own.covered && self.object.hides(touch) || theirs.covered && self.other.hides(self.in_other.point(theirs.point(normal)));
-        if gap < self.reach && !hidden {
-            self.push_in_object(normal, touch, gap);
+        let hidden =
+            own.covered && self.object.hides(touch) || theirs.covered && self.other.hides(self.in_other.point(theirs.point(normal)));
+        if gap < self.reach {
+            self.push_unless(hidden, self.contact(normal, touch, gap));
         }
     }
 }
 
-/// Reports where an ellipse meets the edges and round vertices of a shape, with a gap below `reach`.
-///
-/// Where its centre is outside, that is every feature with the centre in front; where it is inside, the one of least penetration too.
-fn meetings(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut report: impl FnMut(Meeting)) {
+/// Reports where an ellipse meets a shape with a gap below `reach`.
+fn meetings(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], report: impl FnMut(Meeting)) {
+    if shape.parts().len() == 1 {
+        with_convex(ellipse, shape, slack).into_iter().filter(|meeting| meeting.gap < reach).for_each(report);
+    } else {
+        with_union(ellipse, shape, [reach, slack], report);
+    }
+}
+
+/// Two convex bodies have one contact: where the separation is largest.
+fn with_convex(ellipse: &Ellipse, shape: &Shape, slack: f64) -> Option<Meeting> {
+    let mut best: Option<Meeting> = None;
+    for meeting in shape.outline().edges.iter().filter_map(|edge| over_edge(ellipse, edge, slack)) {
+        // apart, a local maximum is the only one
+        if meeting.gap >= 0.0 {
+            return Some(meeting);
+        }
+        best = wider(best, meeting);
+    }
+    for round in &shape.outline().rounds {
+        let bound = round.cone.support(sub(ellipse.centre, round.centre)) - ellipse.inner_radius() - round.radius;
+        if best.is_none_or(|best| bound > best.gap)
+            && let Some(meeting) = about_round(ellipse, round, slack)
+        {
+            best = wider(best, meeting);
+        }
+    }
+    best
+}
+
+/// The one with the larger separation.
+fn wider(best: Option<Meeting>, new: Meeting) -> Option<Meeting> {
+    Some(best.filter(|best| best.gap >= new.gap).unwrap_or(new))
+}
+
+/// With a union it is every feature that has the ellipse's centre in front; where the centre is inside, the least penetration too.
+fn with_union(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut report: impl FnMut(Meeting)) {
     let mut way_out: Option<Meeting> = None;
-    let mut meet = |meeting: Meeting, height: f64| {
+    let mut meet = |meeting: Meeting, from: Vec2| {
+        let height = dot(meeting.normal, sub(ellipse.centre, from));
         if height >= 0.0 && meeting.gap < reach {
             report(meeting);
         } else if height < 0.0 && way_out.is_none_or(|way| meeting.gap > way.gap) {
@@ -80,23 +114,33 @@ fn meetings(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut repo
         }
     };
     for edge in &shape.outline().edges {
-        let (_, height) = edge.coordinates(ellipse.centre);
-        let (normal, touch) = (edge.normal(), ellipse.point(negate(edge.normal())));
-        if edge.holds(edge.coordinates(touch).0, slack) {
-            meet(Meeting { normal, touch, gap: height - ellipse.support(normal) }, height);
+        if let Some(meeting) = over_edge(ellipse, edge, slack) {
+            meet(meeting, edge.start);
         }
     }
     for round in &shape.outline().rounds {
-        let separation = Separation { d: sub(ellipse.centre, round.centre), ellipses: [Some(ellipse), None], radius: round.radius };
-        if length(separation.d) - round.radius - ellipse.radius() >= reach {
-            continue;
-        }
-        let Some(Peak { normal, gap }) = separation.widest(&round.cone, slack) else { continue };
-        if !(round.covered && shape.hides(add(round.centre, scale(round.radius, normal)))) {
-            meet(Meeting { normal, touch: ellipse.point(negate(normal)), gap }, dot(normal, separation.d));
-        }
+        let near = length(sub(ellipse.centre, round.centre)) - round.radius - ellipse.radius() < reach;
+        let Some(meeting) = near.then(|| about_round(ellipse, round, slack)).flatten() else { continue };
+        let hidden = round.covered && shape.hides(add(round.centre, scale(round.radius, meeting.normal)));
+        meet(Meeting { hidden, ..meeting }, round.centre);
     }
     if let Some(way) = way_out.filter(|way| way.gap < reach && shape.contains(ellipse.centre)) {
         report(way);
     }
+}
+
+/// Closed form: the ellipse's lowest point, if it stands over the edge.
+fn over_edge(ellipse: &Ellipse, edge: &Edge, slack: f64) -> Option<Meeting> {
+    let normal = edge.normal();
+    let touch = ellipse.point(negate(normal));
+    let (s, _) = edge.coordinates(touch);
+    let (_, height) = edge.coordinates(ellipse.centre);
+    edge.holds(s, slack).then(|| Meeting { normal, touch, gap: height - ellipse.support(normal), hidden: false })
+}
+
+/// The largest separation from a corner or a disc within its cone.
+fn about_round(ellipse: &Ellipse, round: &Round, slack: f64) -> Option<Meeting> {
+    let separation = Separation { d: sub(ellipse.centre, round.centre), ellipses: [Some(ellipse), None], radius: round.radius };
+    let Peak { normal, gap } = separation.widest(&round.cone, slack)?;
+    Some(Meeting { normal, touch: ellipse.point(negate(normal)), gap, hidden: false })
 }

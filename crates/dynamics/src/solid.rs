@@ -1,8 +1,8 @@
 //! The inside of one convex part ([`Solid`]): depth of a point, and which stretch of a segment it covers.
 
+use crate::Part;
 use crate::feature::Edge;
 use crate::plane::{Vec2, cross, dot, length, right, sub, unit};
-use crate::Part;
 
 /// A half plane n·p ≤ offset that bounds a polygon.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,11 @@ pub(crate) struct Side {
 pub(crate) enum Solid {
     Polygon(Polygon),
     /// `axis` is the unit vector of the first semi-axis; a disc is one with equal axes.
-    Oval { centre: Vec2, axis: Vec2, semi_axes: [f64; 2] },
+    Oval {
+        centre: Vec2,
+        axis: Vec2,
+        semi_axes: [f64; 2],
+    },
 }
 
 #[derive(Clone, Debug)]

@@ -1,0 +1,11 @@
+//! The narrow phase against independent answers: parry, brute force over directions, finite differences, and laws of geometry.
+
+mod errors;
+mod fuzz;
+mod laws;
+mod parry;
+mod rates;
+mod scenes;
+mod shapes;
+mod smooth;
+mod unions;
