@@ -33,12 +33,12 @@ fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
     (low.abs().max(high.abs()) > LARGEST).then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
-/// A jump by about a full turn.
+/// A jump by about a full turn from one row to the next; after a gap an angle may start anew.
 fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
-    let seen: Vec<f64> = poses.iter().flatten().map(|pose| pose.theta).collect();
-    let jumps = seen.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > PI).count();
+    let steps = poses.windows(2).filter_map(|pair| Some(pair[1]?.theta - pair[0]?.theta));
+    let jumps = steps.filter(|step| step.abs() > PI).count();
     let found = format!("{name} jumps by a full turn at {jumps} rows: it is wrapped to one turn");
-    (jumps > 0).then(|| Finding::warning(Subject::Angles, found, "write angles unwrapped, so that they go on smoothly"))
+    (jumps > 0).then(|| Finding::problem(Subject::Angles, found, "write angles unwrapped, so that they go on smoothly"))
 }
 
 /// Small angles in degrees: only their noise gives them away.

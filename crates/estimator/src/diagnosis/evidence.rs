@@ -134,11 +134,13 @@ pub(super) fn median(values: Vec<f64>) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The `q`-quantile, the order statistic nearest to position q (n - 1); NaN of nothing.
+/// The `q`-quantile, linear between order statistics: position q (n - 1) from the smallest; NaN of nothing.
 pub(super) fn quantile(mut values: Vec<f64>, q: f64) -> f64 {
     values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    values.get((q * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
+    let Some(last) = values.len().checked_sub(1) else { return f64::NAN };
+    let position = q * last as f64;
+    let lower = position.floor() as usize;
+    values[lower] + (position - lower as f64) * (values[(lower + 1).min(last)] - values[lower])
 }
 
 /// A length in mm, as text.

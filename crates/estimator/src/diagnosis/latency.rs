@@ -4,7 +4,7 @@
 //! still coming when the pusher stands: the gap then bends. The delay of a stop is the one that keeps the gap most constant from
 //! a quarter of a second before it to half a second after; the log's delay is the median over its stops.
 
-use super::evidence::{Evidence, median};
+use super::evidence::{Evidence, median, quantile};
 use super::finding::{Finding, Subject};
 
 /// Delays that are tried (s).
@@ -19,6 +19,9 @@ const WINDOW: [f64; 2] = [0.25, 0.55];
 /// Error of a delay that is worth a warning, and that is a problem (s).
 const OFF: [f64; 2] = [0.035, 0.06];
 
+/// A delay matters where the pusher moves on by this many standard deviations of a position in it.
+const MATTERS: f64 = 1.5;
+
 /// The delay of a log.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Latency {
@@ -26,17 +29,23 @@ pub(super) struct Latency {
     pub delay: f64,
     /// Number of stops that tell.
     pub stops: usize,
+    /// Speed of the pusher when it moves (m/s).
+    pub speed: f64,
 }
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let stated = evidence.latency();
-    let Some(Latency { delay, stops }) = estimate(evidence) else {
+    let Some(Latency { delay, stops, speed }) = estimate(evidence) else {
         let found = format!("the pusher never stops while it pushes: the delay cannot be told (the scene says {stated} s)");
         return vec![Finding::ok(Subject::Latency, found)];
     };
-    let found = format!("object poses are {delay:.3} s late, told from {stops} stops of the pusher; the scene says {stated} s");
+    let found = format!(
+        "object poses are {delay:.3} s late, told from {stops} {} of the pusher; the scene says {stated} s",
+        if stops == 1 { "stop" } else { "stops" }
+    );
     let advice = format!("set latency = {:.2} under [camera]", delay.max(0.0));
     vec![match (delay - stated).abs() {
+        off if off * speed < MATTERS * evidence.position_std() => Finding::ok(Subject::Latency, found),
         off if off > OFF[1] => Finding::problem(Subject::Latency, found, advice),
         off if off > OFF[0] => Finding::warning(Subject::Latency, found, advice),
         _ => Finding::ok(Subject::Latency, found),
@@ -45,15 +54,15 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 /// The delay of the log, where its pusher stops while it pushes.
 pub(super) fn estimate(evidence: &Evidence<'_>) -> Option<Latency> {
-    let delays: Vec<f64> = stops(evidence).into_iter().filter_map(|row| delay_at(evidence, row)).collect();
-    (!delays.is_empty()).then(|| Latency { stops: delays.len(), delay: median(delays) })
-}
-
-/// Rows at which the pusher comes to rest after a steady motion.
-fn stops(evidence: &Evidence<'_>) -> Vec<usize> {
     let time = &evidence.log.time;
     let speeds: Vec<Option<f64>> = (0..time.len()).map(|row| pusher_speed(evidence, row)).collect();
-    let fast = super::evidence::quantile(speeds.iter().flatten().copied().collect(), 0.9);
+    let speed = quantile(speeds.iter().flatten().copied().collect(), 0.9);
+    let delays: Vec<f64> = stops(time, &speeds, speed).into_iter().filter_map(|row| delay_at(evidence, row)).collect();
+    (!delays.is_empty()).then(|| Latency { stops: delays.len(), delay: median(delays), speed })
+}
+
+/// Rows at which the pusher comes to rest after a steady motion at about the speed `fast`.
+fn stops(time: &[f64], speeds: &[Option<f64>], fast: f64) -> Vec<usize> {
     let between = |from: f64, to: f64| {
         let rows = time.partition_point(|t| *t < from)..time.partition_point(|t| *t <= to);
         speeds[rows].iter().map(|speed| speed.unwrap_or(f64::NAN)).collect::<Vec<f64>>()

@@ -50,6 +50,7 @@ fn pusher(evidence: &Evidence<'_>) -> Finding {
     match (missing, lifted.len()) {
         (0, _) => Finding::ok(Subject::PusherPoses, "every row has a pusher pose"),
         (_, 0) => Finding::ok(Subject::PusherPoses, format!("{missing} rows have no pusher pose, all bridged")),
+        (_, 1) => Finding::ok(Subject::PusherPoses, format!("the pusher is off the plane once: {}", lifted[0])),
         (_, count) => Finding::ok(Subject::PusherPoses, format!("the pusher is off the plane {count} times: {}", lifted.join(", "))),
     }
 }

@@ -28,6 +28,11 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     if own.abs() < near {
         return Finding::ok(subject, shown);
     }
+    let (false_touches, free) = free_rows(evidence, sensor, near);
+    if 2 * false_touches > free {
+        let found = format!("{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near: 0 and 1 seem to be swapped");
+        return Finding::problem(subject, found, "write 1 for a touch, 0 for none");
+    }
     let others = (0..evidence.setup.scene.fixels.len()).filter(|&fixel| fixel != sensor);
     let nearest = others.map(|fixel| (fixel, fixel_distance(evidence, &touched, fixel))).min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     match nearest {
@@ -68,6 +73,15 @@ fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
 fn rows(evidence: &Evidence<'_>, sensor: usize, value: bool) -> Vec<usize> {
     let readings = &evidence.log.tactile[sensor];
     (0..readings.len()).filter(|&row| readings[row] == Some(value) && evidence.log.object[row].is_some()).collect()
+}
+
+/// Rows in which no fixel is within `near` (m): in how many of them the sensor reads 1, and how many there are.
+fn free_rows(evidence: &Evidence<'_>, sensor: usize, near: f64) -> (usize, usize) {
+    let fixels = evidence.setup.scene.fixels.len();
+    let is_free = |row: &usize| (0..fixels).all(|fixel| evidence.fixel_gap(*row, fixel).is_some_and(|gap| gap > near));
+    let count = |value: bool| rows(evidence, sensor, value).iter().filter(|row| is_free(row)).count();
+    let (touched, clear) = (count(true), count(false));
+    (touched, touched + clear)
 }
 
 /// Median gap of a fixel over `rows` (m).
