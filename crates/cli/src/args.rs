@@ -18,12 +18,25 @@ pub struct Program {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Run the embedded experiments through every method: tables and figures
+    Demo(DemoArgs),
     /// Estimate the object's pose and the friction over one recorded experiment
     Filter(FilterArgs),
     /// Run every method on experiment folders and compare their errors
     Compare(CompareArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
     Check(CheckArgs),
+}
+
+/// Arguments of `stickslip demo`.
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Write the figures into this folder
+    #[arg(long, value_name = "DIR", default_value = "stickslip-demo")]
+    pub out: PathBuf,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
 }
 
 /// Arguments of `stickslip filter`.

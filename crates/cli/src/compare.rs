@@ -1,8 +1,8 @@
 //! `stickslip compare`: every method on each experiment folder, medians over seeds, quantiles over folders.
 
 mod folders;
-mod results;
-mod tables;
+pub mod results;
+pub mod tables;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;

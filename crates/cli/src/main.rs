@@ -4,8 +4,10 @@ mod args;
 mod check;
 mod compare;
 mod contest;
+mod demo;
 mod experiment;
 mod failure;
+mod figure;
 mod filter;
 mod parameters;
 mod progress;
@@ -21,6 +23,7 @@ use crate::args::{Command, Program};
 
 fn main() -> ExitCode {
     let result = match Program::parse().command {
+        Command::Demo(args) => demo::demo(&args),
         Command::Filter(args) => filter::filter(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),

@@ -10,7 +10,6 @@ pub fn quantile(mut values: Vec<f64>, q: f64) -> Option<f64> {
     Some(values[lower] + (position - lower as f64) * (values[upper] - values[lower]))
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -134,6 +134,13 @@ impl Marks {
     }
 }
 
+impl Entry {
+    /// The scores of a rival.
+    pub fn new(rival: Rival, marks: Marks) -> Self {
+        Self { rival, method: rival.key(), marks }
+    }
+}
+
 impl FolderResult {
     /// Medians over the runs of each rival; the first failed run is the folder's error.
     pub fn gather<'a>(folder: &Path, runs: impl Iterator<Item = (Rival, &'a Result<Marks>)>) -> Result<Self, &'a anyhow::Error> {
@@ -145,7 +152,7 @@ impl FolderResult {
                 _ => by_rival.push((rival, vec![marks])),
             }
         }
-        let methods = by_rival.into_iter().map(|(rival, marks)| Entry { rival, method: rival.key(), marks: Marks::quantile(&marks, 0.5) });
+        let methods = by_rival.into_iter().map(|(rival, marks)| Entry::new(rival, Marks::quantile(&marks, 0.5)));
         Ok(Self { folder: folder.display().to_string(), methods: methods.collect() })
     }
 }

@@ -1,0 +1,135 @@
+//! `stickslip demo`: two embedded experiments through every method, with tables and figures.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use rayon::prelude::*;
+use stickslip::dynamics::Pose;
+use stickslip::{Estimate, Occlusion, Reference, Tracking};
+
+use crate::args::DemoArgs;
+use crate::compare::results::{Entry, Marks};
+use crate::compare::tables;
+use crate::contest::{Attempt, Rival, Rules};
+use crate::experiment::{Experiment, Texts};
+use crate::failure::hinted;
+use crate::figure::{Figure, Mark, Series};
+use crate::parameters::Parameter;
+use crate::table::Table;
+use crate::verdict::Verdict;
+
+/// Particles of each filter.
+const PARTICLES: usize = 500;
+
+/// Time that figures show after the last contact begins (s).
+const AFTERMATH: f64 = 4.0;
+
+macro_rules! embedded {
+    ($name:literal) => {
+        Texts {
+            name: $name,
+            scene: include_str!(concat!("../demo/", $name, "/scene.toml")),
+            log: include_str!(concat!("../demo/", $name, "/log.csv")),
+            truth_csv: include_str!(concat!("../demo/", $name, "/truth.csv")),
+            truth_json: include_str!(concat!("../demo/", $name, "/truth.json")),
+        }
+    };
+}
+
+/// The experiments, with what happens in them.
+const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
+    (embedded!("stop-square50-bar-000"), "a bar pushes a square until it jams at a fixel"),
+    (embedded!("slide-pent-disc-118"), "a disc pushes a pentagon, which slides and turns on two fixels"),
+];
+
+/// Runs the command.
+pub fn demo(args: &DemoArgs) -> Result<Verdict> {
+    let threads = args.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    for (texts, story) in EXPERIMENTS {
+        let experiment = Experiment::parse(texts)?;
+        let attempts = pool.install(|| attempts(&experiment))?;
+        print_tables(texts.name, story, &experiment, &attempts);
+        let path = write_figure(&args.out, texts.name, &figure(story, &experiment, &attempts)?)?;
+        println!("figure: {}", path.display());
+        println!();
+    }
+    Ok(Verdict::Done)
+}
+
+/// The camera is dark from just before the first fixel contact on.
+fn occlusion(experiment: &Experiment) -> Occlusion {
+    experiment.facts.occlude_from.map_or(Occlusion::None, |from| Occlusion::Rows { from, to: None })
+}
+
+fn attempts(experiment: &Experiment) -> Result<Vec<(Rival, Attempt)>> {
+    let rules = Rules { particles: PARTICLES, tracking: Tracking::Smoothed };
+    let occlusion = occlusion(experiment);
+    let attempt = |rival: Rival| Ok((rival, rival.attempt(experiment, occlusion, &rules, 0)?));
+    Rival::on(experiment, occlusion).into_par_iter().map(attempt).collect()
+}
+
+fn print_tables(name: &str, story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) {
+    let dark = experiment.facts.occlude_from.map_or(0.0, |row| experiment.log.time[row]);
+    println!("{name}: {story}; no camera from {dark:.1} s on");
+    let entries: Vec<Entry> =
+        attempts.iter().map(|(rival, attempt)| Entry::new(*rival, Marks::new(&attempt.scores, attempt.run.unsolved))).collect();
+    println!("{}", tables::entries(&entries));
+    if let Some((_, attempt)) = attempts.iter().find(|(rival, _)| *rival == Rival::Particle) {
+        println!("{}", friction(experiment, &attempt.run.estimate));
+    }
+}
+
+/// The particle filter's friction beside what it was told and what is true.
+fn friction(experiment: &Experiment, estimate: &Estimate) -> Table {
+    let mut table = Table::new(["friction", "told", "particle", "truth"]);
+    for parameter in Parameter::at_end(estimate) {
+        let told = parameter.shown_value(parameter.nominal(&experiment.setup.scene.nominal));
+        let truth = parameter.shown_value(parameter.truth(&experiment.facts));
+        table.push([parameter.name.to_owned(), told, parameter.shown(), truth]);
+    }
+    table
+}
+
+fn figure(story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) -> Result<String> {
+    let time_of = |row: usize| experiment.log.time.get(row).copied();
+    let fixels = experiment.facts.first_fixel_contacts.iter().enumerate();
+    let fixels = fixels.filter_map(|(k, row)| Some(Mark { time: time_of((*row)?)?, name: format!("fixel {}", k + 1) }));
+    let pusher = experiment.facts.first_pusher_contact.and_then(time_of).map(|time| Mark { time, name: "pusher".to_owned() });
+    let contacts: Vec<Mark> = pusher.into_iter().chain(fixels).collect();
+    let last = experiment.log.time.last().copied().unwrap_or(0.0);
+    let end = contacts.iter().map(|mark| mark.time + AFTERMATH).fold(0.0, f64::max).min(last);
+    let reference = experiment.reference();
+    Figure {
+        title: story.to_owned(),
+        span: [contacts.iter().map(|mark| mark.time - 1.0).fold(end, f64::min).max(0.0), end],
+        dark_from: experiment.facts.occlude_from.and_then(time_of),
+        contacts,
+        series: attempts.iter().map(|(rival, attempt)| series(*rival, &reference, &attempt.run.estimate)).collect(),
+    }
+    .to_svg()
+}
+
+/// The errors of one method against the truth, row by row.
+fn series(rival: Rival, reference: &Reference, estimate: &Estimate) -> Series {
+    let rows = reference.time.iter().zip(&reference.pose);
+    let pairs: Vec<(f64, Pose, Pose)> = rows.filter_map(|(time, pose)| Some((*time, (*pose)?, estimate.pose_at(*time)?))).collect();
+    let turn = |truth: &Pose, guess: &Pose| {
+        (guess.theta - truth.theta + 180_f64.to_radians()).rem_euclid(360_f64.to_radians()).to_degrees() - 180.0
+    };
+    Series {
+        name: rival.name(),
+        position: pairs.iter().map(|(time, truth, guess)| (*time, 1e3 * (guess.x - truth.x).hypot(guess.y - truth.y))).collect(),
+        angle: pairs.iter().map(|(time, truth, guess)| (*time, turn(truth, guess).abs())).collect(),
+    }
+}
+
+fn write_figure(folder: &Path, name: &str, svg: &str) -> Result<PathBuf> {
+    let path = folder.join(format!("{name}.svg"));
+    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, svg));
+    written.map_err(|error| {
+        hinted(format!("{}: cannot be written: {error}", path.display()), "give a folder that can be written to with --out")
+    })?;
+    Ok(path)
+}

@@ -1,0 +1,162 @@
+//! The program as a user runs it: exit codes, what goes to which stream, JSON keys, files written.
+
+mod common;
+
+use std::fs;
+
+use common::{Experiment, STOP, json, stickslip};
+
+/// Few particles: these tests look at the program, not at the filter.
+const FEW: [&str; 2] = ["--particles", "16"];
+
+#[test]
+fn filter_prints_scores_and_writes_only_the_estimate() {
+    let case = Experiment::copy(STOP, "filter_prints");
+    let out = case.folder.join("out");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    let run = stickslip()
+        .args(["filter", &case.log(), "--scene", &case.scene(), "--occlude", "153", "--out"])
+        .arg(&out)
+        .args(FEW)
+        .output()
+        .unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let (told, talk) = (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
+    for line in ["against the truth", "WMSE, hidden rows", "real-time factor", "mu_s", "d_tri"] {
+        assert!(told.contains(line), "{line} is missing in\n{told}");
+    }
+    assert!(talk.contains("wrote") && talk.contains("estimate.csv"), "{talk}");
+    assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
+    let estimate = fs::read_to_string(out.join("estimate.csv")).unwrap();
+    assert_eq!(estimate.lines().count(), fs::read_to_string(case.log()).unwrap().lines().count());
+}
+
+#[test]
+fn filter_json_has_the_contract_s_keys() {
+    let case = Experiment::copy(STOP, "filter_json");
+    let report = json(stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--method", "nominal", "--json"]));
+    for key in ["wmse_mm", "wmse_moving_mm", "final_error_mm", "final_error_deg", "frames", "unsolved", "real_time_factor"] {
+        assert!(report[key].is_number(), "{key}: {report}");
+    }
+    assert!(report["wmse_occluded_mm"].is_null(), "nothing is hidden: {report}");
+    let hidden = json(stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--occlude", "100:200", "--json"]).args(FEW));
+    assert!(hidden["wmse_occluded_mm"].is_number() && hidden["friction"]["mu_s"]["mean"].is_number(), "{hidden}");
+}
+
+#[test]
+fn filter_scores_against_the_log_where_there_is_no_truth() {
+    let case = Experiment::copy(STOP, "filter_log_reference");
+    fs::remove_file(case.folder.join("truth.csv")).unwrap();
+    let run = stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--method", "kalman"]).output().unwrap();
+    assert!(String::from_utf8(run.stdout).unwrap().contains("against the log's own poses"));
+}
+
+#[test]
+fn filter_gives_the_same_estimate_on_any_number_of_threads() {
+    let case = Experiment::copy(STOP, "filter_threads");
+    let estimate = |threads: &str| {
+        let out = case.folder.join(threads);
+        let run = stickslip()
+            .args(["filter", &case.log(), "--scene", &case.scene(), "--threads", threads, "--particles", "300", "--out"])
+            .arg(&out)
+            .output();
+        assert_eq!(run.unwrap().status.code(), Some(0));
+        fs::read(out.join("estimate.csv")).unwrap()
+    };
+    assert!(estimate("1") == estimate("3"));
+}
+
+#[test]
+fn bad_arguments_exit_with_2() {
+    let case = Experiment::copy(STOP, "bad_arguments");
+    let (log, scene) = (case.log(), case.scene());
+    let bad: [&[&str]; 7] = [
+        &[],
+        &["filter", &log],
+        &["filter", &log, "--scene", &scene, "--method", "magic"],
+        &["filter", &log, "--scene", &scene, "--occlude", "9:3"],
+        &["filter", &log, "--scene", &scene, "--particles", "0"],
+        &["filter", &log, "--scene", &scene, "--occlude", "3", "--occlude-middle", "1"],
+        &["compare"],
+    ];
+    for arguments in bad {
+        assert_eq!(stickslip().args(arguments).output().unwrap().status.code(), Some(2), "{arguments:?}");
+    }
+    let contact = stickslip().args(["filter", &log, "--scene", &scene, "--mode", "contact"]).output().unwrap();
+    assert_eq!(contact.status.code(), Some(2));
+    assert!(String::from_utf8(contact.stderr).unwrap().contains("does not exist yet"));
+}
+
+#[test]
+fn broken_files_are_named_with_line_and_column() {
+    let case = Experiment::copy(STOP, "broken_files");
+    let filter = || stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--method", "nominal"]).output().unwrap();
+    case.edit("scene.toml", |text| text.replace("mass = ", "mas = "));
+    let run = filter();
+    let talk = String::from_utf8(run.stderr).unwrap();
+    assert_eq!((run.status.code(), talk.lines().count()), (Some(1), 1), "{talk}");
+    assert!(talk.starts_with("error: ") && talk.contains("scene.toml:5:1: `object.mas` is not a known key"), "{talk}");
+    case.edit("scene.toml", |text| text.replace("mas = ", "mass = "));
+    case.edit("log.csv", |text| text.replacen("0.033333,", "0.033333,x", 1));
+    let talk = String::from_utf8(filter().stderr).unwrap();
+    assert!(talk.contains("log.csv:3: column 2 (object_x): `x"), "{talk}");
+}
+
+#[test]
+fn missing_files_come_with_the_next_step() {
+    let run = stickslip().args(["filter", "no-such-log.csv", "--scene", "no-such-scene.toml"]).output().unwrap();
+    let talk = String::from_utf8(run.stderr).unwrap();
+    assert_eq!((run.status.code(), run.stdout.len()), (Some(1), 0));
+    assert!(talk.contains("no-such-scene.toml") && talk.contains("\nhelp: "), "{talk}");
+}
+
+#[test]
+fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
+    let good = Experiment::copy(STOP, "compare_lost/good");
+    let broken = Experiment::copy(STOP, "compare_lost/broken");
+    broken.edit("log.csv", |_| "time\n".to_owned());
+    // the parent folder stands for both
+    let parent = good.folder.parent().unwrap();
+    let run = stickslip().arg("compare").arg(parent).args(["--json", "--seeds", "2"]).args(FEW).output().unwrap();
+    assert_eq!(run.status.code(), Some(3));
+    assert!(String::from_utf8(run.stderr).unwrap().contains("broken/log.csv:1"));
+    let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    let methods: Vec<&str> = report["folders"][0]["methods"].as_array().unwrap().iter().map(|m| m["method"].as_str().unwrap()).collect();
+    assert_eq!(methods, ["nominal", "kalman", "particle_no_tactile", "particle", "particle_always_on"]);
+    assert_eq!(report["errors"].as_array().unwrap().len(), 1);
+    let overall = &report["overall"][0];
+    assert_eq!(overall["median"]["wmse_mm"], report["folders"][0]["methods"][0]["wmse_mm"]);
+}
+
+#[test]
+fn compare_does_not_depend_on_threads() {
+    let case = Experiment::copy(STOP, "compare_threads");
+    let run = |threads: &str| {
+        stickslip().arg("compare").arg(&case.folder).args(["--threads", threads, "--json"]).args(FEW).output().unwrap().stdout
+    };
+    let one = run("1");
+    assert!(!one.is_empty() && one == run("3"));
+}
+
+#[test]
+fn compare_of_nothing_but_broken_folders_fails() {
+    let run = stickslip().args(["compare", "no-such-folder"]).output().unwrap();
+    assert_eq!(run.status.code(), Some(1));
+    assert!(String::from_utf8(run.stderr).unwrap().contains("no-such-folder"));
+}
+
+#[test]
+fn demo_prints_tables_and_writes_a_figure_per_experiment() {
+    let folder = common::empty_folder("demo");
+    let run = stickslip().arg("demo").current_dir(&folder).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let told = String::from_utf8(run.stdout).unwrap();
+    for line in ["particle, no tactile", "particle, camera on", "kalman", "truth", "stickslip-demo/stop-square50-bar-000.svg"] {
+        assert!(told.contains(line), "{line} is missing in\n{told}");
+    }
+    let figures: Vec<String> =
+        fs::read_dir(folder.join("stickslip-demo")).unwrap().map(|f| fs::read_to_string(f.unwrap().path()).unwrap()).collect();
+    assert_eq!(figures.len(), 2);
+    assert!(figures.iter().all(|svg| svg.starts_with("<svg") && svg.contains("position error [mm]") && svg.contains("fixel 1")));
+}
