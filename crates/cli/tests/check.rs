@@ -1,5 +1,7 @@
 //! `stickslip check` names what was broken on purpose, and finds nothing in good data.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 mod common;
 
 use common::{Experiment, SLIDE, STOP, stickslip};

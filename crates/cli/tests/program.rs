@@ -1,5 +1,7 @@
 //! The program as a user runs it: exit codes, what goes to which stream, JSON keys, files written.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 mod common;
 
 use std::fs;
