@@ -76,7 +76,7 @@ fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> Comparison {
         let own = jobs.iter().zip(&marks).filter(|(job, _)| job.case == index).map(|(job, marks)| (job.rival, marks));
         match FolderResult::gather(&case.folder, own) {
             Ok(result) => results.push(result),
-            Err(error) => errors.push(LostFolder::new(&case.folder, &error)),
+            Err(error) => errors.push(LostFolder::new(&case.folder, error)),
         }
     }
     Comparison::new(args, results, errors)
