@@ -77,9 +77,11 @@ fn subsets(n: usize, size: usize) -> Vec<Vec<usize>> {
     if size == 0 {
         return vec![Vec::new()];
     }
-    let tails = |first: usize| subsets(n - first - 1, size - 1).into_iter().map(move |tail| {
-        std::iter::once(first).chain(tail.into_iter().map(|i| i + first + 1)).collect()
-    });
+    let tails = |first: usize| {
+        subsets(n - first - 1, size - 1)
+            .into_iter()
+            .map(move |tail| std::iter::once(first).chain(tail.into_iter().map(|i| i + first + 1)).collect())
+    };
     (0..n).flat_map(tails).collect()
 }
 
@@ -252,16 +254,20 @@ impl Search {
         let Some((low, high)) = self.line_interval(&origin, &d, &m, &inequalities) else { return Finding::Excluded };
         let Some(dual) = dual_basis(&[chosen[0].g, chosen[1].g, chosen[2].g, m]) else { return Finding::Excluded };
 
-        self.bisect((low, high), &mut |low, high| {
-            let (a, b) = (plus(&origin, low, &d), plus(&origin, high, &d));
-            let ranges = dual.map(|w| self.functional_range(&w, &a, &b));
-            let balanced = ranges[3].0 <= self.slack && ranges[3].1 >= -self.slack;
-            if !balanced || ranges[..3].iter().any(|r| r.1 < -self.slack) {
-                return Piece::Excluded;
-            }
-            let alpha = [0, 1, 2].map(|k| 0.5 * (ranges[k].0 + ranges[k].1));
-            Piece::Candidate(self.candidate(&chosen, &alpha, plus(&origin, 0.5 * (low + high), &d)))
-        }, accept)
+        self.bisect(
+            (low, high),
+            &mut |low, high| {
+                let (a, b) = (plus(&origin, low, &d), plus(&origin, high, &d));
+                let ranges = dual.map(|w| self.functional_range(&w, &a, &b));
+                let balanced = ranges[3].0 <= self.slack && ranges[3].1 >= -self.slack;
+                if !balanced || ranges[..3].iter().any(|r| r.1 < -self.slack) {
+                    return Piece::Excluded;
+                }
+                let alpha = [0, 1, 2].map(|k| 0.5 * (ranges[k].0 + ranges[k].1));
+                Piece::Candidate(self.candidate(&chosen, &alpha, plus(&origin, 0.5 * (low + high), &d)))
+            },
+            accept,
+        )
     }
 
     /// The part of the line where the inequalities hold and the friction of the feet can balance along m.
@@ -330,21 +336,25 @@ impl Search {
         }
         let inequalities = self.inequalities(&chosen);
         let y_gain = norm(&first_three(&gives_y.row)) / gives_y.row[3].abs();
-        self.bisect((interval.0, interval.1.min(1e6)), &mut |low, high| {
-            let middle = 0.5 * (low + high);
-            let reach = 0.5 * (high - low) * norm(&load);
-            let (v, feet) = drag(&self.rows, &plus(&load0, middle, &load));
-            if (dot(&w, &v) + offset).abs() > reach * norm(&w) + self.slack {
-                return Piece::Excluded;
-            }
-            let y = (gives_y.value - dot(&first_three(&gives_y.row), &v)) / gives_y.row[3];
-            let v = [v[0], v[1], v[2], y];
-            if self.violates(&inequalities, &v, reach * (1.0 + y_gain)) {
-                return Piece::Excluded;
-            }
-            let alpha = if swap { [ratio * middle + constant, middle] } else { [middle, ratio * middle + constant] };
-            Piece::Candidate(Guess { feet, ..self.candidate(&chosen, &alpha, v) })
-        }, accept)
+        self.bisect(
+            (interval.0, interval.1.min(1e6)),
+            &mut |low, high| {
+                let middle = 0.5 * (low + high);
+                let reach = 0.5 * (high - low) * norm(&load);
+                let (v, feet) = drag(&self.rows, &plus(&load0, middle, &load));
+                if (dot(&w, &v) + offset).abs() > reach * norm(&w) + self.slack {
+                    return Piece::Excluded;
+                }
+                let y = (gives_y.value - dot(&first_three(&gives_y.row), &v)) / gives_y.row[3];
+                let v = [v[0], v[1], v[2], y];
+                if self.violates(&inequalities, &v, reach * (1.0 + y_gain)) {
+                    return Piece::Excluded;
+                }
+                let alpha = if swap { [ratio * middle + constant, middle] } else { [middle, ratio * middle + constant] };
+                Piece::Candidate(Guess { feet, ..self.candidate(&chosen, &alpha, v) })
+            },
+            accept,
+        )
     }
 
     /// Halves the whole interval until every piece is excluded or a candidate is accepted.
@@ -449,9 +459,8 @@ fn dual_basis(g: &[Vector<4>; 4]) -> Option<[Vector<4>; 4]> {
 /// The V of least length that best satisfies the equations.
 fn least_squares<const N: usize>(equations: &[Equation; N]) -> Vector<4> {
     // (A Aᵀ + tiny) z = b, V = Aᵀ z; two rounds of refinement remove the effect of tiny
-    let gram: [[f64; N]; N] = std::array::from_fn(|i| {
-        std::array::from_fn(|j| dot(&equations[i].row, &equations[j].row) + if i == j { 1e-12 } else { 0.0 })
-    });
+    let gram: [[f64; N]; N] =
+        std::array::from_fn(|i| std::array::from_fn(|j| dot(&equations[i].row, &equations[j].row) + if i == j { 1e-12 } else { 0.0 }));
     let mut v = [0.0; 4];
     for _ in 0..3 {
         let miss: [f64; N] = std::array::from_fn(|i| equations[i].value - dot(&equations[i].row, &v));

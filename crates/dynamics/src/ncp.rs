@@ -4,9 +4,9 @@
 //! and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
 //! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
 
+use crate::Twist;
 use crate::lanes::{Lanes, Mask};
 use crate::problem::{ContactPoint, StepProblem, StepSolution};
-use crate::Twist;
 
 /// A vector of the scaled velocity space (x, y, ρ θ).
 pub type Triple<const W: usize> = [Lanes<W>; 3];
@@ -144,6 +144,15 @@ impl<const W: usize> Impulses<W> {
         self.tangential.resize(contacts, Lanes::ZERO);
     }
 
+    /// Copies all lanes; memory is reused.
+    pub fn copy_from(&mut self, from: &Self) {
+        self.v = from.v;
+        self.normal.clone_from(&from.normal);
+        self.tangential.clone_from(&from.tangential);
+        self.feet = from.feet;
+        self.pusher_yield = from.pusher_yield;
+    }
+
     /// Overwrites one lane; contacts that `from` does not have carry nothing.
     pub fn set_lane(&mut self, lane: usize, from: &Impulses<1>) {
         for (to, from) in self.v.iter_mut().zip(&from.v) {
@@ -241,7 +250,15 @@ impl<const W: usize> Ncp<W> {
 #[inline(always)]
 fn worse<const W: usize>(worst: Lanes<W>, violation: Lanes<W>) -> Lanes<W> {
     let size = violation.abs();
-    Lanes(std::array::from_fn(|i| if size.0[i] <= worst.0[i] { worst.0[i] } else if size.0[i].is_nan() { f64::INFINITY } else { size.0[i] }))
+    Lanes(std::array::from_fn(|i| {
+        if size.0[i] <= worst.0[i] {
+            worst.0[i]
+        } else if size.0[i].is_nan() {
+            f64::INFINITY
+        } else {
+            size.0[i]
+        }
+    }))
 }
 
 /// Nearest point of the disc of radius `bound`.

@@ -12,15 +12,15 @@ const STIFFNESS: f64 = 1.0e6;
 /// Relative change of the velocity at which the iteration ends.
 const CONVERGED: f64 = 1e-14;
 
-const ITERATIONS: usize = 30;
-
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
     Open,
     Stick,
     /// p_t = ratio p_n.
-    Slide { ratio: f64 },
+    Slide {
+        ratio: f64,
+    },
 }
 
 /// Newton's method in fixed modes, with its working memory.
@@ -33,16 +33,16 @@ pub struct Polish {
 }
 
 impl Polish {
-    /// Newton steps from `guess` in its own modes; returns where they end.
+    /// At most `limit` Newton steps from `guess` in its own modes; returns where they end.
     ///
     /// An impulse above the share `sliding` of its bound counts as sliding.
-    pub fn polish(&mut self, rows: &Rows, guess: &Guess, sliding: f64) -> &Guess {
+    pub fn polish(&mut self, rows: &Rows, guess: &Guess, sliding: f64, limit: u32) -> &Guess {
         self.modes.clear();
         self.modes.extend(rows.contacts.iter().zip(&guess.contacts).map(|(c, p)| contact_mode(rows, c, *p, &guess.v, sliding)));
         let slides: [bool; 3] = std::array::from_fn(|k| guess.feet[k][0].hypot(guess.feet[k][1]) > sliding * rows.feet[k].bound);
         let yields = rows.stall.is_finite() && guess.v[3] > rows.stall - rows.resistance(guess);
         self.best.clone_from(guess);
-        for _ in 0..ITERATIONS {
+        for _ in 0..limit {
             let best = &self.best;
             let contacts = rows.contacts.iter().zip(&best.contacts).zip(&self.modes);
             self.linearised.contacts.clear();

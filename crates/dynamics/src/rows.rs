@@ -1,7 +1,7 @@
 //! One particle's problem as plain numbers: [`Rows`], what the slow solvers work on.
 
-use crate::ncp::{ContactRow, Impulses, Ncp};
 use crate::Lanes;
+use crate::ncp::{ContactRow, Impulses, Ncp};
 
 /// A vector of the scaled velocity space (x, y, ρ θ), or of (x, y, ρ θ, y) with the pusher's yield speed appended.
 pub type Vector<const N: usize> = [f64; N];
@@ -91,7 +91,8 @@ impl Rows {
         self.feet = ncp.feet.map(|f| Foot { jx: f.jx.0[0], jy: f.jy.0[0], bound: f.bound.0[0] });
         self.stall = ncp.stall.0[0];
         self.compliance = ncp.compliance.0[0];
-        let contact = |c: &ContactRow<1>| Contact { n: column(&c.n, c.nd), t: column(&c.t, c.td), gap: c.gap.0[0], slip: c.slip.0[0], mu: c.mu.0[0] };
+        let contact =
+            |c: &ContactRow<1>| Contact { n: column(&c.n, c.nd), t: column(&c.t, c.td), gap: c.gap.0[0], slip: c.slip.0[0], mu: c.mu.0[0] };
         self.contacts.clear();
         self.contacts.extend(ncp.contacts.iter().map(contact));
     }
@@ -137,12 +138,12 @@ impl Clone for Guess {
 }
 
 impl Guess {
-    /// Reads impulses of a one-lane problem.
-    pub fn load(&mut self, p: &Impulses<1>) {
-        self.v = [p.v[0].0[0], p.v[1].0[0], p.v[2].0[0], p.pusher_yield.0[0]];
-        self.feet = p.feet.map(|f| f.map(|x| x.0[0]));
+    /// Reads one lane's impulses on its first `contacts` contacts.
+    pub fn load<const W: usize>(&mut self, p: &Impulses<W>, lane: usize, contacts: usize) {
+        self.v = [p.v[0].0[lane], p.v[1].0[lane], p.v[2].0[lane], p.pusher_yield.0[lane]];
+        self.feet = p.feet.map(|f| f.map(|x| x.0[lane]));
         self.contacts.clear();
-        self.contacts.extend(p.normal.iter().zip(&p.tangential).map(|(n, t)| [n.0[0], t.0[0]]));
+        self.contacts.extend(p.normal.iter().zip(&p.tangential).take(contacts).map(|(n, t)| [n.0[lane], t.0[lane]]));
     }
 
     /// Writes the impulses where the certificate reads them.

@@ -22,10 +22,19 @@ const AIM: f64 = 1e-10;
 const FAST_ITERATIONS: u32 = 12;
 
 /// Iterations that polish an end point of a slow solver.
-const POLISH_ITERATIONS: u32 = 40;
+const POLISH_ITERATIONS: u32 = 30;
+
+/// The same for a warm start: its own modes, then everything stuck, as where a jammed or resting object stays.
+const WARM_SLIDING: [f64; 2] = [0.9999, f64::INFINITY];
+
+/// Newton steps in the modes of a warm start.
+const WARM_POLISH: u32 = 5;
+
+/// Smoothing at which the homotopy takes up a warm start, as a share of the problem's speed scale.
+const WARM: f64 = 1e-3;
 
 /// Shares of its bound above which an impulse is taken to slide, tried in turn.
-const SLIDING: [f64; 3] = [0.8, 0.98, 0.9999];
+const SLIDING: [f64; 3] = [0.9999, 0.98, 0.8];
 
 /// Compliance κ of the gap rows where no exact solution exists (model.md, "Jamming").
 const COMPLIANCE: f64 = 1e-6;
@@ -88,12 +97,13 @@ pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
 #[derive(Clone, Debug)]
 pub struct Solver<const W: usize> {
     fast: NewtonWorkspace<W>,
+    warm: Impulses<W>,
     slow: SlowSolver,
 }
 
 impl<const W: usize> Default for Solver<W> {
     fn default() -> Self {
-        Self { fast: NewtonWorkspace::default(), slow: SlowSolver::default() }
+        Self { fast: NewtonWorkspace::default(), warm: Impulses::zero(0), slow: SlowSolver::default() }
     }
 }
 
@@ -102,6 +112,7 @@ impl<const W: usize> Solver<W> {
     #[inline(always)]
     pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>) -> [Report; W] {
         assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
+        self.warm.copy_from(p);
         let (residual, iterations) = newton(ncp, p, &mut self.fast, AIM, FAST_ITERATIONS);
         let mut reports = std::array::from_fn(|lane| Report {
             outcome: Outcome::Solved,
@@ -111,7 +122,9 @@ impl<const W: usize> Solver<W> {
         });
         for (lane, report) in reports.iter_mut().enumerate() {
             if report.residual > TOLERANCE {
-                self.slow.solve(ncp, p, lane, report);
+                self.slow.load(ncp, &self.warm, lane);
+                self.slow.solve(report);
+                p.set_lane(lane, &self.slow.polisher.p);
             }
             rest_exactly(ncp, p, lane, report);
         }
@@ -161,12 +174,23 @@ impl Default for SlowSolver {
 }
 
 impl SlowSolver {
-    /// Solves one lane of `ncp` and writes impulses and report back.
-    fn solve<const W: usize>(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, report: &mut Report) {
+    /// Takes over one lane of `ncp` and its warm start.
+    fn load<const W: usize>(&mut self, ncp: &Ncp<W>, warm: &Impulses<W>, lane: usize) {
         ncp.copy_lane(lane, &mut self.ncp);
         self.rows.assign(&self.ncp);
+        self.start.load(warm, lane, self.ncp.contacts.len());
+    }
+
+    /// Solves the problem that was loaded; the impulses are in the polisher.
+    fn solve(&mut self, report: &mut Report) {
         report.route = Route::Homotopy;
-        report.residual = self.follow();
+        report.residual = self.polisher.try_modes(&self.ncp, &self.rows, &self.start, &WARM_SLIDING, WARM_POLISH);
+        if report.residual > TOLERANCE {
+            report.residual = self.follow_from(WARM);
+        }
+        if report.residual > TOLERANCE {
+            report.residual = self.follow();
+        }
         if report.residual > TOLERANCE {
             report.route = Route::Modes;
             report.outcome = self.search();
@@ -175,13 +199,17 @@ impl SlowSolver {
             }
             report.residual = self.ncp.residual(&self.polisher.p).0[0];
         }
-        p.set_lane(lane, &self.polisher.p);
     }
 
     /// The homotopy from a cold start; the residual of its polished end.
     fn follow(&mut self) -> f64 {
         self.rows.cold_start(&mut self.start);
-        let end = self.homotopy.follow(&self.rows, &self.start, 1.0);
+        self.follow_from(1.0)
+    }
+
+    /// The homotopy from `self.start` at a share of the speed scale.
+    fn follow_from(&mut self, first: f64) -> f64 {
+        let end = self.homotopy.follow(&self.rows, &self.start, first);
         self.polisher.polish(&self.ncp, &self.rows, end)
     }
 
@@ -214,15 +242,25 @@ struct Polisher {
 }
 
 impl Polisher {
+    /// Newton in the modes that the guess itself shows; returns the residual.
+    fn try_modes(&mut self, ncp: &Ncp<1>, rows: &Rows, guess: &Guess, sliding: &[f64], limit: u32) -> f64 {
+        self.p.resize(ncp.contacts.len());
+        let mut residual = f64::INFINITY;
+        for &share in sliding {
+            self.modes.polish(rows, guess, share, limit).store(&mut self.p);
+            residual = ncp.residual(&self.p).0[0];
+            if residual <= TOLERANCE {
+                break;
+            }
+        }
+        residual
+    }
+
     /// Polishes a guess, in its own modes, as it is, and by the fast solver; returns the residual, the impulses are in `self.p`.
     fn polish(&mut self, ncp: &Ncp<1>, rows: &Rows, guess: &Guess) -> f64 {
-        self.p.resize(ncp.contacts.len());
-        for sliding in SLIDING {
-            self.modes.polish(rows, guess, sliding).store(&mut self.p);
-            let residual = ncp.residual(&self.p).0[0];
-            if residual <= TOLERANCE {
-                return residual;
-            }
+        let residual = self.try_modes(ncp, rows, guess, &SLIDING, POLISH_ITERATIONS);
+        if residual <= TOLERANCE {
+            return residual;
         }
         guess.store(&mut self.p);
         newton(ncp, &mut self.p, &mut self.fast, TOLERANCE, POLISH_ITERATIONS).0.0[0]

@@ -56,7 +56,7 @@ pub struct WarmStart {
     pub feet: [[f64; 2]; 3],
     /// Speed by which the pusher gave way [m/s].
     pub pusher_yield: f64,
-    /// Per remembered contact: 1 + its body's number (0: no contact), p_n, p_t [m/s].
+    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact), p_n, p_t [m/s].
     pub contacts: [[f64; 3]; REMEMBERED],
 }
 
@@ -91,13 +91,20 @@ pub enum Body {
     Fixel(usize),
 }
 
-impl Body {
-    fn number(self) -> f64 {
-        match self {
-            Body::Pusher => 1.0,
-            Body::Fixel(j) => 2.0 + j as f64,
-        }
-    }
+/// Contacts of one body that keys tell apart.
+const PLACES: usize = 64;
+
+/// What names a contact from one step to the next: its body, and its place among that body's contacts.
+fn contact_keys(bodies: &[Body]) -> impl Iterator<Item = f64> + '_ {
+    let mut place = 0;
+    bodies.iter().enumerate().map(move |(row, body)| {
+        place = if row > 0 && bodies[row - 1] == *body { place + 1 } else { 0 };
+        let number = match body {
+            Body::Pusher => 1,
+            Body::Fixel(j) => 2 + j,
+        };
+        (number * PLACES + place) as f64
+    })
 }
 
 /// Γ for one scene.
@@ -163,12 +170,10 @@ impl<const W: usize> StepWork<W> {
                 self.impulses.feet[k][0].0[lane] = particle.warm.feet[k][0];
                 self.impulses.feet[k][1].0[lane] = particle.warm.feet[k][1];
             }
-            let mut remembered = particle.warm.contacts;
-            for (row, body) in self.bodies[lane].iter().enumerate() {
-                if let Some(slot) = remembered.iter_mut().find(|slot| slot[0] == body.number()) {
-                    self.impulses.normal[row].0[lane] = slot[1];
-                    self.impulses.tangential[row].0[lane] = slot[2];
-                    slot[0] = 0.0;
+            for (row, key) in contact_keys(&self.bodies[lane]).enumerate() {
+                if let Some([_, normal, tangential]) = particle.warm.contacts.iter().find(|slot| slot[0] == key) {
+                    self.impulses.normal[row].0[lane] = *normal;
+                    self.impulses.tangential[row].0[lane] = *tangential;
                 }
             }
         }
@@ -180,9 +185,9 @@ impl<const W: usize> StepWork<W> {
             pusher_yield: self.impulses.pusher_yield.0[lane],
             ..WarmStart::default()
         };
-        let pressed = self.bodies[lane].iter().enumerate().filter(|(row, _)| self.impulses.normal[*row].0[lane] > 0.0);
-        for (slot, (row, body)) in warm.contacts.iter_mut().zip(pressed) {
-            *slot = [body.number(), self.impulses.normal[row].0[lane], self.impulses.tangential[row].0[lane]];
+        let pressed = contact_keys(&self.bodies[lane]).enumerate().filter(|(row, _)| self.impulses.normal[*row].0[lane] > 0.0);
+        for (slot, (row, key)) in warm.contacts.iter_mut().zip(pressed) {
+            *slot = [key, self.impulses.normal[row].0[lane], self.impulses.tangential[row].0[lane]];
         }
         warm
     }
@@ -260,8 +265,8 @@ impl Dynamics {
 
     fn search_distance(&self, input: &StepInput, particle: &Particle) -> f64 {
         let object = &self.scene.object;
-        let kick = particle.applied.fx.hypot(particle.applied.fy) / object.mass
-            + particle.applied.torque.abs() / object.inertia * self.reach;
+        let kick =
+            particle.applied.fx.hypot(particle.applied.fy) / object.mass + particle.applied.torque.abs() / object.inertia * self.reach;
         let pusher = self.pusher_speed(input);
         input.h * (1.5 * (self.point_speed(&particle.twist) + kick).max(pusher) + pusher) + MARGIN
     }

@@ -173,16 +173,22 @@ impl ContactModel {
         let kept: [Friction; LANES] = std::array::from_fn(|lane| friction_at(block, index(lane)));
         let friction = std::array::from_fn(|lane| match plan.parameter_noise {
             ParameterNoise::Frozen => kept[lane],
-            ParameterNoise::Drawn => {
-                self.disturb(&kept[lane], h, draw.normals::<4>(block.first_particle() + index(lane) as u32, 0))
-            }
+            ParameterNoise::Drawn => self.disturb(&kept[lane], h, draw.normals::<4>(block.first_particle() + index(lane) as u32, 0)),
         });
         let particles = std::array::from_fn(|lane| particle_at(block, index(lane)));
         (Chunk { particles, friction, touched: Default::default() }, kept)
     }
 
     /// Writes a chunk back; Φ keeps only the parameters that took part (Table I).
-    fn store(&self, plan: &StepPlan, block: &mut BlockMut<'_>, first: usize, chunk: &Chunk, kept: &[Friction; LANES], work: &StepWork<LANES>) {
+    fn store(
+        &self,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+        first: usize,
+        chunk: &Chunk,
+        kept: &[Friction; LANES],
+        work: &StepWork<LANES>,
+    ) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let touch_impulse = self.setup.tactile.touch_force * last_h;
         for lane in 0..LANES.min(block.len() - first) {

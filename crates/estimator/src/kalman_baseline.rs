@@ -68,9 +68,5 @@ fn track_axis(
 
 fn ahead(model: &ConstantVelocity, at: AxisEstimate, time: f64) -> AxisEstimate {
     let spread = at.velocity_variance * time * time + model.process_noise * time * time * time / 3.0;
-    AxisEstimate {
-        position: at.position + time * at.velocity,
-        position_variance: at.position_variance + spread,
-        ..at
-    }
+    AxisEstimate { position: at.position + time * at.velocity, position_variance: at.position_variance + spread, ..at }
 }

@@ -40,9 +40,10 @@ impl Schedule {
 /// The direction before the pusher has moved: that of its first motion.
 fn first_direction(time: &[f64], track: &PusherTrack) -> [f64; 2] {
     let undecided = [0.0; 2];
-    let found = time.windows(2).enumerate().find_map(|(row, pair)| {
-        track.motion(row, pair[1] - pair[0], undecided).map(|m| m.direction).filter(|d| *d != undecided)
-    });
+    let found = time
+        .windows(2)
+        .enumerate()
+        .find_map(|(row, pair)| track.motion(row, pair[1] - pair[0], undecided).map(|m| m.direction).filter(|d| *d != undecided));
     found.unwrap_or([1.0, 0.0])
 }
 

@@ -23,13 +23,7 @@ pub struct Reference {
 impl Reference {
     /// The poses of a log itself, hidden ones included.
     pub fn of_log(log: &Log, latency: f64, position_std: f64) -> Self {
-        Self {
-            time: log.time.clone(),
-            pose: log.object.clone(),
-            latency,
-            first_pusher_contact: None,
-            rest: (4.0 * position_std).max(1e-5),
-        }
+        Self { time: log.time.clone(), pose: log.object.clone(), latency, first_pusher_contact: None, rest: (4.0 * position_std).max(1e-5) }
     }
 }
 
