@@ -148,7 +148,7 @@ pub enum Mode {
     Contact,
 }
 
-/// A range of log rows, `FROM[:TO]`.
+/// A range of log rows, `FROM[:TO]`; `FROM:` also runs to the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {
     /// First row.
@@ -163,6 +163,7 @@ impl FromStr for Rows {
     fn from_str(text: &str) -> Result<Self, String> {
         let row = |part: &str| part.parse::<usize>().map_err(|_| format!("`{part}` is not a row number from 0 up"));
         let (from, to) = match text.split_once(':') {
+            Some((from, "")) => (row(from)?, None),
             Some((from, to)) => (row(from)?, Some(row(to)?)),
             None => (row(text)?, None),
         };
