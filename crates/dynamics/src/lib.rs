@@ -24,6 +24,7 @@ mod smooth;
 mod solid;
 mod solver;
 mod step;
+mod subspace;
 
 pub use lanes::{Lanes, Mask};
 pub use narrow::{Gap, Placed, narrow_phase};

@@ -1,6 +1,6 @@
 //! The mixed NCP of one step in mass-normalised units, `W` particles side by side: [`Ncp`] and its unknowns [`Impulses`].
 //!
-//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ, so that every number is a speed [m/s]
+//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ, so that every number is a speed (m/s)
 //! and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
 //! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
 
@@ -32,7 +32,7 @@ pub struct FootRow<const W: usize> {
     pub jx: Lanes<W>,
     /// r_x / ρ.
     pub jy: Lanes<W>,
-    /// Largest friction impulse over m [m/s].
+    /// Largest friction impulse over m (m/s).
     pub bound: Lanes<W>,
 }
 
@@ -43,9 +43,9 @@ pub struct ContactRow<const W: usize> {
     pub n: Triple<W>,
     /// Column W_t.
     pub t: Triple<W>,
-    /// ψ/h − n·u [m/s].
+    /// ψ/h − n·u (m/s).
     pub gap: Lanes<W>,
-    /// −t·u [m/s].
+    /// −t·u (m/s).
     pub slip: Lanes<W>,
     /// n·d on the pusher, 0 elsewhere.
     pub nd: Lanes<W>,
@@ -64,7 +64,7 @@ pub struct Ncp<const W: usize> {
     pub feet: [FootRow<W>; 3],
     /// The contacts.
     pub contacts: Vec<ContactRow<W>>,
-    /// F_stall h / m [m/s]; infinite for a rigid pusher.
+    /// F_stall h / m (m/s); infinite for a rigid pusher.
     pub stall: Lanes<W>,
     /// Compliance κ of the gap rows: 0, or that of model.md's "Jamming" where no exact solution exists.
     pub compliance: Lanes<W>,
@@ -221,7 +221,7 @@ impl<const W: usize> Ncp<W> {
         force
     }
 
-    /// The natural-map residual [m/s]: the largest violation of any row of eq. (1)–(2), the certificate of a solution.
+    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the certificate of a solution.
     #[inline(always)]
     pub fn residual(&self, p: &Impulses<W>) -> Lanes<W> {
         let mut worst = Lanes::ZERO;

@@ -255,8 +255,8 @@ impl<const W: usize> Factors<W> {
         let p0 = one / m[0][0];
         let (mut l1, mut l2) = (m[1][0] * p0, m[2][0] * p0);
         for j in 1..3 {
-            m[1][j] = m[1][j] - l1 * m[0][j];
-            m[2][j] = m[2][j] - l2 * m[0][j];
+            m[1][j] -= l1 * m[0][j];
+            m[2][j] -= l2 * m[0][j];
         }
         let third = m[2][1].abs().gt(m[1][1].abs());
         swap_rows(&mut m, 1, 2, third);

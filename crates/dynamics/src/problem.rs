@@ -19,13 +19,13 @@ use crate::{Twist, Wrench};
 pub struct ContactPoint {
     /// Unit normal, into the object, world frame.
     pub normal: [f64; 2],
-    /// Contact point minus centre of mass, world frame [m].
+    /// Contact point minus centre of mass, world frame (m).
     pub arm: [f64; 2],
-    /// Gap ψ [m]; negative is overlap.
+    /// Gap ψ (m); negative is overlap.
     pub gap: f64,
     /// Coulomb friction coefficient.
     pub mu: f64,
-    /// Commanded velocity of the other body's surface at the contact point [m/s]; zero for a fixel.
+    /// Commanded velocity of the other body's surface at the contact point (m/s); zero for a fixel.
     pub surface_velocity: [f64; 2],
     /// Whether the other body is the pusher, which may stall.
     pub on_pusher: bool,
@@ -34,16 +34,16 @@ pub struct ContactPoint {
 /// One foot of the support tripod.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Foot {
-    /// Foot minus centre of mass, world frame [m].
+    /// Foot minus centre of mass, world frame (m).
     pub arm: [f64; 2],
-    /// Largest friction impulse μ_s p_ns [N s].
+    /// Largest friction impulse μ_s p_ns (N s).
     pub bound: f64,
 }
 
 /// The force limit of the pusher's drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stall {
-    /// F_stall h [N s].
+    /// F_stall h (N s).
     pub impulse: f64,
     /// Unit vector d of the commanded translation, world frame.
     pub direction: [f64; 2],
@@ -52,15 +52,15 @@ pub struct Stall {
 /// One time step's mixed NCP, SI units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepProblem {
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: f64,
-    /// Moment of inertia about the centre of mass [kg m²].
+    /// Moment of inertia about the centre of mass (kg m²).
     pub inertia: f64,
-    /// Step h [s].
+    /// Step h (s).
     pub h: f64,
     /// Twist v at the start of the step.
     pub twist: Twist,
-    /// Applied impulse p_app + w_app [N s, N s, N m s].
+    /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
     /// Contacts.
     pub contacts: Vec<ContactPoint>,
@@ -75,12 +75,12 @@ pub struct StepProblem {
 pub struct StepSolution {
     /// Twist v⁺ at the end of the step.
     pub twist: Twist,
-    /// Normal impulses p_n [N s], one per contact.
+    /// Normal impulses p_n (N s), one per contact.
     pub normal: Vec<f64>,
-    /// Tangential impulses p_t [N s], one per contact, along t = n turned by +90°.
+    /// Tangential impulses p_t (N s), one per contact, along t = n turned by +90°.
     pub tangential: Vec<f64>,
-    /// Friction impulses of the feet [N s], world frame.
+    /// Friction impulses of the feet (N s), world frame.
     pub feet: [[f64; 2]; 3],
-    /// Speed y by which the pusher falls short of its command [m/s].
+    /// Speed y by which the pusher falls short of its command (m/s).
     pub pusher_yield: f64,
 }

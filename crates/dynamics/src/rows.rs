@@ -28,9 +28,9 @@ pub struct Contact {
     pub n: Vector<4>,
     /// Column W_t and t·d.
     pub t: Vector<4>,
-    /// ψ/h − n·u [m/s].
+    /// ψ/h − n·u (m/s).
     pub gap: f64,
-    /// −t·u [m/s].
+    /// −t·u (m/s).
     pub slip: f64,
     /// Friction coefficient.
     pub mu: f64,
@@ -52,7 +52,7 @@ pub struct Foot {
     pub jx: f64,
     /// See `jx`.
     pub jy: f64,
-    /// Largest friction impulse over m [m/s].
+    /// Largest friction impulse over m (m/s).
     pub bound: f64,
 }
 
@@ -77,7 +77,7 @@ pub struct Rows {
     pub feet: [Foot; 3],
     /// The contacts.
     pub contacts: Vec<Contact>,
-    /// F_stall h / m [m/s].
+    /// F_stall h / m (m/s).
     pub stall: f64,
     /// Compliance of the gap rows.
     pub compliance: f64,
@@ -105,7 +105,7 @@ impl Rows {
         guess.contacts.resize(self.contacts.len(), [0.0; 2]);
     }
 
-    /// The largest speed that appears in the problem [m/s]; its natural scale.
+    /// The largest speed that appears in the problem (m/s); its natural scale.
     pub fn speed_scale(&self) -> f64 {
         let contacts = self.contacts.iter().map(|c| c.gap.abs().max(c.slip.abs()));
         let feet = self.feet.iter().map(|f| f.bound);

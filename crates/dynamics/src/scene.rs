@@ -11,23 +11,23 @@ pub struct Friction {
     pub mu_p: f64,
     /// μ_f, object–fixel.
     pub mu_f: f64,
-    /// Radius of the support tripod [m]; unused where the feet are known.
+    /// Radius of the support tripod (m); unused where the feet are known.
     pub d_tri: f64,
 }
 
 /// The pushed object; the origin of its frame is its centre of mass.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Mass [kg].
+    /// Mass (kg).
     pub mass: f64,
-    /// Moment of inertia about the centre of mass [kg m²].
+    /// Moment of inertia about the centre of mass (kg m²).
     pub inertia: f64,
     /// Outline in the object frame.
     pub shape: Shape,
 }
 
 impl Object {
-    /// Radius of gyration sqrt(J / m) [m].
+    /// Radius of gyration sqrt(J / m) (m).
     pub fn gyration_radius(&self) -> f64 {
         (self.inertia / self.mass).sqrt()
     }
@@ -36,14 +36,14 @@ impl Object {
 /// Where the object stands on the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feet {
-    /// Three feet 120° apart at radius d_tri, a third of the weight each; the first one in direction `angle` [rad] of the object frame.
+    /// Three feet 120° apart at radius d_tri, a third of the weight each; the first one in direction `angle` (rad) of the object frame.
     Tripod {
-        /// Direction of the first foot in the object frame [rad].
+        /// Direction of the first foot in the object frame (rad).
         angle: f64,
     },
     /// Three known feet.
     Known {
-        /// Positions in the object frame [m].
+        /// Positions in the object frame (m).
         positions: [[f64; 2]; 3],
         /// Share of the weight on each foot; they sum to 1.
         loads: [f64; 3],
@@ -55,7 +55,7 @@ pub enum Feet {
 pub struct Pusher {
     /// Outline in the pusher frame.
     pub shape: Shape,
-    /// Force at which it gives way [N]; `None` is a rigid position source.
+    /// Force at which it gives way (N); `None` is a rigid position source.
     pub stall_force: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ pub struct Fixel {
 /// Everything that the contact dynamics needs to know and that does not change during an experiment.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Gravity [m/s²], presses the object on the support.
+    /// Gravity (m/s²), presses the object on the support.
     pub gravity: f64,
     /// The object.
     pub object: Object,

@@ -1,45 +1,45 @@
 //! Planar rigid-body quantities: [`Pose`], [`Twist`], [`Wrench`], all in the world frame, SI units.
 
-/// Pose of a body: position of its frame's origin [m] and angle of its x axis, counter-clockwise [rad], not wrapped.
+/// Pose of a body: position of its frame's origin (m) and angle of its x axis, counter-clockwise (rad), not wrapped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// x of the origin [m].
+    /// x of the origin (m).
     pub x: f64,
-    /// y of the origin [m].
+    /// y of the origin (m).
     pub y: f64,
-    /// Angle, counter-clockwise [rad].
+    /// Angle, counter-clockwise (rad).
     pub theta: f64,
 }
 
-/// Planar twist: velocity of the body's origin in the world frame [m/s] and angular velocity [rad/s].
+/// Planar twist: velocity of the body's origin in the world frame (m/s) and angular velocity (rad/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
-    /// x velocity [m/s].
+    /// x velocity (m/s).
     pub vx: f64,
-    /// y velocity [m/s].
+    /// y velocity (m/s).
     pub vy: f64,
-    /// Angular velocity [rad/s].
+    /// Angular velocity (rad/s).
     pub omega: f64,
 }
 
-/// Planar wrench, or the impulse of one: force [N] or impulse [N s], and torque about the origin [N m] or [N m s].
+/// Planar wrench, or the impulse of one: force (N) or impulse (N s), and torque about the origin (N m) or (N m s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// x component [N] or [N s].
+    /// x component (N) or (N s).
     pub fx: f64,
-    /// y component [N] or [N s].
+    /// y component (N) or (N s).
     pub fy: f64,
-    /// Torque [N m] or [N m s].
+    /// Torque (N m) or (N m s).
     pub torque: f64,
 }
 
 impl Pose {
-    /// A pose from position [m] and angle [rad].
+    /// A pose from position (m) and angle (rad).
     pub fn new(x: f64, y: f64, theta: f64) -> Self {
         Self { x, y, theta }
     }
 
-    /// Maps a point of the body frame to the world frame [m].
+    /// Maps a point of the body frame to the world frame (m).
     ///
     /// ```
     /// # use stickslip_dynamics::Pose;
@@ -79,7 +79,7 @@ impl Pose {
 }
 
 impl Twist {
-    /// Velocity [m/s] of the body point that is displaced by `arm` [m] from the origin.
+    /// Velocity (m/s) of the body point that is displaced by `arm` (m) from the origin.
     pub fn at(&self, arm: [f64; 2]) -> [f64; 2] {
         [self.vx - self.omega * arm[1], self.vy + self.omega * arm[0]]
     }

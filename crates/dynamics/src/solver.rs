@@ -12,7 +12,7 @@ use crate::polish::Polish;
 use crate::problem::{StepProblem, StepSolution};
 use crate::rows::{Guess, Rows};
 
-/// Largest natural-map residual of a solved step [m/s].
+/// Largest natural-map residual of a solved step (m/s).
 pub const TOLERANCE: f64 = 1e-9;
 
 /// The iterations aim lower than [`TOLERANCE`], so that rounding does not decide.
@@ -67,7 +67,7 @@ pub enum Route {
 pub struct Report {
     /// How it ended.
     pub outcome: Outcome,
-    /// Natural-map residual of the rigid problem [m/s].
+    /// Natural-map residual of the rigid problem (m/s).
     pub residual: f64,
     /// Iterations of the fast solver.
     pub iterations: u32,

@@ -10,7 +10,7 @@ use crate::scene::{Feet, Friction, Scene};
 use crate::solver::{Report, Solver};
 use crate::{Pose, Twist, Wrench};
 
-/// Added to the distance that bodies can close within one step when contacts are sought [m].
+/// Added to the distance that bodies can close within one step when contacts are sought (m).
 const MARGIN: f64 = 5e-4;
 
 /// Contacts whose impulses a particle remembers for its next step.
@@ -30,7 +30,7 @@ pub struct PusherMotion {
 /// What drives one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepInput {
-    /// Step [s].
+    /// Step (s).
     pub h: f64,
     /// The pusher; `None` while it is off the plane.
     pub pusher: Option<PusherMotion>,
@@ -43,7 +43,7 @@ pub struct Particle {
     pub pose: Pose,
     /// Twist of the object.
     pub twist: Twist,
-    /// Applied impulse p_app + w_app [N s, N s, N m s].
+    /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
     /// Impulses of the step before.
     pub warm: WarmStart,
@@ -52,11 +52,11 @@ pub struct Particle {
 /// Impulses of a step, mass-normalised, from which the next one starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WarmStart {
-    /// Per foot [m/s].
+    /// Per foot (m/s).
     pub feet: [[f64; 2]; 3],
-    /// Speed by which the pusher gave way [m/s].
+    /// Speed by which the pusher gave way (m/s).
     pub pusher_yield: f64,
-    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact), p_n, p_t [m/s].
+    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact), p_n, p_t (m/s).
     pub contacts: [[f64; 3]; REMEMBERED],
 }
 
@@ -139,7 +139,7 @@ impl<const W: usize> Default for StepWork<W> {
 }
 
 impl<const W: usize> StepWork<W> {
-    /// Normal impulse [N s] between the object and a body in the last step, summed over their contacts.
+    /// Normal impulse (N s) between the object and a body in the last step, summed over their contacts.
     pub fn normal_impulse(&self, lane: usize, body: Body) -> f64 {
         let rows = self.bodies[lane].iter().zip(&self.impulses.normal);
         rows.filter(|(b, _)| **b == body).map(|(_, p)| p.0[lane]).sum::<f64>() * self.problems[lane].mass

@@ -10,10 +10,10 @@ use crate::{Camera, Limits, Setup};
 /// Particles that are stepped side by side.
 const LANES: usize = 8;
 
-/// Time step to which the noise settings refer [s].
+/// Time step to which the noise settings refer (s).
 const NOISE_STEP: f64 = 1.0 / 30.0;
 
-/// Speed above which an object counts as moving, mass-normalised [m/s] (Φ, Table I).
+/// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, Table I).
 const MOVING: f64 = 1e-9;
 
 /// Best log-likelihood below which no particle explains the observation: the particles are redrawn around it.
@@ -86,6 +86,10 @@ pub struct Scratch {
 
 /// The lanes of one chunk while they are stepped.
 struct Chunk {
+    /// First particle within its block.
+    first: usize,
+    /// β before the step; `friction` is β̂.
+    kept: [Friction; LANES],
     particles: [Particle; LANES],
     friction: [Friction; LANES],
     touched: [Touched; LANES],
@@ -136,7 +140,7 @@ impl ContactModel {
 
     /// Runs all substeps of one chunk and writes its particles back (eq. 6).
     fn step_chunk(&self, plan: &StepPlan, draw: Draw, block: &mut BlockMut<'_>, first: usize, work: &mut StepWork<LANES>) {
-        let (mut chunk, kept) = self.load(plan, draw, block, first);
+        let mut chunk = self.load(plan, draw, block, first);
         for (part, input) in plan.substeps.iter().enumerate() {
             for lane in 0..LANES {
                 let particle = block.first_particle() + (first + lane) as u32;
@@ -145,7 +149,7 @@ impl ContactModel {
             }
             self.step_lanes(input, &mut chunk, work);
         }
-        self.store(plan, block, first, &chunk, &kept, work);
+        self.store(plan, block, &chunk, work);
     }
 
     fn step_lanes(&self, input: &StepInput, chunk: &mut Chunk, work: &mut StepWork<LANES>) {
@@ -166,8 +170,8 @@ impl ContactModel {
         (twist.vx * twist.vx + twist.vy * twist.vy + turn * turn).sqrt()
     }
 
-    /// The chunk that starts at particle `first` of the block, with β̂; also the β it came with. Lanes past the end repeat the last.
-    fn load(&self, plan: &StepPlan, draw: Draw, block: &BlockMut<'_>, first: usize) -> (Chunk, [Friction; LANES]) {
+    /// The chunk that starts at particle `first` of the block, with β̂ drawn. Lanes past the end repeat the last.
+    fn load(&self, plan: &StepPlan, draw: Draw, block: &BlockMut<'_>, first: usize) -> Chunk {
         let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
         let index = |lane: usize| (first + lane).min(block.len() - 1);
         let kept: [Friction; LANES] = std::array::from_fn(|lane| friction_at(block, index(lane)));
@@ -176,27 +180,19 @@ impl ContactModel {
             ParameterNoise::Drawn => self.disturb(&kept[lane], h, draw.normals::<4>(block.first_particle() + index(lane) as u32, 0)),
         });
         let particles = std::array::from_fn(|lane| particle_at(block, index(lane)));
-        (Chunk { particles, friction, touched: Default::default() }, kept)
+        Chunk { first, kept, particles, friction, touched: Default::default() }
     }
 
     /// Writes a chunk back; Φ keeps only the parameters that took part (Table I).
-    fn store(
-        &self,
-        plan: &StepPlan,
-        block: &mut BlockMut<'_>,
-        first: usize,
-        chunk: &Chunk,
-        kept: &[Friction; LANES],
-        work: &StepWork<LANES>,
-    ) {
+    fn store(&self, plan: &StepPlan, block: &mut BlockMut<'_>, chunk: &Chunk, work: &StepWork<LANES>) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let touch_impulse = self.setup.tactile.touch_force * last_h;
-        for lane in 0..LANES.min(block.len() - first) {
-            let i = first + lane;
+        for lane in 0..LANES.min(block.len() - chunk.first) {
+            let i = chunk.first + lane;
             let (particle, touched) = (&chunk.particles[lane], &chunk.touched[lane]);
             write(block, Columns::POSE, i, &[particle.pose.x, particle.pose.y, particle.pose.theta]);
             write(block, Columns::TWIST, i, &[particle.twist.vx, particle.twist.vy, particle.twist.omega]);
-            write(block, Columns::FRICTION, i, &select(touched, &chunk.friction[lane], &kept[lane]));
+            write(block, Columns::FRICTION, i, &select(touched, &chunk.friction[lane], &chunk.kept[lane]));
             write(block, Columns::WARM_START, i, &particle.warm.to_array());
             write(block, Columns::UNSOLVED, i, &[flag(touched.unsolved)]);
             write(block, Columns::CONTACT_PUSHER, i, &[flag(work.normal_impulse(lane, Body::Pusher) > 0.0)]);

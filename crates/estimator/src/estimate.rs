@@ -5,7 +5,7 @@ use stickslip_dynamics::{Friction, Pose, Twist};
 /// Standard deviations of an estimate row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
-    /// Of the pose [m, m, rad].
+    /// Of the pose (m, m, rad).
     pub pose: Pose,
     /// Of the friction parameters; `None` for methods that do not estimate them.
     pub friction: Option<Friction>,
@@ -39,7 +39,7 @@ pub struct EstimateRow {
 /// A method's estimates, one row per log row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Time of each row [s].
+    /// Time of each row (s).
     pub time: Vec<f64>,
     /// Rows.
     pub rows: Vec<EstimateRow>,

@@ -5,7 +5,7 @@ use stickslip_dynamics::Pose;
 /// A recorded experiment; every column has one entry per row, `None` where nothing was measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Log {
-    /// Time [s], strictly rising.
+    /// Time (s), strictly rising.
     pub time: Vec<f64>,
     /// Measured object poses.
     pub object: Vec<Option<Pose>>,
@@ -13,7 +13,7 @@ pub struct Log {
     pub pusher: Vec<Option<Pose>>,
     /// Tactile readings: one column per fixel sensor, over the interval that ends at the row.
     pub tactile: Vec<Vec<Option<bool>>>,
-    /// Force of the pusher on the object, world frame [N]; empty where the log has no force columns.
+    /// Force of the pusher on the object, world frame (N); empty where the log has no force columns.
     pub force: Vec<Option<[f64; 2]>>,
 }
 

@@ -17,7 +17,7 @@ pub enum Occlusion {
     },
     /// Rows within this many seconds about the middle of the log, half on either side.
     Middle {
-        /// Length of the blackout [s].
+        /// Length of the blackout (s).
         seconds: f64,
     },
 }

@@ -145,7 +145,7 @@ impl<'a> Prepared<'a> {
 
 /// The camera's readings as the particle filter takes them need the latency's rows; see [`Camera::latency`].
 impl Camera {
-    /// Time that row `row` of `time` shows [s].
+    /// Time that row `row` of `time` shows (s).
     pub fn shown_time(&self, time: f64) -> f64 {
         time - self.latency
     }

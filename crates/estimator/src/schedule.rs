@@ -4,10 +4,10 @@ use stickslip_dynamics::{Pose, PusherMotion, StepInput};
 
 use crate::track::PusherTrack;
 
-/// A step is split where it is longer than this [s].
+/// A step is split where it is longer than this (s).
 const LONGEST_STEP: f64 = 0.055;
 
-/// Length that the parts of a split step do not exceed [s].
+/// Length that the parts of a split step do not exceed (s).
 const SPLIT_TO: f64 = 0.05;
 
 /// The substeps of every step of a log.

@@ -8,15 +8,15 @@ use crate::{Estimate, Log};
 /// The trajectory an estimate is scored against.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
-    /// Time of each row [s].
+    /// Time of each row (s).
     pub time: Vec<f64>,
     /// Pose of each row, where there is one.
     pub pose: Vec<Option<Pose>>,
-    /// Time by which its poses lag [s]: the camera's latency for a log's own poses, 0 for the truth.
+    /// Time by which its poses lag (s): the camera's latency for a log's own poses, 0 for the truth.
     pub latency: f64,
     /// Row of the first contact with the pusher, where it is known.
     pub first_pusher_contact: Option<usize>,
-    /// Distance below which the reference counts as having come to rest [m].
+    /// Distance below which the reference counts as having come to rest (m).
     pub rest: f64,
 }
 
@@ -30,19 +30,19 @@ impl Reference {
 /// Scores of one run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scores {
-    /// WMSE over all scored rows [mm].
+    /// WMSE over all scored rows (mm).
     pub wmse_mm: Option<f64>,
-    /// WMSE over the rows whose pose was hidden [mm].
+    /// WMSE over the rows whose pose was hidden (mm).
     pub wmse_occluded_mm: Option<f64>,
-    /// WMSE from the first pusher contact to the last motion of the reference [mm].
+    /// WMSE from the first pusher contact to the last motion of the reference (mm).
     pub wmse_moving_mm: Option<f64>,
-    /// Distance of the last scored positions [mm].
+    /// Distance of the last scored positions (mm).
     pub final_error_mm: Option<f64>,
-    /// Difference of the last scored angles, on the circle [degrees].
+    /// Difference of the last scored angles, on the circle (degrees).
     pub final_error_deg: Option<f64>,
 }
 
-/// Scores `estimate` against `reference`; `hidden` are the rows that were occluded, `virtual_radius` is r_v [m].
+/// Scores `estimate` against `reference`; `hidden` are the rows that were occluded, `virtual_radius` is r_v (m).
 pub fn score(estimate: &Estimate, reference: &Reference, hidden: &[bool], virtual_radius: f64) -> Scores {
     let errors: Vec<Option<Error>> = (0..reference.time.len()).map(|row| error_at(estimate, reference, row)).collect();
     let moving = moving_rows(reference, virtual_radius);
@@ -95,7 +95,7 @@ fn moving_rows(reference: &Reference, virtual_radius: f64) -> std::ops::Range<us
 }
 
 impl Estimate {
-    /// The pose at `time` [s], linear between rows; `None` outside the estimated rows.
+    /// The pose at `time` (s), linear between rows; `None` outside the estimated rows.
     pub fn pose_at(&self, time: f64) -> Option<Pose> {
         let later = self.time.partition_point(|t| *t < time);
         let after = self.rows.get(later)?.pose;

@@ -5,15 +5,15 @@ use stickslip_dynamics::{Feet, Scene};
 /// Noise of the camera and of the pusher's tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Standard deviation of one object position [m].
+    /// Standard deviation of one object position (m).
     pub position_std: f64,
-    /// Standard deviation of one object orientation [rad].
+    /// Standard deviation of one object orientation (rad).
     pub orientation_std: f64,
-    /// Time by which object poses lag the pusher's [s].
+    /// Time by which object poses lag the pusher's (s).
     pub latency: f64,
-    /// Standard deviation of one pusher position [m]; 0: the log's poses are used as they are.
+    /// Standard deviation of one pusher position (m); 0: the log's poses are used as they are.
     pub pusher_position_std: f64,
-    /// Standard deviation of one pusher orientation [rad]; 0: used as they are.
+    /// Standard deviation of one pusher orientation (rad); 0: used as they are.
     pub pusher_orientation_std: f64,
 }
 
@@ -24,7 +24,7 @@ pub struct Tactile {
     pub false_positive: f64,
     /// Probability that a touched sensor reads 0.
     pub false_negative: f64,
-    /// Force at which the sensor switches [N].
+    /// Force at which the sensor switches (N).
     pub touch_force: f64,
 }
 
@@ -60,7 +60,7 @@ pub struct FilterSettings {
     pub mu_p: Limits,
     /// Physical limits of μ_f.
     pub mu_f: Limits,
-    /// Physical limits of d_tri [m].
+    /// Physical limits of d_tri (m).
     pub d_tri: Limits,
 }
 

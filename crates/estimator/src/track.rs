@@ -9,7 +9,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::{Camera, Log, RunError};
 
-/// Longest gap in the pusher's poses that its tracker bridges [s]; in a longer one the pusher is off the plane.
+/// Longest gap in the pusher's poses that its tracker bridges (s); in a longer one the pusher is off the plane.
 pub const LONGEST_BRIDGE: f64 = 0.2;
 
 /// How much of the log the track may use.
@@ -27,7 +27,7 @@ pub enum Tracking {
 pub struct TrackedPose {
     /// Pose.
     pub pose: Pose,
-    /// Standard deviation of the tracked speed [m/s]; 0 where poses are exact.
+    /// Standard deviation of the tracked speed (m/s); 0 where poses are exact.
     pub speed_std: f64,
 }
 
@@ -60,7 +60,7 @@ impl PusherTrack {
         self.rows[row].map(|tracked| tracked.pose)
     }
 
-    /// The pusher during the step from `row` to the next, of length `h` [s]; `last` is its last direction of motion.
+    /// The pusher during the step from `row` to the next, of length `h` (s); `last` is its last direction of motion.
     ///
     /// It takes part where it is on the plane at both ends. A speed within two standard deviations of zero does not
     /// change its direction.

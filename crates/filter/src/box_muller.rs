@@ -51,11 +51,7 @@ fn sin_cos_turns(v: f64) -> (f64, f64) {
     let x = std::f64::consts::TAU * (v - 0.25 * (rounded - ROUND));
     let (sin, cos) = sin_cos_eighth(x);
 
-    let (s, c) = if quarter & 1 == 0 {
-        (sin, cos)
-    } else {
-        (cos, sin)
-    };
+    let (s, c) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
     (flip(s, quarter), flip(c, quarter.wrapping_add(1)))
 }
 
@@ -120,34 +116,17 @@ mod tests {
     /// Points of (0, 1), the ends and the borders of the reductions included.
     fn points() -> impl Iterator<Item = f64> {
         let cell = 1.0 / (1u64 << 53) as f64;
-        let borders = [
-            0.125,
-            0.25,
-            0.375,
-            0.5,
-            0.625,
-            0.75,
-            0.875,
-            std::f64::consts::FRAC_1_SQRT_2,
-        ];
-        let near = borders
-            .into_iter()
-            .flat_map(move |b| [b - cell, b, b + cell]);
+        let borders = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, std::f64::consts::FRAC_1_SQRT_2];
+        let near = borders.into_iter().flat_map(move |b| [b - cell, b, b + cell]);
         let small = (1..=53).map(|k| libm::pow(2.0, -f64::from(k)) * 1.3);
-        near.chain(small)
-            .chain([cell, 1.0 - cell])
-            .chain((1..100_000).map(|i| f64::from(i) / 1e5))
+        near.chain(small).chain([cell, 1.0 - cell]).chain((1..100_000).map(|i| f64::from(i) / 1e5))
     }
 
     #[test]
     fn ln_agrees_with_libm_to_two_units_in_the_last_place() {
         for x in points() {
             let exact = libm::log(x);
-            assert!(
-                (ln(x) - exact).abs() <= 2.0 * f64::EPSILON * exact.abs(),
-                "ln {x}: {} not {exact}",
-                ln(x)
-            );
+            assert!((ln(x) - exact).abs() <= 2.0 * f64::EPSILON * exact.abs(), "ln {x}: {} not {exact}", ln(x));
         }
     }
 
@@ -157,10 +136,7 @@ mod tests {
             let (sin, cos) = sin_cos_turns(v);
             // libm's own argument 2 pi v is rounded: up to half a unit in the last place of 2 pi
             let (s, c) = libm::sincos(std::f64::consts::TAU * v);
-            assert!(
-                (sin - s).abs() < 1e-15 && (cos - c).abs() < 1e-15,
-                "{v}: {sin} {cos}, not {s} {c}"
-            );
+            assert!((sin - s).abs() < 1e-15 && (cos - c).abs() < 1e-15, "{v}: {sin} {cos}, not {s} {c}");
         }
     }
 }

@@ -19,12 +19,7 @@ pub struct Settings {
 impl Default for Settings {
     /// 500 particles, seed 0, systematic resampling below N/2.
     fn default() -> Self {
-        Settings {
-            particles: 500,
-            seed: 0,
-            resample_below: 0.5,
-            resampling: Resampling::Systematic,
-        }
+        Settings { particles: 500, seed: 0, resample_below: 0.5, resampling: Resampling::Systematic }
     }
 }
 
@@ -48,11 +43,7 @@ pub enum SettingsError {
 
 impl Settings {
     fn check(&self) -> Result<(), SettingsError> {
-        let Settings {
-            particles,
-            resample_below: share,
-            ..
-        } = *self;
+        let Settings { particles, resample_below: share, .. } = *self;
         if particles == 0 || u32::try_from(particles).is_err() {
             return Err(SettingsError::Particles { particles });
         }
@@ -126,9 +117,7 @@ impl<M: Model> ParticleFilter<M> {
             streams: Streams::new(settings.seed),
             step: 0,
             weights: LogWeights::equal(settings.particles),
-            scratch: (0..particles.block_count())
-                .map(|_| model.scratch())
-                .collect(),
+            scratch: (0..particles.block_count()).map(|_| model.scratch()).collect(),
             log_likelihood: vec![0.0; settings.particles],
             ancestors: vec![0; settings.particles],
             particles,
@@ -151,38 +140,26 @@ impl<M: Model> ParticleFilter<M> {
             Some(observation) => self.weigh(observation),
             None => Weighing::Unobserved,
         };
-        StepReport {
-            effective_sample_size: self.weights.effective_sample_size(),
-            resampled,
-            weighing,
-        }
+        StepReport { effective_sample_size: self.weights.effective_sample_size(), resampled, weighing }
     }
 
     fn is_degenerate(&self) -> bool {
-        self.weights.effective_sample_size()
-            < self.settings.resample_below * self.settings.particles as f64
+        self.weights.effective_sample_size() < self.settings.resample_below * self.settings.particles as f64
     }
 
     fn initialise(&mut self) {
         let (model, draw) = (&self.model, self.draw(Purpose::Initialise));
-        self.particles
-            .for_each_block(&mut self.scratch, |block, _| model.initialise(draw, block));
+        self.particles.for_each_block(&mut self.scratch, |block, _| model.initialise(draw, block));
     }
 
     fn propagate(&mut self, input: &M::Input) {
         let (model, draw) = (&self.model, self.draw(Purpose::Propagate));
-        self.particles
-            .for_each_block(&mut self.scratch, |block, scratch| {
-                model.propagate(input, draw, block, scratch)
-            });
+        self.particles.for_each_block(&mut self.scratch, |block, scratch| model.propagate(input, draw, block, scratch));
     }
 
     fn weigh(&mut self, observation: &M::Observation) -> Weighing {
         let model = &self.model;
-        self.particles
-            .map_blocks(&mut self.log_likelihood, |block, out| {
-                model.log_likelihood(observation, block, out)
-            });
+        self.particles.map_blocks(&mut self.log_likelihood, |block, out| model.log_likelihood(observation, block, out));
 
         let best_log_likelihood = self.weights.best(&self.log_likelihood);
         if !model.collapsed(best_log_likelihood)
@@ -191,26 +168,19 @@ impl<M: Model> ParticleFilter<M> {
             return Weighing::Weighed { log_evidence };
         }
         self.recover(observation);
-        Weighing::Collapsed {
-            best_log_likelihood,
-        }
+        Weighing::Collapsed { best_log_likelihood }
     }
 
     /// After a collapse: resample by the weights before the observation, then draw anew around it.
     fn recover(&mut self, observation: &M::Observation) {
         self.resample(Purpose::Recover);
         let (model, draw) = (&self.model, self.draw(Purpose::Redraw));
-        self.particles
-            .for_each_block(&mut self.scratch, |block, _| {
-                model.redraw(observation, draw, block)
-            });
+        self.particles.for_each_block(&mut self.scratch, |block, _| model.redraw(observation, draw, block));
     }
 
     fn resample(&mut self, purpose: Purpose) {
         let draw = self.draw(purpose);
-        self.settings
-            .resampling
-            .ancestors(self.weights.weights(), draw, &mut self.ancestors);
+        self.settings.resampling.ancestors(self.weights.weights(), draw, &mut self.ancestors);
         self.particles.gather(&self.ancestors);
         self.weights.reset();
     }
@@ -245,13 +215,8 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// `map(block, its weights)` of every block, combined over a fixed tree: the same bits on any number of threads.
-    pub fn reduce<A: Send>(
-        &self,
-        map: impl Fn(&Block<'_>, &[f64]) -> A + Sync,
-        combine: impl Fn(A, A) -> A + Sync,
-    ) -> A {
+    pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>, &[f64]) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
         let weights = self.weights.weights();
-        self.particles
-            .reduce(|block| map(block, &weights[block.range()]), combine)
+        self.particles.reduce(|block| map(block, &weights[block.range()]), combine)
     }
 }

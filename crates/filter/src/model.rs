@@ -26,13 +26,7 @@ pub trait Model: Sync {
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>);
 
     /// Moves the particles over one step, process noise included.
-    fn propagate(
-        &self,
-        input: &Self::Input,
-        draw: Draw,
-        block: &mut BlockMut<'_>,
-        scratch: &mut Self::Scratch,
-    );
+    fn propagate(&self, input: &Self::Input, draw: Draw, block: &mut BlockMut<'_>, scratch: &mut Self::Scratch);
 
     /// Writes the log-likelihood of the observation given each particle: finite or -inf, never NaN.
     ///

@@ -7,16 +7,7 @@ use crate::{Model, ParticleFilter};
 impl<M: Model> ParticleFilter<M> {
     /// `sum w_i f(x_i)` over one column.
     pub fn expectation(&self, column: usize, f: impl Fn(f64) -> f64 + Sync) -> f64 {
-        self.reduce(
-            |block, weights| {
-                block
-                    .column(column)
-                    .iter()
-                    .zip(weights)
-                    .fold(0.0, |sum, (&x, w)| sum + w * f(x))
-            },
-            |a, b| a + b,
-        )
+        self.reduce(|block, weights| block.column(column).iter().zip(weights).fold(0.0, |sum, (&x, w)| sum + w * f(x)), |a, b| a + b)
     }
 
     /// The weighted mean of a column.
@@ -35,14 +26,10 @@ impl<M: Model> ParticleFilter<M> {
     pub fn weighted_circular_mean(&self, column: usize) -> f64 {
         let (sin, cos) = self.reduce(
             |block, weights| {
-                block
-                    .column(column)
-                    .iter()
-                    .zip(weights)
-                    .fold((0.0, 0.0), |(s, c), (&angle, w)| {
-                        let (sin, cos) = libm::sincos(angle);
-                        (s + w * sin, c + w * cos)
-                    })
+                block.column(column).iter().zip(weights).fold((0.0, 0.0), |(s, c), (&angle, w)| {
+                    let (sin, cos) = libm::sincos(angle);
+                    (s + w * sin, c + w * cos)
+                })
             },
             |a, b| (a.0 + b.0, a.1 + b.1),
         );
@@ -63,9 +50,5 @@ impl<M: Model> ParticleFilter<M> {
 
 /// The angle in [-pi, pi] that equals `angle` on the circle.
 fn wrap(angle: f64) -> f64 {
-    if angle.abs() <= PI {
-        angle
-    } else {
-        angle - TAU * libm::round(angle / TAU)
-    }
+    if angle.abs() <= PI { angle } else { angle - TAU * libm::round(angle / TAU) }
 }

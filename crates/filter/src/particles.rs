@@ -25,21 +25,10 @@ pub struct ParticleSet {
 impl ParticleSet {
     /// `particles` x `columns` zeros. Both are at least 1.
     pub fn zeros(particles: usize, columns: usize) -> Self {
-        assert!(
-            particles > 0 && columns > 0,
-            "a particle set of {particles} particles x {columns} columns is empty"
-        );
-        assert!(
-            u32::try_from(particles).is_ok(),
-            "particles are numbered in u32"
-        );
+        assert!(particles > 0 && columns > 0, "a particle set of {particles} particles x {columns} columns is empty");
+        assert!(u32::try_from(particles).is_ok(), "particles are numbered in u32");
         let data = vec![0.0; particles.div_ceil(BLOCK) * BLOCK * columns];
-        ParticleSet {
-            particles,
-            columns,
-            spare: data.clone(),
-            data,
-        }
+        ParticleSet { particles, columns, spare: data.clone(), data }
     }
 
     /// The number N of particles.
@@ -61,10 +50,7 @@ impl ParticleSet {
     /// Block `index`.
     pub fn block(&self, index: usize) -> Block<'_> {
         let stride = self.columns * BLOCK;
-        Block {
-            data: &self.data[index * stride..][..stride],
-            span: Span::of(index, self.particles),
-        }
+        Block { data: &self.data[index * stride..][..stride], span: Span::of(index, self.particles) }
     }
 
     /// The blocks in order.
@@ -74,41 +60,21 @@ impl ParticleSet {
 
     /// Column `column` of all particles in order, N values.
     pub fn column(&self, column: usize) -> impl Iterator<Item = f64> + '_ {
-        self.blocks()
-            .flat_map(move |block| block.column(column).iter().copied())
+        self.blocks().flat_map(move |block| block.column(column).iter().copied())
     }
 
     /// One number of one particle.
     pub fn value(&self, particle: usize, column: usize) -> f64 {
-        assert!(
-            particle < self.particles,
-            "particle {particle} of {}",
-            self.particles
-        );
+        assert!(particle < self.particles, "particle {particle} of {}", self.particles);
         self.block(particle / BLOCK).column(column)[particle % BLOCK]
     }
 
     /// Runs `body` on every block with the block's own `scratch` (one per block), in parallel where threads allow.
-    pub fn for_each_block<S: Send>(
-        &mut self,
-        scratch: &mut [S],
-        body: impl Fn(&mut BlockMut<'_>, &mut S) + Sync,
-    ) {
+    pub fn for_each_block<S: Send>(&mut self, scratch: &mut [S], body: impl Fn(&mut BlockMut<'_>, &mut S) + Sync) {
         let particles = self.particles;
-        parallel::for_each_chunk(
-            &mut self.data,
-            self.columns * BLOCK,
-            scratch,
-            |index, data, scratch| {
-                body(
-                    &mut BlockMut {
-                        data,
-                        span: Span::of(index, particles),
-                    },
-                    scratch,
-                );
-            },
-        );
+        parallel::for_each_chunk(&mut self.data, self.columns * BLOCK, scratch, |index, data, scratch| {
+            body(&mut BlockMut { data, span: Span::of(index, particles) }, scratch);
+        });
     }
 
     /// Fills `out` (N values) with `body(block, its part of out)`, in parallel where threads allow.
@@ -118,16 +84,8 @@ impl ParticleSet {
     }
 
     /// `map` of every block, combined over a fixed tree: the same bits on any number of threads.
-    pub fn reduce<A: Send>(
-        &self,
-        map: impl Fn(&Block<'_>) -> A + Sync,
-        combine: impl Fn(A, A) -> A + Sync,
-    ) -> A {
-        parallel::tree_reduce(
-            0..self.block_count(),
-            &|index| map(&self.block(index)),
-            &combine,
-        )
+    pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
+        parallel::tree_reduce(0..self.block_count(), &|index| map(&self.block(index)), &combine)
     }
 
     /// Resampling: particle i becomes a copy of particle `ancestors[i]`, all columns of it.
@@ -162,10 +120,7 @@ struct Span {
 impl Span {
     fn of(block: usize, particles: usize) -> Self {
         let first = block * BLOCK;
-        Span {
-            first,
-            len: BLOCK.min(particles - first),
-        }
+        Span { first, len: BLOCK.min(particles - first) }
     }
 
     fn range(self) -> std::ops::Range<usize> {
@@ -230,10 +185,7 @@ impl BlockMut<'_> {
 
     /// The block, to read.
     pub fn as_block(&self) -> Block<'_> {
-        Block {
-            data: self.data,
-            span: self.span,
-        }
+        Block { data: self.data, span: self.span }
     }
 
     /// One column, to read.
@@ -252,10 +204,7 @@ impl BlockMut<'_> {
     /// If a column is named twice or does not exist.
     pub fn columns_mut<const K: usize>(&mut self, columns: [usize; K]) -> [&mut [f64]; K] {
         let len = self.span.len;
-        match self
-            .data
-            .get_disjoint_mut(columns.map(|c| c * BLOCK..c * BLOCK + len))
-        {
+        match self.data.get_disjoint_mut(columns.map(|c| c * BLOCK..c * BLOCK + len)) {
             Ok(slices) => slices,
             Err(error) => panic!("columns {columns:?}: {error}"),
         }
@@ -264,8 +213,6 @@ impl BlockMut<'_> {
     /// All columns in order, to change at once.
     pub fn all_columns_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [f64]> {
         let len = self.span.len;
-        self.data
-            .chunks_exact_mut(BLOCK)
-            .map(move |column| &mut column[..len])
+        self.data.chunks_exact_mut(BLOCK).map(move |column| &mut column[..len])
     }
 }

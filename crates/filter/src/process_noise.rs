@@ -35,35 +35,21 @@ impl ConstantVelocity {
     ///
     /// # Errors
     /// If the model or the series is out of range or has fewer than 3 measurements.
-    pub fn fit_process_noise(
-        &self,
-        times: &[f64],
-        measurements: &[Option<f64>],
-    ) -> Result<ProcessNoiseFit, SeriesError> {
-        ConstantVelocity {
-            process_noise: 0.0,
-            ..*self
-        }
-        .check()?;
+    pub fn fit_process_noise(&self, times: &[f64], measurements: &[Option<f64>]) -> Result<ProcessNoiseFit, SeriesError> {
+        ConstantVelocity { process_noise: 0.0, ..*self }.check()?;
         let series = Series::new(times, measurements)?;
         let found = series.measured();
         if found < 3 {
-            return Err(SeriesError::TooFew {
-                measurements: found,
-            });
+            return Err(SeriesError::TooFew { measurements: found });
         }
-        let centre = libm::log(self.measurement_std * self.measurement_std)
-            - 3.0 * libm::log(series.median_step());
+        let centre = libm::log(self.measurement_std * self.measurement_std) - 3.0 * libm::log(series.median_step());
         let objective = |log_q: f64| self.log_likelihood_at(libm::exp(log_q), &series);
         Ok(search(centre, objective))
     }
 
     fn log_likelihood_at(&self, process_noise: f64, series: &Series<'_>) -> f64 {
         let mut sum = 0.0;
-        let model = ConstantVelocity {
-            process_noise,
-            ..*self
-        };
+        let model = ConstantVelocity { process_noise, ..*self };
         model.forward(series, |_, step| sum += step.log_likelihood);
         sum
     }
@@ -90,11 +76,7 @@ fn search(centre: f64, objective: impl Fn(f64) -> f64) -> ProcessNoiseFit {
         Optimum::Interior => golden_section(at(best - 1), at(best + 1), &objective),
         _ => at(best),
     };
-    ProcessNoiseFit {
-        process_noise: libm::exp(log_q),
-        log_likelihood: objective(log_q),
-        optimum,
-    }
+    ProcessNoiseFit { process_noise: libm::exp(log_q), log_likelihood: objective(log_q), optimum }
 }
 
 /// The maximum of a function with one peak in [low, high], to 1e-6.

@@ -32,12 +32,7 @@ impl Resampling {
                 invert(weights.len(), weight, |i| (i as f64 + u) / n, ancestors);
             }
             Resampling::Stratified => {
-                invert(
-                    weights.len(),
-                    weight,
-                    |i| (i as f64 + draw.uniform(0, i as u32)) / n,
-                    ancestors,
-                );
+                invert(weights.len(), weight, |i| (i as f64 + draw.uniform(0, i as u32)) / n, ancestors);
             }
             Resampling::Residual => residual(weights, draw, ancestors),
             Resampling::Multinomial => multinomial(weights.len(), weight, draw, ancestors),
@@ -75,12 +70,7 @@ fn multinomial(particles: usize, weight: impl Fn(usize) -> f64, draw: Draw, ance
 }
 
 /// Ancestor i is where the cumulated weights pass `point(i)` of their total; the points rise within (0, 1).
-fn invert(
-    particles: usize,
-    weight: impl Fn(usize) -> f64,
-    mut point: impl FnMut(usize) -> f64,
-    ancestors: &mut [u32],
-) {
+fn invert(particles: usize, weight: impl Fn(usize) -> f64, mut point: impl FnMut(usize) -> f64, ancestors: &mut [u32]) {
     let total: f64 = (0..particles).map(&weight).sum();
     let last = (0..particles).rev().find(|&i| weight(i) > 0.0);
     let Some(last) = last.filter(|_| total.is_finite()) else {

@@ -63,10 +63,7 @@ pub struct Streams {
 impl Streams {
     /// The streams of `seed`, for [`Purpose::General`].
     pub fn new(seed: u64) -> Self {
-        Streams {
-            seed,
-            purpose: Purpose::General,
-        }
+        Streams { seed, purpose: Purpose::General }
     }
 
     /// The same seed's streams for another purpose.
@@ -76,14 +73,8 @@ impl Streams {
 
     /// The streams at one step, below 2^56.
     pub fn at(self, step: u64) -> Draw {
-        assert!(
-            step >> STEP_BITS == 0,
-            "step {step} does not fit {STEP_BITS} bits"
-        );
-        Draw {
-            streams: self,
-            step,
-        }
+        assert!(step >> STEP_BITS == 0, "step {step} does not fit {STEP_BITS} bits");
+        Draw { streams: self, step }
     }
 
     /// A standard normal number; even and odd draws (2k, 2k + 1) come in pairs from one evaluation.
@@ -172,22 +163,11 @@ impl Draw {
 
     /// The uniform numbers `2 * pair` and `2 * pair + 1` of L neighbouring particles.
     #[inline(always)]
-    fn uniform_lanes<const L: usize>(
-        self,
-        kind: Kind,
-        first_particle: u32,
-        pair: u32,
-    ) -> [[f64; L]; 2] {
+    fn uniform_lanes<const L: usize>(self, kind: Kind, first_particle: u32, pair: u32) -> [[f64; L]; 2] {
         let Streams { seed, purpose } = self.streams;
         let tag = (purpose as u64) << 25 | (kind as u64) << 24;
-        let particles =
-            std::array::from_fn(|lane| u64::from(first_particle.wrapping_add(lane as u32)));
-        let counter = [
-            [u64::from(pair); L],
-            particles,
-            [self.step & LOW_WORD; L],
-            [self.step >> 32 | tag; L],
-        ];
+        let particles = std::array::from_fn(|lane| u64::from(first_particle.wrapping_add(lane as u32)));
+        let counter = [[u64::from(pair); L], particles, [self.step & LOW_WORD; L], [self.step >> 32 | tag; L]];
         let [a, b, c, d] = philox4x32_10(counter, [seed as u32, (seed >> 32) as u32]);
         [open_unit(a, b), open_unit(c, d)]
     }
@@ -210,19 +190,13 @@ fn open_unit<const L: usize>(low: [u64; L], high: [u64; L]) -> [f64; L] {
 fn philox4x32_10<const L: usize>(mut counter: [[u64; L]; 4], mut key: [u32; 2]) -> [[u64; L]; 4] {
     for _ in 0..ROUNDS {
         counter = philox_round(counter, key.map(u64::from));
-        key = [
-            key[0].wrapping_add(0x9E37_79B9),
-            key[1].wrapping_add(0xBB67_AE85),
-        ];
+        key = [key[0].wrapping_add(0x9E37_79B9), key[1].wrapping_add(0xBB67_AE85)];
     }
     counter
 }
 
 #[inline(always)]
-fn philox_round<const L: usize>(
-    [c0, c1, c2, c3]: [[u64; L]; 4],
-    [k0, k1]: [u64; 2],
-) -> [[u64; L]; 4] {
+fn philox_round<const L: usize>([c0, c1, c2, c3]: [[u64; L]; 4], [k0, k1]: [u64; 2]) -> [[u64; L]; 4] {
     let mut out = [[0; L]; 4];
     for i in 0..L {
         let a = (c0[i] & LOW_WORD) * 0xD251_1F53;
@@ -244,26 +218,15 @@ mod tests {
     fn philox_gives_the_published_known_answers() {
         let ones = u32::MAX;
         for (counter, key, answer) in [
-            (
-                [0; 4],
-                [0; 2],
-                [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8],
-            ),
-            (
-                [ones; 4],
-                [ones; 2],
-                [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd],
-            ),
+            ([0; 4], [0; 2], [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]),
+            ([ones; 4], [ones; 2], [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]),
             (
                 [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344],
                 [0xa409_3822, 0x299f_31d0],
                 [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1],
             ),
         ] {
-            assert_eq!(
-                philox4x32_10(counter.map(|c: u32| [u64::from(c); 3]), key),
-                answer.map(|a: u32| [u64::from(a); 3])
-            );
+            assert_eq!(philox4x32_10(counter.map(|c: u32| [u64::from(c); 3]), key), answer.map(|a: u32| [u64::from(a); 3]));
         }
     }
 

@@ -17,9 +17,7 @@ pub enum WeightError {
     #[error("there are 0 weights; at least 1 is needed")]
     Empty,
     /// A weight is NaN or positive infinity.
-    #[error(
-        "the log-weight of particle {particle} is NaN or +inf; it must be finite or -inf; check the likelihood"
-    )]
+    #[error("the log-weight of particle {particle} is NaN or +inf; it must be finite or -inf; check the likelihood")]
     NotANumber {
         /// Index of the first such weight.
         particle: usize,
@@ -49,11 +47,7 @@ impl LogWeights {
     /// N equal weights, N >= 1.
     pub fn equal(particles: usize) -> Self {
         assert!(particles > 0, "a particle set is never empty");
-        let mut weights = LogWeights {
-            log: vec![0.0; particles],
-            linear: vec![0.0; particles],
-            effective_sample_size: 0.0,
-        };
+        let mut weights = LogWeights { log: vec![0.0; particles], linear: vec![0.0; particles], effective_sample_size: 0.0 };
         weights.reset();
         weights
     }
@@ -70,11 +64,7 @@ impl LogWeights {
             return Err(WeightError::NotANumber { particle });
         }
         let linear = vec![0.0; log.len()];
-        let mut weights = LogWeights {
-            log,
-            linear,
-            effective_sample_size: 0.0,
-        };
+        let mut weights = LogWeights { log, linear, effective_sample_size: 0.0 };
         weights.normalise().ok_or(WeightError::AllZero)?;
         Ok(weights)
     }
@@ -101,10 +91,7 @@ impl LogWeights {
         if joint.all(|w| w == f64::NEG_INFINITY) {
             return None;
         }
-        self.log
-            .iter_mut()
-            .zip(log_likelihood)
-            .for_each(|(w, l)| *w += l);
+        self.log.iter_mut().zip(log_likelihood).for_each(|(w, l)| *w += l);
         self.normalise()
     }
 
@@ -115,11 +102,7 @@ impl LogWeights {
     pub fn best(&self, log_likelihood: &[f64]) -> f64 {
         assert_eq!(log_likelihood.len(), self.log.len());
         assert_sound(log_likelihood);
-        let alive = self
-            .log
-            .iter()
-            .zip(log_likelihood)
-            .filter(|(w, _)| **w > f64::NEG_INFINITY);
+        let alive = self.log.iter().zip(log_likelihood).filter(|(w, _)| **w > f64::NEG_INFINITY);
         alive.fold(f64::NEG_INFINITY, |best, (_, &l)| larger(best, l))
     }
 
@@ -181,11 +164,7 @@ fn larger(a: f64, b: f64) -> f64 {
 fn sums(x: &[f64]) -> (f64, f64) {
     let leaf = |block: usize| {
         let end = x.len().min((block + 1) * BLOCK);
-        x[block * BLOCK..end]
-            .iter()
-            .fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w))
+        x[block * BLOCK..end].iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w))
     };
-    parallel::tree_reduce(0..x.len().div_ceil(BLOCK), &leaf, &|a, b| {
-        (a.0 + b.0, a.1 + b.1)
-    })
+    parallel::tree_reduce(0..x.len().div_ceil(BLOCK), &leaf, &|a, b| (a.0 + b.0, a.1 + b.1))
 }

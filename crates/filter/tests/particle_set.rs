@@ -26,12 +26,7 @@ fn blocks_cover_every_particle_once_and_hide_the_padding() {
         let covered: Vec<usize> = set.blocks().flat_map(|block| block.range()).collect();
         assert_eq!(covered, (0..particles).collect::<Vec<_>>());
         let column: Vec<f64> = set.column(1).collect();
-        assert_eq!(
-            column,
-            (0..particles)
-                .map(|i| (1000 + i) as f64)
-                .collect::<Vec<_>>()
-        );
+        assert_eq!(column, (0..particles).map(|i| (1000 + i) as f64).collect::<Vec<_>>());
         assert_eq!(set.value(particles - 1, 1), (1000 + particles - 1) as f64);
     }
 }
@@ -100,31 +95,10 @@ fn weighted_circular_mean_crosses_the_seam() {
 #[test]
 fn new_with_settings_out_of_range_is_refused() {
     let refuse = |settings| ParticleFilter::new(common::Axis::OPEN, settings).err();
-    let none = Settings {
-        particles: 0,
-        ..Settings::default()
-    };
-    assert_eq!(
-        refuse(none),
-        Some(SettingsError::Particles { particles: 0 })
-    );
-    let above = Settings {
-        resample_below: 1.5,
-        ..Settings::default()
-    };
-    assert_eq!(
-        refuse(above),
-        Some(SettingsError::ResampleBelow { share: 1.5 })
-    );
-    assert!(
-        refuse(Settings {
-            resample_below: f64::NAN,
-            ..Settings::default()
-        })
-        .is_some()
-    );
-    assert_eq!(
-        SettingsError::Particles { particles: 0 }.to_string(),
-        "`particles` is 0; it must be at least 1 and below 2^32; try 500"
-    );
+    let none = Settings { particles: 0, ..Settings::default() };
+    assert_eq!(refuse(none), Some(SettingsError::Particles { particles: 0 }));
+    let above = Settings { resample_below: 1.5, ..Settings::default() };
+    assert_eq!(refuse(above), Some(SettingsError::ResampleBelow { share: 1.5 }));
+    assert!(refuse(Settings { resample_below: f64::NAN, ..Settings::default() }).is_some());
+    assert_eq!(SettingsError::Particles { particles: 0 }.to_string(), "`particles` is 0; it must be at least 1 and below 2^32; try 500");
 }

@@ -17,19 +17,12 @@ struct Outcome {
 
 fn run(resampling: Resampling) -> Outcome {
     let (times, measurements) = series(30, 9);
-    let settings = Settings {
-        resampling,
-        ..settings(PARTICLES, 5)
-    };
+    let settings = Settings { resampling, ..settings(PARTICLES, 5) };
     let mut filter = ParticleFilter::new(Axis::GATED, settings).unwrap();
     let (mut reports, mut bits) = (Vec::new(), Vec::new());
     for row in 1..times.len() {
         // row 20 cannot be explained
-        let observation = if row == 20 {
-            Some(100.0)
-        } else {
-            measurements[row]
-        };
+        let observation = if row == 20 { Some(100.0) } else { measurements[row] };
         reports.push(filter.step(&(times[row] - times[row - 1]), observation.as_ref()));
         bits.extend(numbers(&filter).into_iter().map(f64::to_bits));
     }
@@ -37,10 +30,7 @@ fn run(resampling: Resampling) -> Outcome {
 }
 
 fn numbers(filter: &ParticleFilter<Axis>) -> Vec<f64> {
-    let mut out: Vec<f64> = [POSITION, VELOCITY]
-        .iter()
-        .flat_map(|&c| filter.particles().column(c))
-        .collect();
+    let mut out: Vec<f64> = [POSITION, VELOCITY].iter().flat_map(|&c| filter.particles().column(c)).collect();
     out.extend(filter.weights().weights());
     out.extend(filter.weights().log_weights());
     out.push(filter.weighted_mean(POSITION));
@@ -54,20 +44,14 @@ fn numbers(filter: &ParticleFilter<Axis>) -> Vec<f64> {
 fn step_on_one_two_three_and_eight_threads_gives_the_same_bits() {
     for resampling in [Resampling::Systematic, Resampling::Residual] {
         let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| run(resampling))
         };
         let reference = on(1);
         assert!(reference.reports.iter().any(|r| r.resampled));
         assert!(reference.reports.iter().any(StepReport::collapsed));
         for threads in [2, 3, 8] {
-            assert!(
-                on(threads) == reference,
-                "{threads} threads differ from one, {resampling:?}"
-            );
+            assert!(on(threads) == reference, "{threads} threads differ from one, {resampling:?}");
         }
     }
 }
@@ -78,8 +62,6 @@ fn step_on_one_two_three_and_eight_threads_gives_the_same_bits() {
 fn step_gives_the_recorded_bits() {
     let run = run(Resampling::Systematic);
     let bytes = run.bits.iter().flat_map(|bits| bits.to_le_bytes());
-    let digest = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
+    let digest = bytes.fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
     assert_eq!(format!("{digest:016x}"), "40a4f2838f6b4a53");
 }

@@ -118,7 +118,9 @@ impl CsvTable {
             return format!("; the header is separated by {separator:?}");
         }
         match nearest(column, self.columns.iter().map(String::as_str)) {
-            Some((name, distance)) if distance <= column.len() / 2 && !name.is_empty() => format!(", the nearest in the header is `{name}`"),
+            Some((name, distance)) if distance <= column.len() / 2 && !name.is_empty() => {
+                format!(", the nearest in the header is `{name}`")
+            }
             _ => String::new(),
         }
     }

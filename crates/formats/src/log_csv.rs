@@ -135,7 +135,8 @@ impl Columns {
 
     fn warnings(&self, table: &CsvTable) -> Vec<LogWarning> {
         let force = self.force.iter().flatten();
-        let used: Vec<usize> = self.object.iter().chain(&self.pusher).chain(&self.tactile).chain(force).copied().chain([self.time]).collect();
+        let used: Vec<usize> =
+            self.object.iter().chain(&self.pusher).chain(&self.tactile).chain(force).copied().chain([self.time]).collect();
         let shown = |index: usize| match table.columns()[index].as_str() {
             "" => format!("(number {}, without a name)", index + 1),
             name => name.to_owned(),
@@ -151,8 +152,9 @@ fn tactile_columns(table: &CsvTable) -> Result<Vec<usize>, LogError> {
     let sensors: Vec<usize> = (0..table.columns().len()).filter(|index| numbered(&table.columns()[*index])).collect();
     let names: Vec<String> = (1..=sensors.len()).map(|k| format!("{TACTILE}{k}")).collect();
     let wrong = sensors.iter().find(|index| !names.contains(&table.columns()[**index]));
-    let in_order =
-        names.iter().map(|name| table.find(name).ok_or_else(|| table.error(1, wrong.copied(), CsvProblem::SensorNumber { missing: name.clone() })));
+    let in_order = names
+        .iter()
+        .map(|name| table.find(name).ok_or_else(|| table.error(1, wrong.copied(), CsvProblem::SensorNumber { missing: name.clone() })));
     in_order.collect()
 }
 

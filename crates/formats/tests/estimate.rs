@@ -45,7 +45,8 @@ fn refused(text: &str, place: &str, words: &[&str]) {
 #[test]
 fn write_estimate_writes_the_contract() {
     let rows = vec![EstimateRow::default(), full_row()];
-    let expected = format!("{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3\n");
+    let expected =
+        format!("{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3\n");
     assert_eq!(written(&estimate(rows, true)), expected);
 }
 

@@ -190,7 +190,8 @@ fn write_log_writes_the_contract() {
         tactile: vec![vec![Some(true), None], vec![Some(false), Some(false)]],
         force: vec![None, Some([1.5, 0.0])],
     };
-    let expected = format!("{HEADER},tactile_1,tactile_2,pusher_force_x,pusher_force_y\n0,0.5,-0.25,1e-9,,,,1,0,,\n0.04,,,,1,2,-0,,0,1.5,0\n");
+    let expected =
+        format!("{HEADER},tactile_1,tactile_2,pusher_force_x,pusher_force_y\n0,0.5,-0.25,1e-9,,,,1,0,,\n0.04,,,,1,2,-0,,0,1.5,0\n");
     assert_eq!(String::from_utf8(written(&log)).expect("text"), expected);
 }
 
@@ -218,7 +219,8 @@ fn any_pose() -> impl Strategy<Value = Option<Pose>> {
 
 fn any_log() -> impl Strategy<Value = Log> {
     (1..20_usize, 0..4_usize, any::<bool>()).prop_flat_map(|(rows, sensors, has_force)| {
-        let time = prop::collection::btree_set(-1_000_000..1_000_000_i64, rows).prop_map(|set| set.iter().map(|t| *t as f64 / 30.0).collect());
+        let time =
+            prop::collection::btree_set(-1_000_000..1_000_000_i64, rows).prop_map(|set| set.iter().map(|t| *t as f64 / 30.0).collect());
         let force = prop::option::of((number(), number()).prop_map(|(x, y)| [x, y]));
         (
             time,

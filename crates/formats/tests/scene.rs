@@ -79,7 +79,8 @@ fn full_scene_shapes_arrive() {
 #[test]
 fn full_scene_sensing_arrives() {
     let setup = read(FULL);
-    let camera = Camera { position_std: 3.0e-4, orientation_std: 5.2e-3, latency: 0.125, pusher_position_std: 0.0, pusher_orientation_std: 1.0e-3 };
+    let camera =
+        Camera { position_std: 3.0e-4, orientation_std: 5.2e-3, latency: 0.125, pusher_position_std: 0.0, pusher_orientation_std: 1.0e-3 };
     assert_eq!(setup.camera, Some(camera));
     assert_eq!(setup.tactile, Tactile { false_positive: 0.02, false_negative: 0.06, touch_force: 0.07 });
     let filter = FilterSettings {
@@ -117,7 +118,8 @@ fn least_scene_takes_the_defaults_of_the_contract() {
 #[test]
 fn camera_defaults_are_those_of_the_contract() {
     let setup = read(&format!("{LEAST}[camera]\nposition_std = 1e-3\norientation_std = 0.01\n[tactile]\n[filter]\n"));
-    let camera = Camera { position_std: 1e-3, orientation_std: 0.01, latency: 0.0, pusher_position_std: 1e-4, pusher_orientation_std: 2e-3 };
+    let camera =
+        Camera { position_std: 1e-3, orientation_std: 0.01, latency: 0.0, pusher_position_std: 1e-4, pusher_orientation_std: 2e-3 };
     assert_eq!((setup.camera, setup.tactile, setup.filter), (Some(camera), Tactile::default(), FilterSettings::default()));
 }
 
@@ -218,7 +220,12 @@ fn wrong_type_is_refused() {
     refused("mass = 0.50", "mass = [0.5]", "4:8", &["object.mass", "a list", "a number"]);
     refused("mass = 0.50", "mass = 2020-01-01", "4:8", &["object.mass", "2020-01-01", "a number"]);
     refused("[0.025, 0.025]", "[0.025, \"a\"]", "6:67", &["object.shape[1].polygon[3][2]", "\"a\"", "a number"]);
-    refused("position = [0.10, 0.018]", "position = [0.10, 0.018, 0]", "25:12", &["fixel[1].position", "a list of 3", "a list of 2", "[x, y]"]);
+    refused(
+        "position = [0.10, 0.018]",
+        "position = [0.10, 0.018, 0]",
+        "25:12",
+        &["fixel[1].position", "a list of 3", "a list of 2", "[x, y]"],
+    );
     refused("position = [0.10, 0.018]", "position = 0.10", "25:12", &["fixel[1].position", "0.10", "a list"]);
     refused("mu_s = [0.06, 0.9]", "mu_s = 0.9", "50:8", &["filter.mu_s", "0.9", "a list"]);
     refused("{ radius = 0.005 }", "0.005", "15:12", &["pusher.shape[1].disc", "0.005", "a table"]);
@@ -252,11 +259,26 @@ fn sensing_numbers_against_their_rule_are_refused() {
     refused("\nposition_std = 3.0e-4", "\nposition_std = 0", "34:16", &["camera.position_std is 0 m", "positive"]);
     refused("\norientation_std = 5.2e-3", "\norientation_std = -1", "35:19", &["camera.orientation_std is -1 rad", "positive"]);
     refused("latency = 0.125", "latency = -0.1", "36:11", &["camera.latency is -0.1 s", "zero or positive"]);
-    refused("pusher_position_std = 0", "pusher_position_std = -1e-4", "37:23", &["camera.pusher_position_std is -1e-4 m", "zero or positive"]);
+    refused(
+        "pusher_position_std = 0",
+        "pusher_position_std = -1e-4",
+        "37:23",
+        &["camera.pusher_position_std is -1e-4 m", "zero or positive"],
+    );
     refused("1.0e-3", "-1.0e-3", "38:26", &["camera.pusher_orientation_std is -1.0e-3 rad", "zero or positive"]);
     for value in ["0", "1", "1.5", "-0.1"] {
-        refused("false_positive = 0.02", &format!("false_positive = {value}"), "41:18", &["tactile.false_positive", value, "between 0 and 1"]);
-        refused("false_negative = 0.06", &format!("false_negative = {value}"), "42:18", &["tactile.false_negative", value, "between 0 and 1"]);
+        refused(
+            "false_positive = 0.02",
+            &format!("false_positive = {value}"),
+            "41:18",
+            &["tactile.false_positive", value, "between 0 and 1"],
+        );
+        refused(
+            "false_negative = 0.06",
+            &format!("false_negative = {value}"),
+            "42:18",
+            &["tactile.false_negative", value, "between 0 and 1"],
+        );
     }
     refused("touch_force = 0.07", "touch_force = -0.07", "43:15", &["tactile.touch_force is -0.07 N", "zero or positive"]);
 }
@@ -290,7 +312,12 @@ fn feet_that_cannot_be_are_refused() {
 #[test]
 fn feet_together_with_a_tripod_are_refused() {
     let feet = "feet = [[-1, -1], [1, -1], [0, 1]]\n";
-    refused("tripod_radius = 0.02 ", &format!("{feet}tripod_radius = 0.02 "), "11:17", &["support.feet", "support.tripod_radius", "Remove one"]);
+    refused(
+        "tripod_radius = 0.02 ",
+        &format!("{feet}tripod_radius = 0.02 "),
+        "11:17",
+        &["support.feet", "support.tripod_radius", "Remove one"],
+    );
     let text = replaced(LEAST, "tripod_radius = 0.02\n", &format!("{feet}tripod_angle = 1\n"));
     refused_text(&text, "9:16", &["support.feet", "support.tripod_angle", "Remove one"]);
 }

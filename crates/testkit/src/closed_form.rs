@@ -10,13 +10,13 @@ use stickslip_dynamics::{Foot, StepProblem, StepSolution, Twist, Wrench};
 pub struct Block {
     /// Mass m in kg.
     pub mass: f64,
-    /// Moment of inertia J [kg m²].
+    /// Moment of inertia J (kg m²).
     pub inertia: f64,
     /// Step h in s.
     pub h: f64,
     /// Support friction μ_s.
     pub mu_s: f64,
-    /// Gravity g [m/s²].
+    /// Gravity g (m/s²).
     pub gravity: f64,
     /// Tripod radius d in m.
     pub d_tri: f64,
@@ -32,7 +32,7 @@ pub struct Stop {
 }
 
 impl Block {
-    /// b = μ m g h, the largest friction impulse of all feet together [N s].
+    /// b = μ m g h, the largest friction impulse of all feet together (N s).
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.mu_s * self.mass * self.gravity * self.h
@@ -51,37 +51,37 @@ impl Block {
         [[1.0, 0.0], [-0.5, half_root_3], [-0.5, -half_root_3]]
     }
 
-    /// Speed lost per step in translation, μ g h [m/s].
+    /// Speed lost per step in translation, μ g h (m/s).
     #[must_use]
     pub fn slide_loss(&self) -> f64 {
         self.mu_s * self.gravity * self.h
     }
 
-    /// Angular speed lost per step in pure spin, μ m g h d / J [rad/s].
+    /// Angular speed lost per step in pure spin, μ m g h d / J (rad/s).
     #[must_use]
     pub fn spin_loss(&self) -> f64 {
         self.bound() * self.d_tri / self.inertia
     }
 
-    /// Speed after step `k` of a pure translation that begins with `speed` ≥ 0 [m/s].
+    /// Speed after step `k` of a pure translation that begins with `speed` ≥ 0 (m/s).
     #[must_use]
     pub fn slide_speed(&self, speed: f64, k: u64) -> f64 {
         remaining(speed, self.slide_loss(), k)
     }
 
-    /// Angular speed after step `k` of a pure spin that begins with `omega` ≥ 0 [rad/s].
+    /// Angular speed after step `k` of a pure spin that begins with `omega` ≥ 0 (rad/s).
     #[must_use]
     pub fn spin_speed(&self, omega: f64, k: u64) -> f64 {
         remaining(omega, self.spin_loss(), k)
     }
 
-    /// Where and when a pure translation of initial `speed` [m/s] stops; the friction must not be zero.
+    /// Where and when a pure translation of initial `speed` (m/s) stops; the friction must not be zero.
     #[must_use]
     pub fn slide_stop(&self, speed: f64) -> Stop {
         stop(speed, self.slide_loss(), self.h)
     }
 
-    /// At which angle and when a pure spin of initial `omega` [rad/s] stops; friction and tripod radius must not be zero.
+    /// At which angle and when a pure spin of initial `omega` (rad/s) stops; friction and tripod radius must not be zero.
     #[must_use]
     pub fn spin_stop(&self, omega: f64) -> Stop {
         stop(omega, self.spin_loss(), self.h)

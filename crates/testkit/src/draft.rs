@@ -21,9 +21,9 @@ pub(crate) enum Body {
 pub(crate) struct Draft {
     pub rng: SplitMix64,
     pub problem: StepProblem,
-    /// Radius of gyration ρ [m].
+    /// Radius of gyration ρ (m).
     pub gyration: f64,
-    /// Friction impulse of all feet together [N s].
+    /// Friction impulse of all feet together (N s).
     pub bound: f64,
     /// The pusher's commanded motion, as the twist of the point at the object's centre of mass.
     pub pusher: Twist,
@@ -123,7 +123,7 @@ impl Draft {
         -depth
     }
 
-    /// `normal` turned by a random angle of at most `most` [rad].
+    /// `normal` turned by a random angle of at most `most` (rad).
     pub fn tilted(&mut self, normal: [f64; 2], most: f64) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.rng.within(-most, most));
         [cos * normal[0] - sin * normal[1], sin * normal[0] + cos * normal[1]]
@@ -149,7 +149,7 @@ impl Draft {
         self.problem.contacts.push(contact);
     }
 
-    /// A pusher contact that faces the drive to within `most` [rad].
+    /// A pusher contact that faces the drive to within `most` (rad).
     pub fn add_push(&mut self, most: f64) {
         let drive = self.drive();
         let normal = self.tilted(drive, most);

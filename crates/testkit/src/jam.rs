@@ -17,7 +17,7 @@ const REACH: f64 = 100.0;
 /// Wrenches of unit impulses that sum to less than this may cancel each other; the quadratic program is good to about 1e-7.
 const CANCELLED: f64 = 1e-5;
 
-/// How fast all gaps can open at once [m/s], at most `cap`, with twists up to 100 times the fastest speed in the problem.
+/// How fast all gaps can open at once (m/s), at most `cap`, with twists up to 100 times the fastest speed in the problem.
 ///
 /// Negative where the gap rows exclude each other: then there is no solution of such a speed, whatever the friction.
 ///

@@ -13,7 +13,7 @@ use crate::residual::residual_si;
 use crate::rng::SplitMix64;
 use crate::scaled::{Column, Scaled};
 
-/// Solutions must meet this residual [m/s].
+/// Solutions must meet this residual (m/s).
 const TOLERANCE: f64 = 1e-10;
 /// Twists closer than this, relative to the problem's fastest speed, are one solution.
 const DISTINCT: f64 = 1e-6;

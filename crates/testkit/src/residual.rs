@@ -33,7 +33,7 @@ pub enum ResidualRow {
     Stall,
 }
 
-/// Largest row of the natural map [m/s]; zero exactly at solutions, infinite where any number of problem or solution is not finite.
+/// Largest row of the natural map (m/s); zero exactly at solutions, infinite where any number of problem or solution is not finite.
 ///
 /// # Panics
 /// Where the solution has not one normal and one tangential impulse per contact.
@@ -42,7 +42,7 @@ pub fn residual_si(problem: &StepProblem, solution: &StepSolution) -> f64 {
     residual_rows_si(problem, solution).into_iter().map(|(_, value)| value).fold(0.0, f64::max)
 }
 
-/// Every row of the natural map [m/s], absolute values; all infinite where any number of problem or solution is not finite.
+/// Every row of the natural map (m/s), absolute values; all infinite where any number of problem or solution is not finite.
 ///
 /// # Panics
 /// Where the solution has not one normal and one tangential impulse per contact.
@@ -74,7 +74,7 @@ pub(crate) fn left(a: [f64; 2]) -> [f64; 2] {
     [-a[1], a[0]]
 }
 
-/// What a contact pushes the object with [N s].
+/// What a contact pushes the object with (N s).
 fn contact_impulse(contact: &ContactPoint, normal: f64, tangential: f64) -> [f64; 2] {
     let (n, t) = (contact.normal, left(contact.normal));
     [normal * n[0] + tangential * t[0], normal * n[1] + tangential * t[1]]
@@ -103,7 +103,7 @@ fn momentum_rows(problem: &StepProblem, solution: &StepSolution) -> Vec<(Residua
     vec![(ResidualRow::ForceX, x), (ResidualRow::ForceY, y), (ResidualRow::Torque, torque / gyration)]
 }
 
-/// Velocity of the object's contact point relative to the other body's surface [m/s].
+/// Velocity of the object's contact point relative to the other body's surface (m/s).
 fn relative_velocity(problem: &StepProblem, solution: &StepSolution, contact: &ContactPoint) -> [f64; 2] {
     let (v, u) = (solution.twist.at(contact.arm), contact.surface_velocity);
     let lost = match problem.stall {
@@ -139,7 +139,7 @@ fn stall_row(problem: &StepProblem, solution: &StepSolution) -> f64 {
     problem.stall.map_or(lag, |stall| lag.min(stall.impulse - drive_impulse(problem, solution, stall.direction)))
 }
 
-/// F: the impulse along `direction` with which the object resists the pusher [N s].
+/// F: the impulse along `direction` with which the object resists the pusher (N s).
 fn drive_impulse(problem: &StepProblem, solution: &StepSolution, direction: [f64; 2]) -> f64 {
     let magnitudes = solution.normal.iter().zip(&solution.tangential);
     let pushed = problem.contacts.iter().zip(magnitudes).filter(|(c, _)| c.on_pusher);

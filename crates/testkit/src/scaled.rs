@@ -7,7 +7,7 @@ use stickslip_dynamics::{ContactPoint, StepProblem, Twist};
 
 use crate::residual::{cross, dot, left};
 
-/// Below this [m/s] a problem counts as at rest and is not scaled up.
+/// Below this (m/s) a problem counts as at rest and is not scaled up.
 const SLOWEST: f64 = 1e-6;
 
 pub(crate) struct Scaled<'a> {
@@ -32,12 +32,12 @@ impl<'a> Scaled<'a> {
         Self { speed, ..unscaled }
     }
 
-    /// S [m/s].
+    /// S (m/s).
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Impulse [N s] of one unit.
+    /// Impulse (N s) of one unit.
     pub fn impulse(&self) -> f64 {
         self.problem.mass * self.speed
     }

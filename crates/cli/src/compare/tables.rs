@@ -1,4 +1,4 @@
-//! A comparison as text: [`print`].
+//! A comparison as text: [`print()`].
 
 use super::results::{COLUMNS, Comparison, Entry, Overall};
 use crate::table::{Table, number};

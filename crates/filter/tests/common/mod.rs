@@ -1,19 +1,13 @@
 //! A linear-Gaussian model, whose exact answer is a Kalman filter's, for the tests of the particle filter.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use stickslip_filter::{
-    Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams,
-};
+use stickslip_filter::{Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams};
 
 /// Columns.
 pub const POSITION: usize = 0;
 pub const VELOCITY: usize = 1;
 
-pub const AXIS: ConstantVelocity = ConstantVelocity {
-    process_noise: 0.5,
-    measurement_std: 0.3,
-    initial_velocity_std: 1.0,
-};
+pub const AXIS: ConstantVelocity = ConstantVelocity { process_noise: 0.5, measurement_std: 0.3, initial_velocity_std: 1.0 };
 
 /// One axis of nearly constant velocity as particles; the state of [`ConstantVelocity`].
 pub struct Axis {
@@ -25,15 +19,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    pub const OPEN: Axis = Axis {
-        noise: AXIS,
-        start: 0.0,
-        gate: f64::INFINITY,
-    };
-    pub const GATED: Axis = Axis {
-        gate: 3.0,
-        ..Axis::OPEN
-    };
+    pub const OPEN: Axis = Axis { noise: AXIS, start: 0.0, gate: f64::INFINITY };
+    pub const GATED: Axis = Axis { gate: 3.0, ..Axis::OPEN };
 }
 
 /// Random numbers of one block.
@@ -50,10 +37,7 @@ impl Model for Axis {
     }
 
     fn scratch(&self) -> Noise {
-        [
-            vec![0.0; stickslip_filter::BLOCK],
-            vec![0.0; stickslip_filter::BLOCK],
-        ]
+        [vec![0.0; stickslip_filter::BLOCK], vec![0.0; stickslip_filter::BLOCK]]
     }
 
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
@@ -83,28 +67,19 @@ impl Model for Axis {
         let constant = -libm::log(std * std::f64::consts::TAU.sqrt());
         for (l, x) in out.iter_mut().zip(block.column(POSITION)) {
             let z = (measured - x) / std;
-            *l = if (measured - x).abs() > self.gate {
-                f64::NEG_INFINITY
-            } else {
-                constant - 0.5 * z * z
-            };
+            *l = if (measured - x).abs() > self.gate { f64::NEG_INFINITY } else { constant - 0.5 * z * z };
         }
     }
 
     fn redraw(&self, measured: &f64, draw: Draw, block: &mut BlockMut<'_>) {
         for (lane, particle) in block.particles() {
-            block.column_mut(POSITION)[lane] =
-                measured + self.noise.measurement_std * draw.normal(particle, 0);
+            block.column_mut(POSITION)[lane] = measured + self.noise.measurement_std * draw.normal(particle, 0);
         }
     }
 }
 
 pub fn settings(particles: usize, seed: u64) -> Settings {
-    Settings {
-        particles,
-        seed,
-        ..Settings::default()
-    }
+    Settings { particles, seed, ..Settings::default() }
 }
 
 /// (times, measurements) of one axis that follows the model: steps uneven, every fifth row and a run of rows missing.
@@ -122,8 +97,7 @@ pub fn series(rows: usize, seed: u64) -> (Vec<f64>, Vec<Option<f64>>) {
         time += h;
         let missing = row % 5 == 3 || (10..14).contains(&row);
         out.0.push(time);
-        out.1
-            .push((!missing).then_some(x + AXIS.measurement_std * r));
+        out.1.push((!missing).then_some(x + AXIS.measurement_std * r));
     }
     out
 }

@@ -8,12 +8,17 @@ use super::error::SceneError;
 type Result<T> = std::result::Result<T, SceneError>;
 
 const POSITION_STD: Quantity = Quantity::new("position_std", "the standard deviation of one object position", "m", Rule::Positive);
-const ORIENTATION_STD: Quantity = Quantity::new("orientation_std", "the standard deviation of one object orientation", "rad", Rule::Positive);
+const ORIENTATION_STD: Quantity =
+    Quantity::new("orientation_std", "the standard deviation of one object orientation", "rad", Rule::Positive);
 const LATENCY: Quantity = Quantity::new("latency", "the time by which object poses lag the pusher's", "s", Rule::NotNegative);
 const PUSHER_POSITION_STD: Quantity =
     Quantity::new("pusher_position_std", "the standard deviation of one pusher position, 0 for exact ones,", "m", Rule::NotNegative);
-const PUSHER_ORIENTATION_STD: Quantity =
-    Quantity::new("pusher_orientation_std", "the standard deviation of one pusher orientation, 0 for exact ones,", "rad", Rule::NotNegative);
+const PUSHER_ORIENTATION_STD: Quantity = Quantity::new(
+    "pusher_orientation_std",
+    "the standard deviation of one pusher orientation, 0 for exact ones,",
+    "rad",
+    Rule::NotNegative,
+);
 
 const FALSE_POSITIVE: Quantity = Quantity::new("false_positive", "the probability that an untouched sensor reads 1", "", Rule::Probability);
 const FALSE_NEGATIVE: Quantity = Quantity::new("false_negative", "the probability that a touched sensor reads 0", "", Rule::Probability);
@@ -25,7 +30,8 @@ const PARAMETER_STD: Quantity =
     Quantity::new("parameter_std", "the relative change of the friction parameters per step of 1/30 s", "", Rule::NotNegative);
 const RESAMPLE_BELOW: Quantity =
     Quantity::new("resample_below", "the share of effective particles below which the set is resampled", "", Rule::Share);
-const LIKELIHOOD_SCALE: Quantity = Quantity::new("likelihood_scale", "the factor that widens the camera's standard deviations", "", Rule::Positive);
+const LIKELIHOOD_SCALE: Quantity =
+    Quantity::new("likelihood_scale", "the factor that widens the camera's standard deviations", "", Rule::Positive);
 const MU_S: Quantity = Quantity::new("mu_s", "the limits of mu_s as [smallest, largest]", "", Rule::NotNegative);
 const MU_P: Quantity = Quantity::new("mu_p", "the limits of mu_p as [smallest, largest]", "", Rule::NotNegative);
 const MU_F: Quantity = Quantity::new("mu_f", "the limits of mu_f as [smallest, largest]", "", Rule::NotNegative);

@@ -11,7 +11,10 @@ fn main() -> ExitCode {
         eprintln!("usage: corpus [PROBLEMS] [SEED], both whole numbers");
         return ExitCode::from(2);
     };
-    println!("{:<16} {:>9} {:>9} {:>9} {:>7} {:>11} {:>7} {:>12}", "family", "problems", "newton", "homotopy", "modes", "infeasible", "failed", "residual");
+    println!(
+        "{:<16} {:>9} {:>9} {:>9} {:>7} {:>11} {:>7} {:>12}",
+        "family", "problems", "newton", "homotopy", "modes", "infeasible", "failed", "residual"
+    );
     let mut total = Tally::default();
     for (family, tally) in survey(&Corpus { seed }, 0..problems) {
         print_row(&format!("{family:?}"), &tally);
