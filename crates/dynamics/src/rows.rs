@@ -105,6 +105,17 @@ impl Rows {
         guess.contacts.resize(self.contacts.len(), [0.0; 2]);
     }
 
+    /// Makes the pusher of a cold start yield: its contacts carry the stall force and it gives up the whole approach.
+    pub fn yield_start(&self, guess: &mut Guess) {
+        let on_pusher = self.contacts.iter().zip(&mut guess.contacts).filter(|(c, _)| c.n[3] > 0.0);
+        for (c, p) in on_pusher {
+            if self.stall.is_finite() {
+                p[0] = self.stall / c.n[3];
+                guess.v[3] = guess.v[3].max(-c.gap);
+            }
+        }
+    }
+
     /// The largest speed that appears in the problem (m/s); its natural scale.
     pub fn speed_scale(&self) -> f64 {
         let contacts = self.contacts.iter().map(|c| c.gap.abs().max(c.slip.abs()));

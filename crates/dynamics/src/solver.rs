@@ -24,7 +24,14 @@ const FAST_ITERATIONS: u32 = 12;
 /// Iterations that polish an end point of a slow solver.
 const POLISH_ITERATIONS: u32 = 30;
 
-/// The same for a warm start: its own modes, then everything stuck, as where a jammed or resting object stays.
+/// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a fold, and most folds lie on
+/// few paths.
+const HOLDING: [f64; 10] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e1, 1e2, 1e-6, 1e-5, 1e-7];
+
+/// The same with the pusher yielding at its stall force.
+const YIELDING: [f64; 3] = [1e-4, 1.0, 1e-2];
+
+/// Readings of a warm start: its own modes, then everything stuck, as where a jammed or resting object stays.
 const WARM_SLIDING: [f64; 2] = [0.9999, f64::INFINITY];
 
 /// Newton steps in the modes of a warm start.
@@ -201,10 +208,22 @@ impl SlowSolver {
         }
     }
 
-    /// The homotopy from a cold start; the residual of its polished end.
+    /// The homotopy from cold starts, with the pusher holding and with it yielding, until one of the polished ends is certified;
+    /// the residual of the last.
     fn follow(&mut self) -> f64 {
-        self.rows.cold_start(&mut self.start);
-        self.follow_from(1.0)
+        let mut residual = f64::INFINITY;
+        let starts = HOLDING.iter().map(|first| (false, first)).chain(YIELDING.iter().map(|first| (true, first)));
+        for (yields, &first) in starts {
+            self.rows.cold_start(&mut self.start);
+            if yields {
+                self.rows.yield_start(&mut self.start);
+            }
+            residual = self.follow_from(first);
+            if residual <= TOLERANCE {
+                break;
+            }
+        }
+        residual
     }
 
     /// The homotopy from `self.start` at a share of the speed scale.
