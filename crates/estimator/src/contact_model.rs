@@ -17,7 +17,7 @@ const NOISE_STEP: f64 = 1.0 / 30.0;
 const MOVING: f64 = 1e-9;
 
 /// Best log-likelihood below which no particle explains the observation: the particles are redrawn around it.
-const COLLAPSED: f64 = -12.0;
+const COLLAPSED: f64 = -6.0;
 
 /// Whether the friction parameters take a random step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
