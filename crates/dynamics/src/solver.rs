@@ -28,6 +28,12 @@ const POLISH_ITERATIONS: u32 = 30;
 /// few paths.
 const HOLDING: [f64; 10] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e1, 1e2, 1e-6, 1e-5, 1e-7];
 
+/// Compliance ten times above the one at which the way to the compliant solution begins.
+const SOFT: f64 = 10.0;
+
+/// Smoothings tried at each compliance on that way.
+const SOFTENING: [f64; 4] = [1.0, 1e-2, 1e2, 1e-4];
+
 /// The same with the pusher yielding at its stall force.
 const YIELDING: [f64; 3] = [1e-4, 1.0, 1e-2];
 
@@ -241,12 +247,28 @@ impl SlowSolver {
         }
     }
 
-    /// Leaves the solution with compliant gap rows in the polisher.
+    /// Leaves the solution with compliant gap rows in the polisher: from soft rows, where it is near the free motion, to stiff ones.
     fn solve_compliant(&mut self) {
-        self.rows.compliance = COMPLIANCE;
-        self.ncp.compliance = Lanes::ZERO + COMPLIANCE;
-        if self.follow() > TOLERANCE {
-            self.homotopy.end().store(&mut self.polisher.p);
+        self.rows.cold_start(&mut self.start);
+        let mut compliance = SOFT;
+        loop {
+            compliance = f64::max(0.1 * compliance, COMPLIANCE);
+            self.rows.compliance = compliance;
+            self.ncp.compliance = Lanes::ZERO + compliance;
+            let mut residual = f64::INFINITY;
+            for first in SOFTENING {
+                residual = self.follow_from(first);
+                if residual <= TOLERANCE {
+                    break;
+                }
+            }
+            if residual > TOLERANCE {
+                self.homotopy.end().store(&mut self.polisher.p);
+            }
+            self.start.load(&self.polisher.p, 0, self.ncp.contacts.len());
+            if compliance <= COMPLIANCE {
+                break;
+            }
         }
         self.ncp.compliance = Lanes::ZERO;
     }
