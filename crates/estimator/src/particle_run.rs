@@ -65,7 +65,7 @@ fn lookback(prepared: &Prepared<'_>, camera: &Camera, row: usize, history: usize
         return None;
     }
     let time = &prepared.log.time;
-    let shown = camera.shown_time(time[row]).max(time[prepared.first]);
+    let shown = (time[row] - camera.latency).max(time[prepared.first]);
     let later = (prepared.first..=row).find(|&k| time[k] >= shown).unwrap_or(row);
     let earlier = later.saturating_sub(1).max(prepared.first);
     let span = time[later] - time[earlier];

@@ -4,7 +4,7 @@ use stickslip_dynamics::Pose;
 
 use crate::schedule::Schedule;
 use crate::track::PusherTrack;
-use crate::{Camera, Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal, particle_run};
+use crate::{Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal, particle_run};
 
 /// How a log is turned into estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -140,13 +140,5 @@ impl<'a> Prepared<'a> {
             row - earlier
         });
         spans.max().unwrap_or(0) + 3
-    }
-}
-
-/// The camera's readings as the particle filter takes them need the latency's rows; see [`Camera::latency`].
-impl Camera {
-    /// Time that row `row` of `time` shows (s).
-    pub fn shown_time(&self, time: f64) -> f64 {
-        time - self.latency
     }
 }

@@ -1,6 +1,6 @@
 //! How a log's rows become steps: [`Schedule`], the substeps that lead from each row to the next.
 
-use stickslip_dynamics::{Pose, PusherMotion, StepInput};
+use stickslip_dynamics::{PusherMotion, StepInput};
 
 use crate::track::PusherTrack;
 
@@ -53,10 +53,6 @@ fn parts(h: f64) -> u32 {
 
 fn split(h: f64, motion: Option<PusherMotion>, parts: u32) -> Vec<StepInput> {
     let h = h / f64::from(parts);
-    let at = |part: u32| motion.map(|m| PusherMotion { pose: advanced(m, h * f64::from(part)), ..m });
+    let at = |part: u32| motion.map(|m| PusherMotion { pose: m.pose.advance(m.twist, h * f64::from(part)), ..m });
     (0..parts).map(|part| StepInput { h, pusher: at(part) }).collect()
-}
-
-fn advanced(motion: PusherMotion, t: f64) -> Pose {
-    motion.pose.advance(motion.twist, t)
 }
