@@ -1,130 +1,214 @@
-//! The linear system of one Newton step on [`Rows`], with all impulses eliminated: [`Linearised`].
+//! The linear system of one Newton step on an [`Ncp`], with all impulses eliminated: [`Linearised`].
+//!
+//! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a 3×3 system in the twist,
+//! whatever the number of contacts, and one equation in y.
 
-use crate::rows::{Contact, Guess, Rows, Vector, dot, plus, solve_dense};
+use crate::lanes::{Lanes, Mask};
+use crate::ncp::{ContactRow, FootRow, Impulses, Ncp, Triple, dot};
 
-/// Linear model of one contact: d(p_n, p_t) = r − K (dγ, ds), K = [nn 0; tn tt].
+/// Linear model of one contact: dp_n = n − nn dγ, dp_t = t − tn dγ − tt ds.
 #[derive(Clone, Copy, Debug)]
-pub struct ContactStep {
-    /// Increment at dγ = ds = 0.
-    pub r: [f64; 2],
+pub struct ContactStep<const W: usize> {
+    /// dp_n at dγ = 0.
+    pub n: Lanes<W>,
+    /// dp_t at dγ = ds = 0.
+    pub t: Lanes<W>,
     /// −∂p_n/∂γ.
-    pub nn: f64,
+    pub nn: Lanes<W>,
     /// −∂p_t/∂γ.
-    pub tn: f64,
+    pub tn: Lanes<W>,
     /// −∂p_t/∂s.
-    pub tt: f64,
+    pub tt: Lanes<W>,
 }
 
 /// Linear model of one foot: dp = r − K ds.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct FootStep {
-    /// Increment at ds = 0.
-    pub r: [f64; 2],
+#[derive(Clone, Copy, Debug)]
+pub struct FootStep<const W: usize> {
+    /// dp at ds = 0.
+    pub r: [Lanes<W>; 2],
     /// −∂p/∂s.
-    pub k: [[f64; 2]; 2],
+    pub k: [[Lanes<W>; 2]; 2],
 }
 
-/// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct StallStep {
+/// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs, both coefficients at least 0.
+#[derive(Clone, Copy, Debug)]
+pub struct StallStep<const W: usize> {
     /// Coefficient of the slack.
-    pub slack: f64,
+    pub slack: Lanes<W>,
     /// Coefficient of y.
-    pub pusher: f64,
+    pub pusher: Lanes<W>,
     /// Right-hand side.
-    pub rhs: f64,
+    pub rhs: Lanes<W>,
+}
+
+/// Weight of y below which nothing determines it: the pusher then holds.
+const UNDETERMINED: f64 = 1e-9;
+
+impl<const W: usize> StallStep<W> {
+    /// The pusher yields and the object resists with the stall force where `yields`, else it keeps its commanded motion.
+    #[inline(always)]
+    pub fn decided(yields: Mask<W>, slack: Lanes<W>, pusher_yield: Lanes<W>) -> Self {
+        let one = Lanes::splat(1.0);
+        Self { slack: yields.keep(one), pusher: (!yields).keep(one), rhs: -yields.select(slack, pusher_yield) }
+    }
 }
 
 /// All rows of a problem, linearised at a guess.
-#[derive(Clone, Debug, Default)]
-pub struct Linearised {
+#[derive(Clone, Debug)]
+pub struct Linearised<const W: usize> {
     /// One per contact.
-    pub contacts: Vec<ContactStep>,
+    pub contacts: Vec<ContactStep<W>>,
     /// One per foot.
-    pub feet: [FootStep; 3],
+    pub feet: [FootStep<W>; 3],
     /// The stall pair.
-    pub stall: StallStep,
+    pub stall: StallStep<W>,
 }
 
-impl Linearised {
-    /// Writes the full Newton step from `guess` to `full`; false where the condensed system is singular.
-    pub fn step(&self, rows: &Rows, guess: &Guess, full: &mut Guess) -> bool {
-        let (matrix, rhs) = self.condense(rows, guess);
-        let Some(dv) = solve_dense(matrix, rhs, 0.0) else { return false };
-        full.clone_from(guess);
-        for ((p, c), step) in full.contacts.iter_mut().zip(&rows.contacts).zip(&self.contacts) {
-            let (dgamma, ds) = (dot(&c.n, &dv), dot(&c.t, &dv));
-            p[0] += step.r[0] - step.nn * dgamma;
-            p[1] += step.r[1] - step.tn * dgamma - step.tt * ds;
+impl<const W: usize> Default for Linearised<W> {
+    fn default() -> Self {
+        let o = Lanes::ZERO;
+        Self {
+            contacts: Vec::new(),
+            feet: [FootStep { r: [o; 2], k: [[o; 2]; 2] }; 3],
+            stall: StallStep { slack: o, pusher: Lanes::splat(1.0), rhs: o },
         }
-        for ((p, foot), step) in full.feet.iter_mut().zip(&rows.feet).zip(&self.feet) {
+    }
+}
+
+impl<const W: usize> Linearised<W> {
+    /// Moves `p` by the full Newton step in the lanes of `open`.
+    ///
+    /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
+    #[inline(always)]
+    pub fn step(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
+        let (dv, dy) = self.condense(ncp, p).solve(&self.stall, p.pusher_yield);
+        for ((foot, step), p_k) in ncp.feet.iter().zip(&self.feet).zip(&mut p.feet) {
             let ds = foot.slip(&dv);
             for i in 0..2 {
-                p[i] += step.r[i] - step.k[i][0] * ds[0] - step.k[i][1] * ds[1];
+                p_k[i] = open.select(p_k[i] + step.r[i] - step.k[i][0] * ds[0] - step.k[i][1] * ds[1], p_k[i]);
             }
         }
-        full.v = plus(&guess.v, 1.0, &dv);
-        full.v.iter().all(|x| x.is_finite())
+        let impulses = p.normal.iter_mut().zip(&mut p.tangential);
+        for ((row, step), (p_n, p_t)) in ncp.contacts.iter().zip(&self.contacts).zip(impulses) {
+            let dgamma = dot(&row.n, &dv) + row.nd * dy;
+            let ds = dot(&row.t, &dv) + row.td * dy;
+            *p_n = open.select(*p_n + step.n - step.nn * dgamma, *p_n);
+            *p_t = open.select(*p_t + step.t - step.tt * ds - step.tn * dgamma, *p_t);
+        }
+        p.pusher_yield = open.select(p.pusher_yield + dy, p.pusher_yield);
+        for (v, dv) in p.v.iter_mut().zip(dv) {
+            *v = open.select(*v + dv, *v);
+        }
     }
 
-    /// (I + Σ WᵀKW) d(v, y) = rhs, with the stall pair as the fourth row.
-    fn condense(&self, rows: &Rows, guess: &Guess) -> ([[f64; 4]; 4], [f64; 4]) {
-        let mut m = [[0.0; 4]; 4];
-        let mut rhs = [0.0; 4];
-        let lag = rows.velocity(guess);
+    #[inline(always)]
+    fn condense(&self, ncp: &Ncp<W>, p: &Impulses<W>) -> Condensed<W> {
+        let mut system = Condensed::identity();
+        let velocity = ncp.velocity(p);
         for i in 0..3 {
-            m[i][i] = 1.0;
-            rhs[i] = lag[i] - guess.v[i];
+            system.rhs[i] = velocity[i] - p.v[i];
         }
-        for (foot, step) in rows.feet.iter().zip(&self.feet) {
-            let columns = [[1.0, 0.0, foot.jx], [0.0, 1.0, foot.jy]];
-            for i in 0..3 {
-                for a in 0..2 {
-                    rhs[i] += columns[a][i] * step.r[a];
-                    for (j, entry) in m[i].iter_mut().enumerate().take(3) {
-                        *entry += columns[a][i] * (step.k[a][0] * columns[0][j] + step.k[a][1] * columns[1][j]);
-                    }
-                }
-            }
+        for (foot, step) in ncp.feet.iter().zip(&self.feet) {
+            system.add_foot(foot, step);
         }
-        for (c, step) in rows.contacts.iter().zip(&self.contacts) {
-            for i in 0..4 {
-                rhs[i] += c.n[i] * step.r[0] + c.t[i] * step.r[1];
-                for j in 0..4 {
-                    m[i][j] += c.n[i] * step.nn * c.n[j] + c.t[i] * (step.tn * c.n[j] + step.tt * c.t[j]);
-                }
-            }
+        for (row, step) in ncp.contacts.iter().zip(&self.contacts) {
+            system.add_contact(row, step);
         }
-        // the fourth row holds dF = rhs − row·d(v, y); the slack changes by −dF
-        m[3] = m[3].map(|entry| self.stall.slack * entry);
-        m[3][3] += self.stall.pusher;
-        rhs[3] = self.stall.rhs + self.stall.slack * rhs[3];
-        (m, rhs)
+        system
     }
 }
 
-impl Rows {
-    /// Velocity that follows from the impulses.
-    pub fn velocity(&self, guess: &Guess) -> Vector<3> {
-        let mut v = self.free;
-        for (foot, p) in self.feet.iter().zip(&guess.feet) {
-            v = plus(&v, 1.0, &foot.wrench(*p));
+/// The condensed system in (dv, dy): matrix and right-hand side of the three momentum balances, then of the pusher's force, by
+/// which the object's resistance F grows.
+struct Condensed<const W: usize> {
+    matrix: [[Lanes<W>; 4]; 4],
+    rhs: [Lanes<W>; 4],
+}
+
+impl<const W: usize> Condensed<W> {
+    #[inline(always)]
+    fn identity() -> Self {
+        let (o, l) = (Lanes::ZERO, Lanes::splat(1.0));
+        Self { matrix: [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, o]], rhs: [o; 4] }
+    }
+
+    /// A += Jᵀ K J, rhs += Jᵀ r.
+    #[inline(always)]
+    fn add_foot(&mut self, foot: &FootRow<W>, step: &FootStep<W>) {
+        let k = step.k.map(|k| [k[0], k[1], k[0] * foot.jx + k[1] * foot.jy]);
+        let r = foot.wrench(&step.r);
+        for j in 0..3 {
+            self.matrix[0][j] += k[0][j];
+            self.matrix[1][j] += k[1][j];
+            self.matrix[2][j] += foot.jx * k[0][j] + foot.jy * k[1][j];
+            self.rhs[j] += r[j];
         }
-        for (c, p) in self.contacts.iter().zip(&guess.contacts) {
-            for i in 0..3 {
-                v[i] += c.n[i] * p[0] + c.t[i] * p[1];
+    }
+
+    /// A += n ⊗ nn n + t ⊗ (tt t + tn n), with n and t extended by their parts along d.
+    #[inline(always)]
+    fn add_contact(&mut self, row: &ContactRow<W>, step: &ContactStep<W>) {
+        let (n, t) = ([row.n[0], row.n[1], row.n[2], row.nd], [row.t[0], row.t[1], row.t[2], row.td]);
+        for j in 0..4 {
+            let (normal, tangential) = (step.nn * n[j], step.tt * t[j] + step.tn * n[j]);
+            for i in 0..4 {
+                self.matrix[i][j] += n[i] * normal + t[i] * tangential;
             }
         }
-        v
+        for i in 0..4 {
+            self.rhs[i] += n[i] * step.n + t[i] * step.t;
+        }
     }
 
-    /// Gap velocity (with the compliance of the row) and slip velocity.
-    pub fn contact_velocity(&self, c: &Contact, v: &Vector<4>, p_n: f64) -> (f64, f64) {
-        (dot(&c.n, v) + c.gap + self.compliance * p_n, dot(&c.t, v) + c.slip)
+    /// (dv, dy); `pusher_yield` is the present y. The fourth row becomes the stall pair.
+    #[inline(always)]
+    fn solve(mut self, stall: &StallStep<W>, pusher_yield: Lanes<W>) -> (Triple<W>, Lanes<W>) {
+        let determined = ((stall.slack * self.matrix[3][3]).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
+        for j in 0..4 {
+            self.matrix[3][j] = determined.keep(stall.slack * self.matrix[3][j]);
+        }
+        self.matrix[3][3] += determined.select(stall.pusher, Lanes::splat(1.0));
+        self.rhs[3] = determined.select(stall.rhs + stall.slack * self.rhs[3], -pusher_yield);
+        let [x, y, turn, dy] = self.eliminate();
+        ([x, y, turn], dy)
     }
 
-    /// F / m.
-    pub fn resistance(&self, guess: &Guess) -> f64 {
-        self.contacts.iter().zip(&guess.contacts).map(|(c, p)| p[0] * c.n[3] + p[1] * c.t[3]).sum()
+    /// Gauss elimination with row pivoting, which stays accurate where some directions are held a million times stiffer than
+    /// others.
+    #[inline(always)]
+    fn eliminate(mut self) -> [Lanes<W>; 4] {
+        let mut inverse = [Lanes::ZERO; 4];
+        for c in 0..4 {
+            for r in c + 1..4 {
+                let larger = self.matrix[r][c].abs().gt(self.matrix[c][c].abs());
+                self.swap_rows(c, r, larger);
+            }
+            inverse[c] = Lanes::splat(1.0) / self.matrix[c][c];
+            for r in c + 1..4 {
+                let factor = self.matrix[r][c] * inverse[c];
+                for k in c + 1..4 {
+                    self.matrix[r][k] -= factor * self.matrix[c][k];
+                }
+                self.rhs[r] -= factor * self.rhs[c];
+            }
+        }
+        let mut x = self.rhs;
+        for c in (0..4).rev() {
+            for k in c + 1..4 {
+                x[c] -= self.matrix[c][k] * x[k];
+            }
+            x[c] = x[c] * inverse[c];
+        }
+        x
+    }
+
+    /// Swaps rows i < j, from column i on, where `mask` holds.
+    #[inline(always)]
+    fn swap_rows(&mut self, i: usize, j: usize, mask: Mask<W>) {
+        let swapped = |a: Lanes<W>, b: Lanes<W>| (mask.select(b, a), mask.select(a, b));
+        for k in i..4 {
+            (self.matrix[i][k], self.matrix[j][k]) = swapped(self.matrix[i][k], self.matrix[j][k]);
+        }
+        (self.rhs[i], self.rhs[j]) = swapped(self.rhs[i], self.rhs[j]);
     }
 }

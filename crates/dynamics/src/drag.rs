@@ -1,10 +1,11 @@
 //! The object on its feet alone: v = T⁻¹(load), the velocity that a load leads to when no contact acts.
 
 use crate::Lanes;
+use crate::condensed::Linearised;
 use crate::homotopy::Homotopy;
 use crate::ncp::{FootRow, Impulses, Ncp};
-use crate::newton::{NewtonWorkspace, newton};
-use crate::rows::{Guess, Rows, Vector};
+use crate::newton::newton;
+use crate::rows::{Rows, Vector};
 
 /// Velocity and foot impulses of the problem without contacts and with free velocity `load`.
 ///
@@ -14,14 +15,11 @@ pub fn drag(rows: &Rows, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
     ncp.free = load.map(|x| Lanes([x]));
     ncp.feet = rows.feet.map(|f| FootRow { jx: Lanes([f.jx]), jy: Lanes([f.jy]), bound: Lanes([f.bound]) });
     let mut p = Impulses { v: ncp.free, ..Impulses::zero(0) };
-    let mut work = NewtonWorkspace::default();
+    let mut work = Linearised::default();
     let (residual, _) = newton(&ncp, &mut p, &mut work, 1e-11, 12);
     if residual.0[0] > 1e-11 {
-        let mut alone = Rows::default();
-        alone.assign(&ncp);
-        let mut start = Guess::default();
-        alone.cold_start(&mut start);
-        Homotopy::default().follow(&alone, &start, 1.0).store(&mut p);
+        let start = Impulses { v: ncp.free, ..Impulses::zero(0) };
+        p.copy_from(Homotopy::default().follow(&ncp, &start, 1.0));
         newton(&ncp, &mut p, &mut work, 1e-11, 12);
     }
     (p.v.map(|x| x.0[0]), p.feet.map(|f| f.map(|x| x.0[0])))

@@ -10,9 +10,12 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const W: usize>(pub [f64; W]);
 
-/// `W` conditions, one per particle.
+/// `W` conditions, one per particle; as wide as the numbers that they choose between, so that choosing is bitwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mask<const W: usize>(pub [bool; W]);
+pub struct Mask<const W: usize>([u64; W]);
+
+/// A condition that holds.
+const YES: u64 = u64::MAX;
 
 impl<const W: usize> Lanes<W> {
     /// 0 in every lane.
@@ -51,7 +54,13 @@ impl<const W: usize> Lanes<W> {
     /// Where `self > other`.
     #[inline(always)]
     pub fn gt(self, other: Self) -> Mask<W> {
-        Mask(from_fn(|i| self.0[i] > other.0[i]))
+        Mask(from_fn(|i| if self.0[i] > other.0[i] { YES } else { 0 }))
+    }
+
+    /// Where `self < other`.
+    #[inline(always)]
+    pub fn lt(self, other: Self) -> Mask<W> {
+        other.gt(self)
     }
 
     /// +1 where the number is positive, −1 elsewhere.
@@ -65,25 +74,54 @@ impl<const W: usize> Mask<W> {
     /// The same condition in every lane.
     #[inline(always)]
     pub const fn splat(value: bool) -> Self {
-        Self([value; W])
+        Self([if value { YES } else { 0 }; W])
+    }
+
+    /// The condition of each lane.
+    #[inline(always)]
+    pub fn from_fn(lane: impl Fn(usize) -> bool) -> Self {
+        Self(from_fn(|i| if lane(i) { YES } else { 0 }))
+    }
+
+    /// Whether the condition holds in one lane.
+    #[inline(always)]
+    pub fn lane(self, i: usize) -> bool {
+        self.0[i] != 0
+    }
+
+    /// Sets one lane.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, value: bool) {
+        self.0[i] = if value { YES } else { 0 };
     }
 
     /// `yes` where the condition holds, `no` elsewhere.
     #[inline(always)]
     pub fn select(self, yes: Lanes<W>, no: Lanes<W>) -> Lanes<W> {
-        Lanes(from_fn(|i| if self.0[i] { yes.0[i] } else { no.0[i] }))
+        Lanes(from_fn(|i| f64::from_bits(self.0[i] & yes.0[i].to_bits() | !self.0[i] & no.0[i].to_bits())))
+    }
+
+    /// `yes` where the condition holds, 0 elsewhere.
+    #[inline(always)]
+    pub fn keep(self, yes: Lanes<W>) -> Lanes<W> {
+        Lanes(from_fn(|i| f64::from_bits(self.0[i] & yes.0[i].to_bits())))
     }
 
     /// Whether the condition holds in every lane.
     #[inline(always)]
     pub fn all(self) -> bool {
-        self.0.iter().all(|&lane| lane)
+        self.0.iter().fold(YES, |all, lane| all & lane) != 0
     }
 
     /// Whether the condition holds in some lane.
     #[inline(always)]
     pub fn any(self) -> bool {
-        self.0.iter().any(|&lane| lane)
+        self.0.iter().fold(0, |any, lane| any | lane) != 0
+    }
+
+    /// The lanes where the condition holds.
+    pub fn lanes(self) -> impl Iterator<Item = usize> {
+        (0..W).filter(move |i| self.lane(*i))
     }
 }
 
@@ -133,7 +171,7 @@ impl<const W: usize> BitAnd for Mask<W> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self(from_fn(|i| self.0[i] && other.0[i]))
+        Self(from_fn(|i| self.0[i] & other.0[i]))
     }
 }
 
@@ -141,7 +179,7 @@ impl<const W: usize> BitOr for Mask<W> {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Self(from_fn(|i| self.0[i] || other.0[i]))
+        Self(from_fn(|i| self.0[i] | other.0[i]))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Planar frictional contact dynamics of one pushed object.
 
 mod condensed;
+mod continuation;
 mod drag;
 mod feature;
 mod homotopy;
@@ -20,7 +21,9 @@ mod se2;
 mod separation;
 mod shape;
 mod shape_error;
+mod slow;
 mod smooth;
+mod smoothing;
 mod solid;
 mod solver;
 mod step;

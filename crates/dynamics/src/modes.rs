@@ -101,7 +101,7 @@ impl Search {
             let signs: &[f64] = if c.mu > 0.0 { &[1.0, -1.0] } else { &[0.0] };
             generators.extend(signs.iter().map(|&sign| Generator { contact: Some(i), sign, g: plus(&c.n, sign * c.mu, &c.t) }));
         }
-        let slack = SLACK * rows.speed_scale().max(1.0);
+        let slack = SLACK * rows.speed_scale.max(1.0);
         Self { rows, generators, rigid, slack, pieces }
     }
 

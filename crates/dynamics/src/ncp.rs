@@ -36,6 +36,9 @@ pub struct FootRow<const W: usize> {
     pub bound: Lanes<W>,
 }
 
+/// Gap velocity of rows that only pad (m/s): so large that no smoothing reaches them.
+const FAR: f64 = 1e30;
+
 /// One contact: gap velocity γ = n·v + gap + nd y, slip velocity s = t·v + slip + td y.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactRow<const W: usize> {
@@ -100,16 +103,30 @@ impl<const W: usize> FootRow<W> {
 }
 
 impl<const W: usize> ContactRow<W> {
-    /// A row that never touches.
+    /// A row that never touches and whose impulses act on nothing.
     pub const OPEN: Self = Self {
         n: [Lanes::ZERO; 3],
         t: [Lanes::ZERO; 3],
-        gap: Lanes::splat(1.0),
+        gap: Lanes::splat(FAR),
         slip: Lanes::ZERO,
         nd: Lanes::ZERO,
         td: Lanes::ZERO,
         mu: Lanes::ZERO,
     };
+
+    /// Whether a lane has this contact.
+    #[inline(always)]
+    pub fn is_present(&self, lane: usize) -> bool {
+        self.n[0].0[lane] != 0.0 || self.n[1].0[lane] != 0.0
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = &Lanes<W>> {
+        self.n.iter().chain(&self.t).chain([&self.gap, &self.slip, &self.nd, &self.td, &self.mu])
+    }
+
+    fn numbers_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
+        self.n.iter_mut().chain(&mut self.t).chain([&mut self.gap, &mut self.slip, &mut self.nd, &mut self.td, &mut self.mu])
+    }
 
     /// Gap velocity γ.
     #[inline(always)]
@@ -153,48 +170,133 @@ impl<const W: usize> Impulses<W> {
         self.pusher_yield = from.pusher_yield;
     }
 
-    /// Overwrites one lane; contacts that `from` does not have carry nothing.
-    pub fn set_lane(&mut self, lane: usize, from: &Impulses<1>) {
-        for (to, from) in self.v.iter_mut().zip(&from.v) {
-            to.0[lane] = from.0[0];
+    /// Takes over `from` in the lanes of `mask`; the two have equally many contacts.
+    #[inline(always)]
+    pub fn copy_where(&mut self, mask: Mask<W>, from: &Self) {
+        self.zip(from, |to, from| mask.select(from, to));
+    }
+
+    /// from + share (to − from).
+    #[inline(always)]
+    pub fn blend(&mut self, from: &Self, to: &Self, share: Lanes<W>) {
+        self.copy_from(to);
+        self.zip(from, |to, from| from + share * (to - from));
+    }
+
+    /// Replaces every number by a function of it and of its like in `other`.
+    #[inline(always)]
+    fn zip(&mut self, other: &Self, f: impl Fn(Lanes<W>, Lanes<W>) -> Lanes<W>) {
+        let pairs = self.v.iter_mut().zip(&other.v);
+        let feet = self.feet.as_flattened_mut().iter_mut().zip(other.feet.as_flattened());
+        let normal = self.normal.iter_mut().zip(&other.normal);
+        let tangential = self.tangential.iter_mut().zip(&other.tangential);
+        for (to, from) in pairs.chain(feet).chain(normal).chain(tangential) {
+            *to = f(*to, *from);
         }
-        for (to, from) in [(&mut self.normal, &from.normal), (&mut self.tangential, &from.tangential)] {
-            for (i, to) in to.iter_mut().enumerate() {
-                to.0[lane] = from.get(i).map_or(0.0, |p| p.0[0]);
+        self.pusher_yield = f(self.pusher_yield, other.pusher_yield);
+    }
+
+    /// Makes all numbers zero, on `contacts` contacts; memory is reused.
+    pub fn clear(&mut self, contacts: usize) {
+        self.normal.clear();
+        self.tangential.clear();
+        self.resize(contacts);
+        (self.v, self.feet, self.pusher_yield) = ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
+    }
+
+    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`.
+    pub fn pack_lane<const V: usize>(&self, ncp: &Ncp<W>, lane: usize, to: &mut Impulses<V>, slot: usize) {
+        let touching = (0..ncp.contacts.len()).filter(|i| ncp.contacts[*i].is_present(lane));
+        for (k, i) in touching.enumerate() {
+            to.normal[k].0[slot] = self.normal[i].0[lane];
+            to.tangential[k].0[slot] = self.tangential[i].0[lane];
+        }
+        copy_lane(to.singles_mut(), slot, self.singles(), lane);
+    }
+
+    /// The inverse of [`Impulses::pack_lane`]; contacts that the lane does not have carry nothing.
+    pub fn unpack_lane<const V: usize>(&mut self, ncp: &Ncp<W>, lane: usize, from: &Impulses<V>, slot: usize) {
+        let mut k = 0;
+        for (i, row) in ncp.contacts.iter().enumerate() {
+            let (mut p_n, mut p_t) = (0.0, 0.0);
+            if row.is_present(lane) {
+                (p_n, p_t) = (from.normal[k].0[slot], from.tangential[k].0[slot]);
+                k += 1;
             }
+            self.normal[i].0[lane] = p_n;
+            self.tangential[i].0[lane] = p_t;
         }
-        for (to, from) in self.feet.as_flattened_mut().iter_mut().zip(from.feet.as_flattened()) {
-            to.0[lane] = from.0[0];
-        }
-        self.pusher_yield.0[lane] = from.pusher_yield.0[0];
+        copy_lane(self.singles_mut(), lane, from.singles(), slot);
+    }
+
+    /// What does not belong to a contact.
+    fn singles(&self) -> impl Iterator<Item = &Lanes<W>> {
+        self.v.iter().chain(self.feet.as_flattened()).chain(std::iter::once(&self.pusher_yield))
+    }
+
+    fn singles_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
+        self.v.iter_mut().chain(self.feet.as_flattened_mut()).chain(std::iter::once(&mut self.pusher_yield))
+    }
+}
+
+/// Copies one lane of several numbers.
+fn copy_lane<'a, const V: usize, const W: usize>(
+    to: impl Iterator<Item = &'a mut Lanes<V>>,
+    slot: usize,
+    from: impl Iterator<Item = &'a Lanes<W>>,
+    lane: usize,
+) {
+    for (to, from) in to.zip(from) {
+        to.0[slot] = from.0[lane];
     }
 }
 
 impl<const W: usize> Ncp<W> {
-    /// Copies one lane into a one-lane problem, without the open rows that pad it.
-    pub fn copy_lane(&self, lane: usize, to: &mut Ncp<1>) {
-        let pick = |x: Lanes<W>| Lanes([x.0[lane]]);
-        to.free = self.free.map(pick);
-        to.feet = self.feet.map(|f| FootRow { jx: pick(f.jx), jy: pick(f.jy), bound: pick(f.bound) });
-        to.stall = pick(self.stall);
-        to.compliance = pick(self.compliance);
-        to.contacts.clear();
-        let touching = self.contacts.iter().take_while(|c| c.n.iter().any(|x| x.0[lane] != 0.0));
-        to.contacts.extend(touching.map(|c| ContactRow {
-            n: c.n.map(pick),
-            t: c.t.map(pick),
-            gap: pick(c.gap),
-            slip: pick(c.slip),
-            nd: pick(c.nd),
-            td: pick(c.td),
-            mu: pick(c.mu),
-        }));
+    /// Removes all contacts and compliance; the rest is to be overwritten.
+    pub fn clear(&mut self) {
+        self.contacts.clear();
+        self.compliance = Lanes::ZERO;
+    }
+
+    /// Copies one lane into lane `slot` of `to`, without the open rows that pad it.
+    pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Ncp<V>, slot: usize) {
+        copy_lane(to.singles_mut(), slot, self.singles(), lane);
+        let mut k = 0;
+        for row in self.contacts.iter().filter(|row| row.is_present(lane)) {
+            if k == to.contacts.len() {
+                to.contacts.push(ContactRow::OPEN);
+            }
+            copy_lane(to.contacts[k].numbers_mut(), slot, row.numbers(), lane);
+            k += 1;
+        }
+    }
+
+    /// What does not belong to a contact.
+    fn singles(&self) -> impl Iterator<Item = &Lanes<W>> {
+        let feet = self.feet.iter().flat_map(|foot| [&foot.jx, &foot.jy, &foot.bound]);
+        self.free.iter().chain(feet).chain([&self.stall, &self.compliance])
+    }
+
+    fn singles_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
+        let feet = self.feet.iter_mut().flat_map(|foot| [&mut foot.jx, &mut foot.jy, &mut foot.bound]);
+        self.free.iter_mut().chain(feet).chain([&mut self.stall, &mut self.compliance])
     }
 
     /// No contact, no friction, at rest; a workspace to fill.
     pub fn empty() -> Self {
         let foot = FootRow { jx: Lanes::ZERO, jy: Lanes::ZERO, bound: Lanes::ZERO };
         Self { free: [Lanes::ZERO; 3], feet: [foot; 3], contacts: Vec::new(), stall: Lanes::splat(f64::INFINITY), compliance: Lanes::ZERO }
+    }
+
+    /// The largest speed that appears in a problem (m/s); its natural scale.
+    #[inline(always)]
+    pub fn speed_scale(&self) -> Lanes<W> {
+        let mut largest = dot(&self.free, &self.free).sqrt().max(Lanes::splat(1e-9));
+        for row in &self.contacts {
+            let gap = row.gap.lt(Lanes::splat(FAR)).keep(row.gap.abs());
+            largest = largest.max(gap).max(row.slip.abs());
+        }
+        self.feet.iter().fold(largest, |largest, foot| largest.max(foot.bound))
     }
 
     /// Velocity that follows from the impulses by the Newton–Euler rows.
@@ -248,7 +350,7 @@ impl<const W: usize> Ncp<W> {
 
 /// The larger of `worst` and |`violation`|; NaN counts as infinite.
 #[inline(always)]
-fn worse<const W: usize>(worst: Lanes<W>, violation: Lanes<W>) -> Lanes<W> {
+pub fn worse<const W: usize>(worst: Lanes<W>, violation: Lanes<W>) -> Lanes<W> {
     let size = violation.abs();
     Lanes(std::array::from_fn(|i| {
         if size.0[i] <= worst.0[i] {

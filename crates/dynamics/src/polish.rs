@@ -1,111 +1,104 @@
 //! Newton's method with the modes of a guess held fixed: [`polish`].
 //!
-//! The homotopy ends where every contact's and foot's mode shows plainly (an impulse well inside its bound sticks, one on it
-//! slides), also at speeds so small that the natural map of the fast solver, which weighs impulses against speeds, cannot tell.
+//! A smoothed solution shows every contact's and foot's mode plainly (an impulse well inside its bound sticks, one on it slides),
+//! also at speeds so small that the natural map of the fast solver, which weighs impulses against speeds, cannot tell.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
-use crate::rows::{Contact, Foot, Guess, Rows, Vector};
-
-/// Stiffness of held rows; their impulses are kept from one iteration to the next.
-const STIFFNESS: f64 = 1.0e6;
+use crate::lanes::{Lanes, Mask};
+use crate::ncp::{ContactRow, FootRow, Impulses, Ncp, Triple};
+use crate::newton::{Mode, STIFFNESS};
 
 /// Relative change of the velocity at which the iteration ends.
 const CONVERGED: f64 = 1e-14;
 
-/// What a contact does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Mode {
-    Open,
-    Stick,
-    /// p_t = ratio p_n.
-    Slide {
-        ratio: f64,
-    },
-}
-
 /// Newton's method in fixed modes, with its working memory.
 #[derive(Clone, Debug, Default)]
-pub struct Polish {
-    linearised: Linearised,
-    modes: Vec<Mode>,
-    best: Guess,
-    next: Guess,
+pub struct Polish<const W: usize> {
+    linearised: Linearised<W>,
+    modes: Vec<Mode<W>>,
 }
 
-impl Polish {
-    /// At most `limit` Newton steps from `guess` in its own modes; returns where they end.
+impl<const W: usize> Polish<W> {
+    /// At most `limit` Newton steps from `p`, in its own modes, in the lanes of `open`.
     ///
     /// An impulse above the share `sliding` of its bound counts as sliding.
-    pub fn polish(&mut self, rows: &Rows, guess: &Guess, sliding: f64, limit: u32) -> &Guess {
+    #[inline(always)]
+    pub fn polish(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, mut open: Mask<W>, sliding: f64, limit: u32) {
         self.modes.clear();
-        self.modes.extend(rows.contacts.iter().zip(&guess.contacts).map(|(c, p)| contact_mode(rows, c, *p, &guess.v, sliding)));
-        let slides: [bool; 3] = std::array::from_fn(|k| guess.feet[k][0].hypot(guess.feet[k][1]) > sliding * rows.feet[k].bound);
-        let yields = rows.stall.is_finite() && guess.v[3] > rows.stall - rows.resistance(guess);
-        self.best.clone_from(guess);
+        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
+            let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
+            self.modes.push(contact_mode(row, [*p_n, *p_t], gamma, sliding));
+        }
+        let slides = [0, 1, 2].map(|k| length(&p.feet[k]).gt(ncp.feet[k].bound * sliding));
+        let yields = ncp.stall.lt(Lanes::splat(f64::INFINITY)) & p.pusher_yield.gt(ncp.stall - ncp.resistance(p));
         for _ in 0..limit {
-            let best = &self.best;
-            let contacts = rows.contacts.iter().zip(&best.contacts).zip(&self.modes);
-            self.linearised.contacts.clear();
-            self.linearised.contacts.extend(contacts.map(|((c, p), mode)| contact(rows, c, *p, &best.v, *mode)));
-            self.linearised.feet = std::array::from_fn(|k| foot(&rows.feet[k], best.feet[k], &best.v, slides[k]));
-            self.linearised.stall = stall(rows, best, yields);
-            if !self.linearised.step(rows, best, &mut self.next) {
-                break;
-            }
-            std::mem::swap(&mut self.best, &mut self.next);
-            // the step that led here, relative to the speed reached
-            let moved = self.best.v.iter().zip(&self.next.v).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-            if moved <= CONVERGED * self.best.v.iter().fold(0.0f64, |most, v| most.max(v.abs())) {
+            let before = (p.v, p.pusher_yield);
+            self.linearise(ncp, p, &slides, yields);
+            self.linearised.step(ncp, p, open);
+            open = open & moved(p, &before);
+            if !open.any() {
                 break;
             }
         }
-        &self.best
+    }
+
+    #[inline(always)]
+    fn linearise(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, slides: &[Mask<W>; 3], yields: Mask<W>) {
+        let contacts = &mut self.linearised.contacts;
+        contacts.clear();
+        for ((row, mode), (p_n, p_t)) in ncp.contacts.iter().zip(&self.modes).zip(p.normal.iter().zip(&p.tangential)) {
+            let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
+            let slip = row.slip_velocity(&p.v, p.pusher_yield);
+            contacts.push(ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, ncp.compliance));
+        }
+        self.linearised.feet = [0, 1, 2].map(|k| foot(&ncp.feet[k], &p.feet[k], &p.v, slides[k]));
+        self.linearised.stall = StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);
     }
 }
 
-fn contact_mode(rows: &Rows, c: &Contact, p: [f64; 2], v: &Vector<4>, sliding: f64) -> Mode {
-    let (gamma, _) = rows.contact_velocity(c, v, p[0]);
-    if p[0] <= gamma {
-        Mode::Open
-    } else if p[1].abs() > sliding * c.mu * p[0] {
-        Mode::Slide { ratio: c.mu.copysign(p[1]) }
-    } else {
-        Mode::Stick
+/// Where the last step changed the velocity by more than rounding.
+#[inline(always)]
+fn moved<const W: usize>(p: &Impulses<W>, before: &(Triple<W>, Lanes<W>)) -> Mask<W> {
+    let mut change = (p.pusher_yield - before.1).abs();
+    let mut speed = p.pusher_yield.abs();
+    for (now, was) in p.v.iter().zip(&before.0) {
+        change = change.max((*now - *was).abs());
+        speed = speed.max(now.abs());
     }
+    change.gt(speed * CONVERGED)
 }
 
-fn contact(rows: &Rows, c: &Contact, p: [f64; 2], v: &Vector<4>, mode: Mode) -> ContactStep {
-    let (gamma, s) = rows.contact_velocity(c, v, p[0]);
-    let k = 1.0 / (1.0 / STIFFNESS + rows.compliance);
-    let normal = -k * gamma;
-    match mode {
-        Mode::Open => ContactStep { r: [-p[0], -p[1]], nn: 0.0, tn: 0.0, tt: 0.0 },
-        Mode::Stick => ContactStep { r: [normal, -STIFFNESS * s], nn: k, tn: 0.0, tt: STIFFNESS },
-        Mode::Slide { ratio } => ContactStep { r: [normal, ratio * (p[0] + normal) - p[1]], nn: k, tn: ratio * k, tt: 0.0 },
-    }
+#[inline(always)]
+fn length<const W: usize>(p: &[Lanes<W>; 2]) -> Lanes<W> {
+    (p[0] * p[0] + p[1] * p[1]).sqrt()
 }
 
-fn foot(foot: &Foot, p: [f64; 2], v: &Vector<4>, slides: bool) -> FootStep {
+#[inline(always)]
+fn contact_mode<const W: usize>(row: &ContactRow<W>, p: [Lanes<W>; 2], gamma: Lanes<W>, sliding: f64) -> Mode<W> {
+    Mode { closed: p[0].gt(gamma), sliding: p[1].abs().gt(row.mu * p[0] * sliding), ratio: p[1].sign() * row.mu }
+}
+
+#[inline(always)]
+fn foot<const W: usize>(foot: &FootRow<W>, p: &[Lanes<W>; 2], v: &Triple<W>, slides: Mask<W>) -> FootStep<W> {
+    let one = Lanes::splat(1.0);
     let s = foot.slip(v);
-    let speed = s[0].hypot(s[1]);
-    if !slides || speed == 0.0 {
-        return FootStep { r: s.map(|s| -STIFFNESS * s), k: [[STIFFNESS, 0.0], [0.0, STIFFNESS]] };
-    }
-    let unit = [s[0] / speed, s[1] / speed];
+    let speed = length(&s);
+    let slides = slides & speed.gt(Lanes::ZERO);
+    let inverse = one / slides.select(speed, one);
+    let unit = [s[0] * inverse, s[1] * inverse];
     // primal–dual: the impulse turns with the slip's new direction, p kept inside its disc
-    let size = p[0].hypot(p[1]);
-    let shrink = if size > foot.bound { foot.bound / size } else { 1.0 };
-    let entry = |i: usize, j: usize| ((if i == j { foot.bound } else { 0.0 }) + shrink * p[i] * unit[j]) / speed;
+    let size = length(p);
+    let outside = size.gt(foot.bound);
+    let shrink = outside.select(foot.bound / outside.select(size, one), one) * inverse;
+    let inside = [p[0] * shrink, p[1] * shrink];
+    let bound = foot.bound * inverse;
+    let k = Lanes::splat(STIFFNESS);
+    let choose = |slide: Lanes<W>, stick: Lanes<W>| slides.select(slide, stick);
     FootStep {
-        r: [-foot.bound * unit[0] - p[0], -foot.bound * unit[1] - p[1]],
-        k: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
-    }
-}
-
-fn stall(rows: &Rows, guess: &Guess, yields: bool) -> StallStep {
-    if yields {
-        StallStep { slack: 1.0, pusher: 0.0, rhs: rows.resistance(guess) - rows.stall }
-    } else {
-        StallStep { slack: 0.0, pusher: 1.0, rhs: -guess.v[3] }
+        r: [choose(-foot.bound * unit[0] - p[0], -s[0] * k), choose(-foot.bound * unit[1] - p[1], -s[1] * k)],
+        k: [
+            [choose(bound + inside[0] * unit[0], k), slides.keep(inside[0] * unit[1])],
+            [slides.keep(inside[1] * unit[0]), choose(bound + inside[1] * unit[1], k)],
+        ],
     }
 }

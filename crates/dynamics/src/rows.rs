@@ -61,11 +61,6 @@ impl Foot {
     pub fn slip<const N: usize>(&self, v: &Vector<N>) -> [f64; 2] {
         [v[0] + self.jx * v[2], v[1] + self.jy * v[2]]
     }
-
-    /// Jᵀ p.
-    pub fn wrench(&self, p: [f64; 2]) -> Vector<3> {
-        [p[0], p[1], self.jx * p[0] + self.jy * p[1]]
-    }
 }
 
 /// One particle's problem, mass-normalised as in [`Ncp`].
@@ -79,8 +74,8 @@ pub struct Rows {
     pub contacts: Vec<Contact>,
     /// F_stall h / m (m/s).
     pub stall: f64,
-    /// Compliance of the gap rows.
-    pub compliance: f64,
+    /// The largest speed that appears in the problem (m/s).
+    pub speed_scale: f64,
 }
 
 impl Rows {
@@ -90,42 +85,16 @@ impl Rows {
         self.free = ncp.free.map(|x| x.0[0]);
         self.feet = ncp.feet.map(|f| Foot { jx: f.jx.0[0], jy: f.jy.0[0], bound: f.bound.0[0] });
         self.stall = ncp.stall.0[0];
-        self.compliance = ncp.compliance.0[0];
+        self.speed_scale = ncp.speed_scale().0[0];
         let contact =
             |c: &ContactRow<1>| Contact { n: column(&c.n, c.nd), t: column(&c.t, c.td), gap: c.gap.0[0], slip: c.slip.0[0], mu: c.mu.0[0] };
         self.contacts.clear();
         self.contacts.extend(ncp.contacts.iter().map(contact));
     }
-
-    /// Writes the state without any impulse to `guess`.
-    pub fn cold_start(&self, guess: &mut Guess) {
-        guess.v = [self.free[0], self.free[1], self.free[2], 0.0];
-        guess.feet = [[0.0; 2]; 3];
-        guess.contacts.clear();
-        guess.contacts.resize(self.contacts.len(), [0.0; 2]);
-    }
-
-    /// Makes the pusher of a cold start yield: its contacts carry the stall force and it gives up the whole approach.
-    pub fn yield_start(&self, guess: &mut Guess) {
-        let on_pusher = self.contacts.iter().zip(&mut guess.contacts).filter(|(c, _)| c.n[3] > 0.0);
-        for (c, p) in on_pusher {
-            if self.stall.is_finite() {
-                p[0] = self.stall / c.n[3];
-                guess.v[3] = guess.v[3].max(-c.gap);
-            }
-        }
-    }
-
-    /// The largest speed that appears in the problem (m/s); its natural scale.
-    pub fn speed_scale(&self) -> f64 {
-        let contacts = self.contacts.iter().map(|c| c.gap.abs().max(c.slip.abs()));
-        let feet = self.feet.iter().map(|f| f.bound);
-        norm(&self.free).max(contacts.chain(feet).fold(1e-9, f64::max))
-    }
 }
 
 /// Plain-number impulses.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Guess {
     /// Velocity and pusher yield.
     pub v: Vector<4>,
@@ -135,28 +104,7 @@ pub struct Guess {
     pub feet: [[f64; 2]; 3],
 }
 
-impl Clone for Guess {
-    fn clone(&self) -> Self {
-        Self { v: self.v, contacts: self.contacts.clone(), feet: self.feet }
-    }
-
-    /// Keeps the memory of `self`.
-    fn clone_from(&mut self, source: &Self) {
-        self.v = source.v;
-        self.feet = source.feet;
-        self.contacts.clone_from(&source.contacts);
-    }
-}
-
 impl Guess {
-    /// Reads one lane's impulses on its first `contacts` contacts.
-    pub fn load<const W: usize>(&mut self, p: &Impulses<W>, lane: usize, contacts: usize) {
-        self.v = [p.v[0].0[lane], p.v[1].0[lane], p.v[2].0[lane], p.pusher_yield.0[lane]];
-        self.feet = p.feet.map(|f| f.map(|x| x.0[lane]));
-        self.contacts.clear();
-        self.contacts.extend(p.normal.iter().zip(&p.tangential).take(contacts).map(|(n, t)| [n.0[lane], t.0[lane]]));
-    }
-
     /// Writes the impulses where the certificate reads them.
     pub fn store(&self, p: &mut Impulses<1>) {
         p.v = [0, 1, 2].map(|i| Lanes([self.v[i]]));

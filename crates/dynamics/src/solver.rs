@@ -1,16 +1,16 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
-//! The fast Newton iteration answers almost always; a smoothing homotopy, then an exhaustive search over contact modes take what
-//! it leaves. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
+//! The semismooth Newton iteration answers almost always. What it leaves of a whole block of particles is packed together and
+//! goes to the smoothed Newton steps, still side by side; a smoothing homotopy, then an exhaustive search over contact modes take
+//! what is left, one by one. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
 
-use crate::homotopy::Homotopy;
+use crate::condensed::Linearised;
+use crate::continuation::Continuation;
 use crate::lanes::Lanes;
-use crate::modes::{Verdict, search};
 use crate::ncp::{Impulses, Ncp};
-use crate::newton::{NewtonWorkspace, newton};
-use crate::polish::Polish;
+use crate::newton::newton;
 use crate::problem::{StepProblem, StepSolution};
-use crate::rows::{Guess, Rows};
+use crate::slow::SlowSolver;
 
 /// Largest natural-map residual of a solved step (m/s).
 pub const TOLERANCE: f64 = 1e-9;
@@ -19,38 +19,10 @@ pub const TOLERANCE: f64 = 1e-9;
 const AIM: f64 = 1e-10;
 
 /// Iterations of the fast solver before the next one takes over.
-const FAST_ITERATIONS: u32 = 12;
+const FAST_ITERATIONS: u32 = 6;
 
-/// Iterations that polish an end point of a slow solver.
-const POLISH_ITERATIONS: u32 = 30;
-
-/// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a fold, and most folds lie on
-/// few paths.
-const HOLDING: [f64; 10] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e1, 1e2, 1e-6, 1e-5, 1e-7];
-
-/// Compliance ten times above the one at which the way to the compliant solution begins.
-const SOFT: f64 = 10.0;
-
-/// Smoothings tried at each compliance on that way.
-const SOFTENING: [f64; 4] = [1.0, 1e-2, 1e2, 1e-4];
-
-/// The same with the pusher yielding at its stall force.
-const YIELDING: [f64; 3] = [1e-4, 1.0, 1e-2];
-
-/// Readings of a warm start: its own modes, then everything stuck, as where a jammed or resting object stays.
-const WARM_SLIDING: [f64; 2] = [0.9999, f64::INFINITY];
-
-/// Newton steps in the modes of a warm start.
-const WARM_POLISH: u32 = 5;
-
-/// Smoothing at which the homotopy takes up a warm start, as a share of the problem's speed scale.
-const WARM: f64 = 1e-3;
-
-/// Shares of its bound above which an impulse is taken to slide, tried in turn.
-const SLIDING: [f64; 3] = [0.9999, 0.98, 0.8];
-
-/// Compliance κ of the gap rows where no exact solution exists (model.md, "Jamming").
-const COMPLIANCE: f64 = 1e-6;
+/// Shares of the speed scale at which the smoothed steps take up a warm start, one after the other.
+const STARTS: [f64; 2] = [1e-5, 1e-2];
 
 /// How one step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +41,8 @@ pub enum Outcome {
 pub enum Route {
     /// Semismooth Newton from the warm start.
     Newton,
+    /// Smoothed Newton steps from the warm start.
+    Continuation,
     /// Smoothing homotopy, polished.
     Homotopy,
     /// Exhaustive search over contact modes.
@@ -82,10 +56,15 @@ pub struct Report {
     pub outcome: Outcome,
     /// Natural-map residual of the rigid problem (m/s).
     pub residual: f64,
-    /// Iterations of the fast solver.
+    /// Newton steps of the solvers that run side by side.
     pub iterations: u32,
     /// Where the answer came from.
     pub route: Route,
+}
+
+impl Report {
+    /// Of a step that no solver has looked at.
+    pub(crate) const UNSOLVED: Self = Self { outcome: Outcome::Failed, residual: f64::INFINITY, iterations: 0, route: Route::Newton };
 }
 
 /// Solves one step's problem from a cold start.
@@ -102,208 +81,154 @@ pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
     let mut ncp = Ncp::<1>::empty();
     ncp.assign(std::array::from_ref(problem));
     let mut p = Impulses { v: ncp.free, ..Impulses::zero(problem.contacts.len()) };
-    let [report] = Solver::default().solve(&ncp, &mut p);
+    let mut reports = [[Report::UNSOLVED]];
+    Solver::default().solve(std::slice::from_ref(&ncp), std::slice::from_mut(&mut p), &mut reports);
+    let [[report]] = reports;
     (p.to_solution(0, problem), report)
 }
 
 /// Solves mixed NCPs; holds the working memory.
 #[derive(Clone, Debug)]
 pub struct Solver<const W: usize> {
-    fast: NewtonWorkspace<W>,
-    warm: Impulses<W>,
+    fast: Linearised<W>,
+    warm: Vec<Impulses<W>>,
+    left: Vec<Place>,
+    pack: Pack<W>,
     slow: SlowSolver,
+}
+
+/// One particle of a block: which chunk of lanes, and which lane of it.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    chunk: usize,
+    lane: usize,
 }
 
 impl<const W: usize> Default for Solver<W> {
     fn default() -> Self {
-        Self { fast: NewtonWorkspace::default(), warm: Impulses::zero(0), slow: SlowSolver::default() }
+        Self { fast: Linearised::default(), warm: Vec::new(), left: Vec::new(), pack: Pack::default(), slow: SlowSolver::default() }
     }
 }
 
 impl<const W: usize> Solver<W> {
-    /// Solves `ncp` from the impulses in `p` (the warm start; zero is a cold one) and leaves the solution in `p`.
+    /// Solves a block of problems, `W` to a chunk, from the impulses in `p` (the warm start; zero is a cold one), and leaves the
+    /// solutions in `p`.
     #[inline(always)]
-    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>) -> [Report; W] {
-        assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
-        self.warm.copy_from(p);
-        let (residual, iterations) = newton(ncp, p, &mut self.fast, AIM, FAST_ITERATIONS);
-        let mut reports = std::array::from_fn(|lane| Report {
-            outcome: Outcome::Solved,
-            residual: residual.0[lane],
-            iterations: iterations.0[lane] as u32,
-            route: Route::Newton,
-        });
-        for (lane, report) in reports.iter_mut().enumerate() {
-            if report.residual > TOLERANCE {
-                self.slow.load(ncp, &self.warm, lane);
-                self.slow.solve(report);
-                p.set_lane(lane, &self.slow.polisher.p);
+    pub fn solve(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
+        assert!(ncps.len() == p.len() && p.len() == reports.len(), "as many chunks of impulses and reports as of problems");
+        self.warm.resize_with(ncps.len().max(self.warm.len()), || Impulses::zero(0));
+        self.left.clear();
+        for (chunk, (ncp, p)) in ncps.iter().zip(p.iter_mut()).enumerate() {
+            assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
+            self.warm[chunk].copy_from(p);
+            let (residual, iterations) = newton(ncp, p, &mut self.fast, AIM, FAST_ITERATIONS);
+            for (lane, report) in reports[chunk].iter_mut().enumerate() {
+                let (residual, iterations) = (residual.0[lane], iterations.0[lane] as u32);
+                *report = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
+                if residual > TOLERANCE {
+                    self.left.push(Place { chunk, lane });
+                }
             }
-            rest_exactly(ncp, p, lane, report);
         }
-        reports
+        if !self.left.is_empty() {
+            self.solve_left(ncps, p, reports);
+        }
+        for ((ncp, p), reports) in ncps.iter().zip(p).zip(reports) {
+            rest_exactly(ncp, p, reports);
+        }
+    }
+
+    /// The problems that the fast solver left, packed together; then one by one what is left of them.
+    #[inline(always)]
+    fn solve_left(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
+        for start in STARTS {
+            let mut kept = 0;
+            for first in (0..self.left.len()).step_by(W) {
+                let last = self.left.len().min(first + W);
+                let packed = self.pack.solve(ncps, &self.warm, &self.left[first..last], start);
+                for i in first..last {
+                    let Place { chunk, lane } = self.left[i];
+                    let report = &mut reports[chunk][lane];
+                    report.route = Route::Continuation;
+                    report.iterations += packed.steps.0[i - first] as u32;
+                    report.residual = packed.residual.0[i - first];
+                    if report.residual <= TOLERANCE {
+                        p[chunk].unpack_lane(&ncps[chunk], lane, &self.pack.p, i - first);
+                    } else {
+                        self.left[kept] = self.left[i];
+                        kept += 1;
+                    }
+                }
+            }
+            self.left.truncate(kept);
+        }
+        for &Place { chunk, lane } in &self.left {
+            let solution = self.slow.solve(&ncps[chunk], &self.warm[chunk], lane, &mut reports[chunk][lane]);
+            p[chunk].unpack_lane(&ncps[chunk], lane, solution, 0);
+        }
+    }
+}
+
+/// Up to `W` particles from anywhere in a block, side by side.
+#[derive(Clone, Debug)]
+struct Pack<const W: usize> {
+    ncp: Ncp<W>,
+    p: Impulses<W>,
+    continuation: Continuation<W>,
+}
+
+impl<const W: usize> Default for Pack<W> {
+    fn default() -> Self {
+        Self { ncp: Ncp::empty(), p: Impulses::zero(0), continuation: Continuation::default() }
+    }
+}
+
+/// How the smoothed steps ended, by lane of the pack.
+struct Packed<const W: usize> {
+    residual: Lanes<W>,
+    steps: Lanes<W>,
+}
+
+impl<const W: usize> Pack<W> {
+    /// Solves the problems at `places`; the solutions are in `self.p`. Lanes past the last repeat the first.
+    #[inline(always)]
+    fn solve(&mut self, ncps: &[Ncp<W>], warm: &[Impulses<W>], places: &[Place], start: f64) -> Packed<W> {
+        let place = |lane: usize| if lane < places.len() { places[lane] } else { places[0] };
+        self.ncp.clear();
+        for slot in 0..W {
+            let Place { chunk, lane } = place(slot);
+            ncps[chunk].pack_lane(lane, &mut self.ncp, slot);
+        }
+        self.p.clear(self.ncp.contacts.len());
+        for slot in 0..W {
+            let Place { chunk, lane } = place(slot);
+            warm[chunk].pack_lane(&ncps[chunk], lane, &mut self.p, slot);
+        }
+        let (residual, steps) = self.continuation.solve(&self.ncp, &mut self.p, start, TOLERANCE);
+        Packed { residual, steps }
     }
 }
 
 /// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a stuck object never drifts.
-fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, lane: usize, report: &mut Report) {
-    let moving = p.v.iter().any(|v| v.0[lane].abs() > TOLERANCE);
-    let exact = p.v.iter().all(|v| v.0[lane] == 0.0);
-    if moving || exact || report.outcome != Outcome::Solved {
+#[inline(always)]
+fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report; W]) {
+    let mut fastest = Lanes::ZERO;
+    for v in &p.v {
+        fastest = fastest.max(v.abs());
+    }
+    let nearly = fastest.gt(Lanes::ZERO) & !fastest.gt(Lanes::splat(TOLERANCE));
+    if !nearly.any() {
         return;
     }
     let velocity = p.v;
-    for v in &mut p.v {
-        v.0[lane] = 0.0;
-    }
-    let residual = ncp.residual(p).0[lane];
-    if residual <= TOLERANCE {
-        report.residual = residual;
-    } else {
-        p.v = velocity;
-    }
-}
-
-/// The slow, sure part of the chain, one particle at a time.
-#[derive(Clone, Debug)]
-struct SlowSolver {
-    ncp: Ncp<1>,
-    rows: Rows,
-    start: Guess,
-    homotopy: Homotopy,
-    polisher: Polisher,
-}
-
-impl Default for SlowSolver {
-    fn default() -> Self {
-        Self {
-            ncp: Ncp::empty(),
-            rows: Rows::default(),
-            start: Guess::default(),
-            homotopy: Homotopy::default(),
-            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), fast: NewtonWorkspace::default() },
+    p.v = velocity.map(|v| nearly.select(Lanes::ZERO, v));
+    let residual = ncp.residual(p);
+    let mut exact = nearly & !residual.gt(Lanes::splat(TOLERANCE));
+    for (lane, report) in reports.iter_mut().enumerate() {
+        exact.set(lane, exact.lane(lane) && report.outcome == Outcome::Solved);
+        if exact.lane(lane) {
+            report.residual = residual.0[lane];
         }
     }
-}
-
-impl SlowSolver {
-    /// Takes over one lane of `ncp` and its warm start.
-    fn load<const W: usize>(&mut self, ncp: &Ncp<W>, warm: &Impulses<W>, lane: usize) {
-        ncp.copy_lane(lane, &mut self.ncp);
-        self.rows.assign(&self.ncp);
-        self.start.load(warm, lane, self.ncp.contacts.len());
-    }
-
-    /// Solves the problem that was loaded; the impulses are in the polisher.
-    fn solve(&mut self, report: &mut Report) {
-        report.route = Route::Homotopy;
-        report.residual = self.polisher.try_modes(&self.ncp, &self.rows, &self.start, &WARM_SLIDING, WARM_POLISH);
-        if report.residual > TOLERANCE {
-            report.residual = self.follow_from(WARM);
-        }
-        if report.residual > TOLERANCE {
-            report.residual = self.follow();
-        }
-        if report.residual > TOLERANCE {
-            report.route = Route::Modes;
-            report.outcome = self.search();
-            if report.outcome != Outcome::Solved {
-                self.solve_compliant();
-            }
-            report.residual = self.ncp.residual(&self.polisher.p).0[0];
-        }
-    }
-
-    /// The homotopy from cold starts, with the pusher holding and with it yielding, until one of the polished ends is certified;
-    /// the residual of the last.
-    fn follow(&mut self) -> f64 {
-        let mut residual = f64::INFINITY;
-        let starts = HOLDING.iter().map(|first| (false, first)).chain(YIELDING.iter().map(|first| (true, first)));
-        for (yields, &first) in starts {
-            self.rows.cold_start(&mut self.start);
-            if yields {
-                self.rows.yield_start(&mut self.start);
-            }
-            residual = self.follow_from(first);
-            if residual <= TOLERANCE {
-                break;
-            }
-        }
-        residual
-    }
-
-    /// The homotopy from `self.start` at a share of the speed scale.
-    fn follow_from(&mut self, first: f64) -> f64 {
-        let end = self.homotopy.follow(&self.rows, &self.start, first);
-        self.polisher.polish(&self.ncp, &self.rows, end)
-    }
-
-    fn search(&mut self) -> Outcome {
-        let (ncp, rows, polisher) = (&self.ncp, &self.rows, &mut self.polisher);
-        match search(rows, &mut |guess| polisher.polish(ncp, rows, guess) <= TOLERANCE) {
-            Verdict::Solved => Outcome::Solved,
-            Verdict::Infeasible => Outcome::Infeasible,
-            Verdict::Unresolved => Outcome::Failed,
-        }
-    }
-
-    /// Leaves the solution with compliant gap rows in the polisher: from soft rows, where it is near the free motion, to stiff ones.
-    fn solve_compliant(&mut self) {
-        self.rows.cold_start(&mut self.start);
-        let mut compliance = SOFT;
-        loop {
-            compliance = f64::max(0.1 * compliance, COMPLIANCE);
-            self.rows.compliance = compliance;
-            self.ncp.compliance = Lanes::ZERO + compliance;
-            let mut residual = f64::INFINITY;
-            for first in SOFTENING {
-                residual = self.follow_from(first);
-                if residual <= TOLERANCE {
-                    break;
-                }
-            }
-            if residual > TOLERANCE {
-                self.homotopy.end().store(&mut self.polisher.p);
-            }
-            self.start.load(&self.polisher.p, 0, self.ncp.contacts.len());
-            if compliance <= COMPLIANCE {
-                break;
-            }
-        }
-        self.ncp.compliance = Lanes::ZERO;
-    }
-}
-
-/// Turns a guess into certified impulses, where it is near enough.
-#[derive(Clone, Debug)]
-struct Polisher {
-    p: Impulses<1>,
-    modes: Polish,
-    fast: NewtonWorkspace<1>,
-}
-
-impl Polisher {
-    /// Newton in the modes that the guess itself shows; returns the residual.
-    fn try_modes(&mut self, ncp: &Ncp<1>, rows: &Rows, guess: &Guess, sliding: &[f64], limit: u32) -> f64 {
-        self.p.resize(ncp.contacts.len());
-        let mut residual = f64::INFINITY;
-        for &share in sliding {
-            self.modes.polish(rows, guess, share, limit).store(&mut self.p);
-            residual = ncp.residual(&self.p).0[0];
-            if residual <= TOLERANCE {
-                break;
-            }
-        }
-        residual
-    }
-
-    /// Polishes a guess, in its own modes, as it is, and by the fast solver; returns the residual, the impulses are in `self.p`.
-    fn polish(&mut self, ncp: &Ncp<1>, rows: &Rows, guess: &Guess) -> f64 {
-        let residual = self.try_modes(ncp, rows, guess, &SLIDING, POLISH_ITERATIONS);
-        if residual <= TOLERANCE {
-            return residual;
-        }
-        guess.store(&mut self.p);
-        newton(ncp, &mut self.p, &mut self.fast, TOLERANCE, POLISH_ITERATIONS).0.0[0]
-    }
+    p.v = velocity.map(|v| exact.select(Lanes::ZERO, v));
 }

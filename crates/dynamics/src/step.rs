@@ -222,7 +222,9 @@ impl Dynamics {
             }
             work.ncp.assign(&work.problems);
             work.assign_warm_starts(particles, self.scene.object.gyration_radius());
-            let reports = work.solver.solve(&work.ncp, &mut work.impulses);
+            let mut reports = [[Report::UNSOLVED; W]];
+            work.solver.solve(std::slice::from_ref(&work.ncp), std::slice::from_mut(&mut work.impulses), &mut reports);
+            let [reports] = reports;
             if !self.widen(input, work, &mut search) {
                 self.integrate(input.h, particles, work);
                 return reports;

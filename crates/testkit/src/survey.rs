@@ -13,8 +13,8 @@ use crate::{Corpus, Family, gap_margin, may_jam};
 pub struct Tally {
     /// Problems.
     pub problems: u64,
-    /// Solved by the fast solver, the homotopy, the search over modes.
-    pub solved: [u64; 3],
+    /// Solved by the fast solver, the smoothed steps, the homotopy, the search over modes.
+    pub solved: [u64; 4],
     /// Proven to have no solution.
     pub infeasible: u64,
     /// Indices of problems with neither.
@@ -43,8 +43,9 @@ fn examine(corpus: &Corpus, index: u64) -> Tally {
         (Outcome::Solved, route) => {
             tally.solved[match route {
                 Route::Newton => 0,
-                Route::Homotopy => 1,
-                Route::Modes => 2,
+                Route::Continuation => 1,
+                Route::Homotopy => 2,
+                Route::Modes => 3,
             }] = 1;
             tally.worst_residual = report.residual;
         }

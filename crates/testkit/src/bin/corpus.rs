@@ -12,14 +12,14 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     println!(
-        "{:<16} {:>9} {:>9} {:>9} {:>7} {:>11} {:>7} {:>12}",
-        "family", "problems", "newton", "homotopy", "modes", "infeasible", "failed", "residual"
+        "{:<16} {:>9} {:>9} {:>12} {:>9} {:>7} {:>11} {:>7} {:>12}",
+        "family", "problems", "newton", "continuation", "homotopy", "modes", "infeasible", "failed", "residual"
     );
     let mut total = Tally::default();
     for (family, tally) in survey(&Corpus { seed }, 0..problems) {
         print_row(&format!("{family:?}"), &tally);
         total.problems += tally.problems;
-        (0..3).for_each(|k| total.solved[k] += tally.solved[k]);
+        (0..4).for_each(|k| total.solved[k] += tally.solved[k]);
         total.infeasible += tally.infeasible;
         total.failed.extend(tally.failed);
         total.contradicted.extend(tally.contradicted);
@@ -35,9 +35,9 @@ fn main() -> ExitCode {
 }
 
 fn print_row(name: &str, t: &Tally) {
-    let [newton, homotopy, modes] = t.solved;
+    let [newton, continuation, homotopy, modes] = t.solved;
     println!(
-        "{name:<16} {:>9} {newton:>9} {homotopy:>9} {modes:>7} {:>11} {:>7} {:>12.1e}",
+        "{name:<16} {:>9} {newton:>9} {continuation:>12} {homotopy:>9} {modes:>7} {:>11} {:>7} {:>12.1e}",
         t.problems,
         t.infeasible,
         t.failed.len(),
