@@ -3,8 +3,9 @@
 //! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a 3×3 system in the twist,
 //! whatever the number of contacts, and one equation in y.
 
+use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Impulses, Ncp, Triple, dot};
+use crate::ncp::{ContactRow, FootRow, Ncp, Triple, dot};
 
 /// Linear model of one contact: dp_n = n − nn dγ, dp_t = t − tn dγ − tt ds.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,9 @@
 //! particle does the same arithmetic. Long before ε is small the modes show, and Newton's method with these modes held ends it.
 
 use crate::condensed::Linearised;
+use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{Impulses, Ncp};
+use crate::ncp::Ncp;
 use crate::polish::Polish;
 
 /// Smoothed residual, in units of ε, below which ε may fall.

@@ -3,7 +3,8 @@
 use crate::Lanes;
 use crate::condensed::Linearised;
 use crate::homotopy::Homotopy;
-use crate::ncp::{FootRow, Impulses, Ncp};
+use crate::impulses::Impulses;
+use crate::ncp::{FootRow, Ncp};
 use crate::newton::newton;
 use crate::rows::{Rows, Vector};
 

@@ -4,8 +4,9 @@
 //! residual falls.
 
 use crate::condensed::Linearised;
+use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{Impulses, Ncp};
+use crate::ncp::Ncp;
 
 /// Full steps without decrease that are allowed at one ε.
 const BOLD_STEPS: u32 = 3;

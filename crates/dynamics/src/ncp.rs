@@ -4,9 +4,9 @@
 //! and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
 //! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
 
-use crate::Twist;
+use crate::impulses::{Impulses, copy_lane};
 use crate::lanes::{Lanes, Mask};
-use crate::problem::{ContactPoint, StepProblem, StepSolution};
+use crate::problem::{ContactPoint, StepProblem};
 
 /// A vector of the scaled velocity space (x, y, ρ θ).
 pub type Triple<const W: usize> = [Lanes<W>; 3];
@@ -73,21 +73,6 @@ pub struct Ncp<const W: usize> {
     pub compliance: Lanes<W>,
 }
 
-/// Unknowns of an [`Ncp`], all in m/s.
-#[derive(Clone, Debug)]
-pub struct Impulses<const W: usize> {
-    /// Velocity v⁺.
-    pub v: Triple<W>,
-    /// p_n / m per contact.
-    pub normal: Vec<Lanes<W>>,
-    /// p_t / m per contact.
-    pub tangential: Vec<Lanes<W>>,
-    /// p_k / m per foot.
-    pub feet: [[Lanes<W>; 2]; 3],
-    /// Speed y by which the pusher gives way.
-    pub pusher_yield: Lanes<W>,
-}
-
 impl<const W: usize> FootRow<W> {
     /// Slip velocity of the foot.
     #[inline(always)]
@@ -141,116 +126,6 @@ impl<const W: usize> ContactRow<W> {
     }
 }
 
-impl<const W: usize> Impulses<W> {
-    /// No impulse at all on `contacts` contacts, at rest.
-    pub fn zero(contacts: usize) -> Self {
-        Self {
-            v: [Lanes::ZERO; 3],
-            normal: vec![Lanes::ZERO; contacts],
-            tangential: vec![Lanes::ZERO; contacts],
-            feet: [[Lanes::ZERO; 2]; 3],
-            pusher_yield: Lanes::ZERO,
-        }
-    }
-}
-
-impl<const W: usize> Impulses<W> {
-    /// Makes room for `contacts` contacts; new entries are zero.
-    pub fn resize(&mut self, contacts: usize) {
-        self.normal.resize(contacts, Lanes::ZERO);
-        self.tangential.resize(contacts, Lanes::ZERO);
-    }
-
-    /// Copies all lanes; memory is reused.
-    pub fn copy_from(&mut self, from: &Self) {
-        self.v = from.v;
-        self.normal.clone_from(&from.normal);
-        self.tangential.clone_from(&from.tangential);
-        self.feet = from.feet;
-        self.pusher_yield = from.pusher_yield;
-    }
-
-    /// Takes over `from` in the lanes of `mask`; the two have equally many contacts.
-    #[inline(always)]
-    pub fn copy_where(&mut self, mask: Mask<W>, from: &Self) {
-        self.zip(from, |to, from| mask.select(from, to));
-    }
-
-    /// from + share (to − from).
-    #[inline(always)]
-    pub fn blend(&mut self, from: &Self, to: &Self, share: Lanes<W>) {
-        self.copy_from(to);
-        self.zip(from, |to, from| from + share * (to - from));
-    }
-
-    /// Replaces every number by a function of it and of its like in `other`.
-    #[inline(always)]
-    fn zip(&mut self, other: &Self, f: impl Fn(Lanes<W>, Lanes<W>) -> Lanes<W>) {
-        let pairs = self.v.iter_mut().zip(&other.v);
-        let feet = self.feet.as_flattened_mut().iter_mut().zip(other.feet.as_flattened());
-        let normal = self.normal.iter_mut().zip(&other.normal);
-        let tangential = self.tangential.iter_mut().zip(&other.tangential);
-        for (to, from) in pairs.chain(feet).chain(normal).chain(tangential) {
-            *to = f(*to, *from);
-        }
-        self.pusher_yield = f(self.pusher_yield, other.pusher_yield);
-    }
-
-    /// Makes all numbers zero, on `contacts` contacts; memory is reused.
-    pub fn clear(&mut self, contacts: usize) {
-        self.normal.clear();
-        self.tangential.clear();
-        self.resize(contacts);
-        (self.v, self.feet, self.pusher_yield) = ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
-    }
-
-    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`.
-    pub fn pack_lane<const V: usize>(&self, ncp: &Ncp<W>, lane: usize, to: &mut Impulses<V>, slot: usize) {
-        let touching = (0..ncp.contacts.len()).filter(|i| ncp.contacts[*i].is_present(lane));
-        for (k, i) in touching.enumerate() {
-            to.normal[k].0[slot] = self.normal[i].0[lane];
-            to.tangential[k].0[slot] = self.tangential[i].0[lane];
-        }
-        copy_lane(to.singles_mut(), slot, self.singles(), lane);
-    }
-
-    /// The inverse of [`Impulses::pack_lane`]; contacts that the lane does not have carry nothing.
-    pub fn unpack_lane<const V: usize>(&mut self, ncp: &Ncp<W>, lane: usize, from: &Impulses<V>, slot: usize) {
-        let mut k = 0;
-        for (i, row) in ncp.contacts.iter().enumerate() {
-            let (mut p_n, mut p_t) = (0.0, 0.0);
-            if row.is_present(lane) {
-                (p_n, p_t) = (from.normal[k].0[slot], from.tangential[k].0[slot]);
-                k += 1;
-            }
-            self.normal[i].0[lane] = p_n;
-            self.tangential[i].0[lane] = p_t;
-        }
-        copy_lane(self.singles_mut(), lane, from.singles(), slot);
-    }
-
-    /// What does not belong to a contact.
-    fn singles(&self) -> impl Iterator<Item = &Lanes<W>> {
-        self.v.iter().chain(self.feet.as_flattened()).chain(std::iter::once(&self.pusher_yield))
-    }
-
-    fn singles_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
-        self.v.iter_mut().chain(self.feet.as_flattened_mut()).chain(std::iter::once(&mut self.pusher_yield))
-    }
-}
-
-/// Copies one lane of several numbers.
-fn copy_lane<'a, const V: usize, const W: usize>(
-    to: impl Iterator<Item = &'a mut Lanes<V>>,
-    slot: usize,
-    from: impl Iterator<Item = &'a Lanes<W>>,
-    lane: usize,
-) {
-    for (to, from) in to.zip(from) {
-        to.0[slot] = from.0[lane];
-    }
-}
-
 impl<const W: usize> Ncp<W> {
     /// Removes all contacts and compliance; the rest is to be overwritten.
     pub fn clear(&mut self) {
@@ -261,13 +136,11 @@ impl<const W: usize> Ncp<W> {
     /// Copies one lane into lane `slot` of `to`, without the open rows that pad it.
     pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Ncp<V>, slot: usize) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
-        let mut k = 0;
-        for row in self.contacts.iter().filter(|row| row.is_present(lane)) {
+        for (k, row) in self.contacts.iter().filter(|row| row.is_present(lane)).enumerate() {
             if k == to.contacts.len() {
                 to.contacts.push(ContactRow::OPEN);
             }
             copy_lane(to.contacts[k].numbers_mut(), slot, row.numbers(), lane);
-            k += 1;
         }
     }
 
@@ -428,22 +301,5 @@ impl<const W: usize> ContactRow<W> {
         self.nd.0[lane] = along(n, d);
         self.td.0[lane] = along(t, d);
         self.mu.0[lane] = c.mu;
-    }
-}
-
-impl<const W: usize> Impulses<W> {
-    /// One lane in SI units, for the problem it solves.
-    pub fn to_solution(&self, lane: usize, problem: &StepProblem) -> StepSolution {
-        let m = problem.mass;
-        let rho = (problem.inertia / m).sqrt();
-        let contacts = problem.contacts.len();
-        let newton_seconds = |column: &[Lanes<W>]| column[..contacts].iter().map(|p| p.0[lane] * m).collect();
-        StepSolution {
-            twist: Twist { vx: self.v[0].0[lane], vy: self.v[1].0[lane], omega: self.v[2].0[lane] / rho },
-            normal: newton_seconds(&self.normal),
-            tangential: newton_seconds(&self.tangential),
-            feet: self.feet.map(|p| p.map(|x| x.0[lane] * m)),
-            pusher_yield: self.pusher_yield.0[lane],
-        }
     }
 }

@@ -6,8 +6,9 @@
 //! 1/k an iteration once the modes are right; a particle's warm start is its last step's impulses.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
+use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Impulses, Ncp, Triple, dot};
+use crate::ncp::{ContactRow, FootRow, Ncp, Triple, dot};
 
 /// Stiffness k of held rows, in units of the object's mass per step.
 pub const STIFFNESS: f64 = 1.0e6;

@@ -4,8 +4,9 @@
 //! also at speeds so small that the natural map of the fast solver, which weighs impulses against speeds, cannot tell.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
+use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Impulses, Ncp, Triple};
+use crate::ncp::{ContactRow, FootRow, Ncp, Triple};
 use crate::newton::{Mode, STIFFNESS};
 
 /// Relative change of the velocity at which the iteration ends.

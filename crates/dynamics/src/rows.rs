@@ -1,7 +1,8 @@
 //! One particle's problem as plain numbers: [`Rows`], what the slow solvers work on.
 
 use crate::Lanes;
-use crate::ncp::{ContactRow, Impulses, Ncp};
+use crate::impulses::Impulses;
+use crate::ncp::{ContactRow, Ncp};
 
 /// A vector of the scaled velocity space (x, y, ρ θ), or of (x, y, ρ θ, y) with the pusher's yield speed appended.
 pub type Vector<const N: usize> = [f64; N];

@@ -2,9 +2,10 @@
 
 use crate::condensed::Linearised;
 use crate::homotopy::Homotopy;
+use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::modes::{Verdict, search};
-use crate::ncp::{Impulses, Ncp};
+use crate::ncp::Ncp;
 use crate::newton::newton;
 use crate::polish::Polish;
 use crate::rows::{Guess, Rows};

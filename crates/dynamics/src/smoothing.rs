@@ -5,8 +5,9 @@
 //! Overton 2000).
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
+use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::ncp::{ContactRow, FootRow, Impulses, Ncp, Triple, worse};
+use crate::ncp::{ContactRow, FootRow, Ncp, Triple, worse};
 
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;

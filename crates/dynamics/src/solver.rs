@@ -6,8 +6,9 @@
 
 use crate::condensed::Linearised;
 use crate::continuation::Continuation;
+use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::ncp::{Impulses, Ncp};
+use crate::ncp::Ncp;
 use crate::newton::newton;
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;

@@ -2,9 +2,10 @@
 //!
 //! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end; q⁺ = q + h v⁺.
 
+use crate::impulses::Impulses;
 use crate::lanes::Lanes;
 use crate::narrow::{Gap, Placed, narrow_phase};
-use crate::ncp::{Impulses, Ncp};
+use crate::ncp::Ncp;
 use crate::problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};
 use crate::scene::{Feet, Friction, Scene};
 use crate::solver::{Report, Solver};
