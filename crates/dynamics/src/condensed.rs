@@ -136,7 +136,8 @@ impl<const W: usize> Condensed<W> {
     /// A += Jᵀ K J, rhs += Jᵀ r.
     #[inline(always)]
     fn add_foot(&mut self, foot: &FootRow<W>, step: &FootStep<W>) {
-        let k = step.k.map(|k| [k[0], k[1], k[0] * foot.jx + k[1] * foot.jy]);
+        let row = |k: &[Lanes<W>; 2]| [k[0], k[1], k[0] * foot.jx + k[1] * foot.jy];
+        let k = [row(&step.k[0]), row(&step.k[1])];
         let r = foot.wrench(&step.r);
         for j in 0..3 {
             self.matrix[0][j] += k[0][j];

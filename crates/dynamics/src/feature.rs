@@ -58,9 +58,10 @@ impl Edge {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cone {
     /// Directions of the edges that end and begin at a corner; zero for a full circle, where every test then holds.
-    along: [Vec2; 2],
-    middle: Vec2,
-    cos_tilted: f64,
+    pub along: [Vec2; 2],
+    /// Unit vector in the middle of the widened cone, and the cosine of half its angle.
+    pub middle: Vec2,
+    pub cos_tilted: f64,
     /// First sampled direction, cosine and sine of the angle between samples, and how many steps lead through the cone.
     pub first: Vec2,
     pub step: Vec2,
@@ -88,12 +89,6 @@ impl Cone {
     #[inline(always)]
     pub fn holds(&self, direction: Vec2, slack: f64) -> bool {
         dot(self.along[0], direction) >= -slack && dot(self.along[1], direction) <= slack
-    }
-
-    /// Whether a unit vector lies in the widened cone.
-    #[inline(always)]
-    pub fn faces(&self, normal: Vec2) -> bool {
-        dot(self.middle, normal) >= self.cos_tilted
     }
 
     /// The largest n·d over the unit vectors n of the cone.

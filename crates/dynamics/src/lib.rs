@@ -1,9 +1,13 @@
 //! Planar frictional contact dynamics of one pushed object.
 
+mod assembly;
 mod condensed;
+mod contact;
 mod continuation;
 mod drag;
+mod ellipse_pair;
 mod feature;
+mod frames;
 mod homotopy;
 mod impulses;
 mod lanes;
@@ -13,6 +17,7 @@ mod ncp;
 mod newton;
 mod outline;
 mod overlap;
+mod particles;
 mod plane;
 mod polish;
 mod problem;
@@ -23,21 +28,24 @@ mod separation;
 mod shape;
 mod shape_error;
 mod slow;
-mod smooth;
 mod smoothing;
 mod solid;
 mod solver;
+mod stand;
 mod step;
 mod subspace;
+mod trig;
 
+pub use fearless_simd::Level;
 pub use impulses::Impulses;
 pub use lanes::{Lanes, Mask};
 pub use narrow::{Gap, Placed, narrow_phase};
 pub use ncp::{ContactRow, FootRow, Ncp};
+pub use particles::{Particle, Particles, WarmStart};
 pub use problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};
 pub use scene::{Feet, Fixel, Friction, Object, Pusher, Scene};
 pub use se2::{Pose, Twist, Wrench};
 pub use shape::{Part, Shape};
 pub use shape_error::ShapeError;
 pub use solver::{Outcome, Report, Route, Solver, TOLERANCE, solve};
-pub use step::{Body, Dynamics, Particle, PusherMotion, StepInput, StepWork, WarmStart};
+pub use step::{Body, Dynamics, PusherMotion, StepInput, StepWork};

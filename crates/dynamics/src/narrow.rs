@@ -1,4 +1,4 @@
-//! Contacts between two placed shapes: gap, normal and contact point ([`narrow_phase`]).
+//! Contacts between two placed shapes, `W` pairs of poses side by side: gap, normal and contact point ([`narrow_phase`]).
 //!
 //! Signs: the normal points INTO the object; the gap is positive where the bodies are apart. With the twists v of the object and v'
 //! of the other body, the rate of the gap is (n, r × n)·v − n·u, r the contact's arm and u the other surface's velocity there.
@@ -13,10 +13,15 @@
 //! - Where polygons overlap with no corner of one in the other, their parts' least penetration (by separating axes) is a contact; of
 //!   two convex polygons no gap is deeper than that, and one is as deep.
 
+use crate::contact::{Contact, Contacts};
+use crate::ellipse_pair::EllipsePair;
 use crate::feature::{Edge, Round};
+use crate::frames::{Frames, Vec2s, dot, dot_fixed, lane_of, splat, sub};
+use crate::lanes::{Lanes, Mask};
 use crate::outline::Outline;
-use crate::overlap::least_penetration;
-use crate::plane::{Frame, Vec2, add, cross, dot, length, negate, scale, sub};
+use crate::overlap::{least_penetration, separated};
+use crate::plane::{Frame, Vec2, negate, scale};
+use crate::stand::{Stand, stands};
 use crate::{Pose, Shape};
 
 /// Width of the borders between features, as a share of the bodies' size: at least one of two neighbours always answers.
@@ -25,11 +30,8 @@ const BORDER: f64 = 1e-12;
 /// Slack of the borders of a cone (rad).
 const ANGLE: f64 = 1e-9;
 
-/// Contacts whose lines of action are nearer than this share of the object's size, with normals within about 0.1 rad, are one.
-const SAME_LINE: f64 = 1e-4;
-
-/// Cosine of the largest angle between the normals of one contact.
-const SAME_NORMAL: f64 = 0.995;
+/// Depth, as a share of the smaller body's size, above which the features' own contacts are compared with the least penetration.
+const SHALLOW: f64 = 1e-5;
 
 /// A contact of the object with another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +60,7 @@ impl<'a> Placed<'a> {
 
 /// Appends every contact of `object` with `other` whose gap is below `reach` (m).
 ///
-/// Nothing is allocated but what `out` grows by. The order of contacts is fixed by the shapes' features.
+/// The order of contacts is fixed by the shapes' features.
 ///
 /// ```
 /// # use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};
@@ -72,65 +74,115 @@ impl<'a> Placed<'a> {
 /// # Ok::<(), stickslip_dynamics::ShapeError>(())
 /// ```
 pub fn narrow_phase(object: &Placed<'_>, other: &Placed<'_>, reach: f64, out: &mut Vec<Gap>) {
-    let apart = sub(other.frame.origin, object.frame.origin);
-    let near = object.shape.bounding_radius() + other.shape.bounding_radius() + reach;
-    if near > 0.0 && dot(apart, apart) < near * near {
-        Pair::new(object, other, reach, out).meet();
+    let mut work = NarrowWork::<1>::default();
+    let frames = Frames1 { object: object.frame.splat(), other: other.frame.splat() };
+    work.meet([object.shape, other.shape], &frames, Lanes([reach]));
+    out.extend(work.contacts().filter(|contact| contact.present.lane(0)).map(|contact| contact.lane(0)));
+}
+
+type Frames1 = PairFrames<1>;
+
+/// Where the two bodies of a pair are.
+pub(crate) struct PairFrames<const W: usize> {
+    pub object: Frames<W>,
+    pub other: Frames<W>,
+}
+
+/// Working memory of the narrow phase, and the contacts that it found.
+#[derive(Clone, Debug)]
+pub(crate) struct NarrowWork<const W: usize> {
+    found: Contacts<W>,
+    near: Vec<Stand<W>>,
+    ellipses: Vec<(Gap, bool)>,
+}
+
+impl<const W: usize> Default for NarrowWork<W> {
+    fn default() -> Self {
+        Self { found: Contacts::default(), near: Vec::new(), ellipses: Vec::new() }
+    }
+}
+
+impl<const W: usize> NarrowWork<W> {
+    /// Finds the contacts of two shapes whose gap is below `reach` (m).
+    #[inline(always)]
+    pub fn meet(&mut self, [object, other]: [&Shape; 2], frames: &PairFrames<W>, reach: Lanes<W>) {
+        self.found.clear(object.bounding_radius());
+        let apart = sub(&frames.other.origin, &frames.object.origin);
+        let limit = reach + (object.bounding_radius() + other.bounding_radius());
+        let near = limit.gt(Lanes::ZERO) & dot(&apart, &apart).lt(limit * limit);
+        if near.any() {
+            Pair::new([object, other], frames, reach, near, self).meet();
+            self.found.sort();
+        }
+    }
+
+    /// The contacts found last; those without a lane are none.
+    #[inline(always)]
+    pub fn contacts(&self) -> impl Iterator<Item = &Contact<W>> {
+        self.found.iter()
     }
 }
 
 /// Two placed shapes and where their contacts go.
-pub(crate) struct Pair<'a> {
-    pub object: &'a Shape,
-    pub other: &'a Shape,
+struct Pair<'a, const W: usize> {
+    object: &'a Shape,
+    other: &'a Shape,
     /// Object and other in the world.
-    object_frame: Frame,
-    other_frame: Frame,
+    object_frame: Frames<W>,
+    other_frame: Frames<W>,
     /// The other's frame seen from the object's, and the inverse.
-    pub in_object: Frame,
-    pub in_other: Frame,
+    in_object: Frames<W>,
+    in_other: Frames<W>,
+    /// Lanes in which the two can touch.
+    near: Mask<W>,
     /// Gap below which a contact counts (m).
-    pub reach: f64,
+    reach: Lanes<W>,
     /// Width of borders (m).
-    pub slack: f64,
-    out: &'a mut Vec<Gap>,
-    first: usize,
-    /// The deepest overlap at a boundary point that a sibling part hides.
-    hidden: Option<Gap>,
+    slack: f64,
+    places: Places,
+    work: &'a mut NarrowWork<W>,
 }
 
-/// Where the centre of a round vertex stands over an edge.
+/// First numbers of the contacts between features, by kind of pair.
 #[derive(Clone, Copy)]
-struct Stand<'a> {
-    edge: &'a Edge,
-    /// Distance of its foot along the edge, and height above the edge's line (m).
-    s: f64,
-    height: f64,
+struct Places {
+    round_on_round: u32,
+    round_on_other: u32,
+    ellipses: u32,
 }
 
-impl<'a> Pair<'a> {
-    #[inline]
-    fn new(object: &'a Placed<'a>, other: &'a Placed<'a>, reach: f64, out: &'a mut Vec<Gap>) -> Self {
-        let in_object = other.frame.seen_from(&object.frame);
-        let slack = BORDER * (object.shape.bounding_radius() + other.shape.bounding_radius());
-        let (object_frame, other_frame, first) = (object.frame, other.frame, out.len());
-        let in_other = in_object.inverse();
+/// The contact that stands for an overlap no feature answers for, and one whose point a sibling part hides: after all others.
+const LEAST_PENETRATION: u32 = Contact::<1>::PLACES - 2;
+const HIDDEN: u32 = Contact::<1>::PLACES - 1;
+
+impl<'a, const W: usize> Pair<'a, W> {
+    #[inline(always)]
+    fn new([object, other]: [&'a Shape; 2], frames: &PairFrames<W>, reach: Lanes<W>, near: Mask<W>, work: &'a mut NarrowWork<W>) -> Self {
+        let in_object = frames.other.seen_from(&frames.object);
+        let (mine, theirs) = (object.outline(), other.outline());
+        let round_on_round = theirs.rounds.len() * mine.edges.len();
+        let round_on_other = round_on_round + theirs.rounds.len() * mine.rounds.len();
+        let ellipses = round_on_other + mine.rounds.len() * theirs.edges.len();
         Self {
-            object: object.shape,
-            other: other.shape,
-            object_frame,
-            other_frame,
+            object,
+            other,
+            object_frame: frames.object,
+            other_frame: frames.other,
             in_object,
-            in_other,
+            in_other: in_object.inverse(),
+            near,
             reach,
-            slack,
-            out,
-            first,
-            hidden: None,
+            slack: BORDER * (object.bounding_radius() + other.bounding_radius()),
+            places: Places {
+                round_on_round: round_on_round as u32,
+                round_on_other: round_on_other as u32,
+                ellipses: ellipses as u32,
+            },
+            work,
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn meet(&mut self) {
         let (mine, theirs) = (self.object.outline(), self.other.outline());
         self.rounds_on_object(mine, theirs);
@@ -138,198 +190,228 @@ impl<'a> Pair<'a> {
             self.rounds_on_other(mine, theirs);
         }
         if !mine.ellipses.is_empty() || !theirs.ellipses.is_empty() {
-            self.ellipses(mine, theirs);
+            self.ellipses();
         }
         if !mine.edges.is_empty() && !theirs.edges.is_empty() {
             self.polygons();
         }
-        if let Some(hidden) = self.hidden
-            && !self.overlaps()
-        {
-            self.push(hidden);
-        }
-    }
-
-    /// Whether a contact found so far is an overlap.
-    #[inline(always)]
-    fn overlaps(&self) -> bool {
-        self.out[self.first..].iter().any(|contact| contact.gap < 0.0)
+        self.work.found.settle_hidden(HIDDEN);
     }
 
     /// The other's corners and discs against the object's edges, corners and discs, in the object's frame.
-    #[inline]
+    #[inline(always)]
     fn rounds_on_object(&mut self, mine: &Outline, theirs: &Outline) {
-        let frame = self.in_object;
-        for round in &theirs.rounds {
-            let centre = frame.point(round.centre);
-            if !self.within(centre, self.object, round.radius) {
+        for (i, round) in theirs.rounds.iter().enumerate() {
+            let centre = self.in_object.point(round.centre);
+            let within = self.within(&centre, self.object, round.radius);
+            if !within.any() {
                 continue;
             }
-            let faces = |edge: &Edge| round.cone.faces(frame.turn_back(negate(edge.normal())));
-            let (object, limits) = (self.object, [self.reach + round.radius, self.slack]);
-            stands(object, centre, limits, faces, |Stand { edge, s, height }| {
-                let touch = add(round.centre, scale(-round.radius, frame.turn_back(edge.normal())));
-                let contact = self.contact(negate(edge.normal()), edge.at(s), height - round.radius);
-                self.push_unless(round.covered && self.other.hides(touch), contact);
-            });
-            for own in &mine.rounds {
-                self.round_on_round(own, round, centre);
+            let frame = self.in_object;
+            let at = Over { shape: self.object, centre: &centre, frame: &frame, round, within };
+            self.stand(&at);
+            for k in 0..self.work.near.len() {
+                let Stand { edge: index, s, height, present, .. } = self.work.near[k];
+                let edge = &mine.edges[index];
+                let normal = self.object_frame.turn_fixed(negate(edge.normal()));
+                let foot = [s * edge.along[0] + edge.start[0], s * edge.along[1] + edge.start[1]];
+                let gap = height - round.radius;
+                let contact = Contact { place: (i * mine.edges.len() + index) as u32, present, normal, arm: self.object_frame.turn(&foot), gap };
+                self.push(contact, round.covered, || at.touch(edge), self.other);
+            }
+            for (j, own) in mine.rounds.iter().enumerate() {
+                let place = self.places.round_on_round + (i * mine.rounds.len() + j) as u32;
+                self.round_on_round(place, own, round, &centre);
             }
         }
     }
 
     /// The object's corners and discs against the other's edges, in the other's frame.
-    #[inline]
+    #[inline(always)]
     fn rounds_on_other(&mut self, mine: &Outline, theirs: &Outline) {
-        debug_assert!(!theirs.edges.is_empty());
-        let frame = self.in_other;
-        for round in &mine.rounds {
-            let centre = frame.point(round.centre);
-            if !self.within(centre, self.other, round.radius) {
+        for (j, round) in mine.rounds.iter().enumerate() {
+            let centre = self.in_other.point(round.centre);
+            let within = self.within(&centre, self.other, round.radius);
+            if !within.any() {
                 continue;
             }
-            let faces = |edge: &Edge| round.cone.faces(frame.turn_back(negate(edge.normal())));
-            let (other, limits) = (self.other, [self.reach + round.radius, self.slack]);
-            stands(other, centre, limits, faces, |Stand { edge, height, .. }| {
-                let touch = add(round.centre, scale(-round.radius, frame.turn_back(edge.normal())));
-                let contact = self.contact_on_other(edge.normal(), touch, height - round.radius);
-                self.push_unless(round.covered && self.object.hides(touch), contact);
-            });
+            let frame = self.in_other;
+            let at = Over { shape: self.other, centre: &centre, frame: &frame, round, within };
+            self.stand(&at);
+            for k in 0..self.work.near.len() {
+                let Stand { edge: index, height, present, .. } = self.work.near[k];
+                let edge = &theirs.edges[index];
+                let place = self.places.round_on_other + (j * theirs.edges.len() + index) as u32;
+                let normal = self.other_frame.turn_fixed(edge.normal());
+                let contact = Contact { place, present, normal, arm: self.object_frame.turn(&at.touch(edge)), gap: height - round.radius };
+                self.push(contact, round.covered, || at.touch(edge), self.object);
+            }
         }
     }
 
-    /// Whether a disc about `centre`, in the frame of `shape`, comes near the shape's bounding disc.
+    /// Over which edges a corner or disc stands; left in `work.near`.
     #[inline(always)]
-    fn within(&self, centre: Vec2, shape: &Shape, radius: f64) -> bool {
-        let limit = shape.bounding_radius() + self.reach + radius;
-        limit > 0.0 && dot(centre, centre) < limit * limit
+    fn stand(&mut self, at: &Over<'_, W>) {
+        let limit = self.reach + at.round.radius;
+        stands(at.shape, at.centre, at.within, [limit, Lanes::splat(self.slack)], |edge| at.faces(edge), &mut self.work.near);
+    }
+
+    /// Where a disc about `centre`, in the frame of `shape`, comes near the shape's bounding disc.
+    #[inline(always)]
+    fn within(&self, centre: &Vec2s<W>, shape: &Shape, radius: f64) -> Mask<W> {
+        let limit = self.reach + (shape.bounding_radius() + radius);
+        self.near & limit.gt(Lanes::ZERO) & dot(centre, centre).lt(limit * limit)
     }
 
     /// Two corners or discs; `centre` is that of the other's one in the object's frame.
     #[inline(always)]
-    fn round_on_round(&mut self, own: &Round, round: &Round, centre: Vec2) {
-        let d = sub(own.centre, centre);
-        let limit = own.radius + round.radius + self.reach;
-        if limit > 0.0
-            && dot(d, d) < limit * limit
-            && own.cone.holds(negate(d), self.slack)
-            && round.cone.holds(self.in_object.turn_back(d), self.slack)
-        {
-            self.push_rounds(own, round, d);
+    fn round_on_round(&mut self, place: u32, own: &Round, round: &Round, centre: &Vec2s<W>) {
+        let d = [-centre[0] + own.centre[0], -centre[1] + own.centre[1]];
+        let limit = self.reach + (own.radius + round.radius);
+        let mut present = self.near & limit.gt(Lanes::ZERO) & dot(&d, &d).lt(limit * limit);
+        if !present.any() {
+            return;
+        }
+        let back = self.in_object.turn_back(&d);
+        present = present & own.cone.holds_each(&[-d[0], -d[1]], self.slack) & round.cone.holds_each(&back, self.slack);
+        if present.any() {
+            self.push_rounds(place, own, round, &d, present);
         }
     }
 
     /// `d` leads from the other's centre to the object's one. A corner's own edges answer for what is right at it.
-    fn push_rounds(&mut self, own: &Round, round: &Round, d: Vec2) {
-        let distance = length(d);
-        if distance <= self.slack && !(own.cone.is_full() && round.cone.is_full()) {
-            return;
+    #[inline(always)]
+    fn push_rounds(&mut self, place: u32, own: &Round, round: &Round, d: &Vec2s<W>, mut present: Mask<W>) {
+        let distance = dot(d, d).sqrt();
+        if !(own.cone.is_full() && round.cone.is_full()) {
+            present = present & distance.gt(Lanes::splat(self.slack));
         }
-        let normal = if distance > 0.0 { scale(1.0 / distance, d) } else { [1.0, 0.0] };
-        if !own.cone.holds(negate(normal), ANGLE) || !round.cone.holds(self.in_object.turn_back(normal), ANGLE) {
-            return;
+        let apart = distance.gt(Lanes::ZERO);
+        let inverse = Lanes::splat(1.0) / apart.select(distance, Lanes::splat(1.0));
+        let normal = [apart.select(d[0] * inverse, Lanes::splat(1.0)), apart.keep(d[1] * inverse)];
+        let back = self.in_object.turn_back(&normal);
+        present = present & own.cone.holds_each(&[-normal[0], -normal[1]], ANGLE) & round.cone.holds_each(&back, ANGLE);
+        let touch = [-normal[0] * own.radius + own.centre[0], -normal[1] * own.radius + own.centre[1]];
+        let theirs = [back[0] * round.radius + round.centre[0], back[1] * round.radius + round.centre[1]];
+        let hidden_here = |lane: usize| own.covered && self.object.hides(lane_of(&touch, lane));
+        let hidden_there = |lane: usize| round.covered && self.other.hides(lane_of(&theirs, lane));
+        let hidden = if own.covered || round.covered {
+            Mask::from_fn(|lane| present.lane(lane) && (hidden_here(lane) || hidden_there(lane)))
+        } else {
+            Mask::splat(false)
+        };
+        let gap = distance - own.radius - round.radius;
+        let contact = Contact { place, present, normal: self.object_frame.turn(&normal), arm: self.object_frame.turn(&touch), gap };
+        self.work.found.push_unless(hidden, contact);
+    }
+
+    /// Adds a contact; where `covered`, a sibling part in `shape` may hide its point.
+    #[inline(always)]
+    fn push(&mut self, contact: Contact<W>, covered: bool, touch: impl Fn() -> Vec2s<W>, shape: &Shape) {
+        if covered {
+            let touch = touch();
+            let hidden = Mask::from_fn(|lane| contact.present.lane(lane) && shape.hides(lane_of(&touch, lane)));
+            self.work.found.push_unless(hidden, contact);
+        } else {
+            self.work.found.push(contact);
         }
-        let touch = add(own.centre, scale(-own.radius, normal));
-        let theirs = add(round.centre, scale(round.radius, self.in_object.turn_back(normal)));
-        let contact = self.contact(normal, touch, distance - own.radius - round.radius);
-        self.push_unless(own.covered && self.object.hides(touch) || round.covered && self.other.hides(theirs), contact);
+    }
+
+    /// Every pair with an ellipse, lane by lane.
+    #[inline(never)]
+    fn ellipses(&mut self) {
+        for lane in self.near.lanes() {
+            self.work.ellipses.clear();
+            EllipsePair {
+                object: self.object,
+                other: self.other,
+                object_frame: self.object_frame.lane(lane),
+                other_frame: self.other_frame.lane(lane),
+                in_object: self.in_object.lane(lane),
+                in_other: self.in_other.lane(lane),
+                reach: self.reach.0[lane],
+                slack: self.slack,
+            }
+            .meet(&mut self.work.ellipses);
+            for (k, &(gap, hidden)) in self.work.ellipses.iter().enumerate() {
+                let contact = Contact::in_lane(self.places.ellipses + k as u32, lane, &gap);
+                self.work.found.push_unless(Mask::splat(hidden), contact);
+            }
+        }
     }
 
     /// Polygons that overlap although no feature answered for it; of two convex ones, the least penetration bounds all gaps.
+    #[inline(always)]
     fn polygons(&mut self) {
         let convex = self.object.parts().len() == 1 && self.other.parts().len() == 1;
-        if !convex && self.overlaps() {
-            return;
+        let asked = if convex { self.near } else { self.near & !self.work.found.deeper_than(0.0) };
+        let depth = -SHALLOW * self.object.bounding_radius().min(self.other.bounding_radius());
+        let shallow = asked & !self.work.found.deeper_than(depth);
+        let apart = separated(self.object.solids(), self.other.solids(), [&self.in_object, &self.in_other], shallow, depth);
+        let suspects = asked & !apart;
+        if suspects.any() {
+            self.least_penetrations(suspects);
         }
-        let Some(least) = least_penetration(self.object.solids(), self.other.solids(), &self.in_object) else { return };
-        let mut kept = self.first;
-        for k in self.first..self.out.len() {
-            if self.out[k].gap >= least.gap - self.slack {
-                self.out[kept] = self.out[k];
-                kept += 1;
+    }
+
+    #[inline(never)]
+    fn least_penetrations(&mut self, suspects: Mask<W>) {
+        for lane in suspects.lanes() {
+            let in_object = self.in_object.lane(lane);
+            let Some(least) = least_penetration(self.object.solids(), self.other.solids(), &in_object) else { continue };
+            let answered = self.work.found.bound(lane, least.gap, self.slack);
+            if least.gap < self.reach.0[lane] && !answered {
+                let frame = self.object_frame.lane(lane);
+                let gap = Gap { normal: frame.turn(least.normal), arm: frame.turn(least.touch), gap: least.gap };
+                self.work.found.push(Contact::in_lane(LEAST_PENETRATION, lane, &gap));
             }
-        }
-        self.out.truncate(kept);
-        let answered = self.out[self.first..].iter().any(|contact| contact.gap <= least.gap + self.slack);
-        if least.gap < self.reach && !answered {
-            self.push(self.contact(least.normal, least.touch, least.gap));
-        }
-    }
-
-    /// A contact given in the object's frame.
-    #[inline(always)]
-    pub fn contact(&self, normal: Vec2, touch: Vec2, gap: f64) -> Gap {
-        Gap { normal: self.object_frame.turn(normal), arm: self.object_frame.turn(touch), gap }
-    }
-
-    /// A contact given by its normal in the other's frame and its point in the object's.
-    #[inline(always)]
-    pub fn contact_on_other(&self, normal: Vec2, touch: Vec2, gap: f64) -> Gap {
-        Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap }
-    }
-
-    /// A contact whose point a sibling part hides counts only in overlap, and only if there is no other.
-    #[inline(always)]
-    pub fn push_unless(&mut self, hidden: bool, contact: Gap) {
-        if !hidden {
-            self.push(contact);
-        } else if contact.gap < 0.0 && self.hidden.is_none_or(|old| contact.gap < old.gap) {
-            self.hidden = Some(contact);
-        }
-    }
-
-    /// Of two contacts with one line of action, which have one row W_n, keeps that with the smaller gap.
-    #[inline(always)]
-    fn push(&mut self, new: Gap) {
-        let near = SAME_LINE * self.object.bounding_radius();
-        let same = |old: &&mut Gap| {
-            let d = sub(old.arm, new.arm);
-            cross(d, old.normal).abs() < near && cross(d, new.normal).abs() < near && dot(old.normal, new.normal) > SAME_NORMAL
-        };
-        match self.out[self.first..].iter_mut().find(same) {
-            Some(old) if new.gap < old.gap => *old = new,
-            Some(_) => {}
-            None => self.out.push(new),
         }
     }
 }
 
-/// Reports the edges of `shape` over which `centre` stands, less than `limit` high, among those that the round vertex faces.
-///
-/// From outside these are all that see it on their outward side; from inside, the edge of least penetration and those that meet it
-/// in a reflex corner as well.
-#[inline(always)]
-fn stands<'s>(shape: &'s Shape, centre: Vec2, [limit, slack]: [f64; 2], faces: impl Fn(&Edge) -> bool, mut report: impl FnMut(Stand<'s>)) {
-    let edges = &shape.outline().edges;
-    let (mut highest, mut beside) = (f64::NEG_INFINITY, false);
-    let mut way_out: Option<Stand<'s>> = None;
-    for edge in edges {
-        let (s, height) = edge.coordinates(centre);
-        highest = if height > highest { height } else { highest };
-        if height >= limit || !edge.holds(s, slack) {
-            continue;
+/// A corner or disc above a shape's edges.
+struct Over<'a, const W: usize> {
+    shape: &'a Shape,
+    /// Its centre in the shape's frame.
+    centre: &'a Vec2s<W>,
+    /// The frame of the round's own body, seen from the shape's.
+    frame: &'a Frames<W>,
+    round: &'a Round,
+    within: Mask<W>,
+}
+
+impl<const W: usize> Over<'_, W> {
+    /// Where the round vertex faces an edge.
+    #[inline(always)]
+    fn faces(&self, edge: &Edge) -> Mask<W> {
+        if self.round.cone.is_full() {
+            return Mask::splat(true);
         }
-        if !faces(edge) {
-            continue;
-        }
-        if height >= 0.0 {
-            beside |= height < shape.tolerance() && s >= 0.0 && s <= edge.length;
-            report(Stand { edge, s, height });
-        } else if way_out.is_none_or(|way| height > way.height) {
-            way_out = Some(Stand { edge, s, height });
-        }
+        self.round.cone.faces_each(&self.frame.turn_back_fixed(negate(edge.normal())))
     }
-    let Some(way) = way_out else { return };
-    // a corner flush with one face may lie behind the next; what rests on a face that it faces is outside
-    let inside = if shape.parts().len() == 1 { highest <= slack } else { shape.contains(centre) };
-    if beside || !inside {
-        return;
-    }
-    report(way);
-    for edge in way.edge.reflex.iter().flatten().map(|k| &edges[*k as usize]) {
-        let (s, height) = edge.coordinates(centre);
-        if height < 0.0 && height < limit && edge.holds(s, slack) && faces(edge) {
-            report(Stand { edge, s, height });
+
+    /// Its point nearest to the line of an edge, in its own body's frame.
+    #[inline(always)]
+    fn touch(&self, edge: &Edge) -> Vec2s<W> {
+        if self.round.radius == 0.0 {
+            return splat(self.round.centre);
         }
+        let [x, y] = self.frame.turn_back_fixed(scale(-self.round.radius, edge.normal()));
+        [x + self.round.centre[0], y + self.round.centre[1]]
+    }
+}
+
+impl crate::feature::Cone {
+    /// [`holds`](Self::holds), lane by lane.
+    #[inline(always)]
+    fn holds_each<const W: usize>(&self, direction: &Vec2s<W>, slack: f64) -> Mask<W> {
+        let [before, after]: [Vec2; 2] = self.along;
+        !dot_fixed(direction, before).lt(Lanes::splat(-slack)) & !dot_fixed(direction, after).gt(Lanes::splat(slack))
+    }
+
+    /// Where a unit vector lies in the widened cone.
+    #[inline(always)]
+    fn faces_each<const W: usize>(&self, normal: &Vec2s<W>) -> Mask<W> {
+        !dot_fixed(normal, self.middle).lt(Lanes::splat(self.cos_tilted))
     }
 }

@@ -44,7 +44,9 @@ impl<const W: usize> Linearised<W> {
     /// The natural map's own choice of modes at `p`.
     #[inline(always)]
     fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>) {
-        self.feet = [0, 1, 2].map(|k| linearise_foot(&ncp.feet[k], &p.feet[k], &p.v));
+        for (step, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
+            *step = linearise_foot(foot, p_k, &p.v);
+        }
         self.contacts.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;

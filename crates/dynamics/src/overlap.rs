@@ -1,5 +1,8 @@
-//! Least penetration of overlapping polygons by separating axes ([`least_penetration`]).
+//! Least penetration of overlapping polygons by separating axes ([`least_penetration`]), and where it need not be asked for
+//! ([`separated`]).
 
+use crate::frames::{Frames, dot_fixed};
+use crate::lanes::{Lanes, Mask};
 use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
 use crate::solid::{Polygon, Solid};
 
@@ -63,4 +66,53 @@ fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f6
         }
     }
     best
+}
+
+/// The lanes of `asked` in which every pair of polygons has a side that the other one does not reach deeper than `depth` (m,
+/// negative) behind; `frames` are those of `theirs` seen from `mine`, and the inverse.
+#[inline(always)]
+pub(crate) fn separated<const W: usize>(
+    mine: &[Solid],
+    theirs: &[Solid],
+    frames: [&Frames<W>; 2],
+    asked: Mask<W>,
+    depth: f64,
+) -> Mask<W> {
+    let [in_mine, in_theirs] = frames;
+    let mut all = asked;
+    for a in mine.iter().filter_map(polygon) {
+        for b in theirs.iter().filter_map(polygon) {
+            let mut apart = has_clear_side(a, b, in_mine, all, depth);
+            if (all & !apart).any() {
+                apart = apart | has_clear_side(b, a, in_theirs, all & !apart, depth);
+            }
+            all = all & apart;
+        }
+    }
+    all
+}
+
+/// The lanes of `asked` in which a side of `a` has all of `b` above `depth`; `frame` is that of `b` seen from `a`.
+#[inline(always)]
+fn has_clear_side<const W: usize>(a: &Polygon, b: &Polygon, frame: &Frames<W>, asked: Mask<W>, depth: f64) -> Mask<W> {
+    let Some(lane) = asked.lanes().next() else { return asked };
+    // the side that faces the other's centre is the likely one
+    let centre = frame.lane(lane).point(b.centre);
+    let above = |k: usize| dot(a.sides[k].normal, centre) - a.sides[k].offset;
+    let likely = (1..a.sides.len()).fold(0, |best, k| if above(k) > above(best) { k } else { best });
+    let mut clear = Mask::splat(false);
+    for k in std::iter::once(likely).chain(0..a.sides.len()) {
+        let side = &a.sides[k];
+        let turned = frame.turn_back_fixed(side.normal);
+        let base = dot_fixed(&frame.origin, side.normal) - side.offset;
+        let mut lowest = Lanes::splat(f64::INFINITY);
+        for corner in &b.corners {
+            lowest = lowest.min(dot_fixed(&turned, *corner));
+        }
+        clear = clear | (lowest + base).gt(Lanes::splat(depth));
+        if !(asked & !clear).any() {
+            break;
+        }
+    }
+    asked & clear
 }

@@ -88,16 +88,6 @@ impl Frame {
         add(self.origin, self.turn(p))
     }
 
-    /// This frame as seen from `base`.
-    #[inline(always)]
-    pub fn seen_from(&self, base: &Frame) -> Frame {
-        Frame {
-            origin: base.turn_back(sub(self.origin, base.origin)),
-            cos: base.cos * self.cos + base.sin * self.sin,
-            sin: base.cos * self.sin - base.sin * self.cos,
-        }
-    }
-
     #[inline(always)]
     pub fn inverse(&self) -> Frame {
         Frame { origin: negate(self.turn_back(self.origin)), cos: self.cos, sin: -self.sin }

@@ -30,7 +30,10 @@ impl<const W: usize> Polish<W> {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             self.modes.push(contact_mode(row, [*p_n, *p_t], gamma, sliding));
         }
-        let slides = [0, 1, 2].map(|k| length(&p.feet[k]).gt(ncp.feet[k].bound * sliding));
+        let mut slides = [open; 3];
+        for k in 0..3 {
+            slides[k] = length(&p.feet[k]).gt(ncp.feet[k].bound * sliding);
+        }
         let yields = ncp.stall.lt(Lanes::splat(f64::INFINITY)) & p.pusher_yield.gt(ncp.stall - ncp.resistance(p));
         for _ in 0..limit {
             let before = (p.v, p.pusher_yield);
@@ -52,7 +55,9 @@ impl<const W: usize> Polish<W> {
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
             contacts.push(ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, ncp.compliance));
         }
-        self.linearised.feet = [0, 1, 2].map(|k| foot(&ncp.feet[k], &p.feet[k], &p.v, slides[k]));
+        for k in 0..3 {
+            self.linearised.feet[k] = foot(&ncp.feet[k], &p.feet[k], &p.v, slides[k]);
+        }
         self.linearised.stall = StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);
     }
 }

@@ -79,7 +79,9 @@ impl<const W: usize> Linearised<W> {
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
             self.contacts.push(aim.contact(row, [*p_n, *p_t], [gamma, slip], ncp.compliance));
         }
-        self.feet = [0, 1, 2].map(|k| aim.foot(&ncp.feet[k], &p.feet[k], &p.v));
+        for (step, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
+            *step = aim.foot(foot, p_k, &p.v);
+        }
         self.stall = aim.stall(ncp, p);
     }
 }

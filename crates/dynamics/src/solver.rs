@@ -7,7 +7,7 @@
 use crate::condensed::Linearised;
 use crate::continuation::Continuation;
 use crate::impulses::Impulses;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Mask};
 use crate::ncp::Ncp;
 use crate::newton::newton;
 use crate::problem::{StepProblem, StepSolution};
@@ -218,9 +218,14 @@ fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut
         fastest = fastest.max(v.abs());
     }
     let nearly = fastest.gt(Lanes::ZERO) & !fastest.gt(Lanes::splat(TOLERANCE));
-    if !nearly.any() {
-        return;
+    if nearly.any() {
+        stop(ncp, p, reports, nearly);
     }
+}
+
+/// Makes the velocity zero in the lanes of `nearly` where the certificate agrees.
+#[inline(never)]
+fn stop<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report; W], nearly: Mask<W>) {
     let velocity = p.v;
     p.v = velocity.map(|v| nearly.select(Lanes::ZERO, v));
     let residual = ncp.residual(p);

@@ -1,21 +1,25 @@
-//! One time step Γ, and Γ' with noise (eq. 3 and 6), for `W` particles side by side: [`Dynamics::step`].
+//! One time step Γ, and Γ' with noise (eq. 3 and 6), for a block of particles side by side: [`Dynamics::step_block`].
 //!
 //! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end; q⁺ = q + h v⁺.
 
+use fearless_simd::{Level, dispatch};
+
+use crate::assembly::Assembly;
 use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::narrow::{Gap, Placed, narrow_phase};
+use crate::narrow::NarrowWork;
 use crate::ncp::Ncp;
-use crate::problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};
-use crate::scene::{Feet, Friction, Scene};
+use crate::particles::{Particle, Particles};
+use crate::problem::{StepProblem, StepSolution};
+use crate::scene::{Friction, Scene};
 use crate::solver::{Report, Solver};
-use crate::{Pose, Twist, Wrench};
+use crate::{Pose, Twist};
 
 /// Added to the distance that bodies can close within one step when contacts are sought (m).
 const MARGIN: f64 = 5e-4;
 
-/// Contacts whose impulses a particle remembers for its next step.
-const REMEMBERED: usize = 4;
+/// Search distance at which widening ends (m): nothing real moves so far in one step.
+const WIDEST: f64 = 1e3;
 
 /// The pusher during one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,52 +41,6 @@ pub struct StepInput {
     pub pusher: Option<PusherMotion>,
 }
 
-/// State of one particle, and the impulse that is applied to it in the coming step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Particle {
-    /// Pose of the object.
-    pub pose: Pose,
-    /// Twist of the object.
-    pub twist: Twist,
-    /// Applied impulse p_app + w_app (N s, N s, N m s).
-    pub applied: Wrench,
-    /// Impulses of the step before.
-    pub warm: WarmStart,
-}
-
-/// Impulses of a step, mass-normalised, from which the next one starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WarmStart {
-    /// Per foot (m/s).
-    pub feet: [[f64; 2]; 3],
-    /// Speed by which the pusher gave way (m/s).
-    pub pusher_yield: f64,
-    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact), p_n, p_t (m/s).
-    pub contacts: [[f64; 3]; REMEMBERED],
-}
-
-impl WarmStart {
-    /// Numbers in [`WarmStart::to_array`].
-    pub const LEN: usize = 7 + 3 * REMEMBERED;
-
-    /// As plain numbers, to be stored in columns.
-    pub fn to_array(&self) -> [f64; Self::LEN] {
-        let mut array = [0.0; Self::LEN];
-        array[..6].copy_from_slice(self.feet.as_flattened());
-        array[6] = self.pusher_yield;
-        array[7..].copy_from_slice(self.contacts.as_flattened());
-        array
-    }
-
-    /// The inverse of [`WarmStart::to_array`].
-    pub fn from_array(array: &[f64; Self::LEN]) -> Self {
-        let mut warm = Self { pusher_yield: array[6], ..Self::default() };
-        warm.feet.as_flattened_mut().copy_from_slice(&array[..6]);
-        warm.contacts.as_flattened_mut().copy_from_slice(&array[7..]);
-        warm
-    }
-}
-
 /// A body that the object may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
@@ -92,112 +50,87 @@ pub enum Body {
     Fixel(usize),
 }
 
-/// Contacts of one body that keys tell apart.
-const PLACES: usize = 64;
-
-/// What names a contact from one step to the next: its body, and its place among that body's contacts.
-fn contact_keys(bodies: &[Body]) -> impl Iterator<Item = f64> + '_ {
-    let mut place = 0;
-    bodies.iter().enumerate().map(move |(row, body)| {
-        place = if row > 0 && bodies[row - 1] == *body { place + 1 } else { 0 };
-        let number = match body {
-            Body::Pusher => 1,
-            Body::Fixel(j) => 2 + j,
-        };
-        (number * PLACES + place) as f64
-    })
-}
-
 /// Γ for one scene.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
     scene: Scene,
     reach: f64,
+    level: Level,
 }
 
-/// Working memory of [`Dynamics::step`] for `W` particles; nothing is allocated once it has grown.
+/// Working memory of [`Dynamics::step_block`], `W` particles to a chunk; nothing is allocated once it has grown.
 #[derive(Clone, Debug)]
 pub struct StepWork<const W: usize> {
-    gaps: Vec<Gap>,
-    problems: [StepProblem; W],
-    bodies: [Vec<Body>; W],
-    ncp: Ncp<W>,
-    impulses: Impulses<W>,
+    narrow: NarrowWork<W>,
+    chunks: Vec<Assembly<W>>,
+    ncps: Vec<Ncp<W>>,
+    impulses: Vec<Impulses<W>>,
+    reports: Vec<[Report; W]>,
     solver: Solver<W>,
 }
 
 impl<const W: usize> Default for StepWork<W> {
     fn default() -> Self {
         Self {
-            gaps: Vec::new(),
-            problems: std::array::from_fn(|_| StepProblem::default()),
-            bodies: std::array::from_fn(|_| Vec::new()),
-            ncp: Ncp::empty(),
-            impulses: Impulses::zero(0),
+            narrow: NarrowWork::default(),
+            chunks: Vec::new(),
+            ncps: Vec::new(),
+            impulses: Vec::new(),
+            reports: Vec::new(),
             solver: Solver::default(),
         }
     }
 }
 
 impl<const W: usize> StepWork<W> {
-    /// Normal impulse (N s) between the object and a body in the last step, summed over their contacts.
-    pub fn normal_impulse(&self, lane: usize, body: Body) -> f64 {
-        let rows = self.bodies[lane].iter().zip(&self.impulses.normal);
-        rows.filter(|(b, _)| **b == body).map(|(_, p)| p.0[lane]).sum::<f64>() * self.problems[lane].mass
+    /// How the last step of each particle ended, chunk by chunk.
+    pub fn reports(&self) -> &[[Report; W]] {
+        &self.reports
     }
 
-    /// The last step's problem of one lane.
-    pub fn problem(&self, lane: usize) -> &StepProblem {
-        &self.problems[lane]
+    /// Normal impulses (N s) between the object and a body in the last step, summed over their contacts, by lane of a chunk.
+    #[inline(always)]
+    pub fn normal_impulses(&self, chunk: usize, body: Body) -> Lanes<W> {
+        self.chunks[chunk].normal_impulses(&self.impulses[chunk], body)
     }
 
-    /// The last step's solution of one lane.
-    pub fn solution(&self, lane: usize) -> StepSolution {
-        self.impulses.to_solution(lane, &self.problems[lane])
+    /// Normal impulse (N s) of one particle, counted over all chunks.
+    pub fn normal_impulse(&self, particle: usize, body: Body) -> f64 {
+        self.normal_impulses(particle / W, body).0[particle % W]
     }
 
-    fn assign_warm_starts(&mut self, particles: &[Particle; W], gyration_radius: f64) {
-        let rows = self.ncp.contacts.len();
-        self.impulses.normal.clear();
-        self.impulses.tangential.clear();
-        self.impulses.resize(rows);
-        for (lane, particle) in particles.iter().enumerate() {
-            let Twist { vx, vy, omega } = particle.twist;
-            for (v, value) in self.impulses.v.iter_mut().zip([vx, vy, gyration_radius * omega]) {
-                v.0[lane] = value;
-            }
-            self.impulses.pusher_yield.0[lane] = particle.warm.pusher_yield;
-            for k in 0..3 {
-                self.impulses.feet[k][0].0[lane] = particle.warm.feet[k][0];
-                self.impulses.feet[k][1].0[lane] = particle.warm.feet[k][1];
-            }
-            for (row, key) in contact_keys(&self.bodies[lane]).enumerate() {
-                if let Some([_, normal, tangential]) = particle.warm.contacts.iter().find(|slot| slot[0] == key) {
-                    self.impulses.normal[row].0[lane] = *normal;
-                    self.impulses.tangential[row].0[lane] = *tangential;
-                }
-            }
-        }
+    /// The last step's problem of one particle, in SI units; the applied impulse is part of its twist.
+    pub fn problem(&self, particle: usize) -> StepProblem {
+        let (chunk, lane) = (particle / W, particle % W);
+        self.chunks[chunk].problem(&self.ncps[chunk], lane)
     }
 
-    fn warm_start(&self, lane: usize) -> WarmStart {
-        let mut warm = WarmStart {
-            feet: self.impulses.feet.map(|p| p.map(|x| x.0[lane])),
-            pusher_yield: self.impulses.pusher_yield.0[lane],
-            ..WarmStart::default()
-        };
-        let pressed = contact_keys(&self.bodies[lane]).enumerate().filter(|(row, _)| self.impulses.normal[*row].0[lane] > 0.0);
-        for (slot, (row, key)) in warm.contacts.iter_mut().zip(pressed) {
-            *slot = [key, self.impulses.normal[row].0[lane], self.impulses.tangential[row].0[lane]];
-        }
-        warm
+    /// The last step's solution of one particle.
+    pub fn solution(&self, particle: usize) -> StepSolution {
+        let (chunk, lane) = (particle / W, particle % W);
+        let problem = self.problem(particle);
+        let mut alone = Impulses::<1>::zero(problem.contacts.len());
+        self.impulses[chunk].pack_lane(&self.ncps[chunk], lane, &mut alone, 0);
+        alone.to_solution(0, &problem)
+    }
+
+    fn resize(&mut self, chunks: usize) {
+        self.chunks.resize_with(chunks.max(self.chunks.len()), Assembly::default);
+        self.ncps.resize_with(chunks.max(self.ncps.len()), Ncp::empty);
+        self.impulses.resize_with(chunks.max(self.impulses.len()), || Impulses::zero(0));
+        self.reports.resize(chunks, [Report::UNSOLVED; W]);
     }
 }
 
 impl Dynamics {
-    /// The dynamics of one scene.
+    /// The dynamics of one scene, on the widest vector instructions that the machine has.
     pub fn new(scene: Scene) -> Self {
-        Self { reach: scene.object.shape.bounding_radius(), scene }
+        Self { reach: scene.object.shape.bounding_radius(), scene, level: Level::new() }
+    }
+
+    /// The same on other vector instructions; no result depends on them.
+    pub fn with_level(self, level: Level) -> Self {
+        Self { level, ..self }
     }
 
     /// The scene.
@@ -206,9 +139,6 @@ impl Dynamics {
     }
 
     /// Advances `W` particles by one step; `friction` holds each one's parameters.
-    ///
-    /// Every contact that could act takes part: where the solved twist could have closed a larger gap than was looked for,
-    /// the step is solved again with a wider search.
     pub fn step<const W: usize>(
         &self,
         input: &StepInput,
@@ -216,152 +146,121 @@ impl Dynamics {
         particles: &mut [Particle; W],
         work: &mut StepWork<W>,
     ) -> [Report; W] {
-        let mut search: [f64; W] = std::array::from_fn(|lane| self.search_distance(input, &particles[lane]));
-        loop {
-            for lane in 0..W {
-                self.collect(input, &friction[lane], &particles[lane], search[lane], &mut Lane::of(work, lane));
-            }
-            work.ncp.assign(&work.problems);
-            work.assign_warm_starts(particles, self.scene.object.gyration_radius());
-            let mut reports = [[Report::UNSOLVED; W]];
-            work.solver.solve(std::slice::from_ref(&work.ncp), std::slice::from_mut(&mut work.impulses), &mut reports);
-            let [reports] = reports;
-            if !self.widen(input, work, &mut search) {
-                self.integrate(input.h, particles, work);
-                return reports;
-            }
+        let mut chunk = Particles::default();
+        for (lane, (particle, friction)) in particles.iter().zip(friction).enumerate() {
+            chunk.set(lane, particle, friction);
         }
-    }
-
-    /// Widens the search of lanes whose solution moves farther than it covered; true where there is such a lane.
-    fn widen<const W: usize>(&self, input: &StepInput, work: &StepWork<W>, search: &mut [f64; W]) -> bool {
-        let mut wider = false;
-        for (lane, distance) in search.iter_mut().enumerate() {
-            let needed = input.h * (self.point_speed(&work.twist(lane, self.scene.object.gyration_radius())) + self.pusher_speed(input));
-            if needed > *distance && needed.is_finite() && *distance < 1e3 {
-                *distance = 2.0 * needed;
-                wider = true;
-            }
-        }
-        wider
-    }
-
-    fn integrate<const W: usize>(&self, h: f64, particles: &mut [Particle; W], work: &StepWork<W>) {
-        let rho = self.scene.object.gyration_radius();
+        self.step_block(input, std::slice::from_mut(&mut chunk), work);
         for (lane, particle) in particles.iter_mut().enumerate() {
-            particle.twist = work.twist(lane, rho);
-            particle.pose = particle.pose.advance(particle.twist, h);
-            particle.warm = work.warm_start(lane);
+            *particle = chunk.get(lane);
         }
+        work.reports[0]
+    }
+
+    /// Advances a block of particles by one step; how each ended is in `work`.
+    ///
+    /// Every contact that could act takes part: where the solved twist could have closed a larger gap than was looked for,
+    /// the step is solved again with a wider search. A particle's result depends on nothing but the particle.
+    pub fn step_block<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
+        dispatch!(self.level, _simd => self.step_lanes(input, particles, work));
+    }
+
+    #[inline(always)]
+    fn step_lanes<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
+        work.resize(particles.len());
+        for (chunk, particles) in particles.iter().enumerate() {
+            let reach = self.search_distance(input, particles);
+            self.assemble(input, particles, reach, chunk, work);
+        }
+        let count = particles.len();
+        work.solver.solve(&work.ncps[..count], &mut work.impulses[..count], &mut work.reports);
+        for (chunk, particles) in particles.iter_mut().enumerate() {
+            self.widen(input, particles, chunk, work);
+            self.integrate(input.h, particles, chunk, work);
+        }
+    }
+
+    /// Writes a chunk's problems and warm starts.
+    #[inline(always)]
+    fn assemble<const W: usize>(
+        &self,
+        input: &StepInput,
+        particles: &Particles<W>,
+        reach: Lanes<W>,
+        chunk: usize,
+        work: &mut StepWork<W>,
+    ) {
+        let assembly = &mut work.chunks[chunk];
+        assembly.collect(&self.scene, input, particles, reach, &mut work.narrow, &mut work.ncps[chunk]);
+        assembly.load_warm_start(&self.scene, particles, &mut work.impulses[chunk]);
+    }
+
+    /// Solves a chunk again while some lane's solution moves farther than its search covered.
+    #[inline(always)]
+    fn widen<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
+        loop {
+            let reach = work.chunks[chunk].reach();
+            let needed = (self.point_speed(&work.twist(chunk, &self.scene)) + self.pusher_speed(input)) * input.h;
+            let wider = needed.gt(reach) & needed.lt(Lanes::splat(f64::INFINITY)) & reach.lt(Lanes::splat(WIDEST));
+            if !wider.any() {
+                return;
+            }
+            self.solve_wider(input, particles, wider.select(needed * 2.0, reach), chunk, work);
+        }
+    }
+
+    #[inline(never)]
+    fn solve_wider<const W: usize>(
+        &self,
+        input: &StepInput,
+        particles: &Particles<W>,
+        reach: Lanes<W>,
+        chunk: usize,
+        work: &mut StepWork<W>,
+    ) {
+        self.assemble(input, particles, reach, chunk, work);
+        let one = chunk..chunk + 1;
+        work.solver.solve(&work.ncps[one.clone()], &mut work.impulses[one.clone()], &mut work.reports[one]);
+    }
+
+    #[inline(always)]
+    fn integrate<const W: usize>(&self, h: f64, particles: &mut Particles<W>, chunk: usize, work: &StepWork<W>) {
+        particles.twist = work.twist(chunk, &self.scene);
+        for (q, v) in particles.pose.iter_mut().zip(&particles.twist) {
+            *q += *v * h;
+        }
+        work.chunks[chunk].store_warm_start(&work.impulses[chunk], particles);
     }
 
     /// Fastest point of the object.
-    fn point_speed(&self, twist: &Twist) -> f64 {
-        twist.vx.hypot(twist.vy) + twist.omega.abs() * self.reach
+    #[inline(always)]
+    fn point_speed<const W: usize>(&self, [vx, vy, omega]: &[Lanes<W>; 3]) -> Lanes<W> {
+        (*vx * *vx + *vy * *vy).sqrt() + omega.abs() * self.reach
     }
 
     /// Fastest point of the pusher.
     fn pusher_speed(&self, input: &StepInput) -> f64 {
         let radius = self.scene.pusher.shape.bounding_radius();
-        input.pusher.map_or(0.0, |p| p.twist.vx.hypot(p.twist.vy) + p.twist.omega.abs() * radius)
+        let speed = |v: &Twist| (v.vx * v.vx + v.vy * v.vy).sqrt() + v.omega.abs() * radius;
+        input.pusher.map_or(0.0, |pusher| speed(&pusher.twist))
     }
 
-    fn search_distance(&self, input: &StepInput, particle: &Particle) -> f64 {
+    #[inline(always)]
+    fn search_distance<const W: usize>(&self, input: &StepInput, particles: &Particles<W>) -> Lanes<W> {
         let object = &self.scene.object;
-        let kick =
-            particle.applied.fx.hypot(particle.applied.fy) / object.mass + particle.applied.torque.abs() / object.inertia * self.reach;
+        let [fx, fy, torque] = &particles.applied;
+        let kick = (*fx * *fx + *fy * *fy).sqrt() / object.mass + torque.abs() / object.inertia * self.reach;
         let pusher = self.pusher_speed(input);
-        input.h * (1.5 * (self.point_speed(&particle.twist) + kick).max(pusher) + pusher) + MARGIN
-    }
-
-    /// Writes the step's problem of one particle.
-    fn collect(&self, input: &StepInput, friction: &Friction, particle: &Particle, search: f64, lane: &mut Lane<'_>) {
-        let scene = &self.scene;
-        let placed = Placed::new(&scene.object.shape, particle.pose);
-        lane.problem.mass = scene.object.mass;
-        lane.problem.inertia = scene.object.inertia;
-        lane.problem.h = input.h;
-        lane.problem.twist = particle.twist;
-        lane.problem.applied = particle.applied;
-        lane.problem.feet = scene.feet_at(particle.pose.theta, friction, input.h);
-        lane.problem.stall = None;
-        lane.problem.contacts.clear();
-        lane.bodies.clear();
-        if let Some(pusher) = &input.pusher {
-            let limit = scene.pusher.stall_force;
-            lane.problem.stall = limit.map(|force| Stall { impulse: force * input.h, direction: pusher.direction });
-            let other = Placed::new(&scene.pusher.shape, pusher.pose);
-            lane.add(Body::Pusher, friction.mu_p, search, (&placed, &other), |arm| {
-                let [x, y] = [particle.pose.x + arm[0] - pusher.pose.x, particle.pose.y + arm[1] - pusher.pose.y];
-                pusher.twist.at([x, y])
-            });
-        }
-        for (j, fixel) in scene.fixels.iter().enumerate() {
-            let other = Placed::new(&fixel.shape, fixel.pose);
-            lane.add(Body::Fixel(j), friction.mu_f, search, (&placed, &other), |_| [0.0; 2]);
-        }
+        let object = (self.point_speed(&particles.twist) + kick).max(Lanes::splat(pusher));
+        (object * 1.5 + pusher) * input.h + MARGIN
     }
 }
 
 impl<const W: usize> StepWork<W> {
-    /// Solved twist of one lane.
-    fn twist(&self, lane: usize, gyration_radius: f64) -> Twist {
-        let [vx, vy, scaled]: [Lanes<W>; 3] = self.impulses.v;
-        Twist { vx: vx.0[lane], vy: vy.0[lane], omega: scaled.0[lane] / gyration_radius }
-    }
-}
-
-/// One lane's part of the working memory.
-struct Lane<'a> {
-    gaps: &'a mut Vec<Gap>,
-    problem: &'a mut StepProblem,
-    bodies: &'a mut Vec<Body>,
-}
-
-impl<'a> Lane<'a> {
-    fn of<const W: usize>(work: &'a mut StepWork<W>, lane: usize) -> Self {
-        Self { gaps: &mut work.gaps, problem: &mut work.problems[lane], bodies: &mut work.bodies[lane] }
-    }
-
-    /// Adds the contacts of the object with one body whose surface moves with `velocity` at an arm from the object's centre.
-    fn add(&mut self, body: Body, mu: f64, search: f64, pair: (&Placed<'_>, &Placed<'_>), velocity: impl Fn([f64; 2]) -> [f64; 2]) {
-        self.gaps.clear();
-        narrow_phase(pair.0, pair.1, search, self.gaps);
-        for gap in self.gaps.iter() {
-            self.bodies.push(body);
-            self.problem.contacts.push(ContactPoint {
-                normal: gap.normal,
-                arm: gap.arm,
-                gap: gap.gap,
-                mu,
-                surface_velocity: velocity(gap.arm),
-                on_pusher: body == Body::Pusher,
-            });
-        }
-    }
-}
-
-impl Scene {
-    /// The feet of an object at angle `theta`: arms in the world frame, friction bounds for a step of `h` seconds.
-    pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
-        let total = friction.mu_s * self.object.mass * self.gravity * h;
-        match self.feet {
-            Feet::Tripod { angle } => {
-                let (sin, cos) = libm::sincos(theta + angle);
-                let half_root3 = 0.75f64.sqrt();
-                let turns = [(1.0, 0.0), (-0.5, half_root3), (-0.5, -half_root3)];
-                turns.map(|(c, s)| Foot {
-                    arm: [friction.d_tri * (c * cos - s * sin), friction.d_tri * (c * sin + s * cos)],
-                    bound: total / 3.0,
-                })
-            }
-            Feet::Known { positions, loads } => {
-                let (sin, cos) = libm::sincos(theta);
-                std::array::from_fn(|k| {
-                    let [x, y] = positions[k];
-                    Foot { arm: [cos * x - sin * y, sin * x + cos * y], bound: total * loads[k] }
-                })
-            }
-        }
+    /// Solved twists of one chunk.
+    #[inline(always)]
+    fn twist(&self, chunk: usize, scene: &Scene) -> [Lanes<W>; 3] {
+        let [vx, vy, scaled] = self.impulses[chunk].v;
+        [vx, vy, scaled / scene.object.gyration_radius()]
     }
 }

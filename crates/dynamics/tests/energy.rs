@@ -70,7 +70,7 @@ fn check_step(dynamics: &Dynamics, input: &StepInput, particle: &mut Particle, w
     if report.outcome != Outcome::Solved {
         // Between fixels that it overlaps, it is held from two sides.
         assert_eq!(report.outcome, Outcome::Infeasible);
-        assert!(may_jam(work.problem(0)) || gap_margin(work.problem(0), 1.0) < 0.0, "{:?}", work.problem(0));
+        assert!(may_jam(&work.problem(0)) || gap_margin(&work.problem(0), 1.0) < 0.0, "{:?}", work.problem(0));
         count.infeasible += 1;
         return;
     }

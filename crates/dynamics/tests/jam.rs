@@ -44,7 +44,7 @@ fn push_with_stall(scene: Scene, x: f64, y: f64, steps: u32) -> (Vec<f64>, Parti
         let report = step(&dynamics, &pushing(H, x, y, SPEED), &mut particle, &mut work);
         assert_eq!(report.outcome, Outcome::Solved, "step {k}");
         let solution = work.solution(0);
-        let residual = residual_si(work.problem(0), &solution);
+        let residual = residual_si(&work.problem(0), &solution);
         assert!(residual <= TOLERANCE * 1.001, "step {k}: residual {residual:e}");
         let (force, slip) = (resistance(&work, &solution), solution.pusher_yield);
         assert!(force <= limit * (1.0 + 1e-9), "step {k}: {force} N s, at most {limit}");
@@ -88,7 +88,7 @@ fn pusher_that_stalls_below_the_support_friction_does_not_move_the_object() {
 fn infeasible_step(dynamics: &Dynamics, x: f64, y: f64, particle: &mut Particle, work: &mut StepWork<1>) -> Report {
     let report = step(dynamics, &pushing(H, x, y, SPEED), particle, work);
     assert_eq!(report.outcome, Outcome::Infeasible);
-    let (problem, solution) = (work.problem(0), work.solution(0));
+    let (problem, solution) = (&work.problem(0), work.solution(0));
     assert!(may_jam(problem) || gap_margin(problem, 1.0) < 0.0, "it has a solution");
     let residual = residual_si(problem, &solution);
     assert!((report.residual / residual - 1.0).abs() < 1e-9, "{} reported, {residual} of the rigid rows", report.residual);
@@ -102,7 +102,7 @@ fn rigid_pusher_into_a_dead_end_is_infeasible_and_the_compliance_shares_the_sque
         let dynamics = Dynamics::new(dead_end(None, friction));
         let (mut particle, mut work) = (Particle::default(), StepWork::default());
         let report = infeasible_step(&dynamics, -0.030, 0.0, &mut particle, &mut work);
-        assert!(enumerate_modes(work.problem(0)).is_empty(), "every contact mode is excluded");
+        assert!(enumerate_modes(&work.problem(0)).is_empty(), "every contact mode is excluded");
         // κ p/m = u − v at the pusher, κ p/(2 m) = v at each of two fixels, so v = u/3; the support carries a share of about κ.
         let v = particle.twist;
         assert!((v.vx - SPEED / 3.0).abs() < 2.0 * COMPLIANCE && v.vy.abs() < 1e-8 && v.omega.abs() < 1e-6, "{v:?}");

@@ -11,6 +11,7 @@ mod log;
 mod nominal;
 mod occlusion;
 mod particle_run;
+mod propagation;
 mod run;
 mod schedule;
 mod score;

@@ -2,9 +2,8 @@
 
 use crate::Shape;
 use crate::feature::{Cone, Edge, Ellipse, Round};
-use crate::narrow::Pair;
-use crate::outline::Outline;
-use crate::plane::{Vec2, add, dot, length, negate, scale, sub};
+use crate::narrow::Gap;
+use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
 use crate::separation::{Peak, Separation};
 
 /// An ellipse against a feature, in the frame of the feature's body.
@@ -20,39 +19,60 @@ struct Meeting {
     hidden: bool,
 }
 
-impl Pair<'_> {
-    /// Every pair with an ellipse.
-    pub(crate) fn ellipses(&mut self, mine: &Outline, theirs: &Outline) {
+/// Two placed shapes, at least one of them with an ellipse.
+pub(crate) struct EllipsePair<'a> {
+    pub object: &'a Shape,
+    pub other: &'a Shape,
+    /// Object and other in the world.
+    pub object_frame: Frame,
+    pub other_frame: Frame,
+    /// The other's frame seen from the object's, and the inverse.
+    pub in_object: Frame,
+    pub in_other: Frame,
+    /// Gap below which a contact counts (m).
+    pub reach: f64,
+    /// Width of borders (m).
+    pub slack: f64,
+}
+
+/// Contacts, each with whether a sibling part hides its point.
+type Found = Vec<(Gap, bool)>;
+
+impl EllipsePair<'_> {
+    /// Appends the contacts of every pair with an ellipse.
+    pub fn meet(&self, out: &mut Found) {
+        let (mine, theirs) = (self.object.outline(), self.other.outline());
         for ellipse in &theirs.ellipses {
             let seen = ellipse.seen_from(&self.in_object);
-            self.ellipse_on_object(&seen);
+            self.ellipse_on_object(&seen, out);
             for own in &mine.ellipses {
-                self.ellipse_on_ellipse(own, &seen);
+                self.ellipse_on_ellipse(own, &seen, out);
             }
         }
         for ellipse in &mine.ellipses {
-            self.ellipse_on_other(ellipse);
+            self.ellipse_on_other(ellipse, out);
         }
     }
 
     /// An ellipse of the other body, in the object's frame.
-    fn ellipse_on_object(&mut self, ellipse: &Ellipse) {
+    fn ellipse_on_object(&self, ellipse: &Ellipse, out: &mut Found) {
         meetings(ellipse, self.object, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
             let contact = self.contact(negate(normal), add(touch, scale(-gap, normal)), gap);
-            self.push_unless(hidden || ellipse.covered && self.other.hides(self.in_other.point(touch)), contact);
+            out.push((contact, hidden || ellipse.covered && self.other.hides(self.in_other.point(touch))));
         });
     }
 
-    fn ellipse_on_other(&mut self, own: &Ellipse) {
+    fn ellipse_on_other(&self, own: &Ellipse, out: &mut Found) {
         let ellipse = own.seen_from(&self.in_other);
         meetings(&ellipse, self.other, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
             let touch = self.in_object.point(touch);
-            self.push_unless(hidden || own.covered && self.object.hides(touch), self.contact_on_other(normal, touch, gap));
+            let contact = Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap };
+            out.push((contact, hidden || own.covered && self.object.hides(touch)));
         });
     }
 
     /// Both in the object's frame.
-    fn ellipse_on_ellipse(&mut self, own: &Ellipse, theirs: &Ellipse) {
+    fn ellipse_on_ellipse(&self, own: &Ellipse, theirs: &Ellipse, out: &mut Found) {
         let separation = Separation { d: sub(own.centre, theirs.centre), ellipses: [Some(own), Some(theirs)], radius: 0.0 };
         if length(separation.d) - own.radius() - theirs.radius() >= self.reach {
             return;
@@ -62,8 +82,13 @@ impl Pair<'_> {
         let hidden =
             own.covered && self.object.hides(touch) || theirs.covered && self.other.hides(self.in_other.point(theirs.point(normal)));
         if gap < self.reach {
-            self.push_unless(hidden, self.contact(normal, touch, gap));
+            out.push((self.contact(normal, touch, gap), hidden));
         }
+    }
+
+    /// A contact given in the object's frame.
+    fn contact(&self, normal: Vec2, touch: Vec2, gap: f64) -> Gap {
+        Gap { normal: self.object_frame.turn(normal), arm: self.object_frame.turn(touch), gap }
     }
 }
 

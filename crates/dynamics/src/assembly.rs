@@ -1,0 +1,288 @@
+//! From particles to their mixed NCPs, `W` side by side: [`Assembly`].
+
+use crate::contact::Contact;
+use crate::frames::Frames;
+use crate::impulses::Impulses;
+use crate::lanes::{Lanes, Mask};
+use crate::narrow::{NarrowWork, PairFrames};
+use crate::ncp::{ContactRow, FootRow, Ncp};
+use crate::particles::{Particles, REMEMBERED};
+use crate::plane::Frame;
+use crate::problem::{ContactPoint, Foot, Stall, StepProblem};
+use crate::scene::{Feet, Fixel, Friction, Scene};
+use crate::step::{Body, PusherMotion, StepInput};
+use crate::trig::sin_cos;
+use crate::{Shape, Twist, Wrench};
+
+/// Place of the first remembered contact among the numbers of a warm start.
+const FIRST_CONTACT: usize = 7;
+
+/// Which contact each row of a chunk's problems stands for.
+#[derive(Clone, Debug)]
+pub struct Assembly<const W: usize> {
+    rows: Vec<Row<W>>,
+    reach: Lanes<W>,
+    setting: Setting,
+}
+
+/// What one row stands for.
+#[derive(Clone, Copy, Debug)]
+struct Row<const W: usize> {
+    body: Body,
+    /// Names the contact from one step to the next.
+    key: f64,
+    contact: Contact<W>,
+}
+
+/// What turns rows back into SI units.
+#[derive(Clone, Copy, Debug, Default)]
+struct Setting {
+    mass: f64,
+    inertia: f64,
+    h: f64,
+    stall: Option<Stall>,
+}
+
+impl<const W: usize> Default for Assembly<W> {
+    fn default() -> Self {
+        Self { rows: Vec::new(), reach: Lanes::ZERO, setting: Setting::default() }
+    }
+}
+
+impl Body {
+    /// Numbered from 1; 0 is no body.
+    fn number(self) -> usize {
+        match self {
+            Body::Pusher => 1,
+            Body::Fixel(j) => 2 + j,
+        }
+    }
+}
+
+/// The other body of a pair during one step.
+struct Other<'a, const W: usize> {
+    body: Body,
+    shape: &'a Shape,
+    frame: Frame,
+    mu: Lanes<W>,
+    motion: Option<&'a PusherMotion>,
+    /// Direction in which it may give way.
+    direction: [f64; 2],
+}
+
+impl<const W: usize> Assembly<W> {
+    /// Gap below which contacts were sought (m).
+    #[inline(always)]
+    pub fn reach(&self) -> Lanes<W> {
+        self.reach
+    }
+
+    /// Normal impulses (N s) of one body.
+    #[inline(always)]
+    pub fn normal_impulses(&self, p: &Impulses<W>, body: Body) -> Lanes<W> {
+        let mut sum = Lanes::ZERO;
+        for (row, p_n) in self.rows.iter().zip(&p.normal) {
+            if row.body == body {
+                sum += *p_n;
+            }
+        }
+        sum * self.setting.mass
+    }
+
+    /// Writes the step's problems; contacts with gaps below `reach` (m) take part.
+    #[inline(always)]
+    pub fn collect(
+        &mut self,
+        scene: &Scene,
+        input: &StepInput,
+        particles: &Particles<W>,
+        reach: Lanes<W>,
+        narrow: &mut NarrowWork<W>,
+        ncp: &mut Ncp<W>,
+    ) {
+        self.reach = reach;
+        self.rows.clear();
+        ncp.clear();
+        self.set_body(scene, input, particles, ncp);
+        let object = Frames::new(&particles.pose);
+        if let Some(motion) = &input.pusher {
+            let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
+            let (frame, mu) = (Frame::new(motion.pose), particles.friction[1]);
+            let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction };
+            self.meet(scene, &object, &pusher, narrow, ncp);
+        }
+        for (j, Fixel { shape, pose }) in scene.fixels.iter().enumerate() {
+            let (frame, mu) = (Frame::new(*pose), particles.friction[2]);
+            let fixel = Other { body: Body::Fixel(j), shape, frame, mu, motion: None, direction: [0.0; 2] };
+            self.meet(scene, &object, &fixel, narrow, ncp);
+        }
+    }
+
+    /// What does not depend on contacts: free velocity, feet, stall force.
+    #[inline(always)]
+    fn set_body(&mut self, scene: &Scene, input: &StepInput, particles: &Particles<W>, ncp: &mut Ncp<W>) {
+        let (mass, inertia) = (scene.object.mass, scene.object.inertia);
+        let rho = scene.object.gyration_radius();
+        let limit = input.pusher.and_then(|pusher| scene.pusher.stall_force.map(|force| (force, pusher.direction)));
+        let stall = limit.map(|(force, direction)| Stall { impulse: force * input.h, direction });
+        self.setting = Setting { mass, inertia, h: input.h, stall };
+        ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |stall| stall.impulse / mass));
+        let [vx, vy, omega] = particles.twist;
+        let [fx, fy, torque] = particles.applied;
+        ncp.free = [vx + fx / mass, vy + fy / mass, (omega + torque / inertia) * rho];
+        let [mu_s, _, _, d_tri] = particles.friction;
+        let arms = scene.foot_arms(particles.pose[2], d_tri);
+        let loads = scene.foot_loads();
+        for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
+            *row = FootRow { jx: -y / rho, jy: x / rho, bound: mu_s * (scene.gravity * input.h * load) };
+        }
+    }
+
+    /// Adds the contacts of the object with one body.
+    #[inline(always)]
+    fn meet(&mut self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
+        let frames = PairFrames { object: *object, other: other.frame.splat() };
+        narrow.meet([&scene.object.shape, other.shape], &frames, self.reach);
+        for contact in narrow.contacts().filter(|contact| contact.present.any()) {
+            let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize) as f64;
+            self.rows.push(Row { body: other.body, key, contact: *contact });
+            ncp.contacts.push(self.row(scene, object, other, contact));
+        }
+    }
+
+    #[inline(always)]
+    fn row(&self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, contact: &Contact<W>) -> ContactRow<W> {
+        let rho = scene.object.gyration_radius();
+        let Contact { present, normal: [nx, ny], arm: [x, y], gap, .. } = *contact;
+        let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
+            let arm = [object.origin[0] + x - motion.pose.x, object.origin[1] + y - motion.pose.y];
+            let Twist { vx, vy, omega } = motion.twist;
+            [arm[1] * -omega + vx, arm[0] * omega + vy]
+        });
+        let d = other.direction;
+        let keep = |value: Lanes<W>| present.keep(value);
+        ContactRow {
+            n: [keep(nx), keep(ny), keep((x * ny - y * nx) / rho)],
+            t: [keep(-ny), keep(nx), keep((x * nx + y * ny) / rho)],
+            gap: present.select(gap / self.setting.h - (nx * u[0] + ny * u[1]), ContactRow::<W>::OPEN.gap),
+            slip: keep(ny * u[0] - nx * u[1]),
+            nd: keep(nx * d[0] + ny * d[1]),
+            td: keep(nx * d[1] - ny * d[0]),
+            mu: keep(other.mu),
+        }
+    }
+
+    /// The impulses and twists that the particles remember.
+    #[inline(always)]
+    pub fn load_warm_start(&self, scene: &Scene, particles: &Particles<W>, p: &mut Impulses<W>) {
+        let [vx, vy, omega] = particles.twist;
+        p.v = [vx, vy, omega * scene.object.gyration_radius()];
+        let warm = &particles.warm;
+        p.feet = [[warm[0], warm[1]], [warm[2], warm[3]], [warm[4], warm[5]]];
+        p.pusher_yield = warm[6];
+        p.normal.clear();
+        p.tangential.clear();
+        for row in &self.rows {
+            let (mut p_n, mut p_t) = (Lanes::ZERO, Lanes::ZERO);
+            for slot in warm[FIRST_CONTACT..].chunks_exact(3) {
+                let same = row.contact.present & !(slot[0] - row.key).abs().gt(Lanes::ZERO);
+                p_n = same.select(slot[1], p_n);
+                p_t = same.select(slot[2], p_t);
+            }
+            p.normal.push(p_n);
+            p.tangential.push(p_t);
+        }
+    }
+
+    /// Remembers the impulses; of the contacts the first [`REMEMBERED`] that press.
+    #[inline(always)]
+    pub fn store_warm_start(&self, p: &Impulses<W>, particles: &mut Particles<W>) {
+        let warm = &mut particles.warm;
+        for (to, from) in warm.iter_mut().zip(p.feet.as_flattened()) {
+            *to = *from;
+        }
+        warm[6] = p.pusher_yield;
+        warm[FIRST_CONTACT..].fill(Lanes::ZERO);
+        let mut filled = Lanes::ZERO;
+        for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
+            let pressed = p_n.gt(Lanes::ZERO);
+            for (k, slot) in warm[FIRST_CONTACT..].chunks_exact_mut(3).enumerate() {
+                let here: Mask<W> = pressed & !(filled - k as f64).abs().gt(Lanes::ZERO);
+                slot[0] = here.select(Lanes::splat(row.key), slot[0]);
+                slot[1] = here.select(*p_n, slot[1]);
+                slot[2] = here.select(*p_t, slot[2]);
+            }
+            filled += pressed.keep(Lanes::splat(1.0));
+        }
+        debug_assert_eq!(warm[FIRST_CONTACT..].len(), 3 * REMEMBERED);
+    }
+
+    /// One lane's problem in SI units; the applied impulse is part of its twist.
+    pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
+        let Setting { mass, inertia, h, stall } = self.setting;
+        let rho = (inertia / mass).sqrt();
+        let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
+        let foot = |row: &FootRow<W>| Foot { arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho], bound: row.bound.0[lane] * mass };
+        let rows = self.rows.iter().zip(&ncp.contacts).filter(|(row, _)| row.contact.present.lane(lane));
+        let contacts = rows.map(|(row, numbers)| {
+            let gap = row.contact.lane(lane);
+            let [nx, ny] = gap.normal;
+            let (approach, slip) = (gap.gap / h - numbers.gap.0[lane], -numbers.slip.0[lane]);
+            ContactPoint {
+                normal: gap.normal,
+                arm: gap.arm,
+                gap: gap.gap,
+                mu: numbers.mu.0[lane],
+                surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
+                on_pusher: row.body == Body::Pusher,
+            }
+        });
+        StepProblem {
+            mass,
+            inertia,
+            h,
+            twist: Twist { vx, vy, omega: scaled / rho },
+            applied: Wrench::default(),
+            contacts: contacts.collect(),
+            feet: ncp.feet.each_ref().map(foot),
+            stall,
+        }
+    }
+}
+
+impl Scene {
+    /// The feet's arms in the world frame (m) of objects at angles `theta` (rad) with tripods of radius `d_tri` (m).
+    #[inline(always)]
+    fn foot_arms<const W: usize>(&self, theta: Lanes<W>, d_tri: Lanes<W>) -> [[Lanes<W>; 2]; 3] {
+        match self.feet {
+            Feet::Tripod { angle } => {
+                let (sin, cos) = sin_cos(theta + angle);
+                let half_root3 = 0.75f64.sqrt();
+                let turns = [(1.0, 0.0), (-0.5, half_root3), (-0.5, -half_root3)];
+                let arm = |(c, s): (f64, f64)| [d_tri * (cos * c - sin * s), d_tri * (sin * c + cos * s)];
+                [arm(turns[0]), arm(turns[1]), arm(turns[2])]
+            }
+            Feet::Known { positions, .. } => {
+                let (sin, cos) = sin_cos(theta);
+                let arm = |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
+                [arm(positions[0]), arm(positions[1]), arm(positions[2])]
+            }
+        }
+    }
+
+    /// Each foot's share of the weight.
+    fn foot_loads(&self) -> [f64; 3] {
+        match self.feet {
+            Feet::Tripod { .. } => [1.0 / 3.0; 3],
+            Feet::Known { loads, .. } => loads,
+        }
+    }
+
+    /// The feet of an object at angle `theta`: arms in the world frame, friction bounds for a step of `h` seconds.
+    pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
+        let total = friction.mu_s * self.object.mass * self.gravity * h;
+        let arms = self.foot_arms(Lanes([theta]), Lanes([friction.d_tri]));
+        let loads = self.foot_loads();
+        std::array::from_fn(|k| Foot { arm: arms[k].map(|x| x.0[0]), bound: total * loads[k] })
+    }
+}
