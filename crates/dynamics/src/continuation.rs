@@ -11,7 +11,7 @@ use crate::ncp::Ncp;
 use crate::polish::Polish;
 
 /// Smoothed residual, in units of ε, below which ε may fall.
-const NEAR: f64 = 10.0;
+const NEAR: f64 = 1e3;
 
 /// Factor by which ε falls, and between one look at the modes and the next.
 const REDUCTION: f64 = 0.01;
@@ -26,7 +26,7 @@ const STEPS: u32 = 30;
 const SLIDING: f64 = 0.98;
 
 /// Newton steps with modes held.
-const POLISH_STEPS: u32 = 4;
+const POLISH_STEPS: u32 = 2;
 
 /// The continuation with its working memory.
 #[derive(Clone, Debug)]

@@ -10,6 +10,7 @@ mod feature;
 mod frames;
 mod homotopy;
 mod impulses;
+mod instructions;
 mod lanes;
 mod modes;
 mod narrow;
@@ -38,6 +39,7 @@ mod trig;
 
 pub use fearless_simd::Level;
 pub use impulses::Impulses;
+pub use instructions::on_widest;
 pub use lanes::{Lanes, Mask};
 pub use narrow::{Gap, Placed, narrow_phase};
 pub use ncp::{ContactRow, FootRow, Ncp};

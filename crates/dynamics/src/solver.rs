@@ -23,7 +23,7 @@ const AIM: f64 = 1e-10;
 const FAST_ITERATIONS: u32 = 6;
 
 /// Shares of the speed scale at which the smoothed steps take up a warm start, one after the other.
-const STARTS: [f64; 2] = [1e-5, 1e-2];
+const STARTS: [f64; 2] = [1e-5, 1e-1];
 
 /// How one step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,10 +2,11 @@
 //!
 //! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end; q⁺ = q + h v⁺.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::Level;
 
 use crate::assembly::Assembly;
 use crate::impulses::Impulses;
+use crate::instructions::on_widest;
 use crate::lanes::Lanes;
 use crate::narrow::NarrowWork;
 use crate::ncp::Ncp;
@@ -162,7 +163,15 @@ impl Dynamics {
     /// Every contact that could act takes part: where the solved twist could have closed a larger gap than was looked for,
     /// the step is solved again with a wider search. A particle's result depends on nothing but the particle.
     pub fn step_block<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
-        dispatch!(self.level, _simd => self.step_lanes(input, particles, work));
+        if W == 1 {
+            self.step_lanes(input, particles, work);
+        } else {
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || self.step_lanes(input, particles, work),
+            );
+        }
     }
 
     #[inline(always)]
@@ -182,14 +191,7 @@ impl Dynamics {
 
     /// Writes a chunk's problems and warm starts.
     #[inline(always)]
-    fn assemble<const W: usize>(
-        &self,
-        input: &StepInput,
-        particles: &Particles<W>,
-        reach: Lanes<W>,
-        chunk: usize,
-        work: &mut StepWork<W>,
-    ) {
+    fn assemble<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, reach: Lanes<W>, chunk: usize, work: &mut StepWork<W>) {
         let assembly = &mut work.chunks[chunk];
         assembly.collect(&self.scene, input, particles, reach, &mut work.narrow, &mut work.ncps[chunk]);
         assembly.load_warm_start(&self.scene, particles, &mut work.impulses[chunk]);

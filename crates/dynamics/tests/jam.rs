@@ -31,7 +31,8 @@ fn bottleneck(stall_force: Option<f64>) -> Scene {
 /// The impulse with which the object resists the pusher along +x [N s].
 fn resistance(work: &StepWork<1>, solution: &StepSolution) -> f64 {
     let impulses = solution.normal.iter().zip(&solution.tangential);
-    let on_pusher = work.problem(0).contacts.iter().zip(impulses).filter(|(c, _)| c.on_pusher);
+    let contacts = work.problem(0).contacts;
+    let on_pusher = contacts.iter().zip(impulses).filter(|(c, _)| c.on_pusher);
     on_pusher.map(|(c, (p_n, p_t))| p_n * c.normal[0] - p_t * c.normal[1]).sum()
 }
 
@@ -149,7 +150,7 @@ fn fixels_that_overlap_the_object_from_two_sides_are_infeasible_and_share_the_ov
         let (dynamics, mut particle, mut work) = (Dynamics::new(between(left, right)), at(Pose::default()), StepWork::default());
         let report = step(&dynamics, &pushing(H, -1.0, 0.0, 0.0), &mut particle, &mut work);
         assert_eq!(report.outcome, Outcome::Infeasible, "{left} {right}");
-        let residual = residual_si(work.problem(0), &work.solution(0));
+        let residual = residual_si(&work.problem(0), &work.solution(0));
         assert!((report.residual / residual - 1.0).abs() < 1e-9, "{} reported, {residual} of the rigid rows", report.residual);
         // Equal forces: both gaps end up equal.
         let v = (right - left) / (2.0 * H);

@@ -1,7 +1,6 @@
 //! Γ' for a block of particles (eq. 6): noise, the step, and Φ, which keeps of the parameters what took part.
 
-use fearless_simd::{Level, dispatch};
-use stickslip_dynamics::{Body, Lanes, Mask, Outcome, Particles, StepWork};
+use stickslip_dynamics::{Body, Lanes, Level, Mask, Outcome, Particles, StepWork, on_widest};
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::Limits;
@@ -67,14 +66,30 @@ impl Propagation {
     /// Moves the particles of `block` over one step.
     pub fn propagate(&mut self, model: &ContactModel, plan: &StepPlan, draw: Draw, block: &mut BlockMut<'_>) {
         let (level, chunks) = (self.level, block.len().div_ceil(LANES));
-        dispatch!(level, _simd => self.load(model, plan, draw, block));
+        on_widest(
+            level,
+            #[inline(always)]
+            || self.load(model, plan, draw, block),
+        );
         for (part, input) in plan.substeps.iter().enumerate() {
             let pair = FORCE_PAIR + 2 * part as u32;
-            dispatch!(level, _simd => self.apply_force(model, input.h, draw, pair, block));
+            on_widest(
+                level,
+                #[inline(always)]
+                || self.apply_force(model, input.h, draw, pair, block),
+            );
             model.dynamics.step_block(input, &mut self.particles[..chunks], &mut self.work);
-            dispatch!(level, _simd => self.note_contacts(model, chunks));
+            on_widest(
+                level,
+                #[inline(always)]
+                || self.note_contacts(model, chunks),
+            );
         }
-        dispatch!(level, _simd => self.store(model, plan, block));
+        on_widest(
+            level,
+            #[inline(always)]
+            || self.store(model, plan, block),
+        );
     }
 
     /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen.
