@@ -1,0 +1,5 @@
+//! A virtual testbed for pushing experiments.
+
+mod trace;
+
+pub use trace::{Contact, Frame, Trace};
