@@ -173,11 +173,7 @@ impl<'a, const W: usize> Pair<'a, W> {
             near,
             reach,
             slack: BORDER * (object.bounding_radius() + other.bounding_radius()),
-            places: Places {
-                round_on_round: round_on_round as u32,
-                round_on_other: round_on_other as u32,
-                ellipses: ellipses as u32,
-            },
+            places: Places { round_on_round: round_on_round as u32, round_on_other: round_on_other as u32, ellipses: ellipses as u32 },
             work,
         }
     }
@@ -216,7 +212,8 @@ impl<'a, const W: usize> Pair<'a, W> {
                 let normal = self.object_frame.turn_fixed(negate(edge.normal()));
                 let foot = [s * edge.along[0] + edge.start[0], s * edge.along[1] + edge.start[1]];
                 let gap = height - round.radius;
-                let contact = Contact { place: (i * mine.edges.len() + index) as u32, present, normal, arm: self.object_frame.turn(&foot), gap };
+                let contact =
+                    Contact { place: (i * mine.edges.len() + index) as u32, present, normal, arm: self.object_frame.turn(&foot), gap };
                 self.push(contact, round.covered, || at.touch(edge), self.other);
             }
             for (j, own) in mine.rounds.iter().enumerate() {

@@ -71,13 +71,7 @@ fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f6
 /// The lanes of `asked` in which every pair of polygons has a side that the other one does not reach deeper than `depth` (m,
 /// negative) behind; `frames` are those of `theirs` seen from `mine`, and the inverse.
 #[inline(always)]
-pub(crate) fn separated<const W: usize>(
-    mine: &[Solid],
-    theirs: &[Solid],
-    frames: [&Frames<W>; 2],
-    asked: Mask<W>,
-    depth: f64,
-) -> Mask<W> {
+pub(crate) fn separated<const W: usize>(mine: &[Solid], theirs: &[Solid], frames: [&Frames<W>; 2], asked: Mask<W>, depth: f64) -> Mask<W> {
     let [in_mine, in_theirs] = frames;
     let mut all = asked;
     for a in mine.iter().filter_map(polygon) {

@@ -94,6 +94,11 @@ impl<const W: usize> StepWork<W> {
         self.chunks[chunk].normal_impulses(&self.impulses[chunk], body)
     }
 
+    /// The body of each contact in the last step's problem of one particle.
+    pub fn bodies(&self, particle: usize) -> Vec<Body> {
+        self.chunks[particle / W].bodies(particle % W)
+    }
+
     /// Normal impulse (N s) of one particle, counted over all chunks.
     pub fn normal_impulse(&self, particle: usize, body: Body) -> f64 {
         self.normal_impulses(particle / W, body).0[particle % W]
@@ -182,14 +187,7 @@ impl Dynamics {
 
     /// Writes a chunk's problems and warm starts.
     #[inline(always)]
-    fn assemble<const W: usize>(
-        &self,
-        input: &StepInput,
-        particles: &Particles<W>,
-        reach: Lanes<W>,
-        chunk: usize,
-        work: &mut StepWork<W>,
-    ) {
+    fn assemble<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, reach: Lanes<W>, chunk: usize, work: &mut StepWork<W>) {
         let assembly = &mut work.chunks[chunk];
         assembly.collect(&self.scene, input, particles, reach, &mut work.narrow, &mut work.ncps[chunk]);
         assembly.load_warm_start(&self.scene, particles, &mut work.impulses[chunk]);
