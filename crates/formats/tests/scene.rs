@@ -140,6 +140,15 @@ fn start_with_a_speed_that_is_none_is_refused() {
 }
 
 #[test]
+fn scene_of_the_guide_is_one() {
+    let guide = include_str!("../../../docs/guide/formats.md");
+    let scene = guide.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a scene in the guide");
+    let setup = read(scene);
+    assert_eq!((setup.filter, setup.tactile), (FilterSettings::default(), Tactile::default()));
+    assert!(setup.start.is_some() && setup.camera.is_some());
+}
+
+#[test]
 fn least_scene_takes_the_defaults_of_the_contract() {
     let setup = read(LEAST);
     assert_eq!(setup.scene.feet, Feet::Tripod { angle: FRAC_PI_2 });

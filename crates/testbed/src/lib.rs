@@ -3,6 +3,7 @@
 //!
 //! All of it is a function of scene, start, settings and seed; the same arguments give the same bits.
 
+mod guess;
 mod model;
 mod rig;
 mod touch;
@@ -10,6 +11,7 @@ mod trace;
 mod tracker;
 mod trial;
 
+pub use guess::true_friction;
 pub use model::Model;
 pub use rig::{Bristles, ContactLaw, DriveSettings, Footing, Rig, Spindle, SupportPoint, Table};
 pub use touch::TouchSensors;

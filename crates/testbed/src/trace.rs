@@ -48,6 +48,11 @@ pub struct Contact {
 }
 
 impl Trace {
+    /// The first frame in whose interval a fixel pressed on the object.
+    pub fn first_fixel_contact(&self) -> Option<usize> {
+        self.frames.iter().position(|frame| frame.fixel_forces.iter().any(|force| *force > 0.0))
+    }
+
     /// The first frame in whose interval a body pressed on the object.
     pub fn first_contact(&self, body: Body) -> Option<usize> {
         self.frames.iter().position(|frame| match body {
