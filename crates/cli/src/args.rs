@@ -98,7 +98,7 @@ pub struct CompareArgs {
 /// Arguments of `stickslip simulate`.
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// Bodies, nominal friction and where all begins (scene.toml with [start])
+    /// Bodies, nominal friction and how all begins (scene.toml with a table `start`)
     pub scene: PathBuf,
     /// Write scene.toml, log.csv, truth.csv and truth.json into this folder
     #[arg(long, value_name = "DIR")]
