@@ -6,6 +6,8 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
 
+use crate::paper::PaperExperiment;
+
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version, max_term_width = 120)]
@@ -99,7 +101,11 @@ pub struct CompareArgs {
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
     /// Bodies, nominal friction and how all begins (scene.toml with a table `start`)
-    pub scene: PathBuf,
+    #[arg(required_unless_present = "paper", conflicts_with = "paper")]
+    pub scene: Option<PathBuf>,
+    /// One of the paper's experiments in place of a scene
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", conflicts_with_all = ["truth", "friction_error"])]
+    pub paper: Option<PaperExperiment>,
     /// Write scene.toml, log.csv, truth.csv and truth.json into this folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

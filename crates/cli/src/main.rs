@@ -9,6 +9,7 @@ mod experiment;
 mod failure;
 mod figure;
 mod filter;
+mod paper;
 mod parameters;
 mod progress;
 mod quantile;

@@ -4,14 +4,15 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use stickslip::Setup;
-use stickslip_formats::{TruthFacts, read_scene, write_log, write_truth_csv, write_truth_json};
+use stickslip_formats::{TruthFacts, read_scene, read_truth_json, write_log, write_truth_csv, write_truth_json};
 use stickslip_testbed::true_friction;
 
 use crate::args::SimulateArgs;
 use crate::experiment::{read_facts_file, text_of};
 use crate::failure::hinted;
+use crate::paper::PaperScene;
 use crate::simulation::{Options, Simulation};
 use crate::table::Table;
 use crate::verdict::Verdict;
@@ -53,8 +54,14 @@ fn refuse_recorded(out: &Path) -> Result<()> {
 }
 
 fn source(args: &SimulateArgs) -> Result<Source> {
+    if let Some(paper) = args.paper {
+        let PaperScene { name, story, scene, truth } = paper.scene();
+        let known = read_truth_json(truth, name)?;
+        return Ok(Source { name: format!("{name} ({story})"), scene: scene.to_owned(), known });
+    }
+    let path = args.scene.as_deref().context("a scene or --paper is needed")?;
     let known = args.truth.as_deref().map(read_facts_file).transpose()?.unwrap_or_default();
-    Ok(Source { name: args.scene.display().to_string(), scene: text_of(&args.scene, "scene")?, known })
+    Ok(Source { name: path.display().to_string(), scene: text_of(path, "scene")?, known })
 }
 
 /// A truth that the scene's friction misses.

@@ -129,6 +129,20 @@ fn what_cannot_be_simulated_is_refused_with_the_next_step() {
 }
 
 #[test]
+fn scene_or_paper_experiment_is_needed_and_not_both() {
+    let folder = folder("simulate_paper", SCENE);
+    let run = |arguments: &[&str]| stickslip().arg("simulate").args(arguments).arg("--out").arg(folder.join("out")).output().unwrap();
+    let scene = folder.join("scene.toml").display().to_string();
+    let bad: [&[&str]; 4] = [&[], &[&scene, "--paper", "A"], &["--paper", "C"], &["--paper", "A", "--friction-error", "0.1"]];
+    for arguments in bad {
+        assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+    let paper = run(&["--paper", "b"]);
+    assert_done(&paper);
+    assert!(String::from_utf8(paper.stdout).unwrap().contains("ends on three"));
+}
+
+#[test]
 fn log_that_is_there_is_not_written_over() {
     let folder = folder("simulate_recorded", SCENE);
     fs::write(folder.join("log.csv"), "recorded\n").unwrap();
