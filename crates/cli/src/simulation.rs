@@ -110,9 +110,13 @@ fn truth(trace: &Trace) -> Truth {
         pose: frames.iter().map(|frame| frame.object).collect(),
         twist: frames.iter().map(|frame| frame.twist).collect(),
         pusher: frames.iter().map(|frame| frame.pusher).collect(),
-        pusher_force: frames.iter().map(|frame| frame.pusher_force[0].hypot(frame.pusher_force[1])).collect(),
+        pusher_force: frames.iter().map(|frame| length(frame.pusher_force)).collect(),
         fixel_forces: (0..fixels).map(|j| frames.iter().map(|frame| frame.fixel_forces[j]).collect()).collect(),
     }
+}
+
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 fn facts(trace: &Trace, known: &TruthFacts, options: &Options) -> TruthFacts {
