@@ -11,7 +11,7 @@ const LONGEST_FILE: usize = 400;
 const UNSAFE_ALLOWED: [(&str, &str); 0] = [];
 
 /// Libraries: pure functions of their input.
-const LIBRARIES: [&str; 4] = ["crates/dynamics/", "crates/filter/", "crates/estimator/", "crates/formats/"];
+const LIBRARIES: [&str; 5] = ["crates/dynamics/", "crates/filter/", "crates/estimator/", "crates/formats/", "crates/testbed/"];
 
 /// Names that a crate's `src` must not contain outside tests and comments.
 struct Ban {
@@ -21,7 +21,7 @@ struct Ban {
     next: &'static str,
 }
 
-const BANS: [Ban; 5] = [
+const BANS: [Ban; 6] = [
     Ban {
         folders: &LIBRARIES,
         names: &["fs", "File", "OpenOptions"],
@@ -51,6 +51,12 @@ const BANS: [Ban; 5] = [
         names: &["rayon"],
         rule: "dynamics knows no threads",
         next: "step one block of particles, and share blocks among threads in crates/filter",
+    },
+    Ban {
+        folders: &["crates/testbed/src/rig/"],
+        names: &["Dynamics", "StepInput", "StepProblem", "StepWork", "Solver", "solve", "Ncp"],
+        rule: "the rig shares no stepping code with the filter that it judges",
+        next: "write the physics anew in the rig, or run the model in crates/testbed/src/model.rs",
     },
 ];
 
@@ -129,6 +135,13 @@ mod tests {
             assert_one(&found("crates/dynamics/src/a.rs", line), "crates/dynamics/src/a.rs:1: ");
             assert!(found("crates/filter/src/a.rs", line).is_empty());
         }
+    }
+
+    #[test]
+    fn check_file_finds_the_filter_s_stepping_in_the_rig_only() {
+        let line = "let mut work = StepWork::<1>::default();";
+        assert_one(&found("crates/testbed/src/rig/machine.rs", line), "crates/testbed/src/rig/machine.rs:1: `StepWork`");
+        assert!(found("crates/testbed/src/model.rs", line).is_empty());
     }
 
     #[test]

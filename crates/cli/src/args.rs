@@ -6,6 +6,8 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
 
+use crate::paper::PaperExperiment;
+
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version, max_term_width = 120)]
@@ -24,6 +26,8 @@ pub enum Command {
     Filter(FilterArgs),
     /// Run every method on experiment folders and compare their errors
     Compare(CompareArgs),
+    /// Simulate an experiment: a folder with scene, log and truth
+    Simulate(SimulateArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
     Check(CheckArgs),
 }
@@ -93,6 +97,35 @@ pub struct CompareArgs {
     pub shared: SharedArgs,
 }
 
+/// Arguments of `stickslip simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// Bodies, nominal friction and how all begins (scene.toml with a table `start`)
+    #[arg(required_unless_present = "paper", conflicts_with = "paper")]
+    pub scene: Option<PathBuf>,
+    /// One of the paper's experiments in place of a scene
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", conflicts_with_all = ["truth", "friction_error"])]
+    pub paper: Option<PaperExperiment>,
+    /// Write scene.toml, log.csv, truth.csv and truth.json into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// What moves the object
+    #[arg(long, value_enum, default_value_t = Physics::Testbed)]
+    pub physics: Physics,
+    /// Seed of all random numbers: of the rig's as of the sensors'
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Camera frames per second
+    #[arg(long, value_name = "HZ", default_value_t = 30.0, value_parser = positive)]
+    pub rate: f64,
+    /// Take mu_s, mu_p, mu_f and occlude_from from this file (truth.json) [default: the scene's friction]
+    #[arg(long, value_name = "JSON")]
+    pub truth: Option<PathBuf>,
+    /// Draw the true friction within this share of the scene's, as 0.4
+    #[arg(long, value_name = "SHARE", conflicts_with = "truth", value_parser = share)]
+    pub friction_error: Option<f64>,
+}
+
 /// Arguments of `stickslip check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -146,6 +179,25 @@ pub enum Mode {
     Paper,
     /// Proposals that meet the contacts (not there yet)
     Contact,
+}
+
+/// What moves the object of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Physics {
+    /// A rig with compliant contacts, uneven friction and a drive that lags and stalls
+    Testbed,
+    /// The filter's own contact dynamics, without noise
+    Model,
+}
+
+impl Physics {
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Testbed => "testbed",
+            Self::Model => "model",
+        }
+    }
 }
 
 /// A range of log rows, `FROM[:TO]`; `FROM:` also runs to the end.
@@ -232,6 +284,11 @@ impl From<MethodName> for Method {
 fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be positive".to_owned()) }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be from 0 to 1".to_owned()) }
 }
 
 fn particles(text: &str) -> Result<usize, String> {

@@ -139,11 +139,13 @@ fn read_truth_file(path: &Path) -> Result<Truth> {
     Ok(read_truth_csv(bytes_of(path, "truth")?.as_slice(), &path.display().to_string())?)
 }
 
-fn read_facts_file(path: &Path) -> Result<TruthFacts> {
+/// Reads a truth.json.
+pub fn read_facts_file(path: &Path) -> Result<TruthFacts> {
     Ok(read_truth_json(&text_of(path, "truth")?, &path.display().to_string())?)
 }
 
-fn text_of(path: &Path, what: &str) -> Result<String> {
+/// The text of a file that is called `what` in errors.
+pub fn text_of(path: &Path, what: &str) -> Result<String> {
     fs::read_to_string(path).map_err(|error| unreadable(path, what, &error))
 }
 

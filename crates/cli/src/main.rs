@@ -9,9 +9,12 @@ mod experiment;
 mod failure;
 mod figure;
 mod filter;
+mod paper;
 mod parameters;
 mod progress;
 mod quantile;
+mod simulate;
+mod simulation;
 mod table;
 mod verdict;
 
@@ -26,6 +29,7 @@ fn main() -> ExitCode {
         Command::Demo(args) => demo::demo(&args),
         Command::Filter(args) => filter::filter(&args),
         Command::Compare(args) => compare::compare(&args),
+        Command::Simulate(args) => simulate::simulate(&args),
         Command::Check(args) => check::check(&args),
     };
     result.unwrap_or_else(|error| failure::tell(&error)).exit_code()

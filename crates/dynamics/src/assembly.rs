@@ -217,6 +217,11 @@ impl<const W: usize> Assembly<W> {
         debug_assert_eq!(warm[FIRST_CONTACT..].len(), 3 * REMEMBERED);
     }
 
+    /// The body of each contact of one lane, in the order of its problem.
+    pub fn bodies(&self, lane: usize) -> Vec<Body> {
+        self.rows.iter().filter(|row| row.contact.present.lane(lane)).map(|row| row.body).collect()
+    }
+
     /// One lane's problem in SI units; the applied impulse is part of its twist.
     pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
         let Setting { mass, inertia, h, stall } = self.setting;

@@ -95,6 +95,11 @@ impl<const W: usize> StepWork<W> {
         self.chunks[chunk].normal_impulses(&self.impulses[chunk], body)
     }
 
+    /// The body of each contact in the last step's problem of one particle.
+    pub fn bodies(&self, particle: usize) -> Vec<Body> {
+        self.chunks[particle / W].bodies(particle % W)
+    }
+
     /// Normal impulse (N s) of one particle, counted over all chunks.
     pub fn normal_impulse(&self, particle: usize, body: Body) -> f64 {
         self.normal_impulses(particle / W, body).0[particle % W]

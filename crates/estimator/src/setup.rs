@@ -1,6 +1,6 @@
 //! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as `scene.toml` holds it.
 
-use stickslip_dynamics::{Feet, Scene};
+use stickslip_dynamics::{Feet, Scene, Start};
 
 /// Noise of the camera and of the pusher's tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +90,8 @@ pub struct Setup {
     pub tactile: Tactile,
     /// Filter settings.
     pub filter: FilterSettings,
+    /// How the experiment begins; only simulations read it.
+    pub start: Option<Start>,
 }
 
 impl Setup {

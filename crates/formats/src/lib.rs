@@ -18,5 +18,5 @@ pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_csv::{read_estimate, write_estimate};
 pub use log_csv::{LogWarning, SensorError, check_sensors, read_log, write_log};
 pub use scene::{SceneError, SceneProblem, read_scene};
-pub use truth_csv::{Truth, read_truth_csv};
-pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json};
+pub use truth_csv::{Truth, read_truth_csv, write_truth_csv};
+pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

@@ -1,18 +1,23 @@
-//! `truth.json`, the true friction values and what happened when: [`TruthFacts`], [`read_truth_json`]. For scoring only.
+//! `truth.json`, the true friction values and what happened when: [`TruthFacts`], [`read_truth_json`], [`write_truth_json`]. For
+//! scoring only.
 
-use serde::Deserialize;
+use std::io::Write;
+
+use serde::{Deserialize, Serialize};
 use stickslip_dynamics::Pose;
 
 /// What is known of an experiment after it; `None` where the file does not say.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TruthFacts {
+    /// Where the truth comes from, in words.
+    pub source: Option<String>,
     /// True μ_s.
     pub mu_s: Option<f64>,
     /// True μ_p.
     pub mu_p: Option<f64>,
     /// True μ_f.
     pub mu_f: Option<f64>,
-    /// True radius of the support tripod \[m\].
+    /// True radius of the support tripod (m).
     pub d_tri: Option<f64>,
     /// Log row of the first contact with the pusher, from 0.
     pub first_pusher_contact: Option<usize>,
@@ -41,8 +46,9 @@ pub struct TruthFactsError {
 }
 
 /// The file as it stands; keys that are not here are ignored.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 struct Document {
+    source: Option<String>,
     mu_s: Option<f64>,
     mu_p: Option<f64>,
     mu_f: Option<f64>,
@@ -93,9 +99,35 @@ fn error_at(file: &str, path: String, error: &serde_json::Error) -> TruthFactsEr
     TruthFactsError { file: file.to_owned(), line: error.line().max(1), column: error.column().max(1), key, problem }
 }
 
+/// Writes all keys, `null` where nothing is known; reads back to the same facts.
+///
+/// # Errors
+/// Those of `writer`.
+pub fn write_truth_json(mut writer: impl Write, facts: &TruthFacts) -> std::io::Result<()> {
+    serde_json::to_writer_pretty(&mut writer, &Document::from(facts))?;
+    writeln!(writer)
+}
+
+impl From<&TruthFacts> for Document {
+    fn from(facts: &TruthFacts) -> Self {
+        Self {
+            source: facts.source.clone(),
+            mu_s: facts.mu_s,
+            mu_p: facts.mu_p,
+            mu_f: facts.mu_f,
+            d_tri: facts.d_tri,
+            first_pusher_contact: facts.first_pusher_contact,
+            first_fixel_contacts: Some(facts.first_fixel_contacts.clone()),
+            occlude_from: facts.occlude_from,
+            final_pose: facts.final_pose.map(|pose| [pose.x, pose.y, pose.theta]),
+        }
+    }
+}
+
 impl From<Document> for TruthFacts {
     fn from(document: Document) -> Self {
         Self {
+            source: document.source,
             mu_s: document.mu_s,
             mu_p: document.mu_p,
             mu_f: document.mu_f,

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use stickslip::{Camera, FilterSettings, Limits, Setup, Tactile};
-use stickslip_dynamics::{Feet, Friction, Part, Pose, Shape};
+use stickslip_dynamics::{Feet, Friction, Part, Pose, Shape, SpeedProfile, Start};
 use stickslip_formats::{SceneProblem, read_scene};
 
 /// Every key of the format, none with its default.
@@ -94,6 +94,58 @@ fn full_scene_sensing_arrives() {
         d_tri: Limits { min: 0.004, max: 0.03 },
     };
     assert_eq!(setup.filter, filter);
+}
+
+#[test]
+fn full_scene_start_arrives() {
+    let start = Start {
+        object: Pose::new(0.01, -0.02, 0.5),
+        pusher: Pose::new(-0.08, 0.001, 0.0),
+        direction: 0.125,
+        speed: SpeedProfile::new(vec![[0.0, 0.0], [0.5, 0.02], [8.0, 0.02], [8.0, 0.0]]).expect("a profile"),
+        duration: 12.5,
+    };
+    assert_eq!(read(FULL).start, Some(start));
+    assert_eq!(read(LEAST).start, None);
+}
+
+#[test]
+fn start_has_a_direction_by_default_and_may_have_one_speed() {
+    let start = "[start]\nobject = [0, 0, 0]\npusher = [-1, 0, 0]\nspeed = 0.02\nduration = 3\n";
+    let start = read(&format!("{LEAST}{start}")).start.expect("a start");
+    assert_eq!((start.direction, start.speed), (0.0, SpeedProfile::constant(0.02)));
+}
+
+#[test]
+fn start_that_cannot_be_is_refused() {
+    refused("duration = 12.5 ", "duration = 0 ", "60:12", &["start.duration is 0 s", "positive"]);
+    refused("duration = 12.5 ", "# ", "55:1", &["`start.duration`", "missing", "how long"]);
+    refused("object = [0.01, -0.02, 0.5]", "", "55:1", &["`start.object`", "missing", "[x, y, theta]"]);
+    refused("object = [0.01, -0.02, 0.5]", "object = [0.01, -0.02]", "56:10", &["start.object", "a list of 2", "a list of 3"]);
+    refused("[-0.08, 0.001, 0]", "[-0.08, inf, 0]", "57:18", &["start.pusher[2]", "inf", "finite"]);
+    refused("direction = 0.125", "direction = \"east\"", "58:13", &["start.direction", "\"east\"", "a number", "rad"]);
+    refused("direction = 0.125", "heading = 0.125", "58:1", &["`start.heading`", "not a known key"]);
+}
+
+#[test]
+fn start_with_a_speed_that_is_none_is_refused() {
+    const GOOD: &str = "speed = [[0, 0], [0.5, 0.02], [8, 0.02], [8, 0]]";
+    refused(GOOD, "speed = \"slow\"", "59:9", &["start.speed", "\"slow\"", "a number", "m/s"]);
+    refused(GOOD, "speed = []", "59:9", &["start.speed", "an empty list", "[[time, speed], ...]"]);
+    refused(GOOD, "speed = [0.02]", "59:10", &["start.speed[1]", "a list"]);
+    refused(GOOD, "speed = [[0, 0, 1]]", "59:10", &["start.speed[1]", "a list of 3", "a list of 2"]);
+    refused(GOOD, "speed = [[-1, 0]]", "59:11", &["start.speed[1][1]", "-1 s", "zero or positive"]);
+    refused(GOOD, "speed = [[1, 0], [0.5, 0.02]]", "59:19", &["start.speed[2][1] is 0.5 s", "at or after"]);
+    refused(GOOD, "speed = [[1, nan]]", "59:14", &["start.speed[1][2]", "nan", "finite"]);
+}
+
+#[test]
+fn scene_of_the_guide_is_one() {
+    let guide = include_str!("../../../docs/guide/formats.md");
+    let scene = guide.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a scene in the guide");
+    let setup = read(scene);
+    assert_eq!((setup.filter, setup.tactile), (FilterSettings::default(), Tactile::default()));
+    assert!(setup.start.is_some() && setup.camera.is_some());
 }
 
 #[test]

@@ -13,8 +13,8 @@ use crate::nearest::nearest;
 type Result<T> = std::result::Result<T, SceneError>;
 
 /// The keys of each table of the format; the first one is the document itself.
-const TABLES: [(&str, &[&str]); 9] = [
-    ("", &["gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile", "filter"]),
+const TABLES: [(&str, &[&str]); 10] = [
+    ("", &["gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile", "filter", "start"]),
     ("object", &["mass", "inertia", "shape"]),
     ("support", &["friction", "tripod_radius", "tripod_angle", "feet"]),
     ("pusher", &["shape", "friction", "stall_force"]),
@@ -23,6 +23,7 @@ const TABLES: [(&str, &[&str]); 9] = [
     ("camera", &["position_std", "orientation_std", "latency", "pusher_position_std", "pusher_orientation_std"]),
     ("tactile", &["false_positive", "false_negative", "touch_force"]),
     ("filter", &["force_std", "parameter_std", "resample_below", "likelihood_scale", "mu_s", "mu_p", "mu_f", "d_tri"]),
+    ("start", &["object", "pusher", "direction", "speed", "duration"]),
 ];
 
 /// The keys that a table of the format may have; `""` is the document itself.
@@ -223,6 +224,17 @@ impl<'a> Node<'a> {
         let table = Table { source: self.source, path: self.path.clone(), span: self.value.span(), entries };
         table.check_keys(known)?;
         Ok(table)
+    }
+
+    /// Whether it is a list.
+    pub(super) fn is_list(&self) -> bool {
+        matches!(self.value.get_ref(), DeValue::Array(_))
+    }
+
+    /// The list is empty and must not be; `what` completes "Give ...".
+    pub(super) fn empty(&self, what: &str) -> SceneError {
+        let (key, found, expected) = (self.path.clone(), "an empty list".to_owned(), "a list with entries".to_owned());
+        self.error(SceneProblem::WrongType { key, found, expected, what: what.to_owned() })
     }
 
     /// The items of a list; `what` completes "Give ...".

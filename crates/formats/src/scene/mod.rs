@@ -7,6 +7,7 @@ mod error;
 mod feet;
 mod sensing;
 mod shapes;
+mod start;
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -64,6 +65,7 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
         camera: root.section_if("camera")?.as_ref().map(sensing::camera).transpose()?,
         tactile: root.section_if("tactile")?.as_ref().map(sensing::tactile).transpose()?.unwrap_or_default(),
         filter: root.section_if("filter")?.as_ref().map(sensing::filter).transpose()?.unwrap_or_default(),
+        start: root.section_if("start")?.as_ref().map(start::start).transpose()?,
     })
 }
 

@@ -1,0 +1,64 @@
+//! The scenes of the paper's six experiments, inside the program: [`PaperScene`].
+
+use clap::ValueEnum;
+
+macro_rules! embedded {
+    ($name:literal, $story:literal) => {
+        PaperScene {
+            name: concat!("paper/", $name),
+            story: $story,
+            scene: include_str!(concat!("../scenes/", $name, "/scene.toml")),
+            truth: include_str!(concat!("../scenes/", $name, "/truth.json")),
+        }
+    };
+}
+
+/// One of the paper's experiments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PaperExperiment {
+    /// Table II, Figures 2 to 4: jams soon after the first fixel contact
+    #[value(name = "A")]
+    A,
+    /// Table III, Figures 5 to 7: slides along one fixel and ends on three
+    #[value(name = "B")]
+    B,
+    /// Table IV: contact with a fixel and slide
+    #[value(name = "1")]
+    First,
+    /// Table IV: contact with a fixel and slide
+    #[value(name = "2")]
+    Second,
+    /// Table IV: contact with a fixel and stop
+    #[value(name = "3")]
+    Third,
+    /// Table IV: contact with a fixel and stop
+    #[value(name = "4")]
+    Fourth,
+}
+
+/// A scene with the truth that it does not tell.
+#[derive(Clone, Copy, Debug)]
+pub struct PaperScene {
+    /// Name shown in errors and tables.
+    pub name: &'static str,
+    /// What happens.
+    pub story: &'static str,
+    /// scene.toml.
+    pub scene: &'static str,
+    /// truth.json: the true friction, and the blackout where the paper says it.
+    pub truth: &'static str,
+}
+
+impl PaperExperiment {
+    /// Its scene.
+    pub fn scene(self) -> PaperScene {
+        match self {
+            Self::A => embedded!("a", "the object turns on the thumb, meets a fixel and jams"),
+            Self::B => embedded!("b", "the object slides along one fixel and ends on three"),
+            Self::First => embedded!("1", "the object slides along a fixel"),
+            Self::Second => embedded!("2", "the object slides along a fixel and turns"),
+            Self::Third => embedded!("3", "the object meets a fixel as it comes to lie on the thumb, and stops"),
+            Self::Fourth => embedded!("4", "the object is squeezed between thumb and fixel, and stops"),
+        }
+    }
+}

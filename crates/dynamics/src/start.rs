@@ -1,0 +1,132 @@
+//! How an experiment begins, and what the pusher is told to do: [`Start`].
+
+use crate::Pose;
+
+/// How an experiment begins, and what the pusher is told to do: `[start]` of a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Pose of the object, at rest.
+    pub object: Pose,
+    /// Pose of the pusher; it keeps its angle.
+    pub pusher: Pose,
+    /// Direction of the pusher's motion, world frame (rad).
+    pub direction: f64,
+    /// Commanded speed of the pusher.
+    pub speed: SpeedProfile,
+    /// How long the experiment lasts (s).
+    pub duration: f64,
+}
+
+/// A commanded speed over time: linear between knots, constant before the first and after the last one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedProfile {
+    knots: Vec<[f64; 2]>,
+}
+
+impl Start {
+    /// The unit vector of the pusher's motion, world frame.
+    pub fn direction_vector(&self) -> [f64; 2] {
+        let (sin, cos) = libm::sincos(self.direction);
+        [cos, sin]
+    }
+
+    /// The commanded pose of the pusher at `time` (s).
+    pub fn commanded(&self, time: f64) -> Pose {
+        let ([x, y], way) = (self.direction_vector(), self.speed.travel(time));
+        Pose::new(self.pusher.x + way * x, self.pusher.y + way * y, self.pusher.theta)
+    }
+}
+
+impl SpeedProfile {
+    /// The same speed at all times (m/s).
+    pub fn constant(speed: f64) -> Self {
+        Self { knots: vec![[0.0, speed]] }
+    }
+
+    /// A speed through knots of time (s) and speed (m/s); two knots of one time are a jump.
+    ///
+    /// `None` without knots, with a number that is not finite, or with a time before the last one's.
+    ///
+    /// ```
+    /// # use stickslip_dynamics::SpeedProfile;
+    /// let ramp = SpeedProfile::new(vec![[1.0, 0.0], [2.0, 0.02]]).unwrap();
+    /// assert_eq!([0.0, 1.5, 9.0].map(|time| ramp.at(time)), [0.0, 0.01, 0.02]);
+    /// ```
+    pub fn new(knots: Vec<[f64; 2]>) -> Option<Self> {
+        let finite = knots.as_flattened().iter().all(|x| x.is_finite());
+        let sorted = knots.windows(2).all(|pair| pair[0][0] <= pair[1][0]);
+        (finite && sorted && !knots.is_empty()).then_some(Self { knots })
+    }
+
+    /// Knots of time (s) and speed (m/s).
+    pub fn knots(&self) -> &[[f64; 2]] {
+        &self.knots
+    }
+
+    /// Speed at `time` (m/s); at a jump the later one.
+    pub fn at(&self, time: f64) -> f64 {
+        let after = self.knots.partition_point(|knot| knot[0] <= time);
+        match (after.checked_sub(1), self.knots.get(after)) {
+            (Some(before), Some(next)) => between(self.knots[before], *next, time),
+            (Some(last), None) => self.knots[last][1],
+            (None, _) => self.knots[0][1],
+        }
+    }
+
+    /// Way travelled from time 0 to `time` ≥ 0 (m).
+    pub fn travel(&self, time: f64) -> f64 {
+        let inner = self.knots.iter().map(|knot| knot[0]).filter(|t| 0.0 < *t && *t < time);
+        let ends: Vec<f64> = [0.0].into_iter().chain(inner).chain([time]).collect();
+        let middle = |pair: &[f64]| self.at(0.5 * (pair[0] + pair[1])) * (pair[1] - pair[0]);
+        ends.windows(2).map(middle).fold(0.0, |sum, way| sum + way)
+    }
+}
+
+/// Linear between two knots of different times.
+fn between(from: [f64; 2], to: [f64; 2], time: f64) -> f64 {
+    from[1] + (to[1] - from[1]) * (time - from[0]) / (to[0] - from[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At rest, a jump to 30 mm/s at 1 s, a ramp down to 10 mm/s at 3 s.
+    fn profile() -> SpeedProfile {
+        SpeedProfile::new(vec![[1.0, 0.0], [1.0, 0.03], [3.0, 0.01]]).expect("a profile")
+    }
+
+    #[test]
+    fn at_jumps_and_holds() {
+        let speeds = [0.0, 0.999, 1.0, 2.0, 3.0, 99.0].map(|time| profile().at(time));
+        assert_eq!(speeds, [0.0, 0.0, 0.03, 0.02, 0.01, 0.01]);
+    }
+
+    #[test]
+    fn travel_is_the_area_under_the_speed() {
+        for (time, way) in [(0.0, 0.0), (1.0, 0.0), (2.0, 0.025), (3.0, 0.04), (5.0, 0.06)] {
+            assert!((profile().travel(time) - way).abs() < 1e-15, "{time}");
+        }
+        assert_eq!(SpeedProfile::constant(0.02).travel(3.0), 0.06);
+    }
+
+    #[test]
+    fn new_refuses_what_is_no_profile() {
+        for knots in [vec![], vec![[0.0, f64::NAN]], vec![[1.0, 0.0], [0.5, 0.0]]] {
+            assert_eq!(SpeedProfile::new(knots), None);
+        }
+    }
+
+    #[test]
+    fn commanded_pose_moves_along_the_direction() {
+        let start = Start {
+            object: Pose::default(),
+            pusher: Pose::new(1.0, 2.0, 0.5),
+            direction: std::f64::consts::FRAC_PI_2,
+            speed: SpeedProfile::constant(0.5),
+            duration: 4.0,
+        };
+        let pose = start.commanded(2.0);
+        assert!((pose.x - 1.0).abs() < 1e-15 && (pose.y, pose.theta) == (3.0, 0.5), "{pose:?}");
+    }
+}

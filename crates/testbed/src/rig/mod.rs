@@ -1,0 +1,134 @@
+//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls; steps of 80 µs or less.
+//!
+//! Nothing here solves a complementarity problem: every force is a function of the state, and the state is integrated by
+//! semi-implicit Euler steps, v ← v + h M⁻¹ f(q, v), q ← q + h v.
+
+mod chance;
+#[cfg(test)]
+mod closed_forms;
+mod contact;
+mod drive;
+mod machine;
+mod pressure;
+mod support;
+mod table;
+
+use stickslip_dynamics::{Feet, Friction, Scene};
+
+pub use contact::ContactLaw;
+pub use drive::{DriveSettings, Spindle};
+use machine::Machine;
+pub use pressure::{Footing, SupportPoint};
+pub use support::Bristles;
+pub use table::Table;
+
+use crate::touch::TouchSensors;
+use crate::{Frame, Trace, Trial, TrialError};
+
+/// Slowest motion that counts as motion where friction is averaged over the way (m/s).
+const MOVING: f64 = 1e-4;
+
+/// What the rig is made of; all that a user does not know.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rig {
+    /// Friction of object and table, the mean over the table.
+    pub mu_s: f64,
+    /// Friction of object and pusher.
+    pub mu_p: f64,
+    /// Friction of object and fixels.
+    pub mu_f: f64,
+    /// What the object stands on.
+    pub footing: Footing,
+    /// How friction varies over the table.
+    pub table: Table,
+    /// The bristles between object and table.
+    pub bristles: Bristles,
+    /// Contacts with pusher and fixels.
+    pub contact: ContactLaw,
+    /// The pusher's drive.
+    pub drive: DriveSettings,
+    /// The touch sensors on the fixels.
+    pub touch: TouchSensors,
+    /// Longest time step (s); stiff contacts shorten it.
+    pub longest_step: f64,
+}
+
+impl Rig {
+    /// A rig for a scene: friction as the scene has it, its feet where they are known, its stall force where it has one.
+    pub fn of(scene: &Scene) -> Self {
+        let Friction { mu_s, mu_p, mu_f, .. } = scene.nominal;
+        let footing = match scene.feet {
+            Feet::Tripod { .. } => Footing::default(),
+            Feet::Known { positions, loads } => {
+                let point = |k: usize| SupportPoint { position: positions[k], load: loads[k] };
+                Footing::Points([0, 1, 2].map(point).to_vec())
+            }
+        };
+        let default = Spindle::default();
+        let spindle = Spindle { stall_force: scene.pusher.stall_force.unwrap_or(default.stall_force), ..default };
+        Self {
+            mu_s,
+            mu_p,
+            mu_f,
+            footing,
+            table: Table::default(),
+            bristles: Bristles::default(),
+            contact: ContactLaw::default(),
+            drive: DriveSettings { spindle: Some(spindle), ..DriveSettings::default() },
+            touch: TouchSensors::default(),
+            longest_step: 8e-5,
+        }
+    }
+
+    /// Runs an experiment.
+    ///
+    /// # Errors
+    /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start, the object would tip.
+    pub fn run(&self, trial: &Trial<'_>) -> Result<Trace, TrialError> {
+        trial.check([("mu_s", self.mu_s), ("mu_p", self.mu_p), ("mu_f", self.mu_f)])?;
+        let mut machine = Machine::new(self, trial)?;
+        let steps = (1.0 / (trial.rate * machine.longest_step())).ceil();
+        let h = 1.0 / (trial.rate * steps);
+
+        let mut frames = vec![machine.frame(0.0, 1.0)];
+        let mut friction = Mean::default();
+        for k in 1..trial.frames() {
+            for step in 0..steps as u32 {
+                machine.step(trial.time(k - 1) + h * f64::from(step), h);
+            }
+            let frame = machine.frame(trial.time(k), 1.0 / trial.rate);
+            if moves(&frame, trial.scene) {
+                friction.add(machine.mean_friction());
+            }
+            frames.push(frame);
+        }
+        self.touch.feel(&mut frames, trial);
+
+        let mu_s = friction.value().unwrap_or_else(|| machine.mean_friction());
+        let friction = Friction { mu_s, mu_p: self.mu_p, mu_f: self.mu_f, d_tri: machine.tripod_radius() };
+        Ok(Trace { friction, frames, unsolved: 0 })
+    }
+}
+
+fn moves(frame: &Frame, scene: &Scene) -> bool {
+    let v = frame.twist;
+    (v.vx * v.vx + v.vy * v.vy).sqrt() + scene.object.gyration_radius() * v.omega.abs() > MOVING
+}
+
+/// A mean.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1.0;
+    }
+
+    fn value(&self) -> Option<f64> {
+        (self.count > 0.0).then_some(self.sum / self.count)
+    }
+}
