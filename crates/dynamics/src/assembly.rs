@@ -71,7 +71,13 @@ struct Other<'a, const W: usize> {
 }
 
 impl<const W: usize> Assembly<W> {
-    /// Gap below which contacts were sought (m).
+    /// Contacts with gaps below `reach` (m) take part from now on.
+    #[inline(always)]
+    pub fn seek(&mut self, reach: Lanes<W>) {
+        self.reach = reach;
+    }
+
+    /// Gap below which contacts are sought (m).
     #[inline(always)]
     pub fn reach(&self) -> Lanes<W> {
         self.reach
@@ -89,18 +95,9 @@ impl<const W: usize> Assembly<W> {
         sum * self.setting.mass
     }
 
-    /// Writes the step's problems; contacts with gaps below `reach` (m) take part.
+    /// Writes the step's problems.
     #[inline(always)]
-    pub fn collect(
-        &mut self,
-        scene: &Scene,
-        input: &StepInput,
-        particles: &Particles<W>,
-        reach: Lanes<W>,
-        narrow: &mut NarrowWork<W>,
-        ncp: &mut Ncp<W>,
-    ) {
-        self.reach = reach;
+    pub fn collect(&mut self, scene: &Scene, input: &StepInput, particles: &Particles<W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
         self.rows.clear();
         ncp.clear();
         self.set_body(scene, input, particles, ncp);

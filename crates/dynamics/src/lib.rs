@@ -18,6 +18,7 @@ mod ncp;
 mod newton;
 mod outline;
 mod overlap;
+mod pair;
 mod particles;
 mod plane;
 mod polish;

@@ -198,7 +198,8 @@ impl Dynamics {
     #[inline(always)]
     fn assemble<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, reach: Lanes<W>, chunk: usize, work: &mut StepWork<W>) {
         let assembly = &mut work.chunks[chunk];
-        assembly.collect(&self.scene, input, particles, reach, &mut work.narrow, &mut work.ncps[chunk]);
+        assembly.seek(reach);
+        assembly.collect(&self.scene, input, particles, &mut work.narrow, &mut work.ncps[chunk]);
         assembly.load_warm_start(&self.scene, particles, &mut work.impulses[chunk]);
     }
 
