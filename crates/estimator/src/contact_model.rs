@@ -1,10 +1,11 @@
 //! The particle filter's model of a pushed object (eq. 6): Γ' as transition, camera and tactile sensors as observation.
 
-use stickslip_dynamics::{Body, Dynamics, Friction, Outcome, Particle, Pose, StepInput, StepWork, Twist, WarmStart, Wrench};
+use stickslip_dynamics::{Body, Dynamics, Friction, Outcome, Particle, Pose, Report, StepInput, StepWork, Twist, WarmStart, Wrench};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::wrapped;
 use crate::columns::Columns;
+use crate::watch::{SolvedStep, StepWatch};
 use crate::{Camera, Limits, Setup};
 
 /// Particles that are stepped side by side.
@@ -70,12 +71,13 @@ impl Observation {
 
 /// The model of one setup, started at one pose.
 #[derive(Clone, Debug)]
-pub struct ContactModel {
+pub struct ContactModel<'w> {
     dynamics: Dynamics,
     setup: Setup,
     camera: Camera,
     start: Pose,
     columns: Columns,
+    watch: Option<&'w dyn StepWatch>,
 }
 
 /// Working memory of one block.
@@ -88,6 +90,8 @@ pub struct Scratch {
 struct Chunk {
     /// First particle within its block.
     first: usize,
+    /// Lanes that hold particles; those past them repeat the last.
+    lanes: usize,
     /// β before the step; `friction` is β̂.
     kept: [Friction; LANES],
     particles: [Particle; LANES],
@@ -104,11 +108,17 @@ struct Touched {
     unsolved: bool,
 }
 
-impl ContactModel {
+impl<'w> ContactModel<'w> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
     pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
         let columns = Columns::new(setup.scene.fixels.len(), history);
-        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, start, columns }
+        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, start, columns, watch: None }
+    }
+
+    /// The same, with a `watch` that is shown every step solved.
+    #[must_use]
+    pub fn watched(self, watch: Option<&'w dyn StepWatch>) -> Self {
+        Self { watch, ..self }
     }
 
     /// Layout of the particles.
@@ -162,6 +172,9 @@ impl ContactModel {
             touched.fixel |= (0..self.setup.scene.fixels.len()).any(|j| work.normal_impulse(lane, Body::Fixel(j)) > 0.0);
             touched.moved |= before[lane].max(self.speed(&chunk.particles[lane].twist)) > MOVING;
         }
+        if let Some(watch) = self.watch {
+            show(watch, &reports[..chunk.lanes], work);
+        }
     }
 
     /// ‖v‖, mass-normalised.
@@ -180,14 +193,14 @@ impl ContactModel {
             ParameterNoise::Drawn => self.disturb(&kept[lane], h, draw.normals::<4>(block.first_particle() + index(lane) as u32, 0)),
         });
         let particles = std::array::from_fn(|lane| particle_at(block, index(lane)));
-        Chunk { first, kept, particles, friction, touched: Default::default() }
+        Chunk { first, lanes: LANES.min(block.len() - first), kept, particles, friction, touched: Default::default() }
     }
 
     /// Writes a chunk back; Φ keeps only the parameters that took part (Table I).
     fn store(&self, plan: &StepPlan, block: &mut BlockMut<'_>, chunk: &Chunk, work: &StepWork<LANES>) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let touch_impulse = self.setup.tactile.touch_force * last_h;
-        for lane in 0..LANES.min(block.len() - chunk.first) {
+        for lane in 0..chunk.lanes {
             let i = chunk.first + lane;
             let (particle, touched) = (&chunk.particles[lane], &chunk.touched[lane]);
             write(block, Columns::POSE, i, &[particle.pose.x, particle.pose.y, particle.pose.theta]);
@@ -244,7 +257,7 @@ impl ContactModel {
     }
 }
 
-impl Model for ContactModel {
+impl Model for ContactModel<'_> {
     type Input = StepPlan;
     type Observation = Observation;
     type Scratch = Scratch;
@@ -303,7 +316,7 @@ impl Model for ContactModel {
     }
 }
 
-impl ContactModel {
+impl<'w> ContactModel<'w> {
     fn drawn_around(&self, pose: &Pose, normals: [f64; 3]) -> [f64; 3] {
         let camera = &self.camera;
         [
@@ -327,6 +340,13 @@ fn select(touched: &Touched, new: &Friction, old: &Friction) -> [f64; 4] {
 
 fn flag(value: bool) -> f64 {
     f64::from(u8::from(value))
+}
+
+/// Shows a watch the lanes' last step.
+fn show(watch: &dyn StepWatch, reports: &[Report], work: &StepWork<LANES>) {
+    for (lane, report) in reports.iter().enumerate() {
+        watch.see(&SolvedStep { problem: work.problem(lane), solution: &work.solution(lane), report: *report });
+    }
 }
 
 fn write(block: &mut BlockMut<'_>, first_column: usize, i: usize, values: &[f64]) {

@@ -16,15 +16,17 @@ mod schedule;
 mod score;
 mod setup;
 mod track;
+mod watch;
 
 pub use contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
 pub use log::Log;
 pub use occlusion::Occlusion;
-pub use run::{Method, Run, RunOptions, TactileUse, run};
+pub use run::{Method, Run, RunOptions, TactileUse, run, run_watched};
 pub use schedule::Schedule;
 pub use score::{Reference, Scores, score};
 pub use setup::{Camera, FilterSettings, Limits, Setup, Tactile};
 pub use stickslip_dynamics as dynamics;
 pub use track::{PusherTrack, TrackedPose, Tracking};
+pub use watch::{SolvedStep, StepWatch};
