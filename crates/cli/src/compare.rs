@@ -14,6 +14,7 @@ use stickslip::Occlusion;
 use crate::args::{CompareArgs, SharedArgs};
 use crate::contest::{Rival, Rules};
 use crate::experiment::Experiment;
+use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 use results::{Comparison, FolderResult, LostFolder, Marks};
@@ -37,13 +38,12 @@ struct Job {
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let folders = folders::expand(&args.folders, &args.scene_name)?;
     let comparison = args.shared.pool()?.install(|| compare_all(args, folders));
-    if args.shared.json {
-        println!("{}", serde_json::to_string_pretty(&comparison)?);
-    } else {
-        tables::print(&comparison);
+    let text = if args.shared.json { serde_json::to_string_pretty(&comparison)? } else { tables::text(&comparison) };
+    if !text.is_empty() {
+        show(text)?;
     }
     for lost in &comparison.errors {
-        eprintln!("error: {}", lost.error);
+        talk(format_args!("error: {}", lost.error));
     }
     Ok(match (comparison.folders.is_empty(), comparison.errors.is_empty()) {
         (true, _) => Verdict::Failed,

@@ -8,6 +8,7 @@ use stickslip::{Log, Reference, Setup};
 use stickslip_formats::{Truth, TruthFacts, check_sensors, read_log, read_scene, read_truth_csv, read_truth_json};
 
 use crate::failure::hinted;
+use crate::output::talk;
 
 /// Standard deviation of an object position where the scene has no `[camera]` (m).
 const POSITION_STD: f64 = 3e-4;
@@ -130,7 +131,7 @@ pub fn read_log_file(path: &Path) -> Result<Log> {
     }
     let (log, warnings) = read_log(bytes_of(path, "log")?.as_slice(), &path.display().to_string())?;
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        talk(format_args!("warning: {warning}"));
     }
     Ok(log)
 }

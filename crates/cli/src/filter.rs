@@ -16,6 +16,7 @@ use stickslip_formats::write_estimate;
 use crate::args::{FilterArgs, MethodName, Mode, Program};
 use crate::experiment::Experiment;
 use crate::failure::hinted;
+use crate::output::{show, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
 use crate::table::{Table, number};
@@ -51,13 +52,10 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let scores = scores(args, &experiment, &run.estimate);
     let written = args.out.as_deref().map(|folder| write(folder, &run.estimate)).transpose()?;
     let summary = Summary::new(&experiment, &run, &scores, seconds);
-    if args.shared.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
-    } else {
-        print_tables(args, &experiment, &run.estimate, &summary);
-    }
+    let tables = || tables(args, &experiment, &run.estimate, &summary);
+    show(if args.shared.json { serde_json::to_string_pretty(&summary)? } else { tables() })?;
     if let Some(path) = written {
-        eprintln!("wrote {}", path.display());
+        talk(format_args!("wrote {}", path.display()));
     }
     Ok(Verdict::Done)
 }
@@ -125,19 +123,12 @@ impl Summary {
     }
 }
 
-fn print_tables(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate, summary: &Summary) {
-    println!("{}, {} against {}", args.log.display(), args.method.name(), experiment.reference_name());
-    println!();
-    print!("{}", score_table(summary));
+fn tables(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate, summary: &Summary) -> String {
+    let title = format!("{}, {} against {}\n", args.log.display(), args.method.name(), experiment.reference_name());
     let parameters = Parameter::at_end(estimate);
-    if !parameters.is_empty() {
-        println!();
-        print!("{}", friction_table(experiment, &parameters));
-    }
-    if let Some(line) = final_pose_line(experiment, estimate) {
-        println!();
-        println!("{line}");
-    }
+    let friction = (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
+    let parts = [title, score_table(summary).to_string()].into_iter().chain(friction).chain(final_pose_line(experiment, estimate));
+    parts.collect::<Vec<_>>().join("\n")
 }
 
 fn score_table(summary: &Summary) -> Table {
