@@ -10,10 +10,11 @@ use std::path::PathBuf;
 use anyhow::{Result, anyhow};
 use rayon::prelude::*;
 use stickslip::Occlusion;
+use stickslip_formats::Experiment;
 
 use crate::args::{CompareArgs, SharedArgs};
 use crate::contest::{Rival, Rules};
-use crate::experiment::Experiment;
+use crate::experiment::read_folder;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
@@ -84,7 +85,7 @@ fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> Comparison {
 
 fn read_case(args: &CompareArgs, folder: PathBuf) -> Result<Case, LostFolder> {
     let read = || -> Result<Case> {
-        let experiment = Experiment::read_folder(&folder, &args.scene_name)?;
+        let experiment = read_folder(&folder, &args.scene_name)?;
         let occlusion = occlusion(&experiment, &args.shared);
         Ok(Case { folder: folder.clone(), experiment, occlusion })
     };

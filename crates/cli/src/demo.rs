@@ -7,12 +7,13 @@ use anyhow::Result;
 use rayon::prelude::*;
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Occlusion, Reference, Tracking};
+use stickslip_formats::Experiment;
 
 use crate::args::DemoArgs;
 use crate::compare::results::{Entry, Marks};
 use crate::compare::tables;
 use crate::contest::{Attempt, Rival, Rules};
-use crate::experiment::{Experiment, Texts};
+use crate::experiment::Texts;
 use crate::failure::hinted;
 use crate::figure::{Figure, Mark, Series};
 use crate::output::show;
@@ -47,7 +48,7 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let mut between = "";
     for (texts, story) in EXPERIMENTS {
-        let experiment = Experiment::parse(texts)?;
+        let experiment = texts.parse()?;
         let attempts = pool.install(|| attempts(&experiment, args.particles))?;
         let path = write_figure(&args.out, texts.name, &figure(story, &experiment, &attempts)?)?;
         let tables = tables(texts.name, story, &experiment, &attempts);

@@ -16,6 +16,7 @@ mod schedule;
 mod score;
 mod setup;
 mod track;
+mod trajectory;
 mod watch;
 
 pub use contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
@@ -29,4 +30,5 @@ pub use score::{Reference, Scores, score};
 pub use setup::{Camera, FilterSettings, Limits, Setup, Tactile};
 pub use stickslip_dynamics as dynamics;
 pub use track::{PusherTrack, TrackedPose, Tracking};
+pub use trajectory::Trajectory;
 pub use watch::{SolvedStep, StepWatch};

@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use stickslip::Trajectory;
 use stickslip_dynamics::Pose;
 
 use crate::csv_error::CsvError;
@@ -14,6 +15,14 @@ pub struct Truth {
     pub time: Vec<f64>,
     /// Pose at each time.
     pub pose: Vec<Pose>,
+}
+
+impl Truth {
+    /// The motion between the rows.
+    #[must_use]
+    pub fn trajectory(&self) -> Trajectory<'_> {
+        Trajectory { time: &self.time, pose: &self.pose }
+    }
 }
 
 /// Reads the columns time, x, y, theta; other columns are ignored. `name` is shown in errors.
