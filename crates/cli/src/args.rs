@@ -38,6 +38,9 @@ pub struct DemoArgs {
     /// Write the figures into this folder
     #[arg(long, value_name = "DIR", default_value = "stickslip-demo")]
     pub out: PathBuf,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
+    pub particles: usize,
     /// Threads [default: one per processor]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,

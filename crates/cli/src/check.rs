@@ -1,11 +1,14 @@
 //! `stickslip check`: what is wrong with a scene and a log.
 
+use std::fmt;
+
 use anyhow::Result;
 use serde::Serialize;
 use stickslip::diagnosis::{Finding, Severity, diagnose};
 
 use crate::args::CheckArgs;
 use crate::experiment::{read_log_file, read_scene_file};
+use crate::output::show;
 use crate::verdict::Verdict;
 
 /// A finding as JSON has it.
@@ -32,10 +35,10 @@ pub fn check(args: &CheckArgs) -> Result<Verdict> {
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        show(serde_json::to_string_pretty(&report)?)?
     } else {
-        report.print();
-    }
+        show(&report)?
+    };
     Ok(if report.problems == 0 { Verdict::Done } else { Verdict::Failed })
 }
 
@@ -45,16 +48,17 @@ impl Report {
         let (problems, warnings) = (count(Severity::Problem), count(Severity::Warning));
         Self { problems, warnings, findings: findings.iter().map(JsonFinding::new).collect() }
     }
+}
 
-    fn print(&self) {
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for finding in &self.findings {
-            println!("{:<8} {:<16} {}", finding.severity, finding.subject, finding.found);
+            writeln!(f, "{:<8} {:<16} {}", finding.severity, finding.subject, finding.found)?;
             if let Some(advice) = &finding.advice {
-                println!("{:<8} {:<16} help: {advice}", "", "");
+                writeln!(f, "{:<8} {:<16} help: {advice}", "", "")?;
             }
         }
-        println!();
-        println!("{} problems, {} warnings", self.problems, self.warnings);
+        writeln!(f, "\n{} problems, {} warnings", self.problems, self.warnings)
     }
 }
 

@@ -10,10 +10,12 @@ use std::path::PathBuf;
 use anyhow::{Result, anyhow};
 use rayon::prelude::*;
 use stickslip::Occlusion;
+use stickslip_formats::Experiment;
 
 use crate::args::{CompareArgs, SharedArgs};
 use crate::contest::{Rival, Rules};
-use crate::experiment::Experiment;
+use crate::experiment::read_folder;
+use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 use results::{Comparison, FolderResult, LostFolder, Marks};
@@ -37,13 +39,12 @@ struct Job {
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let folders = folders::expand(&args.folders, &args.scene_name)?;
     let comparison = args.shared.pool()?.install(|| compare_all(args, folders));
-    if args.shared.json {
-        println!("{}", serde_json::to_string_pretty(&comparison)?);
-    } else {
-        tables::print(&comparison);
+    let text = if args.shared.json { serde_json::to_string_pretty(&comparison)? } else { tables::text(&comparison) };
+    if !text.is_empty() {
+        show(text)?;
     }
     for lost in &comparison.errors {
-        eprintln!("error: {}", lost.error);
+        talk(format_args!("error: {}", lost.error));
     }
     Ok(match (comparison.folders.is_empty(), comparison.errors.is_empty()) {
         (true, _) => Verdict::Failed,
@@ -84,7 +85,7 @@ fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> Comparison {
 
 fn read_case(args: &CompareArgs, folder: PathBuf) -> Result<Case, LostFolder> {
     let read = || -> Result<Case> {
-        let experiment = Experiment::read_folder(&folder, &args.scene_name)?;
+        let experiment = read_folder(&folder, &args.scene_name)?;
         let occlusion = occlusion(&experiment, &args.shared);
         Ok(Case { folder: folder.clone(), experiment, occlusion })
     };

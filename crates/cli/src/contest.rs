@@ -2,8 +2,7 @@
 
 use anyhow::Result;
 use stickslip::{Method, Occlusion, Run, RunOptions, Scores, TactileUse, Tracking, run, score};
-
-use crate::experiment::Experiment;
+use stickslip_formats::Experiment;
 
 /// A way to estimate that takes part in a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +84,7 @@ impl Rival {
         let options = self.options(occlusion, rules, seed);
         let run = run(&experiment.setup, &experiment.log, &options, &mut |_| ())?;
         let hidden = occlusion.hidden(&experiment.log);
-        let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.virtual_radius(None));
+        let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
         Ok(Attempt { run, scores })
     }
 

@@ -7,20 +7,19 @@ use anyhow::Result;
 use rayon::prelude::*;
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Occlusion, Reference, Tracking};
+use stickslip_formats::Experiment;
 
 use crate::args::DemoArgs;
 use crate::compare::results::{Entry, Marks};
 use crate::compare::tables;
 use crate::contest::{Attempt, Rival, Rules};
-use crate::experiment::{Experiment, Texts};
+use crate::experiment::Texts;
 use crate::failure::hinted;
 use crate::figure::{Figure, Mark, Series};
+use crate::output::show;
 use crate::parameters::Parameter;
 use crate::table::Table;
 use crate::verdict::Verdict;
-
-/// Particles of each filter.
-const PARTICLES: usize = 500;
 
 /// Time that figures show after the last contact begins (s).
 const AFTERMATH: f64 = 4.0;
@@ -47,13 +46,14 @@ const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
 pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     let threads = args.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let mut between = "";
     for (texts, story) in EXPERIMENTS {
-        let experiment = Experiment::parse(texts)?;
-        let attempts = pool.install(|| attempts(&experiment))?;
-        print_tables(texts.name, story, &experiment, &attempts);
+        let experiment = texts.parse()?;
+        let attempts = pool.install(|| attempts(&experiment, args.particles))?;
         let path = write_figure(&args.out, texts.name, &figure(story, &experiment, &attempts)?)?;
-        println!("figure: {}", path.display());
-        println!();
+        let tables = tables(texts.name, story, &experiment, &attempts);
+        show(format_args!("{between}{tables}\nfigure: {}", path.display()))?;
+        between = "\n";
     }
     Ok(Verdict::Done)
 }
@@ -63,22 +63,21 @@ fn occlusion(experiment: &Experiment) -> Occlusion {
     experiment.facts.occlude_from.map_or(Occlusion::None, |from| Occlusion::Rows { from, to: None })
 }
 
-fn attempts(experiment: &Experiment) -> Result<Vec<(Rival, Attempt)>> {
-    let rules = Rules { particles: PARTICLES, tracking: Tracking::Smoothed };
+fn attempts(experiment: &Experiment, particles: usize) -> Result<Vec<(Rival, Attempt)>> {
+    let rules = Rules { particles, tracking: Tracking::Smoothed };
     let occlusion = occlusion(experiment);
     let attempt = |rival: Rival| Ok((rival, rival.attempt(experiment, occlusion, &rules, 0)?));
     Rival::on(experiment, occlusion).into_par_iter().map(attempt).collect()
 }
 
-fn print_tables(name: &str, story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) {
+fn tables(name: &str, story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) -> String {
     let dark = experiment.facts.occlude_from.map_or(0.0, |row| experiment.log.time[row]);
-    println!("{name}: {story}; no camera from {dark:.1} s on");
     let entries: Vec<Entry> =
         attempts.iter().map(|(rival, attempt)| Entry::new(*rival, Marks::new(&attempt.scores, attempt.run.unsolved))).collect();
-    println!("{}", tables::entries(&entries));
-    if let Some((_, attempt)) = attempts.iter().find(|(rival, _)| *rival == Rival::Particle) {
-        println!("{}", friction(experiment, &attempt.run.estimate));
-    }
+    let scores = format!("{name}: {story}; no camera from {dark:.1} s on\n{}", tables::entries(&entries));
+    let particle = attempts.iter().find(|(rival, _)| *rival == Rival::Particle);
+    let friction = particle.map(|(_, attempt)| friction(experiment, &attempt.run.estimate).to_string());
+    [scores].into_iter().chain(friction).collect::<Vec<_>>().join("\n")
 }
 
 /// The particle filter's friction beside what it was told and what is true.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::output::talk;
 use crate::verdict::Verdict;
 
 /// An error with the next step.
@@ -31,9 +32,9 @@ pub fn tell(error: &anyhow::Error) -> Verdict {
         let _ = error.print();
         return Verdict::BadArguments;
     }
-    eprintln!("error: {}", one_line(error));
+    talk(format_args!("error: {}", one_line(error)));
     if let Some(hinted) = error.downcast_ref::<Hinted>() {
-        eprintln!("help: {}", hinted.help);
+        talk(format_args!("help: {}", hinted.help));
     }
     Verdict::Failed
 }

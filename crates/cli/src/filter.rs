@@ -11,11 +11,12 @@ use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Occlusion, Run, Scores, run, score};
-use stickslip_formats::write_estimate;
+use stickslip_formats::{Experiment, write_estimate};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
-use crate::experiment::Experiment;
+use crate::experiment::{read_experiment, reference_name};
 use crate::failure::hinted;
+use crate::output::{show, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
 use crate::table::{Table, number};
@@ -45,19 +46,16 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         let text = "--mode contact does not exist yet; --mode paper is the only one";
         return Err(Program::command().error(clap::error::ErrorKind::InvalidValue, text).into());
     }
-    let experiment = Experiment::read(&args.scene, &args.log, args.truth.as_deref())?;
+    let experiment = read_experiment(&args.scene, &args.log, args.truth.as_deref())?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
     let (run, seconds) = timed_run(args, &experiment).with_context(|| args.log.display().to_string())?;
     let scores = scores(args, &experiment, &run.estimate);
     let written = args.out.as_deref().map(|folder| write(folder, &run.estimate)).transpose()?;
     let summary = Summary::new(&experiment, &run, &scores, seconds);
-    if args.shared.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
-    } else {
-        print_tables(args, &experiment, &run.estimate, &summary);
-    }
+    let tables = || tables(args, &experiment, &run.estimate, &summary);
+    show(if args.shared.json { serde_json::to_string_pretty(&summary)? } else { tables() })?;
     if let Some(path) = written {
-        eprintln!("wrote {}", path.display());
+        talk(format_args!("wrote {}", path.display()));
     }
     Ok(Verdict::Done)
 }
@@ -90,7 +88,7 @@ fn timed_run(args: &FilterArgs, experiment: &Experiment) -> Result<(Run, f64)> {
 
 fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {
     let hidden = args.shared.occlusion().hidden(&experiment.log);
-    score(estimate, &experiment.reference(), &hidden, experiment.virtual_radius(args.virtual_radius))
+    score(estimate, &experiment.reference(), &hidden, args.virtual_radius.unwrap_or(experiment.setup.virtual_radius()))
 }
 
 /// Writes estimate.csv into `folder`; other files there stay as they are.
@@ -119,25 +117,18 @@ impl Summary {
             frames: experiment.log.len(),
             unsolved: run.unsolved,
             collapses: run.collapses,
-            real_time_factor: experiment.duration() / seconds,
+            real_time_factor: experiment.log.duration() / seconds,
             friction: Parameter::at_end(&run.estimate).into_iter().map(|parameter| (parameter.name, parameter)).collect(),
         }
     }
 }
 
-fn print_tables(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate, summary: &Summary) {
-    println!("{}, {} against {}", args.log.display(), args.method.name(), experiment.reference_name());
-    println!();
-    print!("{}", score_table(summary));
+fn tables(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate, summary: &Summary) -> String {
+    let title = format!("{}, {} against {}\n", args.log.display(), args.method.name(), reference_name(experiment));
     let parameters = Parameter::at_end(estimate);
-    if !parameters.is_empty() {
-        println!();
-        print!("{}", friction_table(experiment, &parameters));
-    }
-    if let Some(line) = final_pose_line(experiment, estimate) {
-        println!();
-        println!("{line}");
-    }
+    let friction = (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
+    let parts = [title, score_table(summary).to_string()].into_iter().chain(friction).chain(final_pose_line(experiment, estimate));
+    parts.collect::<Vec<_>>().join("\n")
 }
 
 fn score_table(summary: &Summary) -> Table {

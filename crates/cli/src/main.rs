@@ -1,5 +1,7 @@
 //! The program `stickslip`: arguments, files, progress and exit codes around the library of the same name.
 
+#![warn(clippy::print_stdout, clippy::print_stderr, reason = "they panic where the reader has left; `output` does not")]
+
 mod args;
 mod check;
 mod compare;
@@ -9,6 +11,7 @@ mod experiment;
 mod failure;
 mod figure;
 mod filter;
+mod output;
 mod paper;
 mod parameters;
 mod progress;

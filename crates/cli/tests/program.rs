@@ -5,6 +5,7 @@
 mod common;
 
 use std::fs;
+use std::process::{Command, Output, Stdio};
 
 use common::{Experiment, STOP, json, stickslip};
 
@@ -105,6 +106,63 @@ fn broken_files_are_named_with_line_and_column() {
     assert!(talk.contains("log.csv:3: column 2 (object_x): `x"), "{talk}");
 }
 
+/// What the command does where nobody reads its results; `Silent` also where nobody reads its errors.
+fn unread(command: &mut Command, errors: Errors) -> Output {
+    let closed = || {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        Stdio::from(writer)
+    };
+    command.stdout(closed()).stderr(if errors == Errors::Unread { closed() } else { Stdio::piped() });
+    command.spawn().unwrap().wait_with_output().unwrap()
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Errors {
+    Read,
+    Unread,
+}
+
+/// A panic would exit with 101 and tell of itself on standard error.
+#[test]
+fn readers_that_leave_early_do_not_bring_a_command_down() {
+    let good = Experiment::copy(STOP, "broken_pipe/good");
+    let broken = Experiment::copy(STOP, "broken_pipe/broken");
+    broken.edit("log.csv", |_| "time\n".to_owned());
+    let (log, scene) = (good.log(), good.scene());
+    let parent = good.folder.parent().unwrap().display().to_string();
+    let figures = good.folder.join("figures");
+    let commands: [(&[&str], i32); 8] = [
+        (&["demo", "--particles", "16", "--out", figures.to_str().unwrap()], 0),
+        (&["check", &scene, &log], 0),
+        (&["check", &scene, &log, "--json"], 0),
+        (&["filter", &log, "--scene", &scene, "--method", "nominal"], 0),
+        (&["filter", &log, "--scene", &scene, "--method", "nominal", "--json"], 0),
+        (&["compare", &parent, "--particles", "16"], 3),
+        (&["--help"], 0),
+        (&["filter", "no-such-log.csv", "--scene", &scene], 1),
+    ];
+    for (arguments, code) in commands {
+        let run = unread(stickslip().args(arguments), Errors::Read);
+        let talk = String::from_utf8(run.stderr).unwrap();
+        assert_eq!((run.status.code(), talk.contains("panicked")), (Some(code), false), "{arguments:?}: {talk}");
+        assert_eq!(unread(stickslip().args(arguments), Errors::Unread).status.code(), Some(code), "{arguments:?}");
+    }
+    assert_eq!(fs::read_dir(figures).unwrap().count(), 2, "files are written all the same");
+}
+
+/// A full disk is a failure, other than a reader that has left.
+#[test]
+#[cfg(target_os = "linux")]
+fn results_that_cannot_be_written_are_an_error() {
+    let case = Experiment::copy(STOP, "full_disk");
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let run = stickslip().args(["check", &case.scene(), &case.log()]).stdout(full).output().unwrap();
+    let talk = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{talk}");
+    assert!(talk.starts_with("error: standard output cannot be written: ") && talk.contains("\nhelp: "), "{talk}");
+}
+
 #[test]
 fn missing_files_come_with_the_next_step() {
     let run = stickslip().args(["filter", "no-such-log.csv", "--scene", "no-such-scene.toml"]).output().unwrap();
@@ -151,7 +209,7 @@ fn compare_of_nothing_but_broken_folders_fails() {
 #[test]
 fn demo_prints_tables_and_writes_a_figure_per_experiment() {
     let folder = common::empty_folder("demo");
-    let run = stickslip().arg("demo").current_dir(&folder).output().unwrap();
+    let run = stickslip().arg("demo").args(FEW).current_dir(&folder).output().unwrap();
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     let told = String::from_utf8(run.stdout).unwrap();
     for line in ["particle, no tactile", "particle, camera on", "kalman", "truth", "stickslip-demo/stop-square50-bar-000.svg"] {

@@ -6,6 +6,7 @@ use stickslip_filter::{Block, BlockMut, Draw, Model};
 use crate::angle::wrapped;
 use crate::columns::Columns;
 use crate::propagation::Propagation;
+use crate::watch::StepWatch;
 use crate::{Camera, Setup};
 
 /// Best log-likelihood below which no particle explains the observation: the particles are redrawn around it.
@@ -62,19 +63,26 @@ impl Observation {
 
 /// The model of one setup, started at one pose.
 #[derive(Clone, Debug)]
-pub struct ContactModel {
+pub struct ContactModel<'w> {
     pub(crate) dynamics: Dynamics,
     pub(crate) setup: Setup,
     camera: Camera,
     start: Pose,
     pub(crate) columns: Columns,
+    pub(crate) watch: Option<&'w dyn StepWatch>,
 }
 
-impl ContactModel {
+impl<'w> ContactModel<'w> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
     pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
         let columns = Columns::new(setup.scene.fixels.len(), history);
-        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, start, columns }
+        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, start, columns, watch: None }
+    }
+
+    /// The same, with a `watch` that is shown every step solved.
+    #[must_use]
+    pub fn watched(self, watch: Option<&'w dyn StepWatch>) -> Self {
+        Self { watch, ..self }
     }
 
     /// Layout of the particles.
@@ -120,7 +128,7 @@ impl ContactModel {
     }
 }
 
-impl Model for ContactModel {
+impl Model for ContactModel<'_> {
     type Input = StepPlan;
     type Observation = Observation;
     type Scratch = Propagation;
@@ -177,7 +185,7 @@ impl Model for ContactModel {
     }
 }
 
-impl ContactModel {
+impl<'w> ContactModel<'w> {
     fn drawn_around(&self, pose: &Pose, normals: [f64; 3]) -> [f64; 3] {
         let camera = &self.camera;
         [

@@ -23,6 +23,11 @@ impl Log {
         self.time.len()
     }
 
+    /// Time from the first row to the last (s); 0 where there is none.
+    pub fn duration(&self) -> f64 {
+        self.time.last().copied().unwrap_or(0.0) - self.time.first().copied().unwrap_or(0.0)
+    }
+
     /// True where there is no row.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()

@@ -1,8 +1,9 @@
 //! The nominal simulation: Γ with fixed nominal friction from the first observed pose, driven by the recorded pusher.
 
-use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepInput, StepWork};
+use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepWork};
 
 use crate::run::Prepared;
+use crate::watch::SolvedStep;
 use crate::{Estimate, EstimateRow, Setup};
 
 /// Simulates the rows of `prepared` once.
@@ -13,7 +14,7 @@ pub(crate) fn simulate(setup: &Setup, prepared: &Prepared<'_>, progress: &mut dy
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[prepared.first] = row(&particle, None, 0);
     for k in prepared.first..prepared.log.len() - 1 {
-        let unsolved = advance(&dynamics, prepared.schedule.step(k), &mut particle, &mut work);
+        let unsolved = advance(&dynamics, prepared, k, &mut particle, &mut work);
         let touch = touch_flags(setup, &work, prepared.schedule.step(k).last().map_or(0.0, |s| s.h));
         estimate.rows[k + 1] = row(&particle, Some(touch), u32::from(unsolved));
         progress(k + 1);
@@ -21,15 +22,18 @@ pub(crate) fn simulate(setup: &Setup, prepared: &Prepared<'_>, progress: &mut dy
     estimate
 }
 
-/// Runs the substeps of one row; true where one of them had no certified solution.
-fn advance(dynamics: &Dynamics, substeps: &[StepInput], particle: &mut Particle, work: &mut StepWork<1>) -> bool {
+/// Runs the substeps from row `k` to the next; true where one of them had no certified solution.
+fn advance(dynamics: &Dynamics, prepared: &Prepared<'_>, k: usize, particle: &mut Particle, work: &mut StepWork<1>) -> bool {
     let friction = [dynamics.scene().nominal];
     let mut unsolved = false;
-    for input in substeps {
+    for input in prepared.schedule.step(k) {
         let mut one = [*particle];
         let [report] = dynamics.step(input, &friction, &mut one, work);
         unsolved |= report.outcome != Outcome::Solved;
         [*particle] = one;
+        if let Some(watch) = prepared.watch {
+            watch.see(&SolvedStep { problem: &work.problem(0), solution: &work.solution(0), report });
+        }
     }
     unsolved
 }

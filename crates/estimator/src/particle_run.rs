@@ -18,7 +18,7 @@ pub(crate) fn track(
     progress: &mut dyn FnMut(usize),
 ) -> Result<(Estimate, u32), RunError> {
     let history = prepared.rows_within(camera.latency);
-    let model = ContactModel::new(setup, camera, prepared.start, history);
+    let model = ContactModel::new(setup, camera, prepared.start, history).watched(prepared.watch);
     let settings = Settings {
         particles: options.particles,
         seed: options.seed,
@@ -78,7 +78,7 @@ fn reported(row: EstimateRow, report: &StepReport, visual: bool) -> EstimateRow 
 }
 
 /// Weighted means and standard deviations of the particle set; θ is unwrapped from `near`.
-fn summary(filter: &ParticleFilter<ContactModel>, setup: &Setup, near: f64) -> EstimateRow {
+fn summary(filter: &ParticleFilter<ContactModel<'_>>, setup: &Setup, near: f64) -> EstimateRow {
     let layout = filter.model().layout();
     let mean = |column: usize| filter.weighted_mean(column);
     let std = |column: usize| filter.weighted_std(column);

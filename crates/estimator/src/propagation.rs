@@ -6,6 +6,7 @@ use stickslip_filter::{BLOCK, BlockMut, Draw};
 use crate::Limits;
 use crate::columns::Columns;
 use crate::contact_model::{ContactModel, ParameterNoise, StepPlan};
+use crate::watch::{SolvedStep, StepWatch};
 
 /// Particles that are stepped side by side.
 const LANES: usize = 8;
@@ -64,7 +65,7 @@ impl Default for Propagation {
 
 impl Propagation {
     /// Moves the particles of `block` over one step.
-    pub fn propagate(&mut self, model: &ContactModel, plan: &StepPlan, draw: Draw, block: &mut BlockMut<'_>) {
+    pub fn propagate(&mut self, model: &ContactModel<'_>, plan: &StepPlan, draw: Draw, block: &mut BlockMut<'_>) {
         let (level, chunks) = (self.level, block.len().div_ceil(LANES));
         on_widest(
             level,
@@ -84,6 +85,9 @@ impl Propagation {
                 #[inline(always)]
                 || self.note_contacts(model, chunks),
             );
+            if let Some(watch) = model.watch {
+                self.show(watch, block.len());
+            }
         }
         on_widest(
             level,
@@ -94,7 +98,7 @@ impl Propagation {
 
     /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen.
     #[inline(always)]
-    fn load(&mut self, model: &ContactModel, plan: &StepPlan, draw: Draw, block: &BlockMut<'_>) {
+    fn load(&mut self, model: &ContactModel<'_>, plan: &StepPlan, draw: Draw, block: &BlockMut<'_>) {
         let drawn = plan.parameter_noise == ParameterNoise::Drawn;
         if drawn {
             self.draw_normals(draw, 0, block);
@@ -129,7 +133,7 @@ impl Propagation {
 
     /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, its variance proportional to h.
     #[inline(always)]
-    fn apply_force(&mut self, model: &ContactModel, h: f64, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+    fn apply_force(&mut self, model: &ContactModel<'_>, h: f64, draw: Draw, pair: u32, block: &BlockMut<'_>) {
         self.draw_normals(draw, pair, block);
         let scene = &model.setup.scene;
         let share = model.setup.filter.force_std * scene.object.mass * scene.gravity * NOISE_STEP * (h / NOISE_STEP).sqrt();
@@ -143,9 +147,17 @@ impl Propagation {
         }
     }
 
+    /// Shows a watch the block's last step.
+    fn show(&self, watch: &dyn StepWatch, particles: usize) {
+        let reports = self.work.reports().as_flattened();
+        for (i, report) in reports.iter().enumerate().take(particles) {
+            watch.see(&SolvedStep { problem: &self.work.problem(i), solution: &self.work.solution(i), report: *report });
+        }
+    }
+
     /// Adds what took part in the last substep.
     #[inline(always)]
-    fn note_contacts(&mut self, model: &ContactModel, chunks: usize) {
+    fn note_contacts(&mut self, model: &ContactModel<'_>, chunks: usize) {
         let scene = &model.setup.scene;
         let rho = scene.object.gyration_radius();
         let pressed = |work: &StepWork<LANES>, chunk, body| work.normal_impulses(chunk, body).gt(Lanes::ZERO);
@@ -166,7 +178,7 @@ impl Propagation {
 
     /// Writes the block back; Φ keeps only the parameters that took part (Table I).
     #[inline(always)]
-    fn store(&mut self, model: &ContactModel, plan: &StepPlan, block: &mut BlockMut<'_>) {
+    fn store(&mut self, model: &ContactModel<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let touch_impulse = Lanes::splat(model.setup.tactile.touch_force * last_h);
         for chunk in 0..block.len().div_ceil(LANES) {

@@ -4,6 +4,7 @@ use stickslip_dynamics::Pose;
 
 use crate::schedule::Schedule;
 use crate::track::PusherTrack;
+use crate::watch::StepWatch;
 use crate::{Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal, particle_run};
 
 /// How a log is turned into estimates.
@@ -77,12 +78,30 @@ pub struct Run {
 /// # Errors
 /// Where the log has no visible object pose, the scene lacks what the method needs, or options are out of range.
 pub fn run(setup: &Setup, log: &Log, options: &RunOptions, progress: &mut dyn FnMut(usize)) -> Result<Run, RunError> {
-    let prepared = Prepared::new(setup, log, options)?;
+    run_prepared(setup, &Prepared::new(setup, log, options)?, options, progress)
+}
+
+/// The same, with a `watch` that is shown every time step solved on the way; it changes no result.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_watched(
+    setup: &Setup,
+    log: &Log,
+    options: &RunOptions,
+    watch: &dyn StepWatch,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Run, RunError> {
+    let prepared = Prepared { watch: Some(watch), ..Prepared::new(setup, log, options)? };
+    run_prepared(setup, &prepared, options, progress)
+}
+
+fn run_prepared(setup: &Setup, prepared: &Prepared<'_>, options: &RunOptions, progress: &mut dyn FnMut(usize)) -> Result<Run, RunError> {
     let camera = || setup.camera.ok_or(RunError::NoCamera);
     let (estimate, collapses) = match options.method {
-        Method::Particle => particle_run::track(setup, camera()?, &prepared, options, progress)?,
-        Method::Kalman => (kalman_baseline::track(setup, &camera()?, &prepared)?, 0),
-        Method::Nominal => (nominal::simulate(setup, &prepared, progress), 0),
+        Method::Particle => particle_run::track(setup, camera()?, prepared, options, progress)?,
+        Method::Kalman => (kalman_baseline::track(setup, &camera()?, prepared)?, 0),
+        Method::Nominal => (nominal::simulate(setup, prepared, progress), 0),
     };
     let unsolved = estimate.rows.iter().filter_map(|row| row.unsolved).map(u64::from).sum();
     Ok(Run { estimate, unsolved, collapses })
@@ -96,6 +115,7 @@ pub(crate) struct Prepared<'a> {
     pub first: usize,
     pub start: Pose,
     pub schedule: Schedule,
+    pub watch: Option<&'a dyn StepWatch>,
 }
 
 impl<'a> Prepared<'a> {
@@ -108,7 +128,7 @@ impl<'a> Prepared<'a> {
         let seen = (0..log.len()).find_map(|row| log.object[row].filter(|_| !hidden[row]).map(|pose| (row, pose)));
         let (first, start) = seen.ok_or(RunError::NoObjectPose { rows: log.len() })?;
         let track = PusherTrack::new(log, setup.camera.as_ref(), options.tracking)?;
-        Ok(Self { log, hidden, first, start, schedule: Schedule::new(&log.time, &track, options.substeps) })
+        Ok(Self { log, hidden, first, start, schedule: Schedule::new(&log.time, &track, options.substeps), watch: None })
     }
 
     /// The object pose of a row, where it was measured and is not hidden.

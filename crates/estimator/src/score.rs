@@ -3,7 +3,13 @@
 use stickslip_dynamics::Pose;
 
 use crate::angle::wrapped;
-use crate::{Estimate, Log};
+use crate::{Camera, Estimate, Log, Trajectory};
+
+/// Standard deviation of an object position where no camera is described (m).
+const POSITION_STD: f64 = 3e-4;
+
+/// Distance below which an exact motion counts as rest (m).
+const REST: f64 = 1e-5;
 
 /// The trajectory an estimate is scored against.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,9 +27,22 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The poses of a log itself, hidden ones included.
-    pub fn of_log(log: &Log, latency: f64, position_std: f64) -> Self {
-        Self { time: log.time.clone(), pose: log.object.clone(), latency, first_pusher_contact: None, rest: (4.0 * position_std).max(1e-5) }
+    /// The poses of a log itself, hidden ones included, as `camera` measures them.
+    pub fn of_log(log: &Log, camera: Option<&Camera>) -> Self {
+        let position_std = camera.map_or(POSITION_STD, |camera| camera.position_std);
+        Self {
+            time: log.time.clone(),
+            pose: log.object.clone(),
+            latency: camera.map_or(0.0, |camera| camera.latency),
+            first_pusher_contact: None,
+            rest: (4.0 * position_std).max(REST),
+        }
+    }
+
+    /// The exact motion at the rows of a log; rows outside it have no pose.
+    pub fn of_truth(log: &Log, truth: Trajectory<'_>) -> Self {
+        let pose = log.time.iter().map(|time| truth.pose_at(*time)).collect();
+        Self { time: log.time.clone(), pose, latency: 0.0, first_pusher_contact: None, rest: REST }
     }
 }
 

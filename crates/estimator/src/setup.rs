@@ -95,6 +95,11 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// r_v, the weight of an angle in the scores, where no other is given: the object's radius of gyration (m).
+    pub fn virtual_radius(&self) -> f64 {
+        self.scene.object.gyration_radius()
+    }
+
     /// Whether the tripod radius is a parameter (false where the feet are known).
     pub fn has_tripod(&self) -> bool {
         matches!(self.scene.feet, Feet::Tripod { .. })

@@ -7,6 +7,7 @@
 mod csv_error;
 mod csv_table;
 mod estimate_csv;
+mod experiment;
 mod log_csv;
 mod nearest;
 mod number;
@@ -16,6 +17,7 @@ mod truth_json;
 
 pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_csv::{read_estimate, write_estimate};
+pub use experiment::Experiment;
 pub use log_csv::{LogWarning, SensorError, check_sensors, read_log, write_log};
 pub use scene::{SceneError, SceneProblem, read_scene};
 pub use truth_csv::{Truth, read_truth_csv, write_truth_csv};

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Write};
 
+use stickslip::Trajectory;
 use stickslip_dynamics::{Pose, Twist};
 
 use crate::csv_error::CsvError;
@@ -29,6 +30,14 @@ pub struct Truth {
     pub pusher_force: Vec<f64>,
     /// Normal force of each fixel, a column per fixel, mean over the interval that ends at the row (N).
     pub fixel_forces: Vec<Vec<f64>>,
+}
+
+impl Truth {
+    /// The motion between the rows.
+    #[must_use]
+    pub fn trajectory(&self) -> Trajectory<'_> {
+        Trajectory { time: &self.time, pose: &self.pose }
+    }
 }
 
 /// Where each column stands.

@@ -8,19 +8,22 @@
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.
-//! - [`data_root`]: where recorded experiments lie.
+//! - [`data_root`], [`recorded_cases`]: where recorded experiments lie, and how they are run.
+//! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard problems.
 
 mod closed_form;
 mod cone;
 mod conic;
 mod data;
 mod draft;
+mod harvest;
 mod impulses;
 mod jam;
 mod manufactured;
 mod mode_system;
 mod modes;
 mod random_problem;
+mod recorded;
 mod residual;
 mod rng;
 mod scaled;
@@ -29,9 +32,11 @@ mod survey;
 pub use closed_form::{Block, Stop};
 pub use cone::{cone_program_step, cone_program_twist};
 pub use data::data_root;
+pub use harvest::{Harvest, HarvestOptions, HarvestedStep, MOST_PARTICLES, harvest, survey_steps};
 pub use impulses::impulses_for_twist;
 pub use jam::{gap_margin, may_jam};
 pub use modes::enumerate_modes;
 pub use random_problem::{Corpus, Family};
+pub use recorded::{RecordedCase, RecordedError, recorded_cases};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
 pub use survey::{Tally, survey};

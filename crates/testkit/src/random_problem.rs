@@ -116,7 +116,8 @@ impl Corpus {
         self.draw(index).1
     }
 
-    fn draw(&self, index: u64) -> (StepProblem, Option<StepSolution>) {
+    /// Problem `index` with its witness.
+    pub(crate) fn draw(&self, index: u64) -> (StepProblem, Option<StepSolution>) {
         let mut draft = Draft::new(SplitMix64::stream(self.seed, index));
         let family = self.family(index);
         if let Some((motion, contacts)) = prescribed_motion(family, &mut draft) {

@@ -3,7 +3,7 @@
 pub(crate) struct SplitMix64(u64);
 
 /// The output function: a bijection of 64-bit words that scatters neighbours.
-fn scatter(word: u64) -> u64 {
+pub(crate) fn scatter(word: u64) -> u64 {
     let word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ (word >> 31)

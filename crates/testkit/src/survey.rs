@@ -1,10 +1,11 @@
 //! Runs the solver over a corpus and counts how its problems ended, per family: [`survey`].
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::Range;
 
 use rayon::prelude::*;
-use stickslip_dynamics::{Outcome, Route, solve};
+use stickslip_dynamics::{Outcome, Report, Route, StepProblem, StepSolution, solve};
 
 use crate::{Corpus, Family, gap_margin, may_jam};
 
@@ -25,51 +26,90 @@ pub struct Tally {
     pub worst_residual: f64,
 }
 
+impl Tally {
+    /// The columns of its [`Display`](fmt::Display).
+    pub const TITLES: &'static str = " problems    newton  smoothed  homotopy   modes  infeasible  failed     residual";
+
+    /// One step by its report; `index` names it should it have failed.
+    #[must_use]
+    pub fn of_report(index: u64, report: &Report) -> Self {
+        let mut tally = Tally { problems: 1, ..Tally::default() };
+        match report.outcome {
+            Outcome::Solved => {
+                tally.solved[place(report.route)] = 1;
+                tally.worst_residual = report.residual;
+            }
+            Outcome::Infeasible => tally.infeasible = 1,
+            Outcome::Failed => tally.failed.push(index),
+        }
+        tally
+    }
+
+    /// Counts the problems of another tally too.
+    pub fn add(&mut self, other: Tally) {
+        self.problems += other.problems;
+        for (a, b) in self.solved.iter_mut().zip(other.solved) {
+            *a += b;
+        }
+        self.infeasible += other.infeasible;
+        self.failed.extend(other.failed);
+        self.contradicted.extend(other.contradicted);
+        self.worst_residual = self.worst_residual.max(other.worst_residual);
+    }
+
+    /// The problems of both.
+    #[must_use]
+    pub fn sum(mut self, other: Tally) -> Self {
+        self.add(other);
+        self
+    }
+}
+
+/// Place of a route among [`Tally::solved`].
+fn place(route: Route) -> usize {
+    match route {
+        Route::Newton => 0,
+        Route::Continuation => 1,
+        Route::Homotopy => 2,
+        Route::Modes => 3,
+    }
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [newton, smoothed, homotopy, modes] = self.solved;
+        let (problems, infeasible, failed) = (self.problems, self.infeasible, self.failed.len());
+        write!(
+            f,
+            "{problems:>9} {newton:>9} {smoothed:>9} {homotopy:>9} {modes:>7} {infeasible:>11} {failed:>7} {:>12.1e}",
+            self.worst_residual
+        )
+    }
+}
+
 /// Solves the problems of `range`; independent of the number of threads.
 pub fn survey(corpus: &Corpus, range: Range<u64>) -> BTreeMap<Family, Tally> {
     let one = |index: u64| {
-        let mut tallies = BTreeMap::new();
-        tallies.insert(corpus.family(index), examine(corpus, index));
-        tallies
+        let (problem, witness) = corpus.draw(index);
+        BTreeMap::from([(corpus.family(index), examine(index, &problem, witness.as_ref()))])
     };
     range.into_par_iter().map(one).reduce(BTreeMap::new, merged)
 }
 
-fn examine(corpus: &Corpus, index: u64) -> Tally {
-    let problem = corpus.problem(index);
-    let (_, report) = solve(&problem);
-    let mut tally = Tally { problems: 1, ..Tally::default() };
-    match (report.outcome, report.route) {
-        (Outcome::Solved, route) => {
-            tally.solved[match route {
-                Route::Newton => 0,
-                Route::Continuation => 1,
-                Route::Homotopy => 2,
-                Route::Modes => 3,
-            }] = 1;
-            tally.worst_residual = report.residual;
-        }
-        (Outcome::Infeasible, _) => {
-            tally.infeasible = 1;
-            let exists = corpus.witness(index).is_some() || !may_jam(&problem) && gap_margin(&problem, 1.0) > 0.0;
-            tally.contradicted.extend(exists.then_some(index));
-        }
-        (Outcome::Failed, _) => tally.failed.push(index),
+/// Solves problem `index` of a set from a cold start; `witness` is a solution of it, where one is known.
+pub(crate) fn examine(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
+    let (_, report) = solve(problem);
+    let mut tally = Tally::of_report(index, &report);
+    if report.outcome == Outcome::Infeasible {
+        let exists = witness.is_some() || !may_jam(problem) && gap_margin(problem, 1.0) > 0.0;
+        tally.contradicted.extend(exists.then_some(index));
     }
     tally
 }
 
 fn merged(mut all: BTreeMap<Family, Tally>, more: BTreeMap<Family, Tally>) -> BTreeMap<Family, Tally> {
     for (family, tally) in more {
-        let sum = all.entry(family).or_default();
-        sum.problems += tally.problems;
-        for (a, b) in sum.solved.iter_mut().zip(tally.solved) {
-            *a += b;
-        }
-        sum.infeasible += tally.infeasible;
-        sum.failed.extend(tally.failed);
-        sum.contradicted.extend(tally.contradicted);
-        sum.worst_residual = sum.worst_residual.max(tally.worst_residual);
+        all.entry(family).or_default().add(tally);
     }
     all
 }

@@ -1,20 +1,21 @@
-//! A comparison as text: [`print()`].
+//! A comparison as text: [`text`].
 
 use super::results::{COLUMNS, Comparison, Entry, Overall};
 use crate::table::{Table, number};
 
-/// Prints a table per folder, then one over all of them.
-pub fn print(comparison: &Comparison) {
-    for folder in &comparison.folders {
-        println!("{}", folder.folder);
-        println!("{}", entries(&folder.methods));
-    }
-    if comparison.folders.is_empty() {
-        return;
-    }
-    println!("median (90th percentile) over {} folders, each the median of {} seeds", comparison.folders.len(), comparison.seeds);
-    print!("{}", overall(&comparison.overall));
-    println!("WMSE: over hidden rows, over all where none is hidden. Quantiles: {}.", comparison.quantile);
+/// A table per folder, then one over all of them; nothing where there is no folder.
+pub fn text(comparison: &Comparison) -> String {
+    let Comparison { folders, seeds, quantile, .. } = comparison;
+    let folder_tables = folders.iter().map(|folder| format!("{}\n{}", folder.folder, entries(&folder.methods)));
+    let overall = (!folders.is_empty()).then(|| {
+        format!(
+            "median (90th percentile) over {} folders, each the median of {seeds} seeds\n{}\
+             WMSE: over hidden rows, over all where none is hidden. Quantiles: {quantile}.\n",
+            folders.len(),
+            overall(&comparison.overall)
+        )
+    });
+    folder_tables.chain(overall).collect::<Vec<_>>().join("\n")
 }
 
 /// The scores of each rival on one experiment.

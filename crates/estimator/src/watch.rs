@@ -1,0 +1,25 @@
+//! Looking over a run's shoulder: a [`StepWatch`] is shown every time step that is solved.
+
+use std::fmt::Debug;
+
+use stickslip_dynamics::{Report, StepProblem, StepSolution};
+
+/// One particle's time step.
+#[derive(Clone, Copy, Debug)]
+pub struct SolvedStep<'a> {
+    /// The contact problem.
+    pub problem: &'a StepProblem,
+    /// What the solver answered.
+    pub solution: &'a StepSolution,
+    /// How it ended.
+    pub report: Report,
+}
+
+/// Is shown the time steps of a run, substeps included: those that count, with all contacts that could act.
+///
+/// The steps of 64 particles that follow each other come in order from one thread; those of a larger set come from several threads
+/// at once, in no fixed order.
+pub trait StepWatch: Debug + Sync {
+    /// One step.
+    fn see(&self, step: &SolvedStep<'_>);
+}
