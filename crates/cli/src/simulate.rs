@@ -12,6 +12,7 @@ use stickslip_testbed::true_friction;
 use crate::args::SimulateArgs;
 use crate::experiment::{read_facts_file, text_of};
 use crate::failure::hinted;
+use crate::output::{show, talk};
 use crate::paper::PaperScene;
 use crate::simulation::{Options, Simulation};
 use crate::table::Table;
@@ -36,11 +37,11 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
     let options = Options { physics: args.physics, seed: args.seed, rate: args.rate };
     let simulation = Simulation::run(&setup, &source.name, &known, &options)?;
     write(&args.out, &source.scene, &simulation)?;
-    print_tables(&source.name, &setup, &simulation);
+    show(tables(&source.name, &setup, &simulation))?;
     if simulation.trace.unsolved > 0 {
-        eprintln!("warning: {} steps have no certified solution", simulation.trace.unsolved);
+        talk(format_args!("warning: {} steps have no certified solution", simulation.trace.unsolved));
     }
-    eprintln!("wrote {}", args.out.display());
+    talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
 }
 
@@ -89,10 +90,9 @@ fn write(folder: &Path, scene: &str, simulation: &Simulation) -> Result<()> {
     write("log.csv", &|file| write_log(file, &simulation.log))
 }
 
-fn print_tables(name: &str, setup: &Setup, simulation: &Simulation) {
+fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
     let Simulation { log, facts, .. } = simulation;
-    println!("{name}: {} rows, {:.1} s", log.len(), log.time.last().copied().unwrap_or(0.0));
-    println!();
+    let length = log.time.last().copied().unwrap_or(0.0);
     let mut events = Table::new(["event", "row", "time [s]"]);
     let mut event = |what: String, row: Option<usize>| {
         let cells = row.map_or(["-".to_owned(), "-".to_owned()], |row| [row.to_string(), format!("{:.2}", log.time[row])]);
@@ -103,8 +103,7 @@ fn print_tables(name: &str, setup: &Setup, simulation: &Simulation) {
         event(format!("fixel {} touches", j + 1), *row);
     }
     event("camera dark from".to_owned(), facts.occlude_from);
-    println!("{events}");
-    print!("{}", friction(setup, facts));
+    format!("{name}: {} rows, {length:.1} s\n\n{events}\n{}", log.len(), friction(setup, facts))
 }
 
 /// The friction that the scene tells beside the true one.

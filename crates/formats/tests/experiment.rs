@@ -22,7 +22,7 @@ fn log(rows: u32) -> Log {
 
 fn truth(step: f64, rows: u32) -> Truth {
     let time: Vec<f64> = (0..rows).map(|row| step * f64::from(row)).collect();
-    Truth { pose: time.iter().map(|time| moving(*time)).collect(), time }
+    Truth { pose: time.iter().map(|time| moving(*time)).collect(), time, ..Truth::default() }
 }
 
 fn assert_near(found: Pose, expected: Pose) {
