@@ -22,6 +22,9 @@ const MARGIN: f64 = 5e-4;
 /// Search distance at which widening ends (m): nothing real moves so far in one step.
 const WIDEST: f64 = 1e3;
 
+/// Lanes from which on vector instructions wider than the baseline's are worth their own copy of the step.
+const WIDE: usize = 4;
+
 /// The pusher during one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PusherMotion {
@@ -168,7 +171,7 @@ impl Dynamics {
     /// Every contact that could act takes part: where the solved twist could have closed a larger gap than was looked for,
     /// the step is solved again with a wider search. A particle's result depends on nothing but the particle.
     pub fn step_block<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
-        if W == 1 {
+        if W < WIDE {
             self.step_lanes(input, particles, work);
         } else {
             on_widest(

@@ -1,9 +1,9 @@
-//! Particles side by side must not influence each other: any number of lanes gives the same bits.
+//! Particles side by side must not influence each other: any number of lanes, on any vector instructions, gives the same bits.
 
 mod common;
 
 use common::{FRICTION, Rng, bench_input, bench_scene, disc, fixel, pushing, square_scene};
-use stickslip_dynamics::{Dynamics, Friction, Outcome, Particle, Pose, Report, Route, StepInput, StepWork, Twist, Wrench};
+use stickslip_dynamics::{Dynamics, Friction, Level, Outcome, Particle, Pose, Report, Route, StepInput, StepWork, Twist, Wrench};
 
 const PARTICLES: usize = 16;
 
@@ -55,7 +55,15 @@ fn assert_same(one: &[Vec<Said>], many: &[Vec<Said>], lanes: usize) {
     }
 }
 
-/// Compares all widths; returns what one lane said.
+/// The baseline's vector instructions and all wider ones that this machine has.
+fn levels() -> Vec<Level> {
+    let mut levels = vec![Level::new(), Level::baseline()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    levels
+}
+
+/// Compares all widths and instruction sets; returns what one lane said.
 fn assert_independent(
     dynamics: &Dynamics,
     inputs: &[StepInput],
@@ -64,7 +72,9 @@ fn assert_independent(
 ) -> Vec<Said> {
     let one = run::<1>(dynamics, inputs, friction, start);
     assert_same(&one, &run::<2>(dynamics, inputs, friction, start), 2);
-    assert_same(&one, &run::<8>(dynamics, inputs, friction, start), 8);
+    for level in levels() {
+        assert_same(&one, &run::<8>(&dynamics.clone().with_level(level), inputs, friction, start), 8);
+    }
     one.into_iter().flatten().collect()
 }
 
