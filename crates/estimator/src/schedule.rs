@@ -19,7 +19,7 @@ pub struct Schedule {
 impl Schedule {
     /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts.
     pub fn new(time: &[f64], track: &PusherTrack, substeps: Option<u32>) -> Self {
-        let mut direction = first_direction(time, track);
+        let mut direction = track.first_direction(time);
         let steps = time.windows(2).enumerate().map(|(row, pair)| {
             let h = pair[1] - pair[0];
             let motion = track.motion(row, h, direction);
@@ -35,16 +35,6 @@ impl Schedule {
     pub fn step(&self, row: usize) -> &[StepInput] {
         &self.steps[row]
     }
-}
-
-/// The direction before the pusher has moved: that of its first motion.
-fn first_direction(time: &[f64], track: &PusherTrack) -> [f64; 2] {
-    let undecided = [0.0; 2];
-    let found = time
-        .windows(2)
-        .enumerate()
-        .find_map(|(row, pair)| track.motion(row, pair[1] - pair[0], undecided).map(|m| m.direction).filter(|d| *d != undecided));
-    found.unwrap_or([1.0, 0.0])
 }
 
 fn parts(h: f64) -> u32 {

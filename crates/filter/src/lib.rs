@@ -23,6 +23,7 @@ mod process_noise;
 mod resample;
 mod series;
 mod streams;
+mod velocity_bank;
 mod weights;
 
 pub use constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
@@ -34,4 +35,5 @@ pub use process_noise::{Optimum, ProcessNoiseFit};
 pub use resample::Resampling;
 pub use series::SeriesError;
 pub use streams::{Draw, Purpose, Streams};
+pub use velocity_bank::{BankState, VelocityBank};
 pub use weights::{LogWeights, WeightError};

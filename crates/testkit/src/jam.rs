@@ -94,7 +94,11 @@ fn least_wrench(problem: &StepProblem) -> f64 {
     let normals = sums.pop().expect("five sums");
     let push = sums.pop().expect("four sums");
     sums.into_iter().for_each(|row| conic.equal((row, 0.0)));
+    // the part of the push that is positive: a drive that is dragged along need not yield
     conic.at_least((push, 0.0));
+    let mut positive = vec![0.0; n];
+    positive[wrench + 3] = 1.0;
+    conic.at_least((positive, 0.0));
     conic.equal((normals, -1.0));
     let optimum = conic.attempts().next().expect("a bounded quadratic program");
     let size = |axis: usize| optimum.x[wrench + axis].abs();

@@ -1,6 +1,6 @@
 //! Oracles against each other: mode enumeration, cone program, witnesses and the two statements on existence.
 
-use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist, Wrench};
+use stickslip_dynamics::{ContactPoint, Stall, StepProblem, StepSolution, Twist, Wrench};
 use stickslip_testkit::{
     Block, Corpus, Family, cone_program_step, cone_program_twist, enumerate_modes, gap_margin, impulses_for_twist, may_jam, residual_si,
 };
@@ -152,6 +152,25 @@ fn gap_margin_below_zero_means_that_enumeration_finds_nothing() {
             assert!(problem.contacts.len() > 2 || enumerate_modes(&problem).is_empty(), "problem {index}");
         }
     }
+}
+
+/// Faces close on an object from left and right. A drive that pushes yields; one whose direction points the other way is dragged
+/// into the jam, and no force limit helps.
+#[test]
+fn may_jam_knows_a_drive_that_is_dragged_along() {
+    let driven = |direction: [f64; 2], rise: f64| {
+        let mut problem = between_fixels([0.0, rise], 0.3, -1e-4);
+        let pushes_right = problem.contacts.iter().position(|contact| contact.normal[0] > 0.0).expect("a contact from the left");
+        problem.contacts[pushes_right].on_pusher = true;
+        problem.stall = Some(Stall { impulse: 0.1, direction });
+        problem
+    };
+    assert!(!may_jam(&driven([1.0, 0.0], 0.0)));
+    assert!(may_jam(&driven([-1.0, 0.0], 0.0)));
+    // forces that cancel run along the line between the contacts, which rises by 1/6: with a downward drive or against it
+    let down = [0.1, -(0.99_f64).sqrt()];
+    assert!(may_jam(&driven(down, 0.01)));
+    assert!(!may_jam(&driven(down, -0.01)));
 }
 
 #[test]
