@@ -9,7 +9,7 @@ import sys
 from statistics import median
 
 PHASES = [("pushed", range(10, 76)), ("1 fixel", range(95, 146)), ("2 fixels", range(165, 198)), ("rest", range(300, 600))]
-END_OF_PUSH = 82  # last frame before the first fixel is touched
+END_OF_PUSH = 80  # frame near the end of free pushing, where the time step costs most
 
 
 def reference(path):

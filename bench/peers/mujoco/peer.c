@@ -1,4 +1,5 @@
 // MuJoCo on the timing scene: a free body on three feet, the pusher a heavy sphere on a slide, set to its place and speed every step.
+// Elliptic friction cones and impratio 10: with the default, pyramids and 1, the object ends up centimetres off and creeps 9 mm.
 // All contacts lie in the plane of the table (box and spheres are centred at z = 0), so that they shift no weight between the feet.
 // usage: peer SUBSTEPS; prints what compare.py reads.
 #include <math.h>
