@@ -24,7 +24,7 @@ pub struct Rules {
 const TESTKIT: &str = "crates/testkit";
 
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, which know of nobody.
-pub const CRATES: [Rules; 8] = [
+pub const CRATES: [Rules; 9] = [
     Rules { folder: "crates/dynamics", may_use: &[], must_not_use: &["rand", "rand_distr", "rand_core", "rayon"] },
     Rules { folder: "crates/filter", may_use: &[], must_not_use: &[] },
     Rules { folder: "crates/estimator", may_use: &["crates/dynamics", "crates/filter"], must_not_use: &[] },
@@ -40,6 +40,11 @@ pub const CRATES: [Rules; 8] = [
         must_not_use: &[],
     },
     Rules { folder: TESTKIT, may_use: &["crates/dynamics", "crates/estimator", "crates/formats"], must_not_use: &[] },
+    Rules {
+        folder: "crates/bench",
+        may_use: &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats"],
+        must_not_use: &[],
+    },
     Rules { folder: "xtask", may_use: &[], must_not_use: &[] },
 ];
 

@@ -9,7 +9,7 @@ use crate::contact_model::{ContactModel, ParameterNoise, StepPlan};
 use crate::watch::{SolvedStep, StepWatch};
 
 /// Particles that are stepped side by side.
-const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// Chunks of particles in a block.
 const CHUNKS: usize = BLOCK / LANES;
@@ -79,6 +79,9 @@ impl Propagation {
                 #[inline(always)]
                 || self.apply_force(model, input.h, draw, pair, block),
             );
+            if let Some(watch) = model.watch {
+                watch.before(input, &self.particles[..chunks]);
+            }
             model.dynamics.step_block(input, &mut self.particles[..chunks], &mut self.work);
             on_widest(
                 level,

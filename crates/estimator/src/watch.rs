@@ -2,7 +2,9 @@
 
 use std::fmt::Debug;
 
-use stickslip_dynamics::{Report, StepProblem, StepSolution};
+use stickslip_dynamics::{Particles, Report, StepInput, StepProblem, StepSolution};
+
+use crate::propagation::LANES;
 
 /// One particle's time step.
 #[derive(Clone, Copy, Debug)]
@@ -22,4 +24,9 @@ pub struct SolvedStep<'a> {
 pub trait StepWatch: Debug + Sync {
     /// One step.
     fn see(&self, step: &SolvedStep<'_>);
+
+    /// What the coming step of up to 64 particles starts from, noise included; lanes past the last particle repeat it.
+    fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
+        let _ = (input, particles);
+    }
 }

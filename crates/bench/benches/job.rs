@@ -1,0 +1,63 @@
+//! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log of 600 frames, camera and touch
+//! sensors weighing all the way: wall time and the latency of a frame, on one thread and on two.
+
+use std::error::Error;
+use std::time::Instant;
+
+use stickslip::{Occlusion, RunOptions, run};
+use stickslip_bench::{Results, median, quantile};
+use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
+
+/// Rounds that are counted.
+const ROUNDS: usize = 21;
+
+/// The logs.
+const LOGS: [&str; 3] = ["slide-pent-disc-104", "slide-ell-bar-117", "slide-trapezoid-disc-109"];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let root = data_root().ok_or("no recorded experiments: point STICKSLIP_DATA at them")?;
+    let mut results = Results::open()?;
+    for log in LOGS {
+        let cases = recorded_cases(&root.join("mujoco").join(log))?;
+        let case = cases.iter().find(|case| case.occlusion == Occlusion::None).ok_or("no case without a blackout")?;
+        write(log, case, &mut results)?;
+    }
+    Ok(())
+}
+
+/// Both numbers of threads in turn, one round of each that is not counted.
+fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Box<dyn Error>> {
+    let pools = [1, 2].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
+    let mut walls = [const { Vec::new() }; 2];
+    let mut latencies = [const { Vec::new() }; 2];
+    for round in 0..=ROUNDS {
+        for (k, pool) in pools.iter().enumerate() {
+            let pool = pool.as_ref().map_err(ToString::to_string)?;
+            let (wall, frames) = pool.install(|| timed(case))?;
+            if round > 0 {
+                walls[k].push(wall);
+                latencies[k].extend(frames);
+            }
+        }
+    }
+    for (k, threads) in ["1 thread", "2 threads"].into_iter().enumerate() {
+        let name = format!("job / {log} / {threads}");
+        results.write(&format!("{name} / wall"), median(&walls[k]), "ms")?;
+        results.write(&format!("{name} / frame; median"), median(&latencies[k]), "ms")?;
+        results.write(&format!("{name} / frame; 99.9th percentile"), quantile(&latencies[k], 0.999), "ms")?;
+        results.write(&format!("{name} / frame; slowest"), quantile(&latencies[k], 1.0), "ms")?;
+    }
+    results.write(&format!("job / {log} / 1 thread over 2"), median(&walls[0]) / median(&walls[1]), "1")?;
+    Ok(())
+}
+
+/// One run: wall time (ms), and the time from row to row (ms).
+fn timed(case: &RecordedCase) -> Result<(f64, Vec<f64>), stickslip::RunError> {
+    let start = Instant::now();
+    let mut rows = Vec::with_capacity(case.log.len());
+    let run = run(&case.setup, &case.log, &RunOptions::default(), &mut |_| rows.push(start.elapsed()));
+    let wall = start.elapsed();
+    run?;
+    let frames = rows.windows(2).map(|pair| (pair[1] - pair[0]).as_secs_f64() * 1e3);
+    Ok((wall.as_secs_f64() * 1e3, frames.collect()))
+}

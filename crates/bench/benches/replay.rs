@@ -1,0 +1,124 @@
+//! `cargo bench -p stickslip-bench --bench replay`: the steps of the particle filter on every `slide-*` log, captured, then solved again.
+//!
+//! 500 particles, camera hidden where the log's `truth.json` says so. Only the solver's step is timed, one block of 64 particles at
+//! a time, on one thread; every step starts from what the filter had, noise and warm start included.
+
+use std::error::Error;
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use stickslip::{Occlusion, RunOptions, SolvedStep, StepWatch, run_watched};
+use stickslip_bench::{BlockOf64, LANES, Results, Tally, instruction_sets, median, quantile};
+use stickslip_dynamics::{Dynamics, Level, Particles, StepInput, StepWork};
+use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
+
+/// Rounds that are counted.
+const ROUNDS: usize = 3;
+
+/// One block before a step.
+#[derive(Debug)]
+struct Captured {
+    input: StepInput,
+    chunks: usize,
+    particles: BlockOf64,
+}
+
+/// Keeps what every step starts from.
+#[derive(Debug, Default)]
+struct Capture(Mutex<Vec<Captured>>);
+
+impl StepWatch for Capture {
+    fn see(&self, _step: &SolvedStep<'_>) {}
+
+    fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
+        let mut kept = Captured { input: *input, chunks: particles.len(), particles: BlockOf64::default() };
+        kept.particles[..particles.len()].copy_from_slice(particles);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(kept);
+    }
+}
+
+/// What the replay of some logs cost.
+#[derive(Debug, Default)]
+struct Cost {
+    /// Time per particle-step of every block, rounds together (ns).
+    blocks: Vec<f64>,
+    /// All time (ns) and all particle-steps, rounds together.
+    total: [f64; 2],
+    tally: Tally,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let root = data_root().ok_or("no recorded experiments: point STICKSLIP_DATA at them")?;
+    let sets = instruction_sets();
+    let mut costs: Vec<Cost> = sets.iter().map(|_| Cost::default()).collect();
+    let mut results = Results::open()?;
+    for case in recorded_cases(&root.join("mujoco"))?.iter().filter(|case| is_wanted(case)) {
+        let steps = capture(case)?;
+        let mut medians = Vec::new();
+        for ((_, level), cost) in sets.iter().zip(&mut costs) {
+            medians.push(replay(case, &steps, *level, cost));
+        }
+        let name = case.folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        results.write(&format!("replay / {} / {name}", sets[0].0), medians[0], "ns/particle-step")?;
+    }
+    for ((name, _), cost) in sets.iter().zip(&costs) {
+        write(name, cost, &mut results)?;
+    }
+    Ok(())
+}
+
+fn is_wanted(case: &RecordedCase) -> bool {
+    let slides = case.folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("slide-"));
+    slides && case.occlusion != Occlusion::None
+}
+
+fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
+    let capture = Capture::default();
+    let options = RunOptions { occlusion: case.occlusion.clone(), ..RunOptions::default() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    pool.install(|| run_watched(&case.setup, &case.log, &options, &capture, &mut |_| ()))?;
+    Ok(capture.0.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Adds to `cost`; returns the mean time per particle-step of the median round (ns).
+fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost) -> f64 {
+    let dynamics = Dynamics::new(case.setup.scene.clone()).with_level(level);
+    let mut work = StepWork::default();
+    let mut rounds = Vec::new();
+    for round in 0..=ROUNDS {
+        let [mut time, mut count] = [0.0; 2];
+        for step in steps {
+            let (mut block, lanes) = (step.particles, (step.chunks * LANES) as f64);
+            let start = Instant::now();
+            dynamics.step_block(&step.input, &mut block[..step.chunks], &mut work);
+            let taken = start.elapsed().as_nanos() as f64;
+            time += taken;
+            count += lanes;
+            if round > 0 {
+                cost.blocks.push(taken / lanes);
+                work.reports().as_flattened().iter().for_each(|report| cost.tally.count(report));
+            }
+        }
+        if round > 0 {
+            rounds.push(time / count);
+            cost.total = [cost.total[0] + time, cost.total[1] + count];
+        }
+    }
+    median(&rounds)
+}
+
+fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> {
+    let name = format!("replay / {name} / all logs");
+    results.write(&format!("{name} / mean"), cost.total[0] / cost.total[1], "ns/particle-step")?;
+    results.write(&format!("{name} / median of blocks"), median(&cost.blocks), "ns/particle-step")?;
+    results.write(&format!("{name} / p99 of blocks"), quantile(&cost.blocks, 0.99), "ns/particle-step")?;
+    results.write(&format!("{name} / iterations"), cost.tally.mean_iterations(), "1")?;
+    results.write(&format!("{name} / p99 of iterations"), cost.tally.iterations_quantile(0.99) as f64, "1")?;
+    results.write(&format!("{name} / worst residual"), cost.tally.worst_residual(), "m/s")?;
+    results.write(&format!("{name} / fallback"), cost.tally.fallback_share(), "1")?;
+    results.write(&format!("{name} / unsolved"), cost.tally.unsolved() as f64 / cost.tally.steps() as f64, "1")?;
+    for (route, share) in cost.tally.route_shares() {
+        results.write(&format!("{name} / by {route}"), share, "1")?;
+    }
+    Ok(())
+}
