@@ -74,7 +74,7 @@ fn is_wanted(case: &RecordedCase) -> bool {
 
 fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
     let capture = Capture::default();
-    let options = RunOptions { occlusion: case.occlusion.clone(), ..RunOptions::default() };
+    let options = RunOptions { occlusion: case.occlusion, ..RunOptions::default() };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     pool.install(|| run_watched(&case.setup, &case.log, &options, &capture, &mut |_| ()))?;
     Ok(capture.0.into_inner().unwrap_or_else(PoisonError::into_inner))
