@@ -1,0 +1,3 @@
+//! A virtual testbed for pushing experiments.
+
+pub mod camera;
