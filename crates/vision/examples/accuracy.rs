@@ -25,7 +25,7 @@ fn main() {
         let (number, expected, std) = (numbers[k / 2][k % 2], expected[k / 2][k % 2], calibration.lens_std[k]);
         println!("  {name} {number:10.4}, true {expected:10.4}, error {:6.2} standard deviations", (number - expected) / std);
     }
-    println!("\n{:<34} {:>6}  {:>22}  {:>22}  {:>22}", "", "found", "bias (um, um, mdeg)", "rms (um, um, mdeg)", "rms / predicted");
+    println!("\n{:<34} {:>6}  {:>22}  {:>22}  {:>22}", "", "found", "bias (um, um, mdeg)", "spread", "spread / predicted");
     let still = Pose::default();
     for blur in [0.4, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0] {
         row(&format!("blur {blur} px"), &Rig::new(Optics { blur, ..Optics::default() }, 2), still, &calibration.camera);
@@ -53,6 +53,6 @@ fn row(name: &str, rig: &Rig, way: Pose, camera: &stickslip_vision::Camera) {
         let show = |numbers: [f64; 3]| [0, 1, 2].map(|k| format!("{:6.1}", numbers[k] * units[k])).join("  ");
         let ratio = errors.ratio().map(|ratio| format!("{ratio:6.2}")).join("  ");
         let found = 100.0 * (1.0 - errors.missed as f64 / FRAMES as f64);
-        println!("{:<34} {found:>4.0} %  {}  {}  {ratio}", format!("{name}, {body}"), show(errors.bias()), show(errors.rms()));
+        println!("{:<34} {found:>4.0} %  {}  {}  {ratio}", format!("{name}, {body}"), show(errors.bias()), show(errors.spread()));
     }
 }

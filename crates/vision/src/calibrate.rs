@@ -3,12 +3,14 @@
 //! Homographies give a first focal length and first poses (Zhang 2000), a bundle over all frames the rest. Corners are first fitted as
 //! if edges were straight in the image, then twice more in the image that the lens found so far straightens.
 
+use image::GrayImage;
 use nalgebra::{Matrix3, Vector2, Vector3};
+use rayon::prelude::*;
 
 use crate::board::BoardOnTable;
 use crate::bundle::{Adjusted, Bundle, View};
 use crate::camera::Camera;
-use crate::detector::FoundTag;
+use crate::detector::{Detector, FoundTag};
 use crate::homography::{Match, focal_length, homography, plane_motion};
 use crate::lens::Lens;
 use crate::motion::Motion;
@@ -52,10 +54,33 @@ pub struct Calibration {
     pub lens_std: [f64; 8],
 }
 
+/// Frames of one size, searched for tags.
+#[derive(Clone, Debug)]
+pub struct BoardRecording {
+    /// The frames.
+    pub frames: Vec<CalibrationFrame>,
+    /// Their columns and rows.
+    pub size: [u32; 2],
+}
+
 /// Why a calibration was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrationError {
+    /// Frames of several sizes.
+    #[error(
+        "{name}: the image has {found} pixels, {first} has {expected}; all frames of a calibration have one size. Take the odd ones out"
+    )]
+    Size {
+        /// The frame.
+        name: String,
+        /// Its columns x rows.
+        found: String,
+        /// The first frame.
+        first: String,
+        /// Its columns x rows.
+        expected: String,
+    },
     /// No tag at all.
     #[error(
         "no tag of the family 36h11 is in any of the {frames} frames. Show the whole board, sharp, with its white margins, each tag at least 30 pixels wide"
@@ -115,6 +140,29 @@ pub enum CalibrationError {
 /// A tag's corners on the board and where they are seen, by frame.
 type FrameMatches = Vec<[Match; 4]>;
 
+/// Searches the frames 0 to `count` - 1, which `load` brings as a name and an image, from any thread.
+///
+/// # Errors
+/// Those of `load`; frames of several sizes.
+pub fn search_board<E: From<CalibrationError> + Send>(
+    count: usize,
+    load: impl Fn(usize) -> Result<(String, GrayImage), E> + Sync,
+) -> Result<BoardRecording, E> {
+    let search = |index: usize| {
+        let (name, image) = load(index)?;
+        let size = [image.width(), image.height()];
+        Ok((CalibrationFrame { name, tags: Detector::new(size).find(&image) }, size))
+    };
+    let found: Vec<(CalibrationFrame, [u32; 2])> = (0..count).into_par_iter().map(search).collect::<Result<_, E>>()?;
+    let size = found.first().map_or([0; 2], |first| first.1);
+    if let Some((odd, other)) = found.iter().find(|(_, other)| *other != size) {
+        let text = |[columns, rows]: [u32; 2]| format!("{columns} x {rows}");
+        let (name, first) = (odd.name.clone(), found[0].0.name.clone());
+        return Err(CalibrationError::Size { name, found: text(*other), first, expected: text(size) }.into());
+    }
+    Ok(BoardRecording { frames: found.into_iter().map(|(frame, _)| frame).collect(), size })
+}
+
 /// Calibrates a camera from frames of a board; in frame number `flat` the board lies on the table as `board` says.
 ///
 /// # Errors
@@ -122,7 +170,9 @@ type FrameMatches = Vec<[Match; 4]>;
 ///
 /// # Panics
 /// If `flat` is not the number of a frame.
-pub fn calibrate(frames: &[CalibrationFrame], size: [u32; 2], board: &BoardOnTable, flat: usize) -> Result<Calibration, CalibrationError> {
+pub fn calibrate(recording: &BoardRecording, board: &BoardOnTable, flat: usize) -> Result<Calibration, CalibrationError> {
+    let BoardRecording { frames, size } = recording;
+    let size = *size;
     let on_board = board_tags(frames, board)?;
     let straight = Lens::pinhole(size, f64::from(size[0].max(size[1])));
     let seen: Vec<FrameMatches> = on_board.iter().map(|tags| matches_of(tags, board, &straight)).collect();

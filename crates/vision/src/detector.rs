@@ -7,6 +7,9 @@ use kornia_image::{Image, ImageSize};
 
 use crate::outline::Outline;
 
+/// No tag is found in images smaller than this, and the library takes none (px).
+const SMALLEST: usize = 32;
+
 /// Finds tags of the family 36h11 in images of one size.
 pub struct Detector {
     decoder: AprilTagDecoder,
@@ -43,6 +46,9 @@ impl Detector {
     /// # Panics
     /// If the image has another size.
     pub fn find(&mut self, image: &GrayImage) -> Vec<FoundTag> {
+        if self.size.width.min(self.size.height) < SMALLEST {
+            return Vec::new();
+        }
         let view = Image::from_size_slice(self.size, image.as_raw()).expect("an image of the detector's size");
         let decoder = &mut self.decoder;
         let detections = self.one_thread.install(|| decoder.decode(&view)).expect("an image of the detector's size");

@@ -176,3 +176,60 @@ fn normal(z: f64) -> (f64, f64) {
     use std::f64::consts::{FRAC_1_SQRT_2, PI};
     (0.5 * (1.0 + libm::erf(z * FRAC_1_SQRT_2)), libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stickslip_filter::Streams;
+
+    const CORNERS: [Vector2<f64>; 2] = [Vector2::new(10.0, 20.0), Vector2::new(58.0, 26.0)];
+    const CELL: f64 = 6.0;
+
+    /// Pixels about the corners' line, moved outwards by `offset` and turned by `turn`, seen with a blur, fading light and noise.
+    fn samples(offset: f64, turn: f64, blur: f64, noise: f64, draw: u64) -> Vec<Sample> {
+        let way = CORNERS[1] - CORNERS[0];
+        let edge = Edge { middle: (CORNERS[0] + CORNERS[1]) / 2.0, along: way.normalize(), offset, turn, ..Edge::default() };
+        let pixel = |index: u32| {
+            let at = Vector2::new(f64::from(index % 70), f64::from(index / 70));
+            let [along, outside] = edge.coordinates(at);
+            let level = 30.0 + (150.0 + 0.2 * along) * normal(outside / blur).0;
+            Sample { at, level: level + noise * Streams::new(3).normal(draw, index, 0) }
+        };
+        (0..70 * 48).map(pixel).collect()
+    }
+
+    #[test]
+    fn fit_of_an_exact_edge_is_exact() {
+        for (offset, turn, blur) in [(0.0, 0.0, 0.6), (0.8, -0.02, 0.9), (-0.5, 0.01, 1.6)] {
+            let edge = Edge::fit(&samples(offset, turn, blur, 0.0, 0), CORNERS, CELL).unwrap();
+            assert!((edge.offset - offset).abs() < 1e-6 && (edge.turn - turn).abs() < 1e-8, "{edge:?}");
+            assert!((edge.blur - blur).abs() < 1e-5, "{edge:?}");
+        }
+    }
+
+    /// Squared errors in units of the predicted covariance have mean 2, those of the offset and of the turn mean 0.
+    #[test]
+    fn fit_has_the_covariance_of_its_errors() {
+        const DRAWS: u64 = 400;
+        let (mut whitened, mut mean) = (0.0, Vector2::zeros());
+        for draw in 0..DRAWS {
+            let edge = Edge::fit(&samples(0.3, 0.01, 0.8, 2.0, draw), CORNERS, CELL).unwrap();
+            let error = Vector2::new(edge.offset - 0.3, edge.turn - 0.01);
+            whitened += (error.transpose() * edge.covariance.try_inverse().unwrap() * error).x / DRAWS as f64;
+            let std = Vector2::new(edge.covariance[(0, 0)].sqrt(), edge.covariance[(1, 1)].sqrt());
+            mean += error.component_div(&std) / DRAWS as f64;
+        }
+        // five standard errors
+        assert!((whitened - 2.0).abs() < 5.0 * (4.0 / DRAWS as f64).sqrt(), "{whitened}");
+        assert!(mean.amax() < 5.0 / (DRAWS as f64).sqrt(), "{mean}");
+    }
+
+    #[test]
+    fn fit_of_no_edge_is_none() {
+        let flat: Vec<Sample> = samples(0.0, 0.0, 0.8, 0.0, 0).iter().map(|s| Sample { level: 80.0, ..*s }).collect();
+        assert!(Edge::fit(&flat, CORNERS, CELL).is_none());
+        let inverted: Vec<Sample> = samples(0.0, 0.0, 0.8, 0.0, 0).iter().map(|s| Sample { level: 255.0 - s.level, ..*s }).collect();
+        assert!(Edge::fit(&inverted, CORNERS, CELL).is_none());
+        assert!(Edge::fit(&[], CORNERS, CELL).is_none());
+    }
+}

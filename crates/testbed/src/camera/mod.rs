@@ -14,6 +14,7 @@
 
 mod board;
 mod body;
+mod film;
 mod footprint;
 mod grabber;
 mod lens;
@@ -26,6 +27,7 @@ mod tag;
 mod viewpoint;
 
 pub use board::{Board, BoardPose, calibration_poses};
+pub use film::{Film, Recorded, Take};
 pub use grabber::Grabber;
 pub use lens::Lens;
 pub use optics::{Lighting, Optics, Sensor};

@@ -125,8 +125,9 @@ fn offsets() -> Vec<[f64; 2]> {
     (0..RAYS).map(|k| [wrap(k as f64 / ROOT), wrap(k as f64 / (ROOT * ROOT))]).collect()
 }
 
+/// The fraction of a number that is not negative.
 fn wrap(x: f64) -> f64 {
-    x - x.floor()
+    x - f64::from(x as u32)
 }
 
 #[cfg(test)]

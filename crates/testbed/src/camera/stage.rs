@@ -78,32 +78,32 @@ pub(crate) struct Scenery<'a> {
 }
 
 impl Hand {
-    /// An open right hand of common size, the palm's middle at the origin, fingers along x.
-    pub fn open(heights: [f64; 2]) -> Self {
-        let finger = |y: f64, tip: f64| Part::Ellipse { semi_axes: [tip / 2.0, 0.0095], centre: [0.03 + tip / 2.0, y], angle: 0.0 };
-        let palm = Part::Ellipse { semi_axes: [0.055, 0.043], centre: [0.0, 0.0], angle: 0.0 };
-        let thumb = Part::Ellipse { semi_axes: [0.036, 0.0115], centre: [0.020, 0.052], angle: 0.7 };
-        let arm = Part::Polygon { vertices: vec![[-0.40, -0.034], [-0.03, -0.028], [-0.03, 0.028], [-0.40, 0.034]] };
-        let fingers = [finger(0.030, 0.072), finger(0.010, 0.083), finger(-0.010, 0.077), finger(-0.029, 0.060)];
-        Self { parts: [palm, thumb, arm].into_iter().chain(fingers).collect(), heights }
+    /// A fist with its forearm, the fist's middle at the origin, the knuckles along x.
+    pub fn fist(heights: [f64; 2]) -> Self {
+        let ellipse = |semi_axes: [f64; 2], centre: [f64; 2], angle: f64| Part::Ellipse { semi_axes, centre, angle };
+        let back = ellipse([0.042, 0.044], [0.0, 0.0], 0.0);
+        let thumb = ellipse([0.034, 0.012], [0.008, 0.042], 0.35);
+        let wrist = ellipse([0.050, 0.032], [-0.045, 0.0], 0.0);
+        let arm = Part::Polygon { vertices: vec![[-0.50, -0.040], [-0.06, -0.029], [-0.06, 0.029], [-0.50, 0.040]] };
+        Self { parts: vec![back, thumb, wrist, arm], heights }
     }
 }
 
 impl Props {
-    /// A plate with bodies 15 to 25 mm high, the object's tag in the middle of it and as large as fits a square of its reach, the
-    /// pusher's behind it, seen along its x axis, and higher.
-    pub fn of(scene: &Scene, object_cells: TagCells, pusher_cells: TagCells) -> Self {
-        let reach = scene.object.shape.bounding_radius();
-        let object_tag = Tag { cells: object_cells, size: 0.8 * reach };
+    /// Bodies 15 to 24 mm high on a plate of 0.5 m by 0.4 m; the object's tag in its middle and as large as fits a square of its reach;
+    /// the pusher's 40 mm behind it against `push`, the direction of its way (rad) in its frame, and higher.
+    pub fn of(scene: &Scene, object_cells: TagCells, pusher_cells: TagCells, push: f64) -> Self {
+        let object_tag = Tag { cells: object_cells, size: 0.8 * scene.object.shape.bounding_radius() };
         let pusher_tag = Tag { cells: pusher_cells, size: 0.024 };
+        let [x, y] = Pose::new(0.0, 0.0, push).rotate([-0.04, 0.0]);
         Self {
-            plate: [[-0.20, -0.14], [0.24, 0.14]],
+            plate: [[-0.25, -0.2], [0.25, 0.2]],
             object_height: 0.020,
             pusher_height: 0.024,
             fixel_height: 0.015,
             object_tag: Some(TagMount { tag: object_tag, pose: Pose::default(), height: 0.0205 }),
-            pusher_tag: Some(TagMount { tag: pusher_tag, pose: Pose::new(-pusher_tag.print_size() / 2.0, 0.0, 0.0), height: 0.0305 }),
-            hand: Hand::open([0.07, 0.10]),
+            pusher_tag: Some(TagMount { tag: pusher_tag, pose: Pose::new(x, y, push), height: 0.0305 }),
+            hand: Hand::fist([0.07, 0.10]),
         }
     }
 }
@@ -123,7 +123,7 @@ impl Stage {
         for (carrier, mount) in [(Carrier::Object, &props.object_tag), (Carrier::Pusher, &props.pusher_tag)] {
             bodies.extend(mount.iter().map(|m| Body::tag(carrier, m.pose, m.height, m.tag)));
         }
-        bodies.extend(props.pusher_tag.as_ref().map(tag_post));
+        bodies.extend(props.pusher_tag.iter().flat_map(tag_holder));
         bodies.extend(props.hand.parts.iter().map(|part| Body::plain(Carrier::Hand, part, props.hand.heights, HAND)));
         Self { plate: props.plate, bodies }
     }
@@ -176,8 +176,12 @@ impl View for Scenery<'_> {
     }
 }
 
-/// What holds the pusher's tag up: a post from just above the table.
-fn tag_post(mount: &TagMount) -> Body {
+/// What holds the pusher's tag up, and a rod from there to the pusher.
+fn tag_holder(mount: &TagMount) -> [Body; 2] {
     let post = Body::plain(Carrier::Pusher, &square(0.9 * mount.tag.print_size()), [0.002, mount.height - 0.001], PUSHER);
-    Body { mount: mount.pose, ..post }
+    let length = mount.pose.x.hypot(mount.pose.y);
+    let vertices = vec![[-length, -0.004], [0.0, -0.004], [0.0, 0.004], [-length, 0.004]];
+    let rod = Body::plain(Carrier::Pusher, &Part::Polygon { vertices }, [0.006, 0.014], PUSHER);
+    let along = Pose::new(0.0, 0.0, libm::atan2(-mount.pose.y, -mount.pose.x));
+    [Body { mount: mount.pose, ..post }, Body { mount: along, ..rod }]
 }

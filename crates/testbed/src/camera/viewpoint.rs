@@ -59,6 +59,19 @@ impl Camera {
         Ok(camera)
     }
 
+    /// A camera that sees a box on the table, lower left and upper right corner (m), with some room around it, from a little below its
+    /// middle in the image.
+    ///
+    /// # Errors
+    /// The lens sees no table.
+    pub fn over(lens: Lens, [low, high]: [[f64; 2]; 2]) -> Result<Self, CameraError> {
+        const ROOM: f64 = 1.15;
+        let needed = |k: usize| ROOM * (high[k] - low[k]) * lens.focal[k] / f64::from(lens.size[k]);
+        let height = needed(0).max(needed(1)).max(0.3);
+        let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
+        Self::look_at(lens, [middle[0], middle[1] - 0.1 * height, height], middle)
+    }
+
     /// Its lens.
     pub fn lens(&self) -> &Lens {
         &self.lens
@@ -87,6 +100,12 @@ impl Camera {
     /// The pixel sees no point of the table.
     pub fn point_at(&self, pixel: [f64; 2], z: f64) -> Result<[f64; 2], CameraError> {
         Ok(Ray { origin: self.centre, slope: self.slope(pixel)? }.at(z))
+    }
+
+    /// The point at height `z` (m) on the line of sight to a point.
+    pub(crate) fn on_sight(&self, point: [f64; 3], z: f64) -> [f64; 3] {
+        let share = (z - self.centre[2]) / (point[2] - self.centre[2]);
+        std::array::from_fn(|i| self.centre[i] + share * (point[i] - self.centre[i]))
     }
 
     /// Way along x and y per metre of descent on the ray of a pixel.
@@ -121,6 +140,24 @@ mod tests {
             let [x, y] = camera().point_at(camera().project(point), point[2]).unwrap();
             assert!((x - point[0]).abs() < 1e-12 && (y - point[1]).abs() < 1e-12, "{point:?}");
         }
+    }
+
+    #[test]
+    fn over_sees_the_whole_box() {
+        for bounds in [[[-0.1, -0.05], [0.2, 0.07]], [[0.0, 0.0], [0.1, 0.5]]] {
+            let camera = Camera::over(Lens::industrial(), bounds).unwrap();
+            for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let [u, v] = camera.project([bounds[x][0], bounds[y][1], 0.0]);
+                assert!((0.0..640.0).contains(&u) && (0.0..480.0).contains(&v), "{u} {v}");
+            }
+        }
+    }
+
+    #[test]
+    fn on_sight_is_seen_at_the_same_pixel() {
+        let point = [0.05, 0.02, 0.01];
+        let [a, b] = [camera().project(point), camera().project(camera().on_sight(point, 0.2))];
+        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
     }
 
     #[test]

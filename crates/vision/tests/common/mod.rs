@@ -7,8 +7,8 @@ use stickslip_dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scen
 use stickslip_filter::Streams;
 use stickslip_testbed::camera::{self as rendered, Actors, Optics, Props, Shutter, Stage, Studio, TagMount};
 use stickslip_vision::{
-    Board, BoardOnTable, BodyTag, Calibration, CalibrationFrame, Camera, Detector, Measurement, Sighting, TagPlace, Tags, Track,
-    TrackError, calibrate, tag_cells, track,
+    Board, BoardOnTable, BoardRecording, BodyTag, Calibration, CalibrationError, Camera, Measurement, Sighting, TagPlace, Tags, Track,
+    TrackError, calibrate, search_board, tag_cells, track,
 };
 
 pub const OBJECT_TAG: u16 = 3;
@@ -47,7 +47,7 @@ impl Rig {
     /// The rig through some optics; the object's tag is off its middle and turned.
     pub fn new(optics: Optics, seed: u64) -> Self {
         let cells = |id| tag_cells(id).unwrap();
-        let mut props = Props::of(&scene(), cells(OBJECT_TAG), cells(PUSHER_TAG));
+        let mut props = Props::of(&scene(), cells(OBJECT_TAG), cells(PUSHER_TAG), 0.0);
         let mount = props.object_tag.as_mut().unwrap();
         mount.pose = Pose::new(0.003, -0.002, 0.2);
         let of = |id, mount: &Option<TagMount>| {
@@ -72,7 +72,7 @@ impl Rig {
     /// A calibration from rendered frames of the board.
     pub fn calibration(&self, count: usize) -> Calibration {
         let (frames, board) = self.board_frames(count);
-        calibrate(&found(&frames), true_camera().lens().size, &board, 0).unwrap()
+        calibrate(&found(&frames), &board, 0).unwrap()
     }
 
     /// Tracks rendered frames.
@@ -98,15 +98,14 @@ impl Rig {
 fn random_poses(index: u64, seed: u64) -> [Pose; 2] {
     let draw = Streams::new(seed).at(index);
     let between = |k: u32, low: f64, high: f64| low + (high - low) * draw.uniform(0, k);
-    let object = Pose::new(between(0, -0.05, 0.11), between(1, -0.07, 0.07), between(2, -3.1, 3.1));
+    let object = Pose::new(between(0, -0.01, 0.13), between(1, -0.07, 0.07), between(2, -3.1, 3.1));
     [object, Pose::new(object.x - 0.050, object.y + between(3, -0.015, 0.015), between(4, -0.3, 0.3))]
 }
 
 /// The tags of frames, named by their numbers.
-pub fn found(frames: &[GrayImage]) -> Vec<CalibrationFrame> {
-    let mut detector = Detector::new([frames[0].width(), frames[0].height()]);
-    let frame = |(image, index): (&GrayImage, usize)| CalibrationFrame { name: format!("{index}.png"), tags: detector.find(image) };
-    frames.iter().zip(0..).map(frame).collect()
+pub fn found(frames: &[GrayImage]) -> BoardRecording {
+    let load = |index: usize| Ok::<_, CalibrationError>((format!("{index}.png"), frames[index].clone()));
+    search_board(frames.len(), load).unwrap()
 }
 
 /// Errors of poses against their truth.
@@ -116,8 +115,6 @@ pub struct Errors {
     pub errors: Vec<[f64; 3]>,
     /// Predicted standard deviations.
     pub stds: Vec<[f64; 3]>,
-    /// Squared errors in units of the predicted covariance.
-    pub whitened: Vec<f64>,
     /// Frames without a pose.
     pub missed: usize,
 }
@@ -131,26 +128,22 @@ impl Errors {
         let error = error(measurement, truth);
         self.errors.push(error);
         self.stds.push(measurement.std());
-        let vector = nalgebra::Vector3::from(error);
-        self.whitened.push((vector.transpose() * measurement.covariance.try_inverse().unwrap() * vector).x);
     }
 
     pub fn bias(&self) -> [f64; 3] {
         self.mean(|error, _| error)
     }
 
-    /// Root mean square errors over root mean square predictions.
+    /// Standard deviations about the bias.
+    pub fn spread(&self) -> [f64; 3] {
+        let (squares, bias) = (self.mean(|error, _| error * error), self.bias());
+        [0, 1, 2].map(|k| (squares[k] - bias[k] * bias[k]).sqrt())
+    }
+
+    /// Spread over root mean square prediction.
     pub fn ratio(&self) -> [f64; 3] {
-        let (errors, predicted) = (self.mean(|error, _| error * error), self.mean(|_, std| std * std));
-        [0, 1, 2].map(|k| (errors[k] / predicted[k]).sqrt())
-    }
-
-    pub fn rms(&self) -> [f64; 3] {
-        self.mean(|error, _| error * error).map(f64::sqrt)
-    }
-
-    pub fn predicted(&self) -> [f64; 3] {
-        self.mean(|_, std| std * std).map(f64::sqrt)
+        let predicted = self.mean(|_, std| std * std);
+        [0, 1, 2].map(|k| self.spread()[k] / predicted[k].sqrt())
     }
 
     fn mean(&self, of: impl Fn(f64, f64) -> f64) -> [f64; 3] {
