@@ -143,7 +143,8 @@ fn read_facts_file(path: &Path) -> Result<TruthFacts> {
     Ok(read_truth_json(&text_of(path, "truth")?, &path.display().to_string())?)
 }
 
-fn text_of(path: &Path, what: &str) -> Result<String> {
+/// The text of a file; `what` it is.
+pub fn text_of(path: &Path, what: &str) -> Result<String> {
     fs::read_to_string(path).map_err(|error| unreadable(path, what, &error))
 }
 

@@ -1,6 +1,8 @@
 //! The program `stickslip`: arguments, files, progress and exit codes around the library of the same name.
 
 mod args;
+mod calibrate;
+mod camera_args;
 mod check;
 mod compare;
 mod contest;
@@ -9,10 +11,13 @@ mod experiment;
 mod failure;
 mod figure;
 mod filter;
+mod frames;
 mod parameters;
 mod progress;
 mod quantile;
+mod render;
 mod table;
+mod track;
 mod verdict;
 
 use std::process::ExitCode;
@@ -27,6 +32,9 @@ fn main() -> ExitCode {
         Command::Filter(args) => filter::filter(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
+        Command::Calibrate(args) => calibrate::calibrate(&args),
+        Command::Track(args) => track::track(&args),
+        Command::Render(args) => render::render(&args),
     };
     result.unwrap_or_else(|error| failure::tell(&error)).exit_code()
 }

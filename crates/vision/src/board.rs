@@ -97,6 +97,22 @@ pub fn read_board(text: &str, name: &str) -> Result<BoardOnTable, ConfigError> {
     Ok(BoardOnTable { board, thickness, pose: Pose::new(pose[0], pose[1], pose[2]) })
 }
 
+/// A board as board.toml; every number reads back to the same bits.
+pub fn write_board(on_table: &BoardOnTable) -> String {
+    let BoardOnTable { board: Board { rows, columns, tag_size, gap, first_tag }, thickness, pose } = on_table;
+    format!(
+        "# A board of AprilTags 36h11. Its frame: origin in the lower left corner of the first tag's black square, x right, y up as printed.\n\
+         rows = {rows}\n\
+         columns = {columns}\n\
+         tag_size = {tag_size}     # edge of a black square (m)\n\
+         gap = {gap}          # white between neighbouring black squares (m)\n\
+         first_tag = {first_tag}     # in the lower left; the others are numbered on along x, then along y\n\
+         thickness = {thickness}    # height of the print above the table (m)\n\
+         pose = [{}, {}, {}]   # x, y (m), angle (rad) of the board's frame on the table in the flat frame: that fixes the world\n",
+        pose.x, pose.y, pose.theta
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +127,12 @@ mod tests {
         assert!((upper_right[0] - 0.23).abs() < 1e-12 && (upper_right[1] - 0.15).abs() < 1e-12);
         assert_eq!(board.corners(9), None);
         assert_eq!(board.corners(34), None);
+    }
+
+    #[test]
+    fn write_board_reads_back() {
+        let on_table = read_board(GOOD, "b").unwrap();
+        assert_eq!(read_board(&write_board(&on_table), "b").unwrap(), on_table);
     }
 
     #[test]

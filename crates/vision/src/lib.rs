@@ -33,7 +33,7 @@ mod tag;
 mod tags;
 mod track;
 
-pub use board::{Board, BoardOnTable, read_board};
+pub use board::{Board, BoardOnTable, read_board, write_board};
 pub use calibrate::{BoardRecording, Calibration, CalibrationError, CalibrationFrame, calibrate, search_board};
 pub use camera::{Camera, read_camera, write_camera};
 pub use config::{ConfigError, ConfigProblem};
@@ -43,5 +43,5 @@ pub use picture::{PictureError, read_picture};
 pub use planar_pose::{Measurement, TagPlace};
 pub use poses_csv::write_poses;
 pub use tag::{TAG_COUNT, tag_cells};
-pub use tags::{BodyTag, Tags, read_tags};
+pub use tags::{BodyTag, Tags, read_tags, write_tags};
 pub use track::{FrameSighting, Sighting, Track, TrackError, track};

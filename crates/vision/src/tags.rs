@@ -64,6 +64,20 @@ pub fn read_tags(text: &str, name: &str) -> Result<Tags, ConfigError> {
     Ok(tags)
 }
 
+/// Tags as tags.toml; every number reads back to the same bits.
+pub fn write_tags(tags: &Tags) -> String {
+    let table = |body: &str, BodyTag { id, place: TagPlace { size, height, pose } }: &BodyTag| {
+        let Pose { x, y, theta } = pose;
+        format!("[{body}]\ntag = {id}\nsize = {size}\nheight = {height}\npose = [{x}, {y}, {theta}]\n")
+    };
+    format!(
+        "# AprilTags 36h11. size: edge of the black square (m); height: of the print above the table (m);\n\
+         # pose: x, y (m), angle (rad) of the tag (origin in its middle, x right, y up as printed) in the body's frame.\n\n{}\n{}",
+        table("object", &tags.object),
+        table("pusher", &tags.pusher)
+    )
+}
+
 impl Table {
     fn check(&self, document: &Document<'_>, body: &str) -> Result<BodyTag, ConfigError> {
         let key = |name: &str| format!("{body}.{name}");
@@ -84,6 +98,12 @@ mod tests {
 
     const GOOD: &str =
         "[object]\ntag = 0\nsize = 0.028\nheight = 0.02\n\n[pusher]\ntag = 1\nsize = 0.024\nheight = 0.03\npose = [0.1, 0, 0]\n";
+
+    #[test]
+    fn write_tags_reads_back() {
+        let tags = read_tags(GOOD, "t").unwrap();
+        assert_eq!(read_tags(&write_tags(&tags), "t").unwrap(), tags);
+    }
 
     #[test]
     fn read_tags_names_line_value_rule_and_next_step() {
