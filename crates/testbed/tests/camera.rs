@@ -59,9 +59,9 @@ fn frame_is_what_lines_of_sight_meet() {
     assert!(face < plate && side < face, "{face} {plate} {side}");
 
     let inside = |[x, y]: [f64; 2]| {
-        let (a, b) = (pose.theta.sin(), pose.theta.cos());
+        let (a, b) = libm::sincos(pose.theta);
         let [x, y] = [b * (x - pose.x) + a * (y - pose.y) - 0.004, b * (y - pose.y) - a * (x - pose.x)];
-        let (a, b) = (0.3_f64.sin(), 0.3_f64.cos());
+        let (a, b) = libm::sincos(0.3);
         ((b * x + a * y) / 0.03).powi(2) + ((b * y - a * x) / 0.02).powi(2) <= 1.0
     };
     let met = |pixel: [f64; 2]| {

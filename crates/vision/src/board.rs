@@ -38,7 +38,7 @@ pub struct BoardOnTable {
 /// board.toml as it stands.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct Form {
     rows: u16,
     columns: u16,
     tag_size: f64,
@@ -79,9 +79,9 @@ impl Board {
 /// ```
 pub fn read_board(text: &str, name: &str) -> Result<BoardOnTable, ConfigError> {
     let document = Document { name, text };
-    let file: File =
+    let file: Form =
         document.parse("Give rows, columns, tag_size and gap in metres, and if needed first_tag, thickness and pose = [x, y, angle]")?;
-    let File { rows, columns, tag_size, gap, first_tag, thickness, pose } = file;
+    let Form { rows, columns, tag_size, gap, first_tag, thickness, pose } = file;
     document.require(rows > 0, "rows", rows.to_string(), "at least 1")?;
     document.require(columns > 0, "columns", columns.to_string(), "at least 1")?;
     let end = u32::from(first_tag) + u32::from(rows) * u32::from(columns);

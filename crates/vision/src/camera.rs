@@ -21,7 +21,7 @@ pub struct Camera {
 /// calibration.toml as it stands.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct Form {
     lens: LensTable,
     table: TableTable,
 }
@@ -95,7 +95,7 @@ impl Camera {
 /// Not TOML, a key that is missing, unknown or of another type, or a number against its rule, each with file and line.
 pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
     let document = Document { name, text };
-    let file: File = document.parse("Make the file with `stickslip calibrate`")?;
+    let file: Form = document.parse("Make the file with `stickslip calibrate`")?;
     let LensTable { size, focal, centre, radial, tangential } = file.lens;
     let numbers = [focal, centre, radial, tangential];
     document.require(numbers.as_flattened().iter().all(|n| n.is_finite()), "lens", "not finite", "finite numbers")?;

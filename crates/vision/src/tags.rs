@@ -28,7 +28,7 @@ pub struct Tags {
 /// tags.toml as it stands.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct Form {
     object: Table,
     pusher: Table,
 }
@@ -56,7 +56,7 @@ struct Table {
 /// ```
 pub fn read_tags(text: &str, name: &str) -> Result<Tags, ConfigError> {
     let document = Document { name, text };
-    let file: File =
+    let file: Form =
         document.parse("Give [object] and [pusher], each with tag, size and height in metres, and if needed pose = [x, y, angle]")?;
     let tags = Tags { object: file.object.check(&document, "object")?, pusher: file.pusher.check(&document, "pusher")? };
     let other = format!("another tag than the object's, {}", tags.object.id);

@@ -116,7 +116,7 @@ fn disc_about(part: &Part) -> ([f64; 2], f64) {
         Part::Polygon { vertices } => {
             let count = vertices.len() as f64;
             let middle = vertices.iter().fold([0.0; 2], |sum, v| [sum[0] + v[0] / count, sum[1] + v[1] / count]);
-            (middle, vertices.iter().map(|v| (v[0] - middle[0]).hypot(v[1] - middle[1])).fold(0.0, f64::max))
+            (middle, vertices.iter().map(|v| libm::hypot(v[0] - middle[0], v[1] - middle[1])).fold(0.0, f64::max))
         }
     }
 }

@@ -55,7 +55,7 @@ pub struct Film<'a> {
 impl Recorded {
     /// A box about all that happens, the tags and all fixels: its lower left and upper right corner (m).
     pub fn bounds(&self, scene: &Scene, props: &Props) -> [[f64; 2]; 2] {
-        let tag_reach = |mount: &Option<TagMount>| mount.map_or(0.0, |m| m.pose.x.hypot(m.pose.y) + m.tag.print_size() / SQRT_2);
+        let tag_reach = |mount: &Option<TagMount>| mount.map_or(0.0, |m| libm::hypot(m.pose.x, m.pose.y) + m.tag.print_size() / SQRT_2);
         let reach = |radius: f64| move |pose: &Pose| (pose.x, pose.y, radius);
         let objects = self.object.iter().map(reach(scene.object.shape.bounding_radius().max(tag_reach(&props.object_tag))));
         let pushers = self.pusher.iter().flatten().map(reach(scene.pusher.shape.bounding_radius().max(tag_reach(&props.pusher_tag))));

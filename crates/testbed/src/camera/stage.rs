@@ -179,7 +179,7 @@ impl View for Scenery<'_> {
 /// What holds the pusher's tag up, and a rod from there to the pusher.
 fn tag_holder(mount: &TagMount) -> [Body; 2] {
     let post = Body::plain(Carrier::Pusher, &square(0.9 * mount.tag.print_size()), [0.002, mount.height - 0.001], PUSHER);
-    let length = mount.pose.x.hypot(mount.pose.y);
+    let length = libm::hypot(mount.pose.x, mount.pose.y);
     let vertices = vec![[-length, -0.004], [0.0, -0.004], [0.0, 0.004], [-length, 0.004]];
     let rod = Body::plain(Carrier::Pusher, &Part::Polygon { vertices }, [0.006, 0.014], PUSHER);
     let along = Pose::new(0.0, 0.0, libm::atan2(-mount.pose.y, -mount.pose.x));
