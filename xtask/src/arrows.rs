@@ -16,6 +16,8 @@ pub struct Rules {
     pub folder: &'static str,
     /// Folders of the workspace crates that it may name under `[dependencies]`.
     pub may_use: &'static [&'static str],
+    /// Further ones that it may name under `[dev-dependencies]`.
+    pub may_test_with: &'static [&'static str],
     /// Crates from elsewhere that it must not name.
     pub must_not_use: &'static [&'static str],
 }
@@ -23,30 +25,30 @@ pub struct Rules {
 /// Only tests may use it, with any crate's `[dev-dependencies]`.
 const TESTKIT: &str = "crates/testkit";
 
-/// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, which know of nobody.
-pub const CRATES: [Rules; 9] = [
-    Rules { folder: "crates/dynamics", may_use: &[], must_not_use: &["rand", "rand_distr", "rand_core", "rayon"] },
-    Rules { folder: "crates/filter", may_use: &[], must_not_use: &[] },
-    Rules { folder: "crates/estimator", may_use: &["crates/dynamics", "crates/filter"], must_not_use: &[] },
-    Rules { folder: "crates/formats", may_use: &["crates/estimator", "crates/dynamics"], must_not_use: &[] },
+/// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, which know of nobody; the testbed and vision
+/// stand beside the estimator.
+pub const CRATES: [Rules; 10] = [
+    Rules { must_not_use: &["rand", "rand_distr", "rand_core", "rayon"], ..Rules::of("crates/dynamics", &[]) },
+    Rules::of("crates/filter", &[]),
+    Rules::of("crates/estimator", &["crates/dynamics", "crates/filter"]),
+    Rules::of("crates/formats", &["crates/estimator", "crates/dynamics"]),
     Rules {
-        folder: "crates/testbed",
-        may_use: &["crates/dynamics", "crates/filter"],
         must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
+        ..Rules::of("crates/testbed", &["crates/dynamics", "crates/filter"])
     },
-    Rules {
-        folder: "crates/cli",
-        may_use: &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats", "crates/testbed"],
-        must_not_use: &[],
-    },
-    Rules { folder: TESTKIT, may_use: &["crates/dynamics", "crates/estimator", "crates/formats"], must_not_use: &[] },
-    Rules {
-        folder: "crates/bench",
-        may_use: &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats"],
-        must_not_use: &[],
-    },
-    Rules { folder: "xtask", may_use: &[], must_not_use: &[] },
+    // rendered frames have a truth to be judged by; random numbers are the filter's
+    Rules { may_test_with: &["crates/testbed", "crates/filter"], ..Rules::of("crates/vision", &["crates/dynamics"]) },
+    Rules::of("crates/cli", &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats", "crates/testbed", "crates/vision"]),
+    Rules::of(TESTKIT, &["crates/dynamics", "crates/estimator", "crates/formats"]),
+    Rules::of("crates/bench", &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats"]),
+    Rules::of("xtask", &[]),
 ];
+
+impl Rules {
+    const fn of(folder: &'static str, may_use: &'static [&'static str]) -> Self {
+        Self { folder, may_use, may_test_with: &[], must_not_use: &[] }
+    }
+}
 
 /// One entry under `[dependencies]` or a table like it.
 #[derive(Clone, Debug)]
@@ -107,7 +109,7 @@ fn judge(rules: &Rules, dependency: &Dependency, folders: &BTreeMap<&str, &str>)
         return finding(format!("{} must not depend on `{package}`", rules.folder), "move what needs it to a crate that may");
     }
     let used = *folders.get(package.as_str())?;
-    if rules.may_use.contains(&used) || (*dev && used == TESTKIT) {
+    if rules.may_use.contains(&used) || (*dev && (used == TESTKIT || rules.may_test_with.contains(&used))) {
         return None;
     }
     if used == TESTKIT {
@@ -220,6 +222,21 @@ mod tests {
     }
 
     #[test]
+    fn check_lets_some_crates_into_tests_only() {
+        let vision = |section: &str| {
+            let manifest = format!("[package]\nname = \"stickslip-vision\"\n[{section}]\nstickslip-testbed.workspace = true\n");
+            let tree = Tree::from([
+                ("Cargo.toml", "[workspace]\nmembers = [\"crates/testbed\", \"crates/vision\"]\n"),
+                ("crates/testbed/Cargo.toml", "[package]\nname = \"stickslip-testbed\"\n"),
+                ("crates/vision/Cargo.toml", &manifest),
+            ]);
+            check(&tree).iter().map(Finding::to_string).collect::<Vec<_>>()
+        };
+        assert!(vision("dev-dependencies").is_empty());
+        assert_one(&vision("dependencies"), "crates/vision/Cargo.toml:4: ", "must not depend on `stickslip-testbed`");
+    }
+
+    #[test]
     fn check_finds_testkit_outside_tests() {
         let leaking = format!("{ESTIMATOR}stickslip-testkit.workspace = true\n");
         assert_one(&found(ROOT, DYNAMICS, &leaking), "crates/estimator/Cargo.toml:5: ", "[dev-dependencies]");
@@ -235,7 +252,7 @@ mod tests {
 
     #[test]
     fn check_finds_a_member_without_a_rule() {
-        let root = ROOT.replace("crates/testkit", "crates/vision");
+        let root = ROOT.replace("crates/testkit", "crates/unknown");
         assert_one(&found(&root, DYNAMICS, ESTIMATOR), "Cargo.toml:2: ", "ARCHITECTURE.md");
     }
 

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
 
+use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::paper::PaperExperiment;
 
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
@@ -30,6 +31,12 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
     Check(CheckArgs),
+    /// Calibrate a camera from frames of a tag board
+    Calibrate(CalibrateArgs),
+    /// Track object and pusher through camera frames by their tags, into a log
+    Track(TrackArgs),
+    /// Render camera frames of an experiment, with a calibration recording
+    Render(RenderArgs),
 }
 
 /// Arguments of `stickslip demo`.
@@ -284,7 +291,8 @@ impl From<MethodName> for Method {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+/// A positive number.
+pub fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be positive".to_owned()) }
 }

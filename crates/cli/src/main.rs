@@ -3,6 +3,8 @@
 #![warn(clippy::print_stdout, clippy::print_stderr, reason = "they panic where the reader has left; `output` does not")]
 
 mod args;
+mod calibrate;
+mod camera_args;
 mod check;
 mod compare;
 mod contest;
@@ -11,14 +13,17 @@ mod experiment;
 mod failure;
 mod figure;
 mod filter;
+mod frames;
 mod output;
 mod paper;
 mod parameters;
 mod progress;
 mod quantile;
+mod render;
 mod simulate;
 mod simulation;
 mod table;
+mod track;
 mod verdict;
 
 use std::process::ExitCode;
@@ -34,6 +39,9 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::compare(&args),
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Check(args) => check::check(&args),
+        Command::Calibrate(args) => calibrate::calibrate(&args),
+        Command::Track(args) => track::track(&args),
+        Command::Render(args) => render::render(&args),
     };
     result.unwrap_or_else(|error| failure::tell(&error)).exit_code()
 }

@@ -167,6 +167,12 @@ impl Row<'_> {
         }
     }
 
+    /// The text in a cell that must be filled.
+    pub(crate) fn text(&self, column: usize) -> Result<&str, CsvError> {
+        let found = self.cells[column].as_str();
+        if found.is_empty() { Err(self.error(column, CsvProblem::EmptyCell)) } else { Ok(found) }
+    }
+
     /// A whole number from 0 up, or empty.
     pub(crate) fn count(&self, column: usize) -> Result<Option<u32>, CsvError> {
         let found = &self.cells[column];

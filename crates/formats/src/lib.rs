@@ -1,4 +1,5 @@
-//! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`, `truth.csv` and `truth.json`.
+//! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`, `truth.csv`, `truth.json` and
+//! `frames.csv`.
 //!
 //! Nothing here opens a file: readers take text or an [`std::io::Read`] with the name to show in errors, writers an
 //! [`std::io::Write`]. Every refusal names the file, the line, the place in the line, the value found, the rule and what to do.
@@ -8,6 +9,7 @@ mod csv_error;
 mod csv_table;
 mod estimate_csv;
 mod experiment;
+mod frames_csv;
 mod log_csv;
 mod nearest;
 mod number;
@@ -18,6 +20,7 @@ mod truth_json;
 pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_csv::{read_estimate, write_estimate};
 pub use experiment::Experiment;
+pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use log_csv::{LogWarning, SensorError, check_sensors, read_log, write_log};
 pub use scene::{SceneError, SceneProblem, read_scene};
 pub use truth_csv::{Truth, read_truth_csv, write_truth_csv};

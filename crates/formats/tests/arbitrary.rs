@@ -1,7 +1,7 @@
 //! Arbitrary bytes never bring a reader down: it reads or refuses.
 
 use proptest::prelude::*;
-use stickslip_formats::{read_estimate, read_log, read_scene, read_truth_csv, read_truth_json};
+use stickslip_formats::{read_estimate, read_frames, read_log, read_scene, read_truth_csv, read_truth_json};
 
 const SCENE: &str = include_str!("full_scene.toml");
 const LOG: &str = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta,tactile_1\n0,1,2,3,4,5,6,0\n0.5,,,,4,5,6,\n";
@@ -15,6 +15,7 @@ fn read_with_all(bytes: &[u8]) {
         read_truth_json(&text, "f").err().map(|error| error.to_string()),
         read_log(bytes, "f").err().map(|error| error.to_string()),
         read_estimate(bytes, "f").err().map(|error| error.to_string()),
+        read_frames(bytes, "f").err().map(|error| error.to_string()),
         read_truth_csv(bytes, "f").err().map(|error| error.to_string()),
     ];
     assert!(refusals.iter().flatten().all(|message| message.starts_with("f:") && message.len() > 10), "{refusals:?}");

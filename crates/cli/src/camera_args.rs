@@ -1,0 +1,96 @@
+//! Arguments of the commands about camera frames.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::args::{Rows, positive};
+
+/// Arguments of `stickslip calibrate`.
+#[derive(Debug, Args)]
+pub struct CalibrateArgs {
+    /// Folder with images of the board: lying on the table in one, held and tilted to all sides in the others
+    #[arg(value_name = "FRAMES")]
+    pub frames: PathBuf,
+    /// The board (board.toml): rows, columns, tag_size, gap, and how it lies on the table
+    #[arg(long, value_name = "TOML")]
+    pub board: PathBuf,
+    /// The image in which the board lies on the table [default: the first one]
+    #[arg(long, value_name = "NAME")]
+    pub flat: Option<String>,
+    /// Write the calibration into this file
+    #[arg(long, value_name = "TOML", default_value = "calibration.toml")]
+    pub out: PathBuf,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `stickslip track`.
+#[derive(Debug, Args)]
+pub struct TrackArgs {
+    /// Folder with the images, and their times in frames.csv (time,file)
+    #[arg(value_name = "FRAMES")]
+    pub frames: PathBuf,
+    /// The calibrated camera (calibration.toml)
+    #[arg(long, value_name = "TOML")]
+    pub calibration: PathBuf,
+    /// Which tag is on which body, and where (tags.toml)
+    #[arg(long, value_name = "TOML")]
+    pub tags: PathBuf,
+    /// Frames per second of images without frames.csv, in the order of their names
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    pub rate: Option<f64>,
+    /// Take tactile and force readings from this log, whose rows have the frames' times
+    #[arg(long, value_name = "CSV")]
+    pub sensors: Option<PathBuf>,
+    /// Write log.csv and poses.csv (with covariances) into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `stickslip render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Experiment folder (scene.toml, log.csv, truth.csv)
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Write frames/, board/, board.toml, tags.toml and copies of scene and truth into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// The hand covers the object's tag in the frames FROM to TO (excluded; to the end without TO) [default: truth.json's occlude_from]
+    #[arg(long, value_name = "FROM[:TO]")]
+    pub cover: Option<Rows>,
+    /// Probability that the frame grabber delivers a frame twice
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability)]
+    pub repeat: f64,
+    /// Blur of lens and defocus, as a standard deviation
+    #[arg(long, value_name = "PX", default_value_t = 0.6, value_parser = positive)]
+    pub blur: f64,
+    /// Time that the shutter is open
+    #[arg(long, value_name = "S", default_value_t = 0.008, value_parser = positive)]
+    pub exposure: f64,
+    /// Frames of the calibration recording
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    pub board_frames: u16,
+    /// Seed of all noise
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..1.0).contains(&value) { Ok(value) } else { Err("must be from 0 to below 1".to_owned()) }
+}

@@ -1,0 +1,183 @@
+//! `stickslip track`: object and pusher through camera frames, into a log.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use anyhow::Result;
+use serde::Serialize;
+use stickslip::Log;
+use stickslip_formats::write_log;
+use stickslip_vision::{
+    BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera, read_tags, write_poses,
+};
+
+use crate::camera_args::TrackArgs;
+use crate::experiment::{read_log_file, text_of};
+use crate::failure::hinted;
+use crate::frames::FrameFolder;
+use crate::output::{show, talk};
+use crate::progress::{Work, bar};
+use crate::quantile::quantile;
+use crate::table::{Table, number};
+use crate::verdict::Verdict;
+
+/// Rows of two logs this close are at the same time (s).
+const SAME_TIME: f64 = 1e-4;
+/// A tag seen larger or smaller by this share than given was given wrongly, or its height was.
+const SIZE_OFF: f64 = 0.02;
+
+/// What is told of a body.
+#[derive(Debug, Serialize)]
+struct BodySummary {
+    measured: usize,
+    missing: usize,
+    distorted: usize,
+    twice: usize,
+    median_position_std_mm: Option<f64>,
+    median_orientation_std_deg: Option<f64>,
+    median_tag_size_m: Option<f64>,
+}
+
+/// What is told of a track.
+#[derive(Debug, Serialize)]
+struct Summary {
+    frames: usize,
+    repeated: usize,
+    object: BodySummary,
+    pusher: BodySummary,
+}
+
+/// Runs the command.
+pub fn track(args: &TrackArgs) -> Result<Verdict> {
+    let camera = read_camera(&text_of(&args.calibration, "calibration")?, &args.calibration.display().to_string())?;
+    let tags = read_tags(&text_of(&args.tags, "tags file")?, &args.tags.display().to_string())?;
+    let folder = FrameFolder::list(&args.frames)?;
+    let time = times(args, &folder)?;
+    let found = found(args, &folder, &camera, &tags)?;
+    let log = with_sensors(args, Log { object: found.object(), pusher: found.pusher(), time, ..Log::default() })?;
+    write(&args.out, &log, &found)?;
+    let summary = Summary::new(&found);
+    show(if args.json { serde_json::to_string_pretty(&summary)? } else { summary.text() })?;
+    for (body, seen, given) in [("object", &summary.object, tags.object), ("pusher", &summary.pusher, tags.pusher)] {
+        warn_of_size(body, seen, given);
+    }
+    talk(format_args!("wrote {} and poses.csv", args.out.join("log.csv").display()));
+    Ok(Verdict::Done)
+}
+
+/// Times of the frames: those of frames.csv, else by the rate.
+fn times(args: &TrackArgs, folder: &FrameFolder) -> Result<Vec<f64>> {
+    match (&folder.time, args.rate) {
+        (Some(_), Some(rate)) => Err(hinted(
+            format!("{}: frames.csv gives times, and --rate {rate} others", args.frames.display()),
+            "leave --rate out, or move frames.csv away",
+        )),
+        (Some(time), None) => Ok(time.clone()),
+        (None, Some(rate)) => Ok((0..folder.names.len()).map(|index| index as f64 / rate).collect()),
+        (None, None) => Err(hinted(
+            format!("{}: there is no frames.csv, so the frames have no times", args.frames.display()),
+            "write frames.csv (time,file), or give the frames per second with --rate",
+        )),
+    }
+}
+
+/// What the frames show, on as many threads as asked for.
+fn found(args: &TrackArgs, folder: &FrameFolder, camera: &Camera, tags: &Tags) -> Result<Track> {
+    let progress = bar(folder.names.len(), "frames", Work::Long);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?;
+    let load = |index: usize| {
+        progress.inc(1);
+        folder.load(index)
+    };
+    let track = pool.install(|| stickslip_vision::track(folder.names.len(), load, camera, tags));
+    progress.finish_and_clear();
+    track.map_err(|error| if error.is::<TrackError>() { error.context(args.frames.display().to_string()) } else { error })
+}
+
+/// The log with the readings of another one at the same times.
+fn with_sensors(args: &TrackArgs, log: Log) -> Result<Log> {
+    let Some(path) = &args.sensors else { return Ok(log) };
+    let sensors = read_log_file(path)?;
+    let differ = || (0..log.len().max(sensors.len())).find(|row| differs(log.time.get(*row), sensors.time.get(*row)));
+    if let Some(row) = differ() {
+        let shown = |time: Option<&f64>| time.map_or("nothing".to_owned(), |time| format!("{time} s"));
+        return Err(hinted(
+            format!("{}: row {row} is at {}, frame {row} at {}", path.display(), shown(sensors.time.get(row)), shown(log.time.get(row))),
+            "give a log with one row for each frame, at its time",
+        ));
+    }
+    Ok(Log { tactile: sensors.tactile, force: sensors.force, ..log })
+}
+
+fn differs(a: Option<&f64>, b: Option<&f64>) -> bool {
+    a.zip(b).is_none_or(|(a, b)| (a - b).abs() > SAME_TIME)
+}
+
+/// Writes log.csv and poses.csv into `folder`; other files there stay as they are.
+fn write(folder: &Path, log: &Log, track: &Track) -> Result<()> {
+    let write = || -> std::io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let mut file = BufWriter::new(File::create(folder.join("log.csv"))?);
+        write_log(&mut file, log)?;
+        file.flush()?;
+        let mut file = BufWriter::new(File::create(folder.join("poses.csv"))?);
+        write_poses(&mut file, &log.time, track)?;
+        file.flush()
+    };
+    write().map_err(|error| {
+        hinted(format!("{}: cannot be written: {error}", folder.display()), "give a folder that can be written to with --out")
+    })
+}
+
+fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {
+    let Some(size) = seen.median_tag_size_m.filter(|size| (size / given.place.size - 1.0).abs() > SIZE_OFF) else { return };
+    talk(format_args!(
+        "warning: the {body}'s tag is seen {:.1} mm large at the height {} m, {body}.size says {:.1} mm; measure the edge of its black square, and the height",
+        1e3 * size,
+        given.place.height,
+        1e3 * given.place.size
+    ));
+}
+
+impl BodySummary {
+    fn new(track: &Track, body: impl Fn(&FrameSighting) -> Sighting) -> Self {
+        let seen: Vec<Sighting> = track.frames.iter().filter(|frame| !frame.repeated).map(body).collect();
+        let measured: Vec<&Measurement> = seen.iter().filter_map(|s| if let Sighting::Measured(m) = s { Some(m) } else { None }).collect();
+        let median = |of: &dyn Fn(&Measurement) -> f64| {
+            let numbers: Vec<f64> = measured.iter().map(|m| of(m)).collect();
+            quantile(numbers, 0.5)
+        };
+        let count = |kind: Sighting| seen.iter().filter(|s| **s == kind).count();
+        Self {
+            measured: measured.len(),
+            missing: count(Sighting::Missing),
+            distorted: count(Sighting::Distorted),
+            twice: count(Sighting::Twice),
+            median_position_std_mm: median(&|m| 1e3 * ((m.covariance[(0, 0)] + m.covariance[(1, 1)]) / 2.0).sqrt()),
+            median_orientation_std_deg: median(&|m| m.std()[2].to_degrees()),
+            median_tag_size_m: median(&|m| m.size),
+        }
+    }
+}
+
+impl Summary {
+    fn new(track: &Track) -> Self {
+        Self {
+            frames: track.frames.len(),
+            repeated: track.frames.iter().filter(|frame| frame.repeated).count(),
+            object: BodySummary::new(track, |frame| frame.object),
+            pusher: BodySummary::new(track, |frame| frame.pusher),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut table = Table::new(["body", "measured", "missing", "distorted", "twice", "std mm", "std deg"]);
+        for (name, body) in [("object", &self.object), ("pusher", &self.pusher)] {
+            let counts = [body.measured, body.missing, body.distorted, body.twice].map(|count| count.to_string());
+            let stds = [number(body.median_position_std_mm, 4), number(body.median_orientation_std_deg, 4)];
+            table.push([name.to_owned()].into_iter().chain(counts).chain(stds));
+        }
+        format!("{} frames, {} of them repeated\n\n{table}", self.frames, self.repeated)
+    }
+}

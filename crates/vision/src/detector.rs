@@ -1,0 +1,77 @@
+//! Where tags are in an image, roughly: [`Detector`], around the library's detector.
+
+use image::GrayImage;
+use kornia_apriltag::family::TagFamilyKind;
+use kornia_apriltag::{AprilTagDecoder, DecodeTagsConfig};
+use kornia_image::{Image, ImageSize};
+
+use crate::outline::Outline;
+
+/// No tag is found in images smaller than this, and the library takes none (px).
+const SMALLEST: usize = 32;
+
+/// Finds tags of the family 36h11 in images of one size.
+pub struct Detector {
+    decoder: AprilTagDecoder,
+    size: ImageSize,
+    /// The library shares an image out among the threads it finds, and its last digits depend on their number: it gets one.
+    one_thread: rayon::ThreadPool,
+}
+
+/// A tag in an image.
+#[derive(Clone, Debug)]
+pub struct FoundTag {
+    /// Its number.
+    pub id: u16,
+    /// The pixels along its border.
+    pub(crate) outline: Outline,
+}
+
+impl Detector {
+    /// A detector for images of `size`, columns and rows.
+    ///
+    /// # Panics
+    /// If a side is 0 or above 65535, or the system gives no thread.
+    pub fn new(size: [u32; 2]) -> Self {
+        // finer than by every second pixel, the library misses tags
+        let config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11]).expect("the library has this family");
+        let size = ImageSize { width: size[0] as usize, height: size[1] as usize };
+        let decoder = AprilTagDecoder::new(config, size).expect("an image of usual size");
+        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("the system gives a thread");
+        Self { decoder, size, one_thread }
+    }
+
+    /// The tags in an image, by number and then by place; one may be there twice.
+    ///
+    /// # Panics
+    /// If the image has another size.
+    pub fn find(&mut self, image: &GrayImage) -> Vec<FoundTag> {
+        if self.size.width.min(self.size.height) < SMALLEST {
+            return Vec::new();
+        }
+        let view = Image::from_size_slice(self.size, image.as_raw()).expect("an image of the detector's size");
+        let decoder = &mut self.decoder;
+        let detections = self.one_thread.install(|| decoder.decode(&view)).expect("an image of the detector's size");
+        self.decoder.clear();
+        let mut tags: Vec<FoundTag> = detections
+            .iter()
+            .map(|detection| {
+                // anti-clockwise from the lower left as printed; the library's y axis points down, its pixels begin at their corner
+                let corners = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(|[x, y]| {
+                    let at = detection.quad.homography_project(x, y);
+                    [f64::from(at.x) - 0.5, f64::from(at.y) - 0.5]
+                });
+                FoundTag { id: detection.id, outline: Outline::gather(image, corners) }
+            })
+            .collect();
+        tags.sort_by(|a, b| a.id.cmp(&b.id).then(a.corners()[0][0].total_cmp(&b.corners()[0][0])));
+        tags
+    }
+}
+
+impl FoundTag {
+    /// Corners of its black square, roughly (px): lower left, lower right, upper right, upper left, as printed.
+    pub fn corners(&self) -> [[f64; 2]; 4] {
+        self.outline.corners
+    }
+}
