@@ -7,8 +7,10 @@
 use crate::condensed::Linearised;
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
+use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
 use crate::polish::Polish;
+use crate::smoothing::SmoothedMap;
 
 /// Smoothed residual, in units of ε, below which ε may fall.
 const NEAR: f64 = 1e3;
@@ -31,7 +33,9 @@ const POLISH_STEPS: u32 = 2;
 /// The continuation with its working memory.
 #[derive(Clone, Debug)]
 pub struct Continuation<const W: usize> {
+    map: SmoothedMap<W>,
     linearised: Linearised<W>,
+    certificate: NaturalMap<W>,
     polish: Polish<W>,
     path: Impulses<W>,
     trial: Impulses<W>,
@@ -40,7 +44,14 @@ pub struct Continuation<const W: usize> {
 impl<const W: usize> Default for Continuation<W> {
     fn default() -> Self {
         let none = Impulses::zero(0);
-        Self { linearised: Linearised::default(), polish: Polish::default(), path: none.clone(), trial: none }
+        Self {
+            map: SmoothedMap::default(),
+            linearised: Linearised::default(),
+            certificate: NaturalMap::default(),
+            polish: Polish::default(),
+            path: none.clone(),
+            trial: none,
+        }
     }
 }
 
@@ -54,18 +65,18 @@ impl<const W: usize> Continuation<W> {
         let mut epsilon = scale * start;
         let mut next_look = epsilon;
         self.path.copy_from(p);
-        let mut violation = ncp.smoothed_residual(&self.path, epsilon);
+        let mut violation = self.map.take(ncp, &self.path, epsilon);
         let mut residual = Lanes::splat(f64::INFINITY);
         let mut steps = Lanes::ZERO;
         let mut open = Mask::splat(true);
         for _ in 0..STEPS {
             let near = violation.lt(epsilon * NEAR);
             let target = near.select(epsilon * REDUCTION, epsilon);
-            self.linearised.smoothed(ncp, &self.path, epsilon, target);
+            self.linearised.smoothed(ncp, &self.path, &self.map, target);
             self.linearised.step(ncp, &mut self.path, open);
             steps += open.keep(Lanes::splat(1.0));
             epsilon = open.select(target, epsilon);
-            violation = ncp.smoothed_residual(&self.path, epsilon);
+            violation = self.map.take(ncp, &self.path, epsilon);
 
             let look = open & violation.lt(epsilon * NEAR) & !epsilon.gt(next_look);
             if look.any() {
@@ -88,6 +99,6 @@ impl<const W: usize> Continuation<W> {
     fn polish(&mut self, ncp: &Ncp<W>, look: Mask<W>) -> Lanes<W> {
         self.trial.copy_from(&self.path);
         self.polish.polish(ncp, &mut self.trial, look, SLIDING, POLISH_STEPS);
-        ncp.residual(&self.trial)
+        self.certificate.take(ncp, &self.trial)
     }
 }

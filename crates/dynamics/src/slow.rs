@@ -1,12 +1,12 @@
 //! The slow, sure part of the chain, one particle at a time: [`SlowSolver`].
 
-use crate::condensed::Linearised;
 use crate::homotopy::Homotopy;
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::modes::{Verdict, search};
+use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::newton;
+use crate::newton::Newton;
 use crate::polish::Polish;
 use crate::rows::{Guess, Rows};
 use crate::solver::{Outcome, Report, Route, TOLERANCE};
@@ -59,7 +59,7 @@ impl Default for SlowSolver {
             rows: Rows::default(),
             start: Impulses::zero(0),
             homotopy: Homotopy::default(),
-            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), fast: Linearised::default() },
+            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), newton: Newton::default(), map: NaturalMap::default() },
         }
     }
 }
@@ -156,7 +156,8 @@ impl SlowSolver {
 struct Polisher {
     p: Impulses<1>,
     modes: Polish<1>,
-    fast: Linearised<1>,
+    newton: Newton<1>,
+    map: NaturalMap<1>,
 }
 
 impl Polisher {
@@ -166,7 +167,7 @@ impl Polisher {
         for &share in sliding {
             self.p.copy_from(guess);
             self.modes.polish(ncp, &mut self.p, Mask::splat(true), share, limit);
-            residual = ncp.residual(&self.p).0[0];
+            residual = self.map.take(ncp, &self.p).0[0];
             if residual <= TOLERANCE {
                 break;
             }
@@ -181,7 +182,7 @@ impl Polisher {
             return residual;
         }
         self.p.copy_from(guess);
-        newton(ncp, &mut self.p, &mut self.fast, TOLERANCE, POLISH_ITERATIONS).0.0[0]
+        self.newton.solve(ncp, &mut self.p, TOLERANCE, POLISH_ITERATIONS).0.0[0]
     }
 }
 

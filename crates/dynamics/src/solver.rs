@@ -4,12 +4,12 @@
 //! goes to the smoothed Newton steps, still side by side; a smoothing homotopy, then an exhaustive search over contact modes take
 //! what is left, one by one. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
 
-use crate::condensed::Linearised;
 use crate::continuation::Continuation;
 use crate::impulses::Impulses;
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::Lanes;
+use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::newton;
+use crate::newton::Newton;
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;
 
@@ -91,7 +91,8 @@ pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
 /// Solves mixed NCPs; holds the working memory.
 #[derive(Clone, Debug)]
 pub struct Solver<const W: usize> {
-    fast: Linearised<W>,
+    newton: Newton<W>,
+    map: NaturalMap<W>,
     warm: Vec<Impulses<W>>,
     left: Vec<Place>,
     pack: Pack<W>,
@@ -107,7 +108,14 @@ struct Place {
 
 impl<const W: usize> Default for Solver<W> {
     fn default() -> Self {
-        Self { fast: Linearised::default(), warm: Vec::new(), left: Vec::new(), pack: Pack::default(), slow: SlowSolver::default() }
+        Self {
+            newton: Newton::default(),
+            map: NaturalMap::default(),
+            warm: Vec::new(),
+            left: Vec::new(),
+            pack: Pack::default(),
+            slow: SlowSolver::default(),
+        }
     }
 }
 
@@ -122,7 +130,7 @@ impl<const W: usize> Solver<W> {
         for (chunk, (ncp, p)) in ncps.iter().zip(p.iter_mut()).enumerate() {
             assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
             self.warm[chunk].copy_from(p);
-            let (residual, iterations) = newton(ncp, p, &mut self.fast, AIM, FAST_ITERATIONS);
+            let (residual, iterations) = self.newton.solve(ncp, p, AIM, FAST_ITERATIONS);
             for (lane, report) in reports[chunk].iter_mut().enumerate() {
                 let (residual, iterations) = (residual.0[lane], iterations.0[lane] as u32);
                 *report = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
@@ -135,7 +143,7 @@ impl<const W: usize> Solver<W> {
             self.solve_left(ncps, p, reports);
         }
         for ((ncp, p), reports) in ncps.iter().zip(p).zip(reports) {
-            rest_exactly(ncp, p, reports);
+            rest_exactly(ncp, p, &mut self.map, reports);
         }
     }
 
@@ -212,23 +220,20 @@ impl<const W: usize> Pack<W> {
 
 /// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a stuck object never drifts.
 #[inline(always)]
-fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report; W]) {
+fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, map: &mut NaturalMap<W>, reports: &mut [Report; W]) {
     let mut fastest = Lanes::ZERO;
     for v in &p.v {
         fastest = fastest.max(v.abs());
     }
     let nearly = fastest.gt(Lanes::ZERO) & !fastest.gt(Lanes::splat(TOLERANCE));
-    if nearly.any() {
-        stop(ncp, p, reports, nearly);
+    if !nearly.any() {
+        return;
     }
-}
-
-/// Makes the velocity zero in the lanes of `nearly` where the certificate agrees.
-#[inline(never)]
-fn stop<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report; W], nearly: Mask<W>) {
     let velocity = p.v;
-    p.v = velocity.map(|v| nearly.select(Lanes::ZERO, v));
-    let residual = ncp.residual(p);
+    for v in &mut p.v {
+        *v = nearly.select(Lanes::ZERO, *v);
+    }
+    let residual = map.take(ncp, p);
     let mut exact = nearly & !residual.gt(Lanes::splat(TOLERANCE));
     for (lane, report) in reports.iter_mut().enumerate() {
         exact.set(lane, exact.lane(lane) && report.outcome == Outcome::Solved);
@@ -236,5 +241,7 @@ fn stop<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report
             report.residual = residual.0[lane];
         }
     }
-    p.v = velocity.map(|v| exact.select(Lanes::ZERO, v));
+    for (v, moving) in p.v.iter_mut().zip(velocity) {
+        *v = exact.select(Lanes::ZERO, moving);
+    }
 }
