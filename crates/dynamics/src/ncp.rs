@@ -134,6 +134,13 @@ impl<const W: usize> Ncp<W> {
         self.compliance = Lanes::ZERO;
     }
 
+    /// Opens all contacts of one lane.
+    pub fn clear_lane(&mut self, lane: usize) {
+        for row in &mut self.contacts {
+            copy_lane(row.numbers_mut(), lane, ContactRow::<W>::OPEN.numbers(), lane);
+        }
+    }
+
     /// Copies one lane into lane `slot` of `to`, without the open rows that pad it.
     pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Ncp<V>, slot: usize) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
