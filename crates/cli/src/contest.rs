@@ -3,6 +3,7 @@
 use anyhow::Result;
 use stickslip::{Method, Occlusion, Run, RunOptions, Scores, TactileUse, Tracking, run, score};
 use stickslip_formats::Experiment;
+use stickslip_report::Colour;
 
 /// A way to estimate that takes part in a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +50,17 @@ impl Rival {
             Self::ParticleNoTactile => "particle, no tactile",
             Self::Particle => "particle",
             Self::ParticleAlwaysOn => "particle, camera on",
+        }
+    }
+
+    /// Colour in figures.
+    pub fn colour(self) -> Colour {
+        match self {
+            Self::Nominal => Colour::GREY,
+            Self::Kalman => Colour::ORANGE,
+            Self::ParticleNoTactile => Colour::SKY,
+            Self::Particle => Colour::VERMILLION,
+            Self::ParticleAlwaysOn => Colour::GREEN,
         }
     }
 

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Occlusion, Reference, Tracking};
+use stickslip::{Estimate, Occlusion, Tracking};
 use stickslip_formats::Experiment;
+use stickslip_report::{Curve, Mark, Panel, PoseError, Scale, TimeFigure, pose_errors};
 
 use crate::args::DemoArgs;
 use crate::compare::results::{Entry, Marks};
@@ -15,7 +15,6 @@ use crate::compare::tables;
 use crate::contest::{Attempt, Rival, Rules};
 use crate::experiment::Texts;
 use crate::failure::hinted;
-use crate::figure::{Figure, Mark, Series};
 use crate::output::show;
 use crate::parameters::Parameter;
 use crate::table::Table;
@@ -99,29 +98,27 @@ fn figure(story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) -
     let contacts: Vec<Mark> = pusher.into_iter().chain(fixels).collect();
     let last = experiment.log.time.last().copied().unwrap_or(0.0);
     let end = contacts.iter().map(|mark| mark.time + AFTERMATH).fold(0.0, f64::max).min(last);
-    let reference = experiment.reference();
-    Figure {
+    let panel = |label: &str, of: fn(&PoseError) -> f64| Panel {
+        label: label.to_owned(),
+        scale: Scale::Log { floor: 0.01 },
+        curves: attempts.iter().map(|(rival, attempt)| curve(*rival, experiment, &attempt.run.estimate, of)).collect(),
+        ..Panel::default()
+    };
+    let figure = TimeFigure {
         title: story.to_owned(),
         span: [contacts.iter().map(|mark| mark.time - 1.0).fold(end, f64::min).max(0.0), end],
-        dark_from: experiment.facts.occlude_from.and_then(time_of),
-        contacts,
-        series: attempts.iter().map(|(rival, attempt)| series(*rival, &reference, &attempt.run.estimate)).collect(),
-    }
-    .to_svg()
+        dark: experiment.facts.occlude_from.and_then(time_of).map(|from| [from, last]).into_iter().collect(),
+        marks: contacts,
+        panels: vec![panel("position error (mm)", PoseError::distance_mm), panel("angle error (°)", |error| error.turn_deg.abs())],
+        ..TimeFigure::default()
+    };
+    Ok(figure.to_svg())
 }
 
-/// The errors of one method against the truth, row by row.
-fn series(rival: Rival, reference: &Reference, estimate: &Estimate) -> Series {
-    let rows = reference.time.iter().zip(&reference.pose);
-    let pairs: Vec<(f64, Pose, Pose)> = rows.filter_map(|(time, pose)| Some((*time, (*pose)?, estimate.pose_at(*time)?))).collect();
-    let turn = |truth: &Pose, guess: &Pose| {
-        (guess.theta - truth.theta + 180_f64.to_radians()).rem_euclid(360_f64.to_radians()).to_degrees() - 180.0
-    };
-    Series {
-        name: rival.name(),
-        position: pairs.iter().map(|(time, truth, guess)| (*time, 1e3 * (guess.x - truth.x).hypot(guess.y - truth.y))).collect(),
-        angle: pairs.iter().map(|(time, truth, guess)| (*time, turn(truth, guess).abs())).collect(),
-    }
+/// One kind of error of one method against the reference, row by row.
+fn curve(rival: Rival, experiment: &Experiment, estimate: &Estimate, of: fn(&PoseError) -> f64) -> Curve {
+    let errors = pose_errors(estimate, &experiment.reference());
+    Curve::new(rival.name(), rival.colour(), errors.iter().map(|error| [error.time, of(error)]).collect())
 }
 
 fn write_figure(folder: &Path, name: &str, svg: &str) -> Result<PathBuf> {
