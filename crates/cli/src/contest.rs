@@ -93,11 +93,15 @@ impl Rival {
 
     /// Runs and scores it; `occlusion` is what is hidden, and scored even where this rival sees it.
     pub fn attempt(self, experiment: &Experiment, occlusion: Occlusion, rules: &Rules, seed: u64) -> Result<Attempt> {
-        let options = self.options(occlusion, rules, seed);
-        let run = run(&experiment.setup, &experiment.log, &options, &mut |_| ())?;
+        let run = self.run(experiment, occlusion, rules, seed)?;
         let hidden = occlusion.hidden(&experiment.log);
         let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
         Ok(Attempt { run, scores })
+    }
+
+    /// Runs it while `occlusion` hides the object.
+    pub fn run(self, experiment: &Experiment, occlusion: Occlusion, rules: &Rules, seed: u64) -> Result<Run> {
+        Ok(run(&experiment.setup, &experiment.log, &self.options(occlusion, rules, seed), &mut |_| ())?)
     }
 
     fn options(self, occlusion: Occlusion, rules: &Rules, seed: u64) -> RunOptions {
