@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod contest;
 mod demo;
+mod episode;
 mod experiment;
 mod failure;
 mod filter;
@@ -20,7 +21,6 @@ mod progress;
 mod render;
 mod simulate;
 mod simulation;
-mod table;
 mod track;
 mod verdict;
 
