@@ -109,7 +109,7 @@ fn jobs(cases: &[Case], seeds: u64) -> Vec<Job> {
 /// Runs one job; a panic in it is an error of its folder.
 fn marks(cases: &[Case], job: Job, rules: &Rules) -> Result<Marks> {
     let case = &cases[job.case];
-    let attempt = catch_unwind(AssertUnwindSafe(|| job.rival.attempt(&case.experiment, case.occlusion, rules, job.seed)));
+    let attempt = catch_unwind(AssertUnwindSafe(|| job.rival.attempt(&case.experiment, case.occlusion, rules, job.seed, None)));
     let attempt =
         attempt.map_err(|_| anyhow!("{} with seed {} broke an invariant of the library (see above)", job.rival.name(), job.seed))??;
     Ok(Marks::new(&attempt.scores, attempt.run.unsolved))

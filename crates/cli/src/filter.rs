@@ -19,8 +19,8 @@ use crate::failure::hinted;
 use crate::output::{show, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
-use crate::table::{Table, number};
 use crate::verdict::Verdict;
+use stickslip_report::{Table, number};
 
 /// Particle steps above which a person would wait.
 const LONG: usize = 200_000;

@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod contest;
 mod demo;
+mod episode;
 mod experiment;
 mod failure;
 mod filter;
@@ -21,7 +22,6 @@ mod render;
 mod reproduce;
 mod simulate;
 mod simulation;
-mod table;
 mod track;
 mod verdict;
 

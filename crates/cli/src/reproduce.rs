@@ -1,6 +1,6 @@
 //! `stickslip reproduce`: the paper's tables and figures, ours beside the paper's numbers.
 
-mod contender;
+mod participant;
 mod course;
 mod published;
 mod reasons;
@@ -20,8 +20,8 @@ use crate::output::show;
 use crate::paper::PaperExperiment;
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-use contender::Contender;
-use course::{Course, Heat, contenders};
+use participant::Participant;
+use course::{Course, Heat, participants};
 use recording::Recording;
 use results::Reproduction;
 
@@ -59,15 +59,15 @@ fn recordings(seeds: u64) -> Result<Vec<Recording>> {
     recordings
 }
 
-/// Every contender on every recording.
+/// Every participant on every recording.
 fn heats(recordings: Vec<Recording>, rules: &Rules) -> Result<Vec<Heat>> {
-    let jobs: Vec<(&Recording, Contender)> = recordings
+    let jobs: Vec<(&Recording, Participant)> = recordings
         .iter()
-        .flat_map(|recording| contenders(recording.paper).into_iter().map(move |contender| (recording, contender)))
+        .flat_map(|recording| participants(recording.paper).into_iter().map(move |participant| (recording, participant)))
         .collect();
     let progress = bar(jobs.len(), "runs", Work::Long);
-    let run = |(recording, contender): &(&Recording, Contender)| {
-        let course = Course::run(*contender, recording, rules);
+    let run = |(recording, participant): &(&Recording, Participant)| {
+        let course = Course::run(*participant, recording, rules);
         progress.inc(1);
         course
     };
@@ -75,7 +75,7 @@ fn heats(recordings: Vec<Recording>, rules: &Rules) -> Result<Vec<Heat>> {
     progress.finish_and_clear();
     let mut courses = courses.into_iter();
     let heat = |recording: Recording| {
-        let courses = courses.by_ref().take(contenders(recording.paper).len()).collect();
+        let courses = courses.by_ref().take(participants(recording.paper).len()).collect();
         Heat { recording, courses }
     };
     Ok(recordings.into_iter().map(heat).collect())

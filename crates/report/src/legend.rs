@@ -15,6 +15,7 @@ const GAP: f64 = 22.0;
 pub(crate) enum Swatch {
     Line(Colour, Line),
     Area(Colour),
+    Bar(Colour),
     Dark,
 }
 
@@ -62,6 +63,9 @@ impl Swatch {
             },
             Self::Area(colour) => html! {
                 rect x=(px(x)) y=(px(y + 3.0)) width=(px(SWATCH)) height="14" fill=(colour.hex()) fill-opacity="0.25" {}
+            },
+            Self::Bar(colour) => html! {
+                rect class=[(colour == Colour::INK).then_some("ink")] x=(px(x)) y=(px(y + 6.0)) width=(px(SWATCH)) height="8" fill=(colour.hex()) {}
             },
             Self::Dark => html! {
                 rect class="dark" x=(px(x)) y=(px(y + 3.0)) width=(px(SWATCH)) height="14" fill=(DARK.hex()) {}

@@ -122,13 +122,19 @@ impl Overlay {
     /// The bodies in the plane, to be put beside other drawings.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
-        let all = bounds(self.bodies.iter().filter_map(|body| body.outline.bounds()).flatten()).unwrap_or([[-0.05, -0.05], [0.05, 0.05]]);
-        let [[left, low], [right, high]] = self.view.unwrap_or_else(|| with_room(all));
+        let [[left, low], [right, high]] = self.view.unwrap_or_else(|| self.whole_view());
         let inner = self.width - 2.0 * MARGIN;
         let scale = inner / (right - left).max(1e-9);
         let map = |[x, y]: [f64; 2]| Some([scale * (x - left), scale * (high - y)]);
         let size = [inner, scale * (high - low)];
         self.framed(size, html! { (grid(left, high, scale, size)) }, scale, &map)
+    }
+
+    /// Corners of what holds all bodies, with some room (m).
+    #[must_use]
+    pub fn whole_view(&self) -> [[f64; 2]; 2] {
+        let all = bounds(self.bodies.iter().filter_map(|body| body.outline.bounds()).flatten());
+        with_room(all.unwrap_or([[-0.05, -0.05], [0.05, 0.05]]))
     }
 
     /// The bodies on a camera image, to be put beside other drawings.
@@ -215,6 +221,7 @@ fn scale_bar(scale: f64, [width, height]: [f64; 2]) -> Markup {
     let (right, y) = (width - 10.0, height - 10.0);
     let left = right - 1e-3 * length * scale;
     html! {
+        rect class="paper" x=(px(left - 6.0)) y=(px(y - 23.0)) width=(px(right - left + 12.0)) height="29" fill="#ffffff" fill-opacity="0.8" {}
         path class="axis" d=(path([[left, y], [right, y]], false)) stroke=(Colour::INK.hex()) stroke-width="3" {}
         (Text { anchor: Anchor::Middle, ..Text::at([0.5 * (left + right), y - 7.0], &format!("{} mm", px(length))) }.sized(13.0))
     }

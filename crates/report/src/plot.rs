@@ -41,20 +41,31 @@ impl Plot<'_> {
         }
     }
 
-    /// Grid, axes, numbers and labels.
+    /// Grid, both axes, numbers and labels.
     pub fn axes(&self) -> Markup {
-        let [left, top, width, height] = self.frame();
-        let (x_ticks, y_ticks) = (self.x.ticks(SPACING[0]), self.y.ticks(SPACING[1]));
+        let [left, top, _, height] = self.frame();
+        let ticks = self.y.ticks(SPACING[1]);
+        let label = [left - self.label_distance(&ticks), top + 0.5 * height];
         html! {
-            path class="grid" d=(self.grid(&y_ticks)) stroke=(GRID.hex()) fill="none" {}
-            path class="axis" d={ "M" (px(left)) " " (px(top)) "V" (px(top + height)) "H" (px(left + width)) (self.tick_strokes(&x_ticks)) }
-                stroke=(Colour::INK.hex()) fill="none" {}
-            @for tick in &y_ticks {
+            path class="grid" d=(self.grid(&ticks)) stroke=(GRID.hex()) fill="none" {}
+            path class="axis" d=(path([[left, top], [left, top + height]], false)) stroke=(Colour::INK.hex()) fill="none" {}
+            @for tick in &ticks {
                 (Text { anchor: Anchor::End, ..Text::at([left - 7.0, self.y.at(tick.value) + 0.35 * LABEL], &tick.label) }.sized(LABEL))
             }
-            (Text { anchor: Anchor::Middle, upright: true, ..Text::at([left - self.label_distance(&y_ticks), top + 0.5 * height], self.y_label) }.with_indices(LABEL))
+            (Text { anchor: Anchor::Middle, upright: true, ..Text::at(label, self.y_label) }.with_indices(LABEL))
+            (self.time_axis())
+        }
+    }
+
+    /// The lower axis with its numbers and its label.
+    pub fn time_axis(&self) -> Markup {
+        let [left, top, width, height] = self.frame();
+        let ticks = self.x.ticks(SPACING[0]);
+        let line = path([[left, top + height], [left + width, top + height]], false);
+        html! {
+            path class="axis" d={ (line) (self.tick_strokes(&ticks)) } stroke=(Colour::INK.hex()) fill="none" {}
             @if !self.x_label.is_empty() {
-                @for tick in &x_ticks {
+                @for tick in &ticks {
                     (Text { anchor: Anchor::Middle, ..Text::at([self.x.at(tick.value), top + height + 20.0], &tick.label) }.sized(LABEL))
                 }
                 (Text { anchor: Anchor::Middle, ..Text::at([left + 0.5 * width, top + height + 40.0], self.x_label) }.sized(LABEL))

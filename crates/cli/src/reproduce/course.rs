@@ -1,9 +1,9 @@
-//! How one contender fared on one recording: [`Course`].
+//! How one participant fared on one recording: [`Course`].
 
 use anyhow::Result;
 use stickslip::{Estimate, score};
 
-use super::contender::{BLIND, BLIND_OPEN, Contender, KALMAN, KALMAN_OPEN, NOMINAL, TACTILE, TACTILE_OPEN};
+use super::participant::{BLIND, BLIND_OPEN, Participant, KALMAN, KALMAN_OPEN, NOMINAL, TACTILE, TACTILE_OPEN};
 use super::recording::Recording;
 use crate::contest::Rules;
 use crate::paper::PaperExperiment;
@@ -12,10 +12,10 @@ use crate::paper::PaperExperiment;
 #[derive(Clone, Debug)]
 pub struct Course {
     /// Who ran.
-    pub contender: Contender,
+    pub participant: Participant,
     /// WMSE over all rows (mm).
     pub wmse_mm: f64,
-    /// WMSE over the rows after the blackout begins (mm), also where this contender saw them.
+    /// WMSE over the rows after the blackout begins (mm), also where this participant saw them.
     pub dark_mm: f64,
     /// Particle-steps without a certified solution.
     pub unsolved: u64,
@@ -33,7 +33,7 @@ pub struct Heat {
 }
 
 /// Who takes part in an experiment.
-pub fn contenders(paper: PaperExperiment) -> Vec<Contender> {
+pub fn participants(paper: PaperExperiment) -> Vec<Participant> {
     let open = match paper {
         PaperExperiment::A => vec![KALMAN_OPEN, BLIND_OPEN, TACTILE_OPEN],
         _ => vec![TACTILE_OPEN],
@@ -42,15 +42,15 @@ pub fn contenders(paper: PaperExperiment) -> Vec<Contender> {
 }
 
 impl Course {
-    /// Runs a contender, with the recording's own seed.
-    pub fn run(contender: Contender, recording: &Recording, rules: &Rules) -> Result<Self> {
+    /// Runs a participant, with the recording's own seed.
+    pub fn run(participant: Participant, recording: &Recording, rules: &Rules) -> Result<Self> {
         let Recording { experiment, blackout, seed, .. } = recording;
-        let run = contender.run(experiment, *blackout, rules, *seed)?;
+        let run = participant.run(experiment, *blackout, rules, *seed, None)?;
         let hidden = blackout.hidden(&experiment.log);
         let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
         let known = "a simulated experiment has a truth for every row";
         Ok(Self {
-            contender,
+            participant,
             wmse_mm: scores.wmse_mm.expect(known),
             dark_mm: scores.wmse_occluded_mm.expect(known),
             unsolved: run.unsolved,
@@ -60,8 +60,8 @@ impl Course {
 }
 
 impl Heat {
-    /// The run of a contender.
-    pub fn course(&self, contender: Contender) -> Option<&Course> {
-        self.courses.iter().find(|course| course.contender == contender)
+    /// The run of a participant.
+    pub fn course(&self, participant: Participant) -> Option<&Course> {
+        self.courses.iter().find(|course| course.participant == participant)
     }
 }

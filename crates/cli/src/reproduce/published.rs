@@ -1,6 +1,6 @@
 //! The paper's tables as printed: [`TABLES`].
 
-use super::contender::{BLIND, BLIND_OPEN, Contender, KALMAN, KALMAN_OPEN, NOMINAL, TACTILE, TACTILE_OPEN};
+use super::participant::{BLIND, BLIND_OPEN, Participant, KALMAN, KALMAN_OPEN, NOMINAL, TACTILE, TACTILE_OPEN};
 use crate::paper::PaperExperiment;
 
 /// A printed table.
@@ -20,7 +20,7 @@ pub struct PrintedRow {
     /// The experiment.
     pub experiment: PaperExperiment,
     /// WMSE (mm) by method, in the paper's order.
-    pub cells: &'static [(Contender, f64)],
+    pub cells: &'static [(Participant, f64)],
 }
 
 /// Tables II, III and IV.

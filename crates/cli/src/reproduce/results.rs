@@ -3,7 +3,7 @@
 use serde::Serialize;
 use stickslip::{Band, Direction, PairedDifference};
 
-use super::contender::{BLIND, Contender, KALMAN, NOMINAL, TACTILE};
+use super::participant::{BLIND, Participant, KALMAN, NOMINAL, TACTILE};
 use super::course::{Course, Heat};
 use super::published::{PrintedRow, PrintedTable, TABLES};
 use super::standing::{CLEAR, Entrant, Standing};
@@ -28,7 +28,7 @@ pub struct Spread {
 pub struct Cell {
     /// The method.
     #[serde(skip)]
-    pub contender: Contender,
+    pub participant: Participant,
     /// Its name.
     pub method: &'static str,
     /// The paper's WMSE (mm).
@@ -111,46 +111,46 @@ impl Spread {
 struct Field<'a>(&'a [Heat]);
 
 impl Field<'_> {
-    fn courses(&self, paper: PaperExperiment, contender: Contender) -> impl Iterator<Item = &Course> {
+    fn courses(&self, paper: PaperExperiment, participant: Participant) -> impl Iterator<Item = &Course> {
         let heats = self.0.iter().filter(move |heat| heat.recording.paper == paper);
-        heats.filter_map(move |heat| heat.course(contender))
+        heats.filter_map(move |heat| heat.course(participant))
     }
 
-    fn scores(&self, paper: PaperExperiment, contender: Contender, of: fn(&Course) -> f64) -> Vec<f64> {
-        self.courses(paper, contender).map(of).collect()
+    fn scores(&self, paper: PaperExperiment, participant: Participant, of: fn(&Course) -> f64) -> Vec<f64> {
+        self.courses(paper, participant).map(of).collect()
     }
 
-    fn cell(&self, paper: PaperExperiment, contender: Contender, paper_mm: f64) -> Cell {
-        let spread = |of: fn(&Course) -> f64| Spread::of(&self.scores(paper, contender, of));
+    fn cell(&self, paper: PaperExperiment, participant: Participant, paper_mm: f64) -> Cell {
+        let spread = |of: fn(&Course) -> f64| Spread::of(&self.scores(paper, participant, of));
         Cell {
-            contender,
-            method: contender.key(),
+            participant,
+            method: participant.key(),
             paper_mm,
             wmse_mm: spread(|course| course.wmse_mm),
             dark_mm: spread(|course| course.dark_mm),
-            unsolved: self.courses(paper, contender).map(|course| course.unsolved).sum(),
+            unsolved: self.courses(paper, participant).map(|course| course.unsolved).sum(),
         }
     }
 
     fn row(&self, row: &PrintedRow) -> Row {
         let PrintedRow { title, experiment, cells } = *row;
-        let entrant = |(contender, paper_mm): &(Contender, f64)| Entrant {
-            contender: *contender,
+        let entrant = |(participant, paper_mm): &(Participant, f64)| Entrant {
+            participant: *participant,
             paper_mm: *paper_mm,
-            scores: self.scores(experiment, *contender, |course| course.wmse_mm),
+            scores: self.scores(experiment, *participant, |course| course.wmse_mm),
         };
         let entrants: Vec<Entrant> = cells.iter().map(entrant).collect();
         Row {
             title,
-            cells: cells.iter().map(|(contender, paper_mm)| self.cell(experiment, *contender, *paper_mm)).collect(),
+            cells: cells.iter().map(|(participant, paper_mm)| self.cell(experiment, *participant, *paper_mm)).collect(),
             orderings: Standing::all(title, &entrants),
         }
     }
 
     fn blackout(&self, paper: PaperExperiment) -> Blackout {
-        let scores = |contender: Contender| self.scores(paper, contender, |course| course.dark_mm);
+        let scores = |participant: Participant| self.scores(paper, participant, |course| course.dark_mm);
         let own = scores(TACTILE);
-        let margin = |rival: Contender| {
+        let margin = |rival: Participant| {
             let theirs = scores(rival);
             let difference = PairedDifference::of(&own, &theirs).expect("there is at least one seed");
             let direction = difference.direction(CLEAR);

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use stickslip::{Direction, PairedDifference};
 
-use super::contender::Contender;
+use super::participant::Participant;
 use super::reasons::reason;
 
 /// Standard errors that a difference must exceed to count.
@@ -44,7 +44,7 @@ pub struct Standing {
 #[derive(Clone, Debug)]
 pub struct Entrant {
     /// The method.
-    pub contender: Contender,
+    pub participant: Participant,
     /// Its number in the paper.
     pub paper_mm: f64,
     /// Its scores, seed by seed.
@@ -67,10 +67,10 @@ impl Standing {
             Direction::Unclear => Finding::Unclear,
             Direction::Above => Finding::Reversed,
         };
-        let why = (finding != Finding::Holds).then(|| reason(title, better.contender, worse.contender)).flatten();
+        let why = (finding != Finding::Holds).then(|| reason(title, better.participant, worse.participant)).flatten();
         Some(Self {
-            better: better.contender.key(),
-            worse: worse.contender.key(),
+            better: better.participant.key(),
+            worse: worse.participant.key(),
             paper_mm: [better.paper_mm, worse.paper_mm],
             difference_mm: difference.mean,
             standard_error_mm: difference.standard_error,
@@ -82,11 +82,11 @@ impl Standing {
 
 #[cfg(test)]
 mod tests {
-    use super::super::contender::{KALMAN, NOMINAL, TACTILE};
+    use super::super::participant::{KALMAN, NOMINAL, TACTILE};
     use super::*;
 
-    fn entrant(contender: Contender, paper_mm: f64, scores: [f64; 4]) -> Entrant {
-        Entrant { contender, paper_mm, scores: scores.to_vec() }
+    fn entrant(participant: Participant, paper_mm: f64, scores: [f64; 4]) -> Entrant {
+        Entrant { participant, paper_mm, scores: scores.to_vec() }
     }
 
     #[test]
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn standing_of_one_seed_is_unclear() {
-        let rows = [NOMINAL, KALMAN].map(|contender| Entrant { contender, paper_mm: 1.0, scores: vec![3.0] });
+        let rows = [NOMINAL, KALMAN].map(|participant| Entrant { participant, paper_mm: 1.0, scores: vec![3.0] });
         assert_eq!(Standing::all("none", &rows)[0].finding, Finding::Unclear);
     }
 }

@@ -18,7 +18,7 @@ fn row(row: &Row) -> String {
     for cell in &row.cells {
         let [all, dark] = [cell.wmse_mm, cell.dark_mm];
         let numbers = [format!("{:.2}", cell.paper_mm), median(all), band(all), median(dark), band(dark), cell.unsolved.to_string()];
-        table.push([format!("  {}", cell.contender.name())].into_iter().chain(numbers));
+        table.push([format!("  {}", cell.participant.name())].into_iter().chain(numbers));
     }
     format!("{table}{}", orders(&row.orderings))
 }

@@ -1,7 +1,7 @@
-//! Who takes part in the paper's evaluation: [`Contender`], a method with or without a camera after the blackout begins.
+//! Who takes part in the paper's evaluation: [`Participant`], a method with or without a camera after the blackout begins.
 
 use anyhow::Result;
-use stickslip::{Occlusion, Run};
+use stickslip::{Occlusion, Run, StepWatch};
 use stickslip_formats::Experiment;
 
 use crate::contest::{Rival, Rules};
@@ -17,7 +17,7 @@ pub enum Sight {
 
 /// A method and what it sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Contender {
+pub struct Participant {
     /// The method.
     pub rival: Rival,
     /// What it sees.
@@ -25,21 +25,21 @@ pub struct Contender {
 }
 
 /// The nominal simulation, which sees the first frame only.
-pub const NOMINAL: Contender = Contender { rival: Rival::Nominal, sight: Sight::Dark };
+pub const NOMINAL: Participant = Participant { rival: Rival::Nominal, sight: Sight::Dark };
 /// The Kalman filter.
-pub const KALMAN: Contender = Contender { rival: Rival::Kalman, sight: Sight::Dark };
+pub const KALMAN: Participant = Participant { rival: Rival::Kalman, sight: Sight::Dark };
 /// The Kalman filter without a blackout.
-pub const KALMAN_OPEN: Contender = Contender { rival: Rival::Kalman, sight: Sight::Open };
+pub const KALMAN_OPEN: Participant = Participant { rival: Rival::Kalman, sight: Sight::Open };
 /// The particle filter without tactile data.
-pub const BLIND: Contender = Contender { rival: Rival::ParticleNoTactile, sight: Sight::Dark };
+pub const BLIND: Participant = Participant { rival: Rival::ParticleNoTactile, sight: Sight::Dark };
 /// The particle filter without tactile data and without a blackout.
-pub const BLIND_OPEN: Contender = Contender { rival: Rival::ParticleNoTactile, sight: Sight::Open };
+pub const BLIND_OPEN: Participant = Participant { rival: Rival::ParticleNoTactile, sight: Sight::Open };
 /// The particle filter with tactile data.
-pub const TACTILE: Contender = Contender { rival: Rival::Particle, sight: Sight::Dark };
+pub const TACTILE: Participant = Participant { rival: Rival::Particle, sight: Sight::Dark };
 /// The particle filter with tactile data and without a blackout.
-pub const TACTILE_OPEN: Contender = Contender { rival: Rival::Particle, sight: Sight::Open };
+pub const TACTILE_OPEN: Participant = Participant { rival: Rival::Particle, sight: Sight::Open };
 
-impl Contender {
+impl Participant {
     /// Name in tables and figures.
     pub fn name(self) -> &'static str {
         match (self.rival, self.sight) {
@@ -67,11 +67,11 @@ impl Contender {
     }
 
     /// Runs it on an experiment in which `blackout` hides the object.
-    pub fn run(self, experiment: &Experiment, blackout: Occlusion, rules: &Rules, seed: u64) -> Result<Run> {
+    pub fn run(self, experiment: &Experiment, blackout: Occlusion, rules: &Rules, seed: u64, watch: Option<&dyn StepWatch>) -> Result<Run> {
         let hidden = match self.sight {
             Sight::Dark => blackout,
             Sight::Open => Occlusion::None,
         };
-        self.rival.run(experiment, hidden, rules, seed)
+        self.rival.run(experiment, hidden, rules, seed, watch)
     }
 }
