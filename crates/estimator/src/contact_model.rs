@@ -26,6 +26,8 @@ pub enum ParameterNoise {
 pub struct StepPlan {
     /// Substeps; their lengths sum to the step's.
     pub substeps: Vec<StepInput>,
+    /// Whether the pusher moves.
+    pub driven: bool,
     /// Whether the parameters move.
     pub parameter_noise: ParameterNoise,
     /// Ring slot for the pose at the end of the step, where past poses are kept.

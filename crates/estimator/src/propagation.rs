@@ -185,6 +185,7 @@ impl Propagation {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let touch_impulse = Lanes::splat(model.setup.tactile.touch_force * last_h);
         let rho = model.setup.scene.object.gyration_radius();
+        let driven = Mask::splat(plan.driven);
         for chunk in 0..block.len().div_ceil(LANES) {
             let (particles, touched) = (&self.particles[chunk], &self.touched[chunk]);
             store_columns(block, Columns::POSE, chunk, &particles.pose);
@@ -199,8 +200,8 @@ impl Propagation {
             store_columns(block, Columns::UNSOLVED, chunk, &[flags(touched.unsolved)]);
             let pusher = self.work.normal_impulses(chunk, Body::Pusher).gt(Lanes::ZERO);
             store_columns(block, Columns::CONTACT_PUSHER, chunk, &[flags(pusher)]);
-            let moves = moving(&particles.twist, rho);
-            store_columns(block, Columns::IDLE, chunk, &[flags(!(moves | pusher))]);
+            let moves = moving(&particles.twist, rho) & driven;
+            store_columns(block, Columns::IDLE, chunk, &[flags(!(moves | (pusher & driven)))]);
             for j in 0..model.setup.scene.fixels.len() {
                 let impulse = self.work.normal_impulses(chunk, Body::Fixel(j));
                 store_columns(block, model.columns.contact_fixel(j), chunk, &[flags(impulse.gt(touch_impulse))]);
