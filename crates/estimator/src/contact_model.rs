@@ -26,6 +26,8 @@ pub enum ParameterNoise {
 pub struct StepPlan {
     /// Substeps; their lengths sum to the step's.
     pub substeps: Vec<StepInput>,
+    /// Whether the pusher moves.
+    pub driven: bool,
     /// Whether the parameters move.
     pub parameter_noise: ParameterNoise,
     /// Ring slot for the pose at the end of the step, where past poses are kept.
@@ -114,7 +116,19 @@ impl<'w> ContactModel<'w> {
     /// log-probability of the tactile readings given particle `i`'s contacts.
     fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, i: usize) -> f64 {
         let sensors = readings.iter().enumerate().filter_map(|(j, reading)| reading.map(|r| (j, r)));
-        sensors.map(|(j, reading)| self.reading_log_probability(reading, block.column(self.columns.contact_fixel(j))[i] > 0.5)).sum()
+        sensors.map(|(j, reading)| self.reading_log_probability(reading, self.touches(reading, block, j, i))).sum()
+    }
+
+    /// c_j of particle `i`; where its impulse is not unique, the value that explains the reading.
+    ///
+    /// An idle particle stays where it is whether a fixel that it stands against presses on it or not: the support's friction
+    /// holds it. Both are certified solutions of its step, and a reading does not tell it from its neighbours.
+    fn touches(&self, reading: bool, block: &Block<'_>, j: usize, i: usize) -> bool {
+        let set = |column: usize| block.column(column)[i] > 0.5;
+        match set(Columns::IDLE) && set(self.columns.against_fixel(j)) {
+            true => reading,
+            false => set(self.columns.contact_fixel(j)),
+        }
     }
 
     fn reading_log_probability(&self, reading: bool, touches: bool) -> f64 {
