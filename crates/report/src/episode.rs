@@ -183,8 +183,16 @@ impl Episode<'_> {
             touch.truth.clone_from(truth);
         }
         let dark = self.dark().into_iter().map(|[from, _]| Mark { time: from, name: "camera dark".to_owned() });
-        let track =
-            |method: &Contender| MethodTrack::new(&method.name, method.colour, &method.estimate, &self.reference, method.cloud.clone());
+        let learner = self.learner().map(|method| method.name.as_str());
+        let track = |method: &Contender| {
+            let mut track = MethodTrack::new(&method.name, method.colour, &method.estimate, &self.reference, method.cloud.clone());
+            if learner != Some(track.name.as_str()) {
+                track.contacts.clear();
+            }
+            track
+        };
+        let mut lowest_first: Vec<usize> = (0..self.methods.len()).collect();
+        lowest_first.sort_by_key(|k| !self.methods[*k].saw_all);
         Playback {
             name: if self.what.is_empty() { self.name.clone() } else { self.what.clone() },
             rows: self.row_at(from)..self.row_at(to) + 1,
