@@ -23,8 +23,10 @@ impl Columns {
     pub const UNSOLVED: usize = 11;
     /// 1 where the particle is at rest and no pusher presses on it.
     pub const IDLE: usize = 12;
+    /// How far the pusher stands behind its pose (m).
+    pub const PUSHER_LAG: usize = 13;
     /// First column of the warm start.
-    pub const WARM_START: usize = 13;
+    pub const WARM_START: usize = 14;
 
     /// For `fixels` fixels and `history` past poses.
     pub fn new(fixels: usize, history: usize) -> Self {
