@@ -51,7 +51,7 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
         let episode = episode(name, what, &experiment, occlusion, contenders);
         show(format_args!("{}\n", tables(&episode)))?;
         figures += write_figures(&args.out, &episode)?;
-        summary.extend([Block::Text(format!("{}.", episode.story().title())), Block::Fates(episode.story())]);
+        summary.extend(episode.summary());
         sections.push(episode.section());
     }
     let report = Report { title: "stickslip: tracking a pushed object through a camera blackout".to_owned(), summary, sections };

@@ -94,14 +94,20 @@ impl Episode<'_> {
         }
     }
 
-    /// Story, playback, scores and figures.
+    /// What a reader should know after a minute.
+    #[must_use]
+    pub fn summary(&self) -> [Block; 2] {
+        let story = self.story();
+        let title = if self.what.is_empty() { String::new() } else { format!("{}. ", story.title()) };
+        [Block::Text(format!("{title}{}", story.darkness())), Block::Fates(story)]
+    }
+
+    /// Playback, scores and figures.
     #[must_use]
     pub fn section(&self) -> Section {
         let story = self.story();
         let title = if self.what.is_empty() { self.name.clone() } else { story.title() };
         let head = [
-            Block::Text(story.darkness()),
-            Block::Fates(story),
             Block::Playback(Box::new(self.playback())),
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
@@ -274,28 +280,35 @@ impl Episode<'_> {
         ContactTimeline { title: String::new(), span: self.span(), dark: self.dark(), bodies }
     }
 
-    /// Bodies at the first fixel contact and at the end, side by side.
+    /// Bodies at the first fixel contact and at the end, side by side and on the same scale.
     fn poses(&self) -> Drawing {
-        let rows = self.first_fixel.into_iter().chain([self.span()[1]]).map(|time| self.row_at(time));
-        Drawing::grid(&rows.map(|row| self.poses_at(row).drawing()).collect::<Vec<_>>(), 2)
+        let rows: Vec<usize> = self.first_fixel.into_iter().chain([self.span()[1]]).map(|time| self.row_at(time)).collect();
+        let bodies = rows.iter().flat_map(|row| self.still_bodies(*row)).collect();
+        let view = Some(Overlay { bodies, ..Overlay::default() }.whole_view());
+        let drawings: Vec<Drawing> = rows.iter().map(|row| Overlay { view, ..self.poses_at(*row) }.drawing()).collect();
+        Drawing::grid(&drawings, 2)
     }
 
     /// All estimated poses at a row over what stands around.
     #[must_use]
     pub fn poses_at(&self, row: usize) -> Overlay {
-        let shape = &self.setup.scene.object.shape;
-        let pusher = self.log.pusher.get(row).copied().flatten();
-        let truth = self.reference.pose.get(row).copied().flatten();
-        let truth = truth.map(|pose| Body::new(&self.reference_name, shape, &pose, Colour::INK).filled(0.12));
         let estimates = self.methods.iter().filter_map(|method| {
             let pose = method.estimate.rows.get(row)?.pose?;
-            Some(Body::new(&method.name, shape, &pose, method.colour))
+            Some(Body::new(&method.name, &self.setup.scene.object.shape, &pose, method.colour))
         });
-        let still: Vec<Body> = Body::surroundings(&self.setup.scene, pusher.as_ref()).into_iter().chain(truth).collect();
+        let still = self.still_bodies(row);
         let view = Overlay { bodies: still.clone(), ..Overlay::default() }.whole_view();
         let time = self.log.time.get(row).copied().unwrap_or(0.0);
         let title = format!("{time:.2} s{}", if self.hidden.get(row) == Some(&true) { ", camera dark" } else { "" });
         Overlay { title, bodies: still.into_iter().chain(estimates).collect(), view: Some(view), width: 440.0 }
+    }
+
+    /// Fixels, pusher and the object where it was.
+    fn still_bodies(&self, row: usize) -> Vec<Body> {
+        let pusher = self.log.pusher.get(row).copied().flatten();
+        let truth = self.reference.pose.get(row).copied().flatten();
+        let truth = truth.map(|pose| Body::new(&self.reference_name, &self.setup.scene.object.shape, &pose, Colour::INK).filled(0.12));
+        Body::surroundings(&self.setup.scene, pusher.as_ref()).into_iter().chain(truth).collect()
     }
 
     fn cloud(&self) -> Option<ParticleCloud> {

@@ -157,18 +157,20 @@ impl Overlay {
     /// Title, the picture in its frame, legend. `scale` is that of the plane (px/m), 0 where there is none.
     fn framed(&self, [width, height]: [f64; 2], background: Markup, scale: f64, map: &dyn Fn([f64; 2]) -> Option<[f64; 2]>) -> Drawing {
         let head = if self.title.is_empty() { MARGIN } else { 34.0 };
-        let (legend, legend_height) = self.legend().draw([MARGIN, head + height + 8.0], width);
+        let foot = head + height + 8.0;
+        let (bar, room) = if scale > 0.0 { scale_bar(scale, [MARGIN + width, foot], width) } else { (html! {}, 0.0) };
+        let (legend, legend_height) = self.legend().draw([MARGIN, foot], width - room);
         let body = html! {
             (Text { weight: Weight::Bold, ..Text::at([MARGIN, 23.0], &self.title) }.sized(TITLE))
             svg x=(px(MARGIN)) y=(px(head)) width=(px(width)) height=(px(height)) viewBox={ "0 0 " (px(width)) " " (px(height)) } overflow="hidden" {
                 (background)
                 @for body in &self.bodies { (body.draw(&body.outline.mapped(map))) }
-                @if scale > 0.0 { (scale_bar(scale, [width, height])) }
             }
             rect class="axis" x=(px(MARGIN)) y=(px(head)) width=(px(width)) height=(px(height)) fill="none" stroke=(Colour::INK.hex()) {}
             (legend)
+            (bar)
         };
-        Drawing { width: self.width, height: head + height + 8.0 + legend_height, label: self.title.clone(), body }
+        Drawing { width: self.width, height: foot + legend_height.max(24.0), label: self.title.clone(), body }
     }
 
     fn legend(&self) -> Legend {
@@ -213,18 +215,17 @@ fn grid(left: f64, high: f64, scale: f64, [width, height]: [f64; 2]) -> Markup {
     html! { path class="grid" d=(lines) stroke=(GRID.hex()) fill="none" {} }
 }
 
-/// A bar of a round length at the lower right, with the length.
-fn scale_bar(scale: f64, [width, height]: [f64; 2]) -> Markup {
-    let longest = 0.28 * 1e3 * width / scale;
+/// A bar of a round length that ends below the picture's right corner (px), with the length; and the width that it takes.
+fn scale_bar(scale: f64, [right, top]: [f64; 2], width: f64) -> (Markup, f64) {
+    let longest = 0.25 * 1e3 * width / scale;
     let power = libm::exp10(libm::log10(longest).floor());
     let length = [5.0, 2.0, 1.0].into_iter().find(|factor| factor * power <= longest).unwrap_or(1.0) * power;
-    let (right, y) = (width - 10.0, height - 10.0);
-    let left = right - 1e-3 * length * scale;
-    html! {
-        rect class="paper" x=(px(left - 6.0)) y=(px(y - 23.0)) width=(px(right - left + 12.0)) height="29" fill="#ffffff" fill-opacity="0.8" {}
+    let (left, y) = (right - 1e-3 * length * scale, top + 6.0);
+    let bar = html! {
         path class="axis" d=(path([[left, y], [right, y]], false)) stroke=(Colour::INK.hex()) stroke-width="3" {}
-        (Text { anchor: Anchor::Middle, ..Text::at([0.5 * (left + right), y - 7.0], &format!("{} mm", px(length))) }.sized(13.0))
-    }
+        (Text { anchor: Anchor::Middle, ..Text::at([0.5 * (left + right), y + 15.0], &format!("{} mm", px(length))) }.sized(13.0))
+    };
+    (bar, right - left + 20.0)
 }
 
 /// Width and height in the header of a PNG file.

@@ -131,14 +131,14 @@ impl Playback {
                 }
                 div class="side" {
                     table class="readout" {
-                        thead { tr { th scope="col" { "estimate" } th scope="col" { "position error (mm)" } th scope="col" { "angle error (°)" } } }
+                        thead { tr { th scope="col" { "estimate" } th scope="col" { "error (mm)" } th scope="col" { "turn (°)" } } }
                         tbody {}
                     }
                     h3 { "Contacts of the object" }
                     ul class="contacts" {}
                     p class="legend" {
                         "Filled: the " (self.reference_name) ", dashed while the camera is dark. Coloured outlines: estimates; thin ones: particles. "
-                        "Pusher and fixels are orange while they touch the object; their rim turns orange with the estimated probability."
+                        "Pusher and fixels are yellow while they touch the object; their rim turns yellow with the estimated probability."
                     }
                 }
                 div class="time" {

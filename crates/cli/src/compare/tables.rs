@@ -31,7 +31,8 @@ pub fn entries(entries: &[Entry]) -> Table {
     table
 }
 
-fn overall(rows: &[Overall]) -> Table {
+/// Each rival over all folders: median (90th percentile).
+pub fn overall(rows: &[Overall]) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved", "folders"]));
     for row in rows {
         let both =
