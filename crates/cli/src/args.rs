@@ -148,9 +148,15 @@ pub struct SimulateArgs {
 /// Arguments of `stickslip reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// Number of seeds: of rigs, sensors and filters
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000))]
-    pub seeds: u64,
+    /// Write reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of seeds: of rigs, sensors and filters [default: 20, from frames 6]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: Option<u64>,
+    /// Render camera frames and track them, instead of measuring poses with the paper's noise
+    #[arg(long)]
+    pub from_frames: bool,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,

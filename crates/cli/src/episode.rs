@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use stickslip::Occlusion;
 use stickslip_formats::Experiment;
-use stickslip_report::{CloudSample, Contender, Episode, Mark, Report, png_of};
+use stickslip_report::{CloudSample, Contender, Drawing, Episode, Mark, Report, png_of};
 
 use crate::contest::{Attempt, Rival, Rules};
 use crate::experiment::reference_name;
@@ -71,22 +71,26 @@ pub fn contender(rival: Rival, experiment: &Experiment, occlusion: Occlusion, ru
 pub fn write_figures(folder: &Path, episode: &Episode<'_>) -> Result<usize> {
     let figures = episode.figures();
     for figure in &figures {
-        let svg = figure.drawing.to_svg();
-        let path = |ending: &str| folder.join(format!("{}-{}.{ending}", episode.name, figure.name));
-        write(&path("png"), &png_of(&svg)?)?;
-        write(&path("svg"), svg.as_bytes())?;
+        write_figure(folder, &format!("{}-{}", episode.name, figure.name), &figure.drawing)?;
     }
     Ok(figures.len())
 }
 
+/// Writes a figure into a folder as SVG and PNG.
+pub fn write_figure(folder: &Path, name: &str, drawing: &Drawing) -> Result<()> {
+    let svg = drawing.to_svg();
+    write_file(&folder.join(format!("{name}.png")), &png_of(&svg)?)?;
+    write_file(&folder.join(format!("{name}.svg")), svg.as_bytes())
+}
+
 /// Writes a report as one HTML file.
 pub fn write_report(path: PathBuf, report: &Report) -> Result<PathBuf> {
-    write(&path, report.to_html().as_bytes())?;
+    write_file(&path, report.to_html().as_bytes())?;
     Ok(path)
 }
 
 /// Writes a file; its folder is made where it is missing.
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).and_then(|()| fs::write(path, bytes));
     written.map_err(|error| hinted(format!("{}: cannot be written: {error}", path.display()), "give a place that can be written to"))
 }

@@ -12,6 +12,7 @@ mod demo;
 mod episode;
 mod experiment;
 mod failure;
+mod film_set;
 mod filter;
 mod frames;
 mod output;

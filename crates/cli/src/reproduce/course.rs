@@ -1,9 +1,10 @@
 //! How one participant fared on one recording: [`Course`].
 
 use anyhow::Result;
+use stickslip::dynamics::Pose;
 use stickslip::{Estimate, score};
 
-use super::participant::{BLIND, BLIND_OPEN, Participant, KALMAN, KALMAN_OPEN, NOMINAL, TACTILE, TACTILE_OPEN};
+use super::participant::{BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, TACTILE, TACTILE_OPEN};
 use super::recording::Recording;
 use crate::contest::Rules;
 use crate::paper::PaperExperiment;
@@ -17,6 +18,8 @@ pub struct Course {
     pub wmse_mm: f64,
     /// WMSE over the rows after the blackout begins (mm), also where this participant saw them.
     pub dark_mm: f64,
+    /// The spread that it gives itself over the same rows (mm); `None` for the nominal simulation.
+    pub spread_mm: Option<f64>,
     /// Particle-steps without a certified solution.
     pub unsolved: u64,
     /// What it said, row by row.
@@ -53,10 +56,20 @@ impl Course {
             participant,
             wmse_mm: scores.wmse_mm.expect(known),
             dark_mm: scores.wmse_occluded_mm.expect(known),
+            spread_mm: spread(&run.estimate, &hidden, experiment.setup.virtual_radius()),
             unsolved: run.unsolved,
             estimate: run.estimate,
         })
     }
+}
+
+/// Root of the mean variance over the hidden rows, angles weighted as in WMSE (mm): what WMSE would be if the spread told the truth.
+fn spread(estimate: &Estimate, hidden: &[bool], virtual_radius: f64) -> Option<f64> {
+    let rows = estimate.rows.iter().zip(hidden).filter(|(_, hidden)| **hidden);
+    let spreads: Vec<Pose> = rows.filter_map(|(row, _)| Some(row.spread?.pose)).collect();
+    let square = |pose: &Pose| pose.x * pose.x + pose.y * pose.y + virtual_radius * virtual_radius * pose.theta * pose.theta;
+    let sum = spreads.iter().map(square).fold(0.0, |sum, square| sum + square);
+    (!spreads.is_empty()).then(|| 1e3 * (sum / spreads.len() as f64).sqrt())
 }
 
 impl Heat {

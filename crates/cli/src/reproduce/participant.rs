@@ -3,6 +3,7 @@
 use anyhow::Result;
 use stickslip::{Occlusion, Run, StepWatch};
 use stickslip_formats::Experiment;
+use stickslip_report::Colour;
 
 use crate::contest::{Rival, Rules};
 
@@ -50,6 +51,16 @@ impl Participant {
             (Rival::ParticleNoTactile, Sight::Open) => "particle filter, no tactile, camera on",
             (_, Sight::Dark) => "particle filter, tactile",
             (_, Sight::Open) => "particle filter, tactile, camera on",
+        }
+    }
+
+    /// Colour in figures: those of the paper, as colour-blind people can tell them apart.
+    pub fn colour(self) -> Colour {
+        match self.rival {
+            Rival::Nominal => Colour::ORANGE,
+            Rival::Kalman => Colour::VERMILLION,
+            Rival::ParticleNoTactile => Colour::GREEN,
+            _ => Colour::BLUE,
         }
     }
 

@@ -1,6 +1,6 @@
 //! The paper's tables as printed: [`TABLES`].
 
-use super::participant::{BLIND, BLIND_OPEN, Participant, KALMAN, KALMAN_OPEN, NOMINAL, TACTILE, TACTILE_OPEN};
+use super::participant::{BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, TACTILE, TACTILE_OPEN};
 use crate::paper::PaperExperiment;
 
 /// A printed table.

@@ -3,8 +3,8 @@
 use serde::Serialize;
 use stickslip::{Band, Direction, PairedDifference};
 
-use super::participant::{BLIND, Participant, KALMAN, NOMINAL, TACTILE};
 use super::course::{Course, Heat};
+use super::participant::{BLIND, KALMAN, NOMINAL, Participant, TACTILE};
 use super::published::{PrintedRow, PrintedTable, TABLES};
 use super::standing::{CLEAR, Entrant, Standing};
 use crate::paper::PaperExperiment;
@@ -68,9 +68,9 @@ pub struct Margin {
     pub rival: &'static str,
     /// Its WMSE (mm).
     pub rival_mm: Spread,
-    /// The particle filter's less the rival's, mean over seeds (mm).
+    /// The particle filter's less the rival's, median over seeds (mm).
     pub difference_mm: f64,
-    /// Standard error of that mean (mm); null for a single seed.
+    /// Standard error of that median (mm); null for fewer than six seeds.
     pub standard_error_mm: f64,
     /// Below the rival by more than [`CLEAR`] standard errors.
     pub better: bool,
@@ -85,6 +85,8 @@ pub struct Blackout {
     pub experiment: &'static str,
     /// Its WMSE (mm).
     pub wmse_mm: Spread,
+    /// The spread that it gives itself (mm).
+    pub spread_mm: Spread,
     /// Whether the median is below 0.5 mm.
     pub below_target: bool,
     /// Against the nominal simulation, the Kalman filter and the particle filter without tactile data.
@@ -98,6 +100,34 @@ pub struct Reproduction {
     pub tables: Vec<PaperTable>,
     /// The six experiments under occlusion.
     pub blackouts: Vec<Blackout>,
+}
+
+/// A method's medians from frames over those from poses.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ratio {
+    /// Title of the row.
+    pub row: &'static str,
+    /// The method.
+    pub method: &'static str,
+    /// WMSE over all rows.
+    pub wmse: f64,
+    /// WMSE over the rows after the blackout begins.
+    pub dark: f64,
+}
+
+impl Ratio {
+    /// Of every cell.
+    pub fn all(frames: &Reproduction, poses: &Reproduction) -> Vec<Self> {
+        let rows = frames.rows().zip(poses.rows());
+        let cells = rows.flat_map(|(a, b)| a.cells.iter().zip(&b.cells).map(|(x, y)| (a.title, x, y)));
+        let ratio = |(row, frames, poses): (&'static str, &Cell, &Cell)| Self {
+            row,
+            method: frames.method,
+            wmse: frames.wmse_mm.median / poses.wmse_mm.median,
+            dark: frames.dark_mm.median / poses.dark_mm.median,
+        };
+        cells.map(ratio).collect()
+    }
 }
 
 impl Spread {
@@ -157,7 +187,7 @@ impl Field<'_> {
             Margin {
                 rival: rival.key(),
                 rival_mm: Spread::of(&theirs),
-                difference_mm: difference.mean,
+                difference_mm: difference.median,
                 standard_error_mm: difference.standard_error,
                 better: direction == Direction::Below,
                 worse: direction == Direction::Above,
@@ -165,11 +195,16 @@ impl Field<'_> {
         };
         let wmse_mm = Spread::of(&own);
         let margins = [NOMINAL, KALMAN, BLIND].map(margin).to_vec();
-        Blackout { experiment: paper.name(), wmse_mm, below_target: wmse_mm.median < TARGET_MM, margins }
+        let spreads: Vec<f64> = self.courses(paper, TACTILE).filter_map(|course| course.spread_mm).collect();
+        Blackout { experiment: paper.name(), wmse_mm, spread_mm: Spread::of(&spreads), below_target: wmse_mm.median < TARGET_MM, margins }
     }
 }
 
 impl Reproduction {
+    fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.tables.iter().flat_map(|table| &table.rows)
+    }
+
     /// The tables from all runs.
     pub fn new(heats: &[Heat]) -> Self {
         let field = Field(heats);
