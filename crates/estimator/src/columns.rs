@@ -3,7 +3,7 @@
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 
-/// Layout of a particle: pose, twist, friction, contacts, outcome, warm start, past poses.
+/// Layout of a particle: pose, twist, friction, contacts, outcome, warm start, contacts with fixels, past poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
     fixels: usize,
@@ -21,8 +21,10 @@ impl Columns {
     pub const CONTACT_PUSHER: usize = 10;
     /// 1 where the last step of a particle had no certified solution.
     pub const UNSOLVED: usize = 11;
+    /// 1 where nothing drove the particle in its last step: the pusher stands, or the particle is at rest and out of its way.
+    pub const IDLE: usize = 12;
     /// First column of the warm start.
-    pub const WARM_START: usize = 12;
+    pub const WARM_START: usize = 13;
 
     /// For `fixels` fixels and `history` past poses.
     pub fn new(fixels: usize, history: usize) -> Self {
@@ -34,9 +36,14 @@ impl Columns {
         Self::WARM_START + WARM + fixel
     }
 
+    /// c_j in the particle's last step under the pusher or in motion: whether fixel j bears it when it is pressed on.
+    pub fn against_fixel(&self, fixel: usize) -> usize {
+        self.contact_fixel(self.fixels) + fixel
+    }
+
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
-        Self::WARM_START + WARM + self.fixels + 3 * slot
+        self.against_fixel(self.fixels) + 3 * slot
     }
 
     /// Number of columns.

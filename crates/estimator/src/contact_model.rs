@@ -26,6 +26,8 @@ pub enum ParameterNoise {
 pub struct StepPlan {
     /// Substeps; their lengths sum to the step's.
     pub substeps: Vec<StepInput>,
+    /// Whether the pusher moves.
+    pub driven: bool,
     /// Whether the parameters move.
     pub parameter_noise: ParameterNoise,
     /// Ring slot for the pose at the end of the step, where past poses are kept.
@@ -112,9 +114,23 @@ impl<'w> ContactModel<'w> {
     }
 
     /// log-probability of the tactile readings given particle `i`'s contacts.
+    ///
+    /// What a driven particle touches its impulses tell. An idle one stays where it is whether the pusher that stands behind it
+    /// presses on it or not, since the support's friction holds it: both are certified solutions of its step, and which of them a
+    /// step returns is an accident of the warm start and the tracking noise. The one that explains the readings counts.
     fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, i: usize) -> f64 {
+        let set = |column: usize| block.column(column)[i] > 0.5;
+        if set(Columns::IDLE) {
+            let pressed = self.readings_log_probability(readings, |j| set(self.columns.against_fixel(j)));
+            pressed.max(self.readings_log_probability(readings, |_| false))
+        } else {
+            self.readings_log_probability(readings, |j| set(self.columns.contact_fixel(j)))
+        }
+    }
+
+    fn readings_log_probability(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> bool) -> f64 {
         let sensors = readings.iter().enumerate().filter_map(|(j, reading)| reading.map(|r| (j, r)));
-        sensors.map(|(j, reading)| self.reading_log_probability(reading, block.column(self.columns.contact_fixel(j))[i] > 0.5)).sum()
+        sensors.map(|(j, reading)| self.reading_log_probability(reading, touches(j))).sum()
     }
 
     fn reading_log_probability(&self, reading: bool, touches: bool) -> f64 {

@@ -44,7 +44,8 @@ pub(crate) fn track(
 /// The step that leads to `row`.
 fn plan(prepared: &Prepared<'_>, row: usize, history: usize) -> StepPlan {
     let parameter_noise = if prepared.visible(row).is_some() { ParameterNoise::Drawn } else { ParameterNoise::Frozen };
-    StepPlan { substeps: prepared.schedule.step(row - 1).to_vec(), parameter_noise, slot: slot(row, history) }
+    let (substeps, driven) = (prepared.schedule.step(row - 1).to_vec(), prepared.schedule.driven(row - 1));
+    StepPlan { substeps, driven, parameter_noise, slot: slot(row, history) }
 }
 
 fn slot(row: usize, history: usize) -> usize {

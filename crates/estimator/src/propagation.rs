@@ -184,6 +184,8 @@ impl Propagation {
     fn store(&mut self, model: &ContactModel<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let touch_impulse = Lanes::splat(model.setup.tactile.touch_force * last_h);
+        let rho = model.setup.scene.object.gyration_radius();
+        let driven = Mask::splat(plan.driven);
         for chunk in 0..block.len().div_ceil(LANES) {
             let (particles, touched) = (&self.particles[chunk], &self.touched[chunk]);
             store_columns(block, Columns::POSE, chunk, &particles.pose);
@@ -198,9 +200,14 @@ impl Propagation {
             store_columns(block, Columns::UNSOLVED, chunk, &[flags(touched.unsolved)]);
             let pusher = self.work.normal_impulses(chunk, Body::Pusher).gt(Lanes::ZERO);
             store_columns(block, Columns::CONTACT_PUSHER, chunk, &[flags(pusher)]);
+            let pressed = moving(&particles.twist, rho) | pusher;
+            store_columns(block, Columns::IDLE, chunk, &[flags(!(pressed & driven))]);
             for j in 0..model.setup.scene.fixels.len() {
-                let touches = self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse);
-                store_columns(block, model.columns.contact_fixel(j), chunk, &[flags(touches)]);
+                let touches = flags(self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse));
+                store_columns(block, model.columns.contact_fixel(j), chunk, &[touches]);
+                let mut before = [Lanes::ZERO];
+                load_columns(block, model.columns.against_fixel(j), chunk, &mut before);
+                store_columns(block, model.columns.against_fixel(j), chunk, &[pressed.select(touches, before[0])]);
             }
             if model.columns.history() > 0 {
                 store_columns(block, model.columns.past_pose(plan.slot), chunk, &particles.pose);

@@ -14,6 +14,7 @@ const SPLIT_TO: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     steps: Vec<Vec<StepInput>>,
+    driven: Vec<bool>,
 }
 
 impl Schedule {
@@ -28,12 +29,17 @@ impl Schedule {
             }
             split(h, motion, substeps.unwrap_or_else(|| parts(h)))
         });
-        Self { steps: steps.collect() }
+        Self { steps: steps.collect(), driven: (1..time.len()).map(|row| track.moves_after(row - 1)).collect() }
     }
 
     /// The substeps from `row` to the next.
     pub fn step(&self, row: usize) -> &[StepInput] {
         &self.steps[row]
+    }
+
+    /// Whether the pusher moves on the way from `row` to the next; what is left of a standing pusher's motion is tracking noise.
+    pub fn driven(&self, row: usize) -> bool {
+        self.driven[row]
     }
 }
 

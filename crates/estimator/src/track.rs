@@ -49,6 +49,14 @@ pub struct TrackedPose {
     pub speed_std: f64,
 }
 
+impl TrackedPose {
+    /// Whether the tracked speed is more than what noise makes of a pusher that stands.
+    fn moves(&self) -> bool {
+        let speed = self.velocity[0].hypot(self.velocity[1]);
+        speed > TELLING * self.speed_std && speed > 1e-9
+    }
+}
+
 /// Tracked pusher poses, one per log row; `None` while the pusher is off the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PusherTrack {
@@ -99,10 +107,13 @@ impl PusherTrack {
         let (now, next) = (self.rows[row]?, self.rows.get(row + 1).copied().flatten()?);
         // not that of the step, which holds the corrections of a causal track: they may point backwards
         let [vx, vy] = next.velocity;
-        let speed = vx.hypot(vy);
-        let moves = speed > TELLING * next.speed_std && speed > 1e-9;
-        let direction = if moves { [vx / speed, vy / speed] } else { last };
+        let direction = if next.moves() { [vx / vx.hypot(vy), vy / vx.hypot(vy)] } else { last };
         Some(PusherMotion { pose: now.pose, twist: now.pose.twist_to(next.pose, h), direction })
+    }
+
+    /// Whether the pusher moves at the end of the step from `row`, as far as its track can tell.
+    pub fn moves_after(&self, row: usize) -> bool {
+        self.rows.get(row + 1).copied().flatten().is_some_and(|tracked| tracked.moves())
     }
 }
 
