@@ -157,7 +157,7 @@ impl SlowSolver {
         let mut least = f64::INFINITY;
         for first in SOFTENING {
             let polished = self.follow_from(first);
-            let smoothed = self.ncp.residual(self.homotopy.end()).0[0];
+            let smoothed = self.polisher.map.take(&self.ncp, self.homotopy.end()).0[0];
             for (residual, p) in [(polished, &self.polisher.p), (smoothed, self.homotopy.end())] {
                 if residual < least {
                     least = residual;
