@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
 
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
+use crate::contest::Rival;
 use crate::paper::PaperExperiment;
 
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
@@ -21,7 +22,7 @@ pub struct Program {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the embedded experiments through every method: tables and figures
+    /// Run the embedded experiments through every method: tables, figures, a report
     Demo(DemoArgs),
     /// Estimate the object's pose and the friction over one recorded experiment
     Filter(FilterArgs),
@@ -42,7 +43,7 @@ pub enum Command {
 /// Arguments of `stickslip demo`.
 #[derive(Debug, Args)]
 pub struct DemoArgs {
-    /// Write the figures into this folder
+    /// Write report.html and the figures into this folder
     #[arg(long, value_name = "DIR", default_value = "stickslip-demo")]
     pub out: PathBuf,
     /// Number of particles
@@ -85,6 +86,9 @@ pub struct FilterArgs {
     /// Write estimate.csv into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write a report with figures and a playback into this HTML file
+    #[arg(long, value_name = "HTML")]
+    pub report: Option<PathBuf>,
     /// Options shared with `compare`
     #[command(flatten)]
     pub shared: SharedArgs,
@@ -102,6 +106,9 @@ pub struct CompareArgs {
     /// Name of the scene file in each folder
     #[arg(long, value_name = "FILE", default_value = "scene.toml")]
     pub scene_name: String,
+    /// Write a report with all tables into this HTML file
+    #[arg(long, value_name = "HTML")]
+    pub report: Option<PathBuf>,
     /// Options shared with `filter`
     #[command(flatten)]
     pub shared: SharedArgs,
@@ -278,6 +285,18 @@ impl MethodName {
             Self::Kalman => "Kalman filter",
             Self::Nominal => "nominal simulation",
         }
+    }
+}
+
+impl MethodName {
+    /// Colour in figures, as in comparisons.
+    pub fn colour(self) -> stickslip_report::Colour {
+        match self {
+            Self::Particle => Rival::Particle,
+            Self::Kalman => Rival::Kalman,
+            Self::Nominal => Rival::Nominal,
+        }
+        .colour()
     }
 }
 

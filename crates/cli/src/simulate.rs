@@ -15,8 +15,8 @@ use crate::failure::hinted;
 use crate::output::{show, talk};
 use crate::paper::PaperScene;
 use crate::simulation::{Options, Simulation};
-use crate::table::Table;
 use crate::verdict::Verdict;
+use stickslip_report::Table;
 
 /// A scene's text with what is known of its truth.
 struct Source {

@@ -1,6 +1,7 @@
 //! Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 
 mod angle;
+mod cloud;
 mod columns;
 mod contact_model;
 pub mod diagnosis;
@@ -20,6 +21,7 @@ mod track;
 mod trajectory;
 mod watch;
 
+pub use cloud::Cloud;
 pub use contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
