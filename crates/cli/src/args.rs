@@ -30,6 +30,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Simulate an experiment: a folder with scene, log and truth
     Simulate(SimulateArgs),
+    /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers
+    Reproduce(ReproduceArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
     Check(CheckArgs),
     /// Calibrate a camera from frames of a tag board
@@ -141,6 +143,23 @@ pub struct SimulateArgs {
     /// Draw the true friction within this share of the scene's, as 0.4
     #[arg(long, value_name = "SHARE", conflicts_with = "truth", value_parser = share)]
     pub friction_error: Option<f64>,
+}
+
+/// Arguments of `stickslip reproduce`.
+#[derive(Debug, Args)]
+pub struct ReproduceArgs {
+    /// Number of seeds: of rigs, sensors and filters
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: u64,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
+    pub particles: usize,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `stickslip check`.

@@ -111,15 +111,27 @@ impl Rival {
         seed: u64,
         watch: Option<&dyn StepWatch>,
     ) -> Result<Attempt> {
-        let Experiment { setup, log, .. } = experiment;
-        let options = self.options(occlusion, rules, seed);
-        let run = match watch {
-            Some(watch) => run_watched(setup, log, &options, watch, &mut |_| ())?,
-            None => run(setup, log, &options, &mut |_| ())?,
-        };
+        let run = self.run(experiment, occlusion, rules, seed, watch)?;
         let hidden = occlusion.hidden(&experiment.log);
         let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
         Ok(Attempt { run, scores })
+    }
+
+    /// Runs it while `occlusion` hides the object.
+    pub fn run(
+        self,
+        experiment: &Experiment,
+        occlusion: Occlusion,
+        rules: &Rules,
+        seed: u64,
+        watch: Option<&dyn StepWatch>,
+    ) -> Result<Run> {
+        let Experiment { setup, log, .. } = experiment;
+        let options = self.options(occlusion, rules, seed);
+        Ok(match watch {
+            Some(watch) => run_watched(setup, log, &options, watch, &mut |_| ())?,
+            None => run(setup, log, &options, &mut |_| ())?,
+        })
     }
 
     fn options(self, occlusion: Occlusion, rules: &Rules, seed: u64) -> RunOptions {

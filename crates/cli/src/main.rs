@@ -19,6 +19,7 @@ mod paper;
 mod parameters;
 mod progress;
 mod render;
+mod reproduce;
 mod simulate;
 mod simulation;
 mod track;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Filter(args) => filter::filter(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Simulate(args) => simulate::simulate(&args),
+        Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Check(args) => check::check(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Track(args) => track::track(&args),
