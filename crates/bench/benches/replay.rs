@@ -1,7 +1,8 @@
 //! `cargo bench -p stickslip-bench --bench replay`: the steps of the particle filter on every `slide-*` log, captured, then solved again.
 //!
-//! 500 particles, camera hidden where the log's `truth.json` says so. Only the solver's step is timed, one block of 64 particles at
-//! a time, on one thread; every step starts from what the filter had, noise and warm start included.
+//! `... -- NAME` takes the logs with NAME in their names. 500 particles, camera hidden where the log's `truth.json` says so. Only the
+//! solver's step is timed, one block of 64 particles at a time, on one thread; every step starts from what the filter had, noise and
+//! warm start included.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
@@ -69,7 +70,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn is_wanted(case: &RecordedCase) -> bool {
     let slides = case.folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("slide-"));
-    slides && case.occlusion != Occlusion::None
+    let has = |part: &String| case.folder.to_string_lossy().contains(part.as_str());
+    let asked_for: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
+    slides && case.occlusion != Occlusion::None && (asked_for.is_empty() || asked_for.iter().any(has))
 }
 
 fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {

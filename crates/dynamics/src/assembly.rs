@@ -11,7 +11,6 @@ use crate::plane::Frame;
 use crate::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::scene::{Feet, Fixel, Friction, Scene};
 use crate::step::{Body, PusherMotion, StepInput};
-use crate::trig::sin_cos;
 use crate::{Shape, Twist, Wrench};
 
 /// Place of the first remembered contact among the numbers of a warm start.
@@ -97,13 +96,20 @@ impl<const W: usize> Assembly<W> {
         sum * self.setting.mass
     }
 
-    /// Writes the step's problems.
+    /// Writes the step's problems; `stance` is the scene's.
     #[inline(always)]
-    pub fn collect(&mut self, scene: &Scene, input: &StepInput, particles: &Particles<W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
+    pub fn collect(
+        &mut self,
+        (scene, stance): (&Scene, &[[f64; 2]; 3]),
+        input: &StepInput,
+        particles: &Particles<W>,
+        narrow: &mut NarrowWork<W>,
+        ncp: &mut Ncp<W>,
+    ) {
         self.rows.clear();
         ncp.clear();
-        self.set_body(scene, input, particles, ncp);
         let object = Frames::new(&particles.pose);
+        self.set_body((scene, stance), input, (particles, &object), ncp);
         if let Some(motion) = &input.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
             let (frame, mu) = (Frame::new(motion.pose), particles.friction[1]);
@@ -120,7 +126,13 @@ impl<const W: usize> Assembly<W> {
 
     /// What does not depend on contacts: free velocity, feet, stall force.
     #[inline(always)]
-    fn set_body(&mut self, scene: &Scene, input: &StepInput, particles: &Particles<W>, ncp: &mut Ncp<W>) {
+    fn set_body(
+        &mut self,
+        (scene, stance): (&Scene, &[[f64; 2]; 3]),
+        input: &StepInput,
+        (particles, object): (&Particles<W>, &Frames<W>),
+        ncp: &mut Ncp<W>,
+    ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
         let rho = scene.object.gyration_radius();
         let limit = input.pusher.and_then(|pusher| scene.pusher.stall_force.map(|force| (force, pusher.direction)));
@@ -131,7 +143,7 @@ impl<const W: usize> Assembly<W> {
         let [fx, fy, torque] = particles.applied;
         ncp.free = [vx + fx / mass, vy + fy / mass, (omega + torque / inertia) * rho];
         let [mu_s, _, _, d_tri] = particles.friction;
-        let arms = scene.foot_arms(particles.pose[2], d_tri);
+        let arms = scene.foot_arms(stance, object, d_tri);
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
             *row = FootRow { jx: -y / rho, jy: x / rho, bound: mu_s * (scene.gravity * input.h * load) };
@@ -259,23 +271,30 @@ impl<const W: usize> Assembly<W> {
 }
 
 impl Scene {
-    /// The feet's arms in the world frame (m) of objects at angles `theta` (rad) with tripods of radius `d_tri` (m).
-    #[inline(always)]
-    fn foot_arms<const W: usize>(&self, theta: Lanes<W>, d_tri: Lanes<W>) -> [[Lanes<W>; 2]; 3] {
+    /// Where the feet stand in the object's frame (m); those of a tripod of radius 1.
+    pub(crate) fn stance(&self) -> [[f64; 2]; 3] {
         match self.feet {
-            Feet::Tripod { angle } => {
-                let (sin, cos) = sin_cos(theta + angle);
-                let half_root3 = 0.75f64.sqrt();
-                let turns = [(1.0, 0.0), (-0.5, half_root3), (-0.5, -half_root3)];
-                let arm = |(c, s): (f64, f64)| [d_tri * (cos * c - sin * s), d_tri * (sin * c + cos * s)];
-                [arm(turns[0]), arm(turns[1]), arm(turns[2])]
-            }
-            Feet::Known { positions, .. } => {
-                let (sin, cos) = sin_cos(theta);
-                let arm = |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
-                [arm(positions[0]), arm(positions[1]), arm(positions[2])]
-            }
+            Feet::Tripod { angle } => [0.0, 1.0, -1.0].map(|turn| {
+                let (sin, cos) = libm::sincos(angle + turn * (2.0 / 3.0 * std::f64::consts::PI));
+                [cos, sin]
+            }),
+            Feet::Known { positions, .. } => positions,
         }
+    }
+
+    /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod (m).
+    #[inline(always)]
+    fn foot_arms<const W: usize>(&self, stance: &[[f64; 2]; 3], frames: &Frames<W>, d_tri: Lanes<W>) -> [[Lanes<W>; 2]; 3] {
+        let radius = match self.feet {
+            Feet::Tripod { .. } => d_tri,
+            Feet::Known { .. } => Lanes::splat(1.0),
+        };
+        let mut arms = [[Lanes::ZERO; 2]; 3];
+        for (arm, place) in arms.iter_mut().zip(stance) {
+            let [x, y] = frames.turn_fixed(*place);
+            *arm = [radius * x, radius * y];
+        }
+        arms
     }
 
     /// Each foot's share of the weight.
@@ -289,7 +308,8 @@ impl Scene {
     /// The feet of an object at angle `theta`: arms in the world frame, friction bounds for a step of `h` seconds.
     pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
         let total = friction.mu_s * self.object.mass * self.gravity * h;
-        let arms = self.foot_arms(Lanes([theta]), Lanes([friction.d_tri]));
+        let frames = Frames::new(&[Lanes([0.0]), Lanes([0.0]), Lanes([theta])]);
+        let arms = self.foot_arms(&self.stance(), &frames, Lanes([friction.d_tri]));
         let loads = self.foot_loads();
         std::array::from_fn(|k| Foot { arm: arms[k].map(|x| x.0[0]), bound: total * loads[k] })
     }

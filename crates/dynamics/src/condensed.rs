@@ -57,6 +57,8 @@ impl<const W: usize> StallStep<W> {
 /// All rows of a problem, linearised at a guess.
 #[derive(Clone, Debug)]
 pub struct Linearised<const W: usize> {
+    /// Velocity that follows from the guess's impulses, less the guess's own.
+    pub imbalance: Triple<W>,
     /// One per contact.
     pub contacts: Vec<ContactStep<W>>,
     /// One per foot.
@@ -69,6 +71,7 @@ impl<const W: usize> Default for Linearised<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
         Self {
+            imbalance: [o; 3],
             contacts: Vec::new(),
             feet: [FootStep { r: [o; 2], k: [[o; 2]; 2] }; 3],
             stall: StallStep { slack: o, pusher: Lanes::splat(1.0), rhs: o },
@@ -78,11 +81,25 @@ impl<const W: usize> Default for Linearised<W> {
 
 impl<const W: usize> Linearised<W> {
     /// Moves `p` by the full Newton step in the lanes of `open`.
-    ///
-    /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
     #[inline(always)]
     pub fn step(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
-        let (dv, dy) = self.condense(ncp, p).solve(&self.stall, p.pusher_yield);
+        let change = self.condense::<4>(ncp).solve(&self.stall, p.pusher_yield);
+        self.take_step(change, ncp, p, open);
+    }
+
+    /// The same to the bit, sooner where no lane's pusher yields.
+    #[inline(always)]
+    pub fn step_mostly_commanded(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
+        if self.stall.slack.gt(Lanes::ZERO).any() {
+            return self.step(ncp, p, open);
+        }
+        let change = self.condense::<3>(ncp).solve(&self.stall, p.pusher_yield);
+        self.take_step(change, ncp, p, open);
+    }
+
+    /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
+    #[inline(always)]
+    fn take_step(&self, (dv, dy): (Triple<W>, Lanes<W>), ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
         for ((foot, step), p_k) in ncp.feet.iter().zip(&self.feet).zip(&mut p.feet) {
             let ds = foot.slip(&dv);
             for i in 0..2 {
@@ -103,12 +120,9 @@ impl<const W: usize> Linearised<W> {
     }
 
     #[inline(always)]
-    fn condense(&self, ncp: &Ncp<W>, p: &Impulses<W>) -> Condensed<W> {
+    fn condense<const N: usize>(&self, ncp: &Ncp<W>) -> Condensed<W, N> {
         let mut system = Condensed::identity();
-        let velocity = ncp.velocity(p);
-        for i in 0..3 {
-            system.rhs[i] = velocity[i] - p.v[i];
-        }
+        system.rhs[..3].copy_from_slice(&self.imbalance);
         for (foot, step) in ncp.feet.iter().zip(&self.feet) {
             system.add_foot(foot, step);
         }
@@ -119,18 +133,21 @@ impl<const W: usize> Linearised<W> {
     }
 }
 
-/// The condensed system in (dv, dy): matrix and right-hand side of the three momentum balances, then of the pusher's force, by
-/// which the object's resistance F grows.
-struct Condensed<const W: usize> {
-    matrix: [[Lanes<W>; 4]; 4],
-    rhs: [Lanes<W>; 4],
+/// The condensed system in (dv, dy), the first N rows of it: matrix and right-hand side of the three momentum balances, then of the
+/// pusher's force, by which the object's resistance F grows.
+struct Condensed<const W: usize, const N: usize> {
+    matrix: [[Lanes<W>; 4]; N],
+    rhs: [Lanes<W>; N],
 }
 
-impl<const W: usize> Condensed<W> {
+impl<const W: usize, const N: usize> Condensed<W, N> {
     #[inline(always)]
     fn identity() -> Self {
-        let (o, l) = (Lanes::ZERO, Lanes::splat(1.0));
-        Self { matrix: [[l, o, o, o], [o, l, o, o], [o, o, l, o], [o, o, o, o]], rhs: [o; 4] }
+        let mut system = Self { matrix: [[Lanes::ZERO; 4]; N], rhs: [Lanes::ZERO; N] };
+        for i in 0..3 {
+            system.matrix[i][i] = Lanes::splat(1.0);
+        }
+        system
     }
 
     /// A += Jᵀ K J, rhs += Jᵀ r.
@@ -153,40 +170,55 @@ impl<const W: usize> Condensed<W> {
         let (n, t) = ([row.n[0], row.n[1], row.n[2], row.nd], [row.t[0], row.t[1], row.t[2], row.td]);
         for j in 0..4 {
             let (normal, tangential) = (step.nn * n[j], step.tt * t[j] + step.tn * n[j]);
-            for i in 0..4 {
+            for i in 0..N {
                 self.matrix[i][j] += n[i] * normal + t[i] * tangential;
             }
         }
-        for i in 0..4 {
+        for i in 0..N {
             self.rhs[i] += n[i] * step.n + t[i] * step.t;
         }
     }
 
-    /// (dv, dy); `pusher_yield` is the present y. The fourth row becomes the stall pair.
+    /// (dv, dy); `pusher_yield` is the present y. The fourth row becomes the stall pair; without one dy is known.
     #[inline(always)]
     fn solve(mut self, stall: &StallStep<W>, pusher_yield: Lanes<W>) -> (Triple<W>, Lanes<W>) {
-        let determined = ((stall.slack * self.matrix[3][3]).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
-        for j in 0..4 {
-            self.matrix[3][j] = determined.keep(stall.slack * self.matrix[3][j]);
+        if let (Some(row), Some(rhs)) = (self.matrix.get_mut(3), self.rhs.get_mut(3)) {
+            let determined = ((stall.slack * row[3]).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
+            for number in row.iter_mut() {
+                *number = determined.keep(stall.slack * *number);
+            }
+            row[3] += determined.select(stall.pusher, Lanes::splat(1.0));
+            *rhs = determined.select(stall.rhs + stall.slack * *rhs, -pusher_yield);
         }
-        self.matrix[3][3] += determined.select(stall.pusher, Lanes::splat(1.0));
-        self.rhs[3] = determined.select(stall.rhs + stall.slack * self.rhs[3], -pusher_yield);
-        let [x, y, turn, dy] = self.eliminate();
+        let inverse = self.eliminate();
+        let mut x = [Lanes::ZERO, Lanes::ZERO, Lanes::ZERO, stall.rhs];
+        if N == 4 {
+            x[3] = stall.slack.gt(Lanes::ZERO).select(self.rhs[N - 1] * inverse[N - 1], stall.rhs);
+        }
+        for c in (0..3).rev() {
+            x[c] = self.rhs[c];
+            for k in c + 1..4 {
+                x[c] -= self.matrix[c][k] * x[k];
+            }
+            x[c] = x[c] * inverse[c];
+        }
+        let [x, y, turn, dy] = x;
         ([x, y, turn], dy)
     }
 
-    /// Gauss elimination with row pivoting, which stays accurate where some directions are held a million times stiffer than
-    /// others.
+    /// Makes the matrix upper triangular; one over its diagonal.
+    ///
+    /// Gauss elimination with row pivoting stays accurate where some directions are held a million times stiffer than others.
     #[inline(always)]
-    fn eliminate(mut self) -> [Lanes<W>; 4] {
-        let mut inverse = [Lanes::ZERO; 4];
-        for c in 0..4 {
-            for r in c + 1..4 {
+    fn eliminate(&mut self) -> [Lanes<W>; N] {
+        let mut inverse = [Lanes::ZERO; N];
+        for c in 0..N {
+            for r in c + 1..N {
                 let larger = self.matrix[r][c].abs().gt(self.matrix[c][c].abs());
                 self.swap_rows(c, r, larger);
             }
             inverse[c] = Lanes::splat(1.0) / self.matrix[c][c];
-            for r in c + 1..4 {
+            for r in c + 1..N {
                 let factor = self.matrix[r][c] * inverse[c];
                 for k in c + 1..4 {
                     self.matrix[r][k] -= factor * self.matrix[c][k];
@@ -194,14 +226,7 @@ impl<const W: usize> Condensed<W> {
                 self.rhs[r] -= factor * self.rhs[c];
             }
         }
-        let mut x = self.rhs;
-        for c in (0..4).rev() {
-            for k in c + 1..4 {
-                x[c] -= self.matrix[c][k] * x[k];
-            }
-            x[c] = x[c] * inverse[c];
-        }
-        x
+        inverse
     }
 
     /// Swaps rows i < j, from column i on, where `mask` holds.

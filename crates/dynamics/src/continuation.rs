@@ -1,93 +1,243 @@
 //! The second solver: one Newton step on the smoothed rows per reduction of ε, `W` particles side by side.
 //!
 //! Where an object jams or rests among redundant contacts the natural map of the first solver jumps between modes; smoothed rows
-//! do not. There is no line search: ε falls a hundredfold whenever the smoothed residual is below [`NEAR`]·ε, so that every
-//! particle does the same arithmetic. Long before ε is small the modes show, and Newton's method with these modes held ends it.
+//! do not. There is no line search: ε falls whenever the smoothed residual is of its size, so that every particle does the same
+//! arithmetic. Long before ε is small the modes show, and Newton's method with these modes held ends it. A lane that is done takes
+//! up the next problem; lanes that look at their modes wait for others to look with them, so that neither kind of step runs for few.
 
 use crate::condensed::Linearised;
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
+use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
 use crate::polish::Polish;
-
-/// Smoothed residual, in units of ε, below which ε may fall.
-const NEAR: f64 = 1e3;
-
-/// Factor by which ε falls, and between one look at the modes and the next.
-const REDUCTION: f64 = 0.01;
+use crate::smoothing::SmoothedMap;
 
 /// Smallest ε, as a share of the speed scale.
 const SMALLEST: f64 = 1e-11;
 
 /// Newton steps on smoothed rows.
-const STEPS: u32 = 30;
+const STEPS: f64 = 30.0;
 
-/// Share of its bound above which an impulse is taken to slide.
-const SLIDING: f64 = 0.98;
+/// Factor by which ε falls between one look at the modes and the next.
+const LOOK: f64 = 0.01;
 
 /// Newton steps with modes held.
 const POLISH_STEPS: u32 = 2;
 
+/// A way down from a warm start.
+#[derive(Clone, Copy, Debug)]
+pub struct Descent {
+    /// First ε, as a share of the speed scale.
+    pub start: f64,
+    /// Factor by which ε falls.
+    pub reduction: f64,
+    /// Smoothed residual, in units of ε, below which it may fall.
+    pub near: f64,
+    /// Share of its bound above which an impulse is taken to slide.
+    pub sliding: f64,
+}
+
+/// One particle of a block: which chunk of lanes, and which lane of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Number of the chunk.
+    pub chunk: usize,
+    /// Lane of it.
+    pub lane: usize,
+}
+
+/// The problems of a block, `W` to a chunk, and the impulses they start from.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a, const W: usize> {
+    /// The problems.
+    pub ncps: &'a [Ncp<W>],
+    /// The impulses.
+    pub warm: &'a [Impulses<W>],
+}
+
+/// How one problem's descent ended.
+#[derive(Clone, Copy, Debug)]
+pub struct End<'a, const W: usize> {
+    /// Which of the problems it was.
+    pub task: usize,
+    /// Residual of the last look at the modes (m/s); infinite without one.
+    pub residual: f64,
+    /// Newton steps on smoothed rows.
+    pub steps: u32,
+    /// The impulses, in lane `lane`.
+    pub impulses: &'a Impulses<W>,
+    /// See `impulses`.
+    pub lane: usize,
+}
+
 /// The continuation with its working memory.
 #[derive(Clone, Debug)]
 pub struct Continuation<const W: usize> {
-    linearised: Linearised<W>,
-    polish: Polish<W>,
+    ncp: Ncp<W>,
     path: Impulses<W>,
     trial: Impulses<W>,
+    map: SmoothedMap<W>,
+    linearised: Linearised<W>,
+    certificate: NaturalMap<W>,
+    polish: Polish<W>,
+    lanes: LaneStates<W>,
+}
+
+/// How far each lane is.
+#[derive(Clone, Debug)]
+struct LaneStates<const W: usize> {
+    /// Number of the problem that the lane works on.
+    task: [Option<usize>; W],
+    /// Lanes with a problem.
+    busy: Mask<W>,
+    /// Those of them that are about to look at their modes.
+    waiting: Mask<W>,
+    epsilon: Lanes<W>,
+    smallest: Lanes<W>,
+    next_look: Lanes<W>,
+    steps: Lanes<W>,
+    residual: Lanes<W>,
 }
 
 impl<const W: usize> Default for Continuation<W> {
     fn default() -> Self {
+        let (o, no) = (Lanes::ZERO, Mask::splat(false));
         let none = Impulses::zero(0);
-        Self { linearised: Linearised::default(), polish: Polish::default(), path: none.clone(), trial: none }
+        Self {
+            ncp: Ncp::empty(),
+            path: none.clone(),
+            trial: none,
+            map: SmoothedMap::default(),
+            linearised: Linearised::default(),
+            certificate: NaturalMap::default(),
+            polish: Polish::default(),
+            lanes: LaneStates { task: [None; W], busy: no, waiting: no, epsilon: o, smallest: o, next_look: o, steps: o, residual: o },
+        }
     }
 }
 
 impl<const W: usize> Continuation<W> {
-    /// Starts at `p` with ε = `start` times each problem's speed scale; where it reaches a residual of at most `tolerance`,
-    /// `p` becomes the solution. Returns the residual of each lane and the Newton steps.
+    /// Goes down from the warm starts of the problems at `places`; tells `finish` how each ended, solved where its residual is at
+    /// most `tolerance`. What becomes of a problem does not depend on the others.
     #[inline(always)]
-    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, start: f64, tolerance: f64) -> (Lanes<W>, Lanes<W>) {
-        let scale = ncp.speed_scale();
-        let smallest = scale * SMALLEST;
-        let mut epsilon = scale * start;
-        let mut next_look = epsilon;
-        self.path.copy_from(p);
-        let mut violation = ncp.smoothed_residual(&self.path, epsilon);
-        let mut residual = Lanes::splat(f64::INFINITY);
-        let mut steps = Lanes::ZERO;
-        let mut open = Mask::splat(true);
-        for _ in 0..STEPS {
-            let near = violation.lt(epsilon * NEAR);
-            let target = near.select(epsilon * REDUCTION, epsilon);
-            self.linearised.smoothed(ncp, &self.path, epsilon, target);
-            self.linearised.step(ncp, &mut self.path, open);
-            steps += open.keep(Lanes::splat(1.0));
-            epsilon = open.select(target, epsilon);
-            violation = ncp.smoothed_residual(&self.path, epsilon);
-
-            let look = open & violation.lt(epsilon * NEAR) & !epsilon.gt(next_look);
-            if look.any() {
-                next_look = look.select(next_look * REDUCTION, next_look);
-                let polished = self.polish(ncp, look);
-                residual = look.select(polished, residual);
-                let done = look & !polished.gt(Lanes::splat(tolerance));
-                p.copy_where(done, &self.trial);
-                open = open & !done & epsilon.gt(smallest);
+    pub fn solve(
+        &mut self,
+        block: Block<'_, W>,
+        places: &[Place],
+        descent: &Descent,
+        tolerance: f64,
+        finish: &mut impl FnMut(&End<'_, W>),
+    ) {
+        let mut next = 0;
+        self.ncp.clear();
+        self.path.clear(0);
+        loop {
+            while next < places.len() && !self.lanes.busy.all() {
+                self.load(block, places[next], next, descent);
+                next += 1;
             }
-            if !open.any() {
-                break;
+            if !self.lanes.busy.any() {
+                return;
             }
+            let violation = self.map.take(&self.ncp, &self.path, self.lanes.epsilon);
+            let near = violation.lt(self.lanes.epsilon * descent.near);
+            self.lanes.note(near);
+            if self.lanes.enough_wait() {
+                self.look(descent, tolerance);
+            }
+            self.end_where_over(tolerance, finish);
+            self.advance(near, descent);
         }
-        (residual, steps)
     }
 
-    /// Tries the modes that the path shows in the lanes of `look`; the residual of what that leads to.
+    /// Puts a problem into a free lane.
     #[inline(always)]
-    fn polish(&mut self, ncp: &Ncp<W>, look: Mask<W>) -> Lanes<W> {
+    fn load(&mut self, Block { ncps, warm }: Block<'_, W>, Place { chunk, lane }: Place, task: usize, descent: &Descent) {
+        let Some(slot) = (0..W).find(|slot| !self.lanes.busy.lane(*slot)) else { return };
+        self.ncp.clear_lane(slot);
+        ncps[chunk].pack_lane(lane, &mut self.ncp, slot);
+        self.path.resize(self.ncp.contacts.len());
+        self.path.clear_lane(slot);
+        warm[chunk].pack_lane(&ncps[chunk], lane, &mut self.path, slot);
+
+        let scale = ncps[chunk].speed_scale().0[lane];
+        let lanes = &mut self.lanes;
+        lanes.task[slot] = Some(task);
+        lanes.busy.set(slot, true);
+        lanes.waiting.set(slot, false);
+        for (number, value) in [
+            (&mut lanes.epsilon, scale * descent.start),
+            (&mut lanes.next_look, scale * descent.start),
+            (&mut lanes.smallest, scale * SMALLEST),
+            (&mut lanes.steps, 0.0),
+            (&mut lanes.residual, f64::INFINITY),
+        ] {
+            number.0[slot] = value;
+        }
+    }
+
+    /// Tries the modes that the path shows in the lanes that wait for it.
+    #[inline(always)]
+    fn look(&mut self, descent: &Descent, tolerance: f64) {
+        let looking = self.lanes.waiting;
         self.trial.copy_from(&self.path);
-        self.polish.polish(ncp, &mut self.trial, look, SLIDING, POLISH_STEPS);
-        ncp.residual(&self.trial)
+        self.polish.polish(&self.ncp, &mut self.trial, looking, descent.sliding, POLISH_STEPS);
+        let residual = self.certificate.take(&self.ncp, &self.trial);
+        let lanes = &mut self.lanes;
+        lanes.residual = looking.select(residual, lanes.residual);
+        lanes.next_look = looking.select(lanes.next_look * LOOK, lanes.next_look);
+        // what has no smaller ε to go to ends here
+        let last = looking & residual.gt(Lanes::splat(tolerance)) & !lanes.epsilon.gt(lanes.smallest);
+        lanes.steps = last.select(Lanes::splat(STEPS), lanes.steps);
+        lanes.waiting = Mask::splat(false);
+    }
+
+    /// Frees the lanes that are solved or have taken all steps.
+    #[inline(always)]
+    fn end_where_over(&mut self, tolerance: f64, finish: &mut impl FnMut(&End<'_, W>)) {
+        let lanes = &mut self.lanes;
+        let solved = !lanes.residual.gt(Lanes::splat(tolerance));
+        let over = lanes.busy & !lanes.waiting & (solved | !lanes.steps.lt(Lanes::splat(STEPS)));
+        if !over.any() {
+            return;
+        }
+        for lane in over.lanes() {
+            if let Some(task) = lanes.task[lane].take() {
+                finish(&End { task, residual: lanes.residual.0[lane], steps: lanes.steps.0[lane] as u32, impulses: &self.trial, lane });
+            }
+        }
+        lanes.busy = lanes.busy & !over;
+    }
+
+    /// One step in every lane that does not wait; ε falls in those of `near`.
+    #[inline(always)]
+    fn advance(&mut self, near: Mask<W>, descent: &Descent) {
+        let lanes = &mut self.lanes;
+        let going = lanes.busy & !lanes.waiting;
+        if !going.any() {
+            return;
+        }
+        let target = near.select(lanes.epsilon * descent.reduction, lanes.epsilon);
+        self.linearised.smoothed(&self.ncp, &self.path, &self.map, target);
+        self.linearised.step(&self.ncp, &mut self.path, going);
+        lanes.epsilon = going.select(target, lanes.epsilon);
+        lanes.steps += going.keep(Lanes::splat(1.0));
+    }
+}
+
+impl<const W: usize> LaneStates<W> {
+    /// Lanes `near` their ε wait for a look at their modes where it has fallen far enough.
+    #[inline(always)]
+    fn note(&mut self, near: Mask<W>) {
+        let look = near & self.steps.gt(Lanes::ZERO) & !self.epsilon.gt(self.next_look);
+        self.waiting = self.busy & (self.waiting | look);
+    }
+
+    /// Whether half of the lanes wait, or nobody else is left.
+    #[inline(always)]
+    fn enough_wait(&self) -> bool {
+        let waiting = self.waiting.lanes().count();
+        waiting > 0 && (2 * waiting >= W || !(self.busy & !self.waiting).any())
     }
 }

@@ -7,6 +7,7 @@ use crate::condensed::Linearised;
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::Ncp;
+use crate::smoothing::SmoothedMap;
 
 /// Full steps without decrease that are allowed at one ε.
 const BOLD_STEPS: u32 = 3;
@@ -14,6 +15,7 @@ const BOLD_STEPS: u32 = 3;
 /// The smoothing homotopy with its working memory.
 #[derive(Clone, Debug)]
 pub struct Homotopy {
+    map: SmoothedMap<1>,
     linearised: Linearised<1>,
     guess: Impulses<1>,
     full: Impulses<1>,
@@ -24,7 +26,8 @@ pub struct Homotopy {
 impl Default for Homotopy {
     fn default() -> Self {
         let none = Impulses::zero(0);
-        Self { linearised: Linearised::default(), guess: none.clone(), full: none.clone(), trial: none.clone(), settled: none }
+        let (map, linearised) = (SmoothedMap::default(), Linearised::default());
+        Self { map, linearised, guess: none.clone(), full: none.clone(), trial: none.clone(), settled: none }
     }
 }
 
@@ -67,7 +70,7 @@ impl Homotopy {
         if from > epsilon && self.newton_step(ncp, from, epsilon) {
             std::mem::swap(&mut self.guess, &mut self.full);
         }
-        let mut merit = violation(ncp, &self.guess, epsilon);
+        let mut merit = self.map.violation(ncp, &self.guess, epsilon);
         let mut bold = BOLD_STEPS;
         for _ in 0..10 {
             if merit < 0.1 * epsilon {
@@ -79,7 +82,7 @@ impl Homotopy {
                     // near a kink the residual must rise before it can fall
                     bold -= 1;
                     std::mem::swap(&mut self.guess, &mut self.full);
-                    violation(ncp, &self.guess, epsilon)
+                    self.map.violation(ncp, &self.guess, epsilon)
                 }
                 None => return false,
             };
@@ -95,7 +98,7 @@ impl Homotopy {
         let mut share = 1.0;
         for _ in 0..6 {
             self.trial.blend(&self.guess, &self.full, Lanes([share]));
-            let next = violation(ncp, &self.trial, epsilon);
+            let next = self.map.violation(ncp, &self.trial, epsilon);
             if next < merit * (1.0 - 0.1 * share) {
                 std::mem::swap(&mut self.guess, &mut self.trial);
                 return Some(next);
@@ -108,12 +111,15 @@ impl Homotopy {
     /// Leaves the full step from the guess in `full`; false where it is not finite.
     fn newton_step(&mut self, ncp: &Ncp<1>, from: f64, target: f64) -> bool {
         self.full.copy_from(&self.guess);
-        self.linearised.smoothed(ncp, &self.guess, Lanes([from]), Lanes([target]));
+        self.map.take(ncp, &self.guess, Lanes([from]));
+        self.linearised.smoothed(ncp, &self.guess, &self.map, Lanes([target]));
         self.linearised.step(ncp, &mut self.full, Mask::splat(true));
         self.full.v.iter().all(|v| v.0[0].is_finite()) && self.full.pusher_yield.0[0].is_finite()
     }
 }
 
-fn violation(ncp: &Ncp<1>, p: &Impulses<1>, epsilon: f64) -> f64 {
-    ncp.smoothed_residual(p, Lanes([epsilon])).0[0]
+impl SmoothedMap<1> {
+    fn violation(&mut self, ncp: &Ncp<1>, p: &Impulses<1>, epsilon: f64) -> f64 {
+        self.take(ncp, p, Lanes([epsilon])).0[0]
+    }
 }

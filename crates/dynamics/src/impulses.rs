@@ -81,6 +81,13 @@ impl<const W: usize> Impulses<W> {
         (self.v, self.feet, self.pusher_yield) = ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
     }
 
+    /// Makes one lane's contact impulses zero.
+    pub fn clear_lane(&mut self, lane: usize) {
+        for p in self.normal.iter_mut().chain(&mut self.tangential) {
+            p.0[lane] = 0.0;
+        }
+    }
+
     /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`.
     pub fn pack_lane<const V: usize>(&self, ncp: &Ncp<W>, lane: usize, to: &mut Impulses<V>, slot: usize) {
         let touching = (0..ncp.contacts.len()).filter(|i| ncp.contacts[*i].is_present(lane));

@@ -6,12 +6,14 @@
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
 
-/// `W` numbers, one per particle.
+/// `W` numbers, one per particle; no vector of them crosses a line of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
 
 /// `W` conditions, one per particle; as wide as the numbers that they choose between, so that choosing is bitwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(align(64))]
 pub struct Mask<const W: usize>([u64; W]);
 
 /// A condition that holds.

@@ -14,6 +14,7 @@ mod instructions;
 mod lanes;
 mod modes;
 mod narrow;
+mod natural;
 mod ncp;
 mod newton;
 mod outline;

@@ -5,7 +5,8 @@
 //! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
 
 use crate::impulses::{Impulses, copy_lane};
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::Lanes;
+use crate::natural::NaturalMap;
 use crate::problem::{ContactPoint, StepProblem};
 
 /// A vector of the scaled velocity space (x, y, ρ θ).
@@ -133,6 +134,13 @@ impl<const W: usize> Ncp<W> {
         self.compliance = Lanes::ZERO;
     }
 
+    /// Opens all contacts of one lane.
+    pub fn clear_lane(&mut self, lane: usize) {
+        for row in &mut self.contacts {
+            copy_lane(row.numbers_mut(), lane, ContactRow::<W>::OPEN.numbers(), lane);
+        }
+    }
+
     /// Copies one lane into lane `slot` of `to`, without the open rows that pad it.
     pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Ncp<V>, slot: usize) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
@@ -196,28 +204,16 @@ impl<const W: usize> Ncp<W> {
         force
     }
 
-    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the certificate of a solution.
+    /// Velocity that follows from the impulses, less the velocity in `p`.
     #[inline(always)]
+    pub fn imbalance(&self, p: &Impulses<W>) -> Triple<W> {
+        let [x, y, turn] = self.velocity(p);
+        [x - p.v[0], y - p.v[1], turn - p.v[2]]
+    }
+
+    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the certificate of a solution.
     pub fn residual(&self, p: &Impulses<W>) -> Lanes<W> {
-        let mut worst = Lanes::ZERO;
-        for (v, expected) in p.v.iter().zip(self.velocity(p)) {
-            worst = worse(worst, *v - expected);
-        }
-        for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let gap = row.gap_velocity(&p.v, p.pusher_yield) + self.compliance * *p_n;
-            worst = worse(worst, p_n.min(gap));
-            let bound = row.mu * p_n.max(Lanes::ZERO);
-            let target = *p_t - row.slip_velocity(&p.v, p.pusher_yield);
-            worst = worse(worst, *p_t - target.min(bound).max(-bound));
-        }
-        for (foot, p_k) in self.feet.iter().zip(&p.feet) {
-            let slip = foot.slip(&p.v);
-            let projected = project_disc([p_k[0] - slip[0], p_k[1] - slip[1]], foot.bound);
-            let off = [p_k[0] - projected[0], p_k[1] - projected[1]];
-            worst = worse(worst, (off[0] * off[0] + off[1] * off[1]).sqrt());
-        }
-        let slack = self.stall - self.resistance(p);
-        worse(worst, slack.min(p.pusher_yield))
+        NaturalMap::default().take(self, p)
     }
 }
 
@@ -234,15 +230,6 @@ pub fn worse<const W: usize>(worst: Lanes<W>, violation: Lanes<W>) -> Lanes<W> {
             size.0[i]
         }
     }))
-}
-
-/// Nearest point of the disc of radius `bound`.
-#[inline(always)]
-fn project_disc<const W: usize>(point: [Lanes<W>; 2], bound: Lanes<W>) -> [Lanes<W>; 2] {
-    let length = (point[0] * point[0] + point[1] * point[1]).sqrt();
-    let outside: Mask<W> = length.gt(bound);
-    let scale = outside.select(bound / outside.select(length, Lanes::splat(1.0)), Lanes::splat(1.0));
-    [point[0] * scale, point[1] * scale]
 }
 
 impl<const W: usize> Ncp<W> {

@@ -8,98 +8,95 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, Triple, dot};
+use crate::natural::{ContactMap, FootMap, NaturalMap};
+use crate::ncp::{ContactRow, FootRow, Ncp, dot};
 
 /// Stiffness k of held rows, in units of the object's mass per step.
 pub const STIFFNESS: f64 = 1.0e6;
 
-/// Iterates from `p` (velocity and impulses) until every lane's residual is at most `tolerance`, or `limit` iterations.
-///
-/// Lanes that are done keep their result while others go on, so a lane's bits do not depend on its neighbours.
-/// Returns the residual and the iterations of each lane.
-#[inline(always)]
-pub fn newton<const W: usize>(
-    ncp: &Ncp<W>,
-    p: &mut Impulses<W>,
-    work: &mut Linearised<W>,
-    tolerance: f64,
-    limit: u32,
-) -> (Lanes<W>, Lanes<W>) {
-    let mut residual = ncp.residual(p);
-    let mut iterations = Lanes::ZERO;
-    for _ in 0..limit {
-        let open = residual.gt(Lanes::splat(tolerance));
-        if !open.any() {
-            break;
-        }
-        work.by_natural_map(ncp, p);
-        work.step(ncp, p, open);
-        residual = open.select(ncp.residual(p), residual);
-        iterations += open.keep(Lanes::splat(1.0));
+/// The fast solver's working memory.
+#[derive(Clone, Debug)]
+pub struct Newton<const W: usize> {
+    map: NaturalMap<W>,
+    linearised: Linearised<W>,
+}
+
+impl<const W: usize> Default for Newton<W> {
+    fn default() -> Self {
+        Self { map: NaturalMap::default(), linearised: Linearised::default() }
     }
-    (residual, iterations)
+}
+
+impl<const W: usize> Newton<W> {
+    /// Iterates from `p` (velocity and impulses) until every lane's residual is at most `tolerance`, or `limit` iterations.
+    ///
+    /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on its neighbours.
+    /// Returns the residual and the iterations of each lane.
+    #[inline(always)]
+    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, tolerance: f64, limit: u32) -> (Lanes<W>, Lanes<W>) {
+        let mut residual = self.map.take(ncp, p);
+        let mut iterations = Lanes::ZERO;
+        for _ in 0..limit {
+            let open = residual.gt(Lanes::splat(tolerance));
+            if !open.any() {
+                break;
+            }
+            self.linearised.by_natural_map(ncp, p, &self.map);
+            self.linearised.step_mostly_commanded(ncp, p, open);
+            residual = open.select(self.map.take(ncp, p), residual);
+            iterations += open.keep(Lanes::splat(1.0));
+        }
+        (residual, iterations)
+    }
 }
 
 impl<const W: usize> Linearised<W> {
-    /// The natural map's own choice of modes at `p`.
+    /// The natural map's own choice of modes at `p`, where it is `map`.
     #[inline(always)]
-    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>) {
-        for (step, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
-            *step = linearise_foot(foot, p_k, &p.v);
+    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>) {
+        self.imbalance = map.imbalance;
+        for k in 0..3 {
+            self.feet[k] = map.feet[k].linearised(&ncp.feet[k], &p.feet[k]);
         }
         self.contacts.clear();
-        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
-            let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            self.contacts.push(linearise_contact(row, [*p_n, *p_t], gamma, slip, ncp.compliance));
+        for ((row, contact), (p_n, p_t)) in ncp.contacts.iter().zip(&map.contacts).zip(p.normal.iter().zip(&p.tangential)) {
+            self.contacts.push(contact.linearised(row, [*p_n, *p_t], ncp.compliance));
         }
-        let slack = ncp.stall - ncp.resistance(p);
-        self.stall = StallStep::decided(p.pusher_yield.gt(slack), slack, p.pusher_yield);
+        self.stall = StallStep::decided(p.pusher_yield.gt(map.slack), map.slack, p.pusher_yield);
     }
 }
 
-/// Natural map of a foot: stuck where |p − s| ≤ bound, else sliding with p on the rim.
-#[inline(always)]
-fn linearise_foot<const W: usize>(foot: &FootRow<W>, p: &[Lanes<W>; 2], v: &Triple<W>) -> FootStep<W> {
-    let one = Lanes::splat(1.0);
-    let s = foot.slip(v);
-    let z = [p[0] - s[0], p[1] - s[1]];
-    let length = (z[0] * z[0] + z[1] * z[1]).sqrt();
-    let sliding = length.gt(foot.bound);
-    let inverse = one / sliding.select(length, one);
-    let dir = [z[0] * inverse, z[1] * inverse];
-
-    // sliding: along dir the impulse is the bound, across it turns with stiffness bound / (|z| − bound)
-    let excess = (length - foot.bound).max(foot.bound * (1.0 / STIFFNESS)).max(Lanes::splat(1e-300));
-    let across = foot.bound / excess;
-    let miss = [foot.bound * dir[0] - p[0], foot.bound * dir[1] - p[1]];
-    let miss_along = miss[0] * dir[0] + miss[1] * dir[1];
-    let miss_across = (miss[1] * dir[0] - miss[0] * dir[1]) * (across + one);
-    let slide = [miss_along * dir[0] - miss_across * dir[1], miss_along * dir[1] + miss_across * dir[0]];
-
-    // stuck: s is driven to zero
-    let k = Lanes::splat(STIFFNESS);
-    let cross = sliding.select(-across * dir[0] * dir[1], Lanes::ZERO);
-    FootStep {
-        r: [sliding.select(slide[0], -s[0] * k), sliding.select(slide[1], -s[1] * k)],
-        k: [[sliding.select(across * dir[1] * dir[1], k), cross], [cross, sliding.select(across * dir[0] * dir[0], k)]],
+impl<const W: usize> FootMap<W> {
+    /// Stuck where |p − s| ≤ bound, else sliding with p on the rim.
+    #[inline(always)]
+    fn linearised(&self, foot: &FootRow<W>, p: &[Lanes<W>; 2]) -> FootStep<W> {
+        let Self { slip, sliding, direction: [x, y], across } = *self;
+        // sliding: along the direction the impulse is the bound, across it turns with stiffness bound / (|p − s| − bound)
+        let miss = self.miss(foot, p);
+        let miss_along = miss[0] * x + miss[1] * y;
+        let miss_across = (miss[1] * x - miss[0] * y) * (across + Lanes::splat(1.0));
+        let slide = [miss_along * x - miss_across * y, miss_along * y + miss_across * x];
+        // stuck: s is driven to zero
+        let k = Lanes::splat(STIFFNESS);
+        let cross = sliding.keep(-across * x * y);
+        FootStep {
+            r: [sliding.select(slide[0], -slip[0] * k), sliding.select(slide[1], -slip[1] * k)],
+            k: [[sliding.select(across * y * y, k), cross], [cross, sliding.select(across * x * x, k)]],
+        }
     }
 }
 
-/// Natural map of a contact: open, sticking or sliding either way.
-#[inline(always)]
-fn linearise_contact<const W: usize>(
-    row: &ContactRow<W>,
-    p: [Lanes<W>; 2],
-    gamma: Lanes<W>,
-    slip: Lanes<W>,
-    compliance: Lanes<W>,
-) -> ContactStep<W> {
-    let one = Lanes::splat(1.0);
-    let closed = p[0].gt(gamma / dot(&row.n, &row.n).max(one));
-    let z = p[1] - slip / dot(&row.t, &row.t).max(one);
-    let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO));
-    ContactStep::in_mode(p, [gamma, slip], Mode { closed, sliding, ratio: z.sign() * row.mu }, compliance)
+impl<const W: usize> ContactMap<W> {
+    /// Open, sticking or sliding either way.
+    #[inline(always)]
+    fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> ContactStep<W> {
+        let one = Lanes::splat(1.0);
+        let closed = (p[0] * dot(&row.n, &row.n).max(one)).gt(self.gap);
+        let inertia = dot(&row.t, &row.t).max(one);
+        let z = p[1] * inertia - self.slip;
+        let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
+        ContactStep::in_mode(p, [self.gap, self.slip], Mode { closed, sliding, ratio: z.sign() * row.mu }, compliance)
+    }
 }
 
 /// What a contact does.

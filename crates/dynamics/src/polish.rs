@@ -48,6 +48,7 @@ impl<const W: usize> Polish<W> {
 
     #[inline(always)]
     fn linearise(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, slides: &[Mask<W>; 3], yields: Mask<W>) {
+        self.linearised.imbalance = ncp.imbalance(p);
         let contacts = &mut self.linearised.contacts;
         contacts.clear();
         for ((row, mode), (p_n, p_t)) in ncp.contacts.iter().zip(&self.modes).zip(p.normal.iter().zip(&p.tangential)) {

@@ -1,12 +1,12 @@
 //! The slow, sure part of the chain, one particle at a time: [`SlowSolver`].
 
-use crate::condensed::Linearised;
 use crate::homotopy::Homotopy;
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::modes::{Verdict, search};
+use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::newton;
+use crate::newton::Newton;
 use crate::polish::Polish;
 use crate::rows::{Guess, Rows};
 use crate::solver::{Outcome, Report, Route, TOLERANCE};
@@ -48,6 +48,7 @@ pub struct SlowSolver {
     ncp: Ncp<1>,
     rows: Rows,
     start: Impulses<1>,
+    nearest: Impulses<1>,
     homotopy: Homotopy,
     polisher: Polisher,
 }
@@ -58,8 +59,9 @@ impl Default for SlowSolver {
             ncp: Ncp::empty(),
             rows: Rows::default(),
             start: Impulses::zero(0),
+            nearest: Impulses::zero(0),
             homotopy: Homotopy::default(),
-            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), fast: Linearised::default() },
+            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), newton: Newton::default(), map: NaturalMap::default() },
         }
     }
 }
@@ -141,13 +143,31 @@ impl SlowSolver {
         while compliance > COMPLIANCE {
             compliance = f64::max(0.1 * compliance, COMPLIANCE);
             self.ncp.compliance = Lanes([compliance]);
-            let solved = SOFTENING.iter().any(|&first| self.follow_from(first) <= TOLERANCE);
-            if !solved {
-                self.polisher.p.copy_from(self.homotopy.end());
-            }
-            self.start.copy_from(&self.polisher.p);
+            self.come_nearest();
+            self.start.copy_from(&self.nearest);
         }
+        self.polisher.p.copy_from(&self.nearest);
         self.ncp.compliance = Lanes::ZERO;
+    }
+
+    /// Leaves in `self.nearest` what comes nearest to a solution from `self.start`.
+    ///
+    /// With impulses of a million metres per second, rounding alone may exceed the tolerance: then the last try need not be the best.
+    fn come_nearest(&mut self) {
+        let mut least = f64::INFINITY;
+        for first in SOFTENING {
+            let polished = self.follow_from(first);
+            let smoothed = self.polisher.map.take(&self.ncp, self.homotopy.end()).0[0];
+            for (residual, p) in [(polished, &self.polisher.p), (smoothed, self.homotopy.end())] {
+                if residual < least {
+                    least = residual;
+                    self.nearest.copy_from(p);
+                }
+            }
+            if least <= TOLERANCE {
+                break;
+            }
+        }
     }
 }
 
@@ -156,7 +176,8 @@ impl SlowSolver {
 struct Polisher {
     p: Impulses<1>,
     modes: Polish<1>,
-    fast: Linearised<1>,
+    newton: Newton<1>,
+    map: NaturalMap<1>,
 }
 
 impl Polisher {
@@ -166,7 +187,7 @@ impl Polisher {
         for &share in sliding {
             self.p.copy_from(guess);
             self.modes.polish(ncp, &mut self.p, Mask::splat(true), share, limit);
-            residual = ncp.residual(&self.p).0[0];
+            residual = self.map.take(ncp, &self.p).0[0];
             if residual <= TOLERANCE {
                 break;
             }
@@ -181,7 +202,7 @@ impl Polisher {
             return residual;
         }
         self.p.copy_from(guess);
-        newton(ncp, &mut self.p, &mut self.fast, TOLERANCE, POLISH_ITERATIONS).0.0[0]
+        self.newton.solve(ncp, &mut self.p, TOLERANCE, POLISH_ITERATIONS).0.0[0]
     }
 }
 

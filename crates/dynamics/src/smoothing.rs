@@ -7,42 +7,107 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::ncp::{ContactRow, FootRow, Ncp, Triple, worse};
+use crate::ncp::{ContactRow, FootRow, Ncp, worse};
 
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;
 
-impl<const W: usize> Ncp<W> {
-    /// Largest violation of the rows smoothed with ε (m/s).
-    #[inline(always)]
-    pub fn smoothed_residual(&self, p: &Impulses<W>, epsilon: Lanes<W>) -> Lanes<W> {
-        let mut worst = Lanes::ZERO;
-        let squared = epsilon * epsilon;
-        for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let gap = row.gap_velocity(&p.v, p.pusher_yield) + self.compliance * *p_n;
-            worst = worse(worst, smooth_pair(*p_n, gap, squared));
-            let s = row.slip_velocity(&p.v, p.pusher_yield);
-            let sigma = (s * s + squared).sqrt();
-            worst = worse(worst, row.mu * p_n.max(Lanes::ZERO) * s / sigma + *p_t);
-        }
-        for (foot, p_k) in self.feet.iter().zip(&p.feet) {
-            let s = foot.slip(&p.v);
-            let share = foot.bound / (s[0] * s[0] + s[1] * s[1] + squared).sqrt();
-            let off = [share * s[0] + p_k[0], share * s[1] + p_k[1]];
-            worst = worse(worst, (off[0] * off[0] + off[1] * off[1]).sqrt());
-        }
-        let finite = self.stall.lt(Lanes::splat(f64::INFINITY));
-        worse(worst, finite.keep(smooth_pair(self.stall - self.resistance(p), p.pusher_yield, squared)))
+/// The smoothed rows at one point and ε, with what leads to them.
+#[derive(Clone, Debug)]
+pub struct SmoothedMap<const W: usize> {
+    epsilon: Lanes<W>,
+    feet: [SmoothedFoot<W>; 3],
+    contacts: Vec<SmoothedContact<W>>,
+    stall: SmoothedPair<W>,
+}
+
+/// Friction of one foot.
+#[derive(Clone, Copy, Debug)]
+struct SmoothedFoot<const W: usize> {
+    slip: [Lanes<W>; 2],
+    /// 1/σ.
+    inverse: Lanes<W>,
+}
+
+/// One contact.
+#[derive(Clone, Copy, Debug)]
+struct SmoothedContact<const W: usize> {
+    pair: SmoothedPair<W>,
+    slip: Lanes<W>,
+    /// 1/σ.
+    inverse: Lanes<W>,
+}
+
+/// A pair a ⟂ b: a − b, the root sqrt((a − b)² + 4ε²), and a + b less the root.
+#[derive(Clone, Copy, Debug)]
+struct SmoothedPair<const W: usize> {
+    difference: Lanes<W>,
+    root: Lanes<W>,
+    value: Lanes<W>,
+}
+
+impl<const W: usize> Default for SmoothedMap<W> {
+    fn default() -> Self {
+        let o = Lanes::ZERO;
+        let foot = SmoothedFoot { slip: [o; 2], inverse: o };
+        Self { epsilon: o, feet: [foot; 3], contacts: Vec::new(), stall: SmoothedPair { difference: o, root: o, value: o } }
     }
 }
 
-/// a + b − sqrt((a − b)² + 4ε²).
-#[inline(always)]
-fn smooth_pair<const W: usize>(a: Lanes<W>, b: Lanes<W>, epsilon_squared: Lanes<W>) -> Lanes<W> {
-    a + b - ((a - b) * (a - b) + epsilon_squared * 4.0).sqrt()
+impl<const W: usize> SmoothedMap<W> {
+    /// Takes the rows at `p`, smoothed with `epsilon`; returns the largest violation (m/s).
+    #[inline(always)]
+    pub fn take(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, epsilon: Lanes<W>) -> Lanes<W> {
+        self.epsilon = epsilon;
+        let squared = epsilon * epsilon;
+        let mut worst = Lanes::ZERO;
+        self.contacts.clear();
+        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
+            let gap = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
+            let pair = SmoothedPair::new(*p_n, gap, squared);
+            let slip = row.slip_velocity(&p.v, p.pusher_yield);
+            let inverse = Lanes::splat(1.0) / (slip * slip + squared).sqrt();
+            worst = worse(worst, pair.value);
+            worst = worse(worst, row.mu * p_n.max(Lanes::ZERO) * (slip * inverse) + *p_t);
+            self.contacts.push(SmoothedContact { pair, slip, inverse });
+        }
+        for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
+            let slip = foot.slip(&p.v);
+            let inverse = Lanes::splat(1.0) / (slip[0] * slip[0] + slip[1] * slip[1] + squared).sqrt();
+            let off = [foot.bound * (slip[0] * inverse) + p_k[0], foot.bound * (slip[1] * inverse) + p_k[1]];
+            worst = worse(worst, (off[0] * off[0] + off[1] * off[1]).sqrt());
+            *map = SmoothedFoot { slip, inverse };
+        }
+        let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
+        self.stall = SmoothedPair::new(finite.keep(ncp.stall) - ncp.resistance(p), p.pusher_yield, squared);
+        worse(worst, finite.keep(self.stall.value))
+    }
 }
 
-/// A smoothed pair a ⟂ b at ε, linearised in both and aimed at ε = `target`.
+impl<const W: usize> SmoothedPair<W> {
+    #[inline(always)]
+    fn new(a: Lanes<W>, b: Lanes<W>, epsilon_squared: Lanes<W>) -> Self {
+        let difference = a - b;
+        let root = (difference * difference + epsilon_squared * 4.0).sqrt();
+        Self { difference, root, value: a + b - root }
+    }
+
+    /// Linearised in a, b and ε, and aimed at another ε.
+    #[inline(always)]
+    fn linearised(&self, aim: &Aim<W>) -> Pair<W> {
+        let Self { difference, root, value } = *self;
+        let sum = root + difference.abs();
+        let inverse = Lanes::splat(1.0) / (root * sum);
+        // 1 − |a − b| / root without cancellation
+        let less = aim.epsilon * aim.epsilon * 4.0 * inverse;
+        let more = Lanes::splat(2.0) - less;
+        let forward = difference.gt(Lanes::ZERO);
+        let value = value - aim.epsilon * 4.0 * (inverse * sum) * (aim.target - aim.epsilon);
+        Pair { a: forward.select(less, more), b: forward.select(more, less), value }
+    }
+}
+
+/// A smoothed pair a ⟂ b, linearised.
 struct Pair<const W: usize> {
     /// Coefficient of da.
     a: Lanes<W>,
@@ -52,37 +117,20 @@ struct Pair<const W: usize> {
     value: Lanes<W>,
 }
 
-impl<const W: usize> Pair<W> {
-    #[inline(always)]
-    fn new(a: Lanes<W>, b: Lanes<W>, aim: &Aim<W>) -> Self {
-        let difference = a - b;
-        let squared = aim.epsilon * aim.epsilon * 4.0;
-        let root = (difference * difference + squared).sqrt();
-        let inverse = Lanes::splat(1.0) / root;
-        // 1 − |w| without cancellation
-        let less = squared * inverse / (root + difference.abs());
-        let more = Lanes::splat(2.0) - less;
-        let forward = difference.gt(Lanes::ZERO);
-        let value = a + b - root - aim.epsilon * 4.0 * inverse * (aim.target - aim.epsilon);
-        Self { a: forward.select(less, more), b: forward.select(more, less), value }
-    }
-}
-
 impl<const W: usize> Linearised<W> {
-    /// All rows, smoothed with ε and linearised at `p` in unknowns and ε, aimed at ε = `target`.
+    /// The smoothed rows at `p`, where they are `map`, linearised in unknowns and ε and aimed at ε = `target`.
     #[inline(always)]
-    pub fn smoothed(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, epsilon: Lanes<W>, target: Lanes<W>) {
-        let aim = Aim { epsilon, target };
+    pub fn smoothed(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &SmoothedMap<W>, target: Lanes<W>) {
+        let aim = Aim { epsilon: map.epsilon, target };
+        self.imbalance = ncp.imbalance(p);
         self.contacts.clear();
-        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
-            let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            self.contacts.push(aim.contact(row, [*p_n, *p_t], [gamma, slip], ncp.compliance));
+        for ((row, contact), (p_n, p_t)) in ncp.contacts.iter().zip(&map.contacts).zip(p.normal.iter().zip(&p.tangential)) {
+            self.contacts.push(aim.contact(row, contact, [*p_n, *p_t], ncp.compliance));
         }
-        for (step, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
-            *step = aim.foot(foot, p_k, &p.v);
+        for k in 0..3 {
+            self.feet[k] = aim.foot(&ncp.feet[k], &map.feet[k], &p.feet[k]);
         }
-        self.stall = aim.stall(ncp, p);
+        self.stall = aim.stall(ncp, &map.stall, p.pusher_yield);
     }
 }
 
@@ -93,37 +141,34 @@ struct Aim<const W: usize> {
 }
 
 impl<const W: usize> Aim<W> {
-    /// (1/σ, σ linearised at the target over σ) for a squared slip speed.
+    /// σ linearised at the target, over σ, for 1/σ.
     #[inline(always)]
-    fn sigma(&self, slip_squared: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
-        let inverse = Lanes::splat(1.0) / (slip_squared + self.epsilon * self.epsilon).sqrt();
-        (inverse, Lanes::splat(1.0) + self.epsilon * (self.target - self.epsilon) * inverse * inverse)
+    fn shift(&self, inverse: Lanes<W>) -> Lanes<W> {
+        Lanes::splat(1.0) + self.epsilon * (self.target - self.epsilon) * inverse * inverse
     }
 
     #[inline(always)]
-    fn contact(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], [gamma, slip]: [Lanes<W>; 2], compliance: Lanes<W>) -> ContactStep<W> {
-        let one = Lanes::splat(1.0);
-        let pair = Pair::new(p[0], gamma, self);
+    fn contact(&self, row: &ContactRow<W>, map: &SmoothedContact<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> ContactStep<W> {
+        let pair = map.pair.linearised(self);
         // γ itself grows by κ dp_n
-        let weight = one / (pair.a.max(Lanes::splat(2.0 / STIFFEST)) + compliance * pair.b);
+        let weight = Lanes::splat(1.0) / (pair.a.max(Lanes::splat(2.0 / STIFFEST)) + compliance * pair.b);
         let (r_n, nn) = (-pair.value * weight, pair.b * weight);
 
-        let (inverse, shift) = self.sigma(slip * slip);
-        let p_n = p[0].max(Lanes::ZERO);
-        let bound = row.mu * p_n;
-        let unit = slip * inverse;
+        let inverse = map.inverse;
+        let bound = row.mu * p[0].max(Lanes::ZERO);
+        let unit = map.slip * inverse;
         // the matrix uses p_t clamped to the cone, which keeps its diagonal positive
         let clamped = p[1].min(bound).max(-bound);
         let tt = ((bound + clamped * unit) * inverse).min(Lanes::splat(STIFFEST));
         let ratio = p[0].gt(Lanes::ZERO).keep(-row.mu * unit);
-        ContactStep { n: r_n, t: ratio * r_n - (bound * unit + p[1] * shift), nn, tn: ratio * nn, tt }
+        ContactStep { n: r_n, t: ratio * r_n - (bound * unit + p[1] * self.shift(inverse)), nn, tn: ratio * nn, tt }
     }
 
     #[inline(always)]
-    fn foot(&self, foot: &FootRow<W>, p: &[Lanes<W>; 2], v: &Triple<W>) -> FootStep<W> {
-        let s = foot.slip(v);
-        let (inverse, shift) = self.sigma(s[0] * s[0] + s[1] * s[1]);
-        let unit = [s[0] * inverse, s[1] * inverse];
+    fn foot(&self, foot: &FootRow<W>, map: &SmoothedFoot<W>, p: &[Lanes<W>; 2]) -> FootStep<W> {
+        let SmoothedFoot { slip, inverse } = *map;
+        let shift = self.shift(inverse);
+        let unit = [slip[0] * inverse, slip[1] * inverse];
         let size = (p[0] * p[0] + p[1] * p[1]).sqrt();
         let outside = size.gt(foot.bound);
         let one = Lanes::splat(1.0);
@@ -137,11 +182,10 @@ impl<const W: usize> Aim<W> {
     }
 
     #[inline(always)]
-    fn stall(&self, ncp: &Ncp<W>, p: &Impulses<W>) -> StallStep<W> {
+    fn stall(&self, ncp: &Ncp<W>, map: &SmoothedPair<W>, pusher_yield: Lanes<W>) -> StallStep<W> {
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
-        let slack = finite.select(ncp.stall, Lanes::ZERO) - ncp.resistance(p);
-        let pair = Pair::new(slack, p.pusher_yield, self);
+        let pair = map.linearised(self);
         let one = Lanes::splat(1.0);
-        StallStep { slack: finite.keep(pair.a), pusher: finite.select(pair.b, one), rhs: -finite.select(pair.value, p.pusher_yield) }
+        StallStep { slack: finite.keep(pair.a), pusher: finite.select(pair.b, one), rhs: -finite.select(pair.value, pusher_yield) }
     }
 }

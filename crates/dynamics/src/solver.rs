@@ -1,15 +1,15 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
-//! The semismooth Newton iteration answers almost always. What it leaves of a whole block of particles is packed together and
-//! goes to the smoothed Newton steps, still side by side; a smoothing homotopy, then an exhaustive search over contact modes take
+//! The semismooth Newton iteration answers almost always. What it leaves of a whole block of particles goes to the smoothed
+//! Newton steps, packed together, still side by side; a smoothing homotopy, then an exhaustive search over contact modes take
 //! what is left, one by one. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
 
-use crate::condensed::Linearised;
-use crate::continuation::Continuation;
+use crate::continuation::{Block, Continuation, Descent, End, Place};
 use crate::impulses::Impulses;
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::Lanes;
+use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::newton;
+use crate::newton::Newton;
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;
 
@@ -22,8 +22,12 @@ const AIM: f64 = 1e-10;
 /// Iterations of the fast solver before the next one takes over.
 const FAST_ITERATIONS: u32 = 6;
 
-/// Shares of the speed scale at which the smoothed steps take up a warm start, one after the other.
-const STARTS: [f64; 2] = [1e-5, 1e-1];
+/// Ways down from a warm start that the smoothed steps try one after the other: close to it, from afar, and slowly.
+const DESCENTS: [Descent; 3] = [
+    Descent { start: 1e-5, reduction: 0.01, near: 1e3, sliding: 0.98 },
+    Descent { start: 1e-1, reduction: 0.01, near: 1e3, sliding: 0.9999 },
+    Descent { start: 1e-3, reduction: 0.1, near: 10.0, sliding: 0.9999 },
+];
 
 /// How one step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,23 +95,26 @@ pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
 /// Solves mixed NCPs; holds the working memory.
 #[derive(Clone, Debug)]
 pub struct Solver<const W: usize> {
-    fast: Linearised<W>,
+    newton: Newton<W>,
+    map: NaturalMap<W>,
     warm: Vec<Impulses<W>>,
     left: Vec<Place>,
-    pack: Pack<W>,
+    kept: Vec<Place>,
+    continuation: Continuation<W>,
     slow: SlowSolver,
-}
-
-/// One particle of a block: which chunk of lanes, and which lane of it.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    chunk: usize,
-    lane: usize,
 }
 
 impl<const W: usize> Default for Solver<W> {
     fn default() -> Self {
-        Self { fast: Linearised::default(), warm: Vec::new(), left: Vec::new(), pack: Pack::default(), slow: SlowSolver::default() }
+        Self {
+            newton: Newton::default(),
+            map: NaturalMap::default(),
+            warm: Vec::new(),
+            left: Vec::new(),
+            kept: Vec::new(),
+            continuation: Continuation::default(),
+            slow: SlowSolver::default(),
+        }
     }
 }
 
@@ -122,7 +129,7 @@ impl<const W: usize> Solver<W> {
         for (chunk, (ncp, p)) in ncps.iter().zip(p.iter_mut()).enumerate() {
             assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
             self.warm[chunk].copy_from(p);
-            let (residual, iterations) = newton(ncp, p, &mut self.fast, AIM, FAST_ITERATIONS);
+            let (residual, iterations) = self.newton.solve(ncp, p, AIM, FAST_ITERATIONS);
             for (lane, report) in reports[chunk].iter_mut().enumerate() {
                 let (residual, iterations) = (residual.0[lane], iterations.0[lane] as u32);
                 *report = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
@@ -135,33 +142,30 @@ impl<const W: usize> Solver<W> {
             self.solve_left(ncps, p, reports);
         }
         for ((ncp, p), reports) in ncps.iter().zip(p).zip(reports) {
-            rest_exactly(ncp, p, reports);
+            rest_exactly(ncp, p, &mut self.map, reports);
         }
     }
 
     /// The problems that the fast solver left, packed together; then one by one what is left of them.
     #[inline(always)]
     fn solve_left(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
-        for start in STARTS {
-            let mut kept = 0;
-            for first in (0..self.left.len()).step_by(W) {
-                let last = self.left.len().min(first + W);
-                let packed = self.pack.solve(ncps, &self.warm, &self.left[first..last], start);
-                for i in first..last {
-                    let Place { chunk, lane } = self.left[i];
-                    let report = &mut reports[chunk][lane];
-                    report.route = Route::Continuation;
-                    report.iterations += packed.steps.0[i - first] as u32;
-                    report.residual = packed.residual.0[i - first];
-                    if report.residual <= TOLERANCE {
-                        p[chunk].unpack_lane(&ncps[chunk], lane, &self.pack.p, i - first);
-                    } else {
-                        self.left[kept] = self.left[i];
-                        kept += 1;
-                    }
+        let block = Block { ncps, warm: &self.warm };
+        for descent in &DESCENTS {
+            self.kept.clear();
+            let mut finish = |end: &End<'_, W>| {
+                let place = self.left[end.task];
+                let report = &mut reports[place.chunk][place.lane];
+                report.route = Route::Continuation;
+                report.iterations += end.steps;
+                report.residual = end.residual;
+                if end.residual <= TOLERANCE {
+                    p[place.chunk].unpack_lane(&ncps[place.chunk], place.lane, end.impulses, end.lane);
+                } else {
+                    self.kept.push(place);
                 }
-            }
-            self.left.truncate(kept);
+            };
+            self.continuation.solve(block, &self.left, descent, TOLERANCE, &mut finish);
+            std::mem::swap(&mut self.left, &mut self.kept);
         }
         for &Place { chunk, lane } in &self.left {
             let solution = self.slow.solve(&ncps[chunk], &self.warm[chunk], lane, &mut reports[chunk][lane]);
@@ -170,65 +174,22 @@ impl<const W: usize> Solver<W> {
     }
 }
 
-/// Up to `W` particles from anywhere in a block, side by side.
-#[derive(Clone, Debug)]
-struct Pack<const W: usize> {
-    ncp: Ncp<W>,
-    p: Impulses<W>,
-    continuation: Continuation<W>,
-}
-
-impl<const W: usize> Default for Pack<W> {
-    fn default() -> Self {
-        Self { ncp: Ncp::empty(), p: Impulses::zero(0), continuation: Continuation::default() }
-    }
-}
-
-/// How the smoothed steps ended, by lane of the pack.
-struct Packed<const W: usize> {
-    residual: Lanes<W>,
-    steps: Lanes<W>,
-}
-
-impl<const W: usize> Pack<W> {
-    /// Solves the problems at `places`; the solutions are in `self.p`. Lanes past the last repeat the first.
-    #[inline(always)]
-    fn solve(&mut self, ncps: &[Ncp<W>], warm: &[Impulses<W>], places: &[Place], start: f64) -> Packed<W> {
-        let place = |lane: usize| if lane < places.len() { places[lane] } else { places[0] };
-        self.ncp.clear();
-        for slot in 0..W {
-            let Place { chunk, lane } = place(slot);
-            ncps[chunk].pack_lane(lane, &mut self.ncp, slot);
-        }
-        self.p.clear(self.ncp.contacts.len());
-        for slot in 0..W {
-            let Place { chunk, lane } = place(slot);
-            warm[chunk].pack_lane(&ncps[chunk], lane, &mut self.p, slot);
-        }
-        let (residual, steps) = self.continuation.solve(&self.ncp, &mut self.p, start, TOLERANCE);
-        Packed { residual, steps }
-    }
-}
-
 /// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a stuck object never drifts.
 #[inline(always)]
-fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report; W]) {
+fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, map: &mut NaturalMap<W>, reports: &mut [Report; W]) {
     let mut fastest = Lanes::ZERO;
     for v in &p.v {
         fastest = fastest.max(v.abs());
     }
     let nearly = fastest.gt(Lanes::ZERO) & !fastest.gt(Lanes::splat(TOLERANCE));
-    if nearly.any() {
-        stop(ncp, p, reports, nearly);
+    if !nearly.any() {
+        return;
     }
-}
-
-/// Makes the velocity zero in the lanes of `nearly` where the certificate agrees.
-#[inline(never)]
-fn stop<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report; W], nearly: Mask<W>) {
     let velocity = p.v;
-    p.v = velocity.map(|v| nearly.select(Lanes::ZERO, v));
-    let residual = ncp.residual(p);
+    for v in &mut p.v {
+        *v = nearly.select(Lanes::ZERO, *v);
+    }
+    let residual = map.take(ncp, p);
     let mut exact = nearly & !residual.gt(Lanes::splat(TOLERANCE));
     for (lane, report) in reports.iter_mut().enumerate() {
         exact.set(lane, exact.lane(lane) && report.outcome == Outcome::Solved);
@@ -236,5 +197,7 @@ fn stop<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, reports: &mut [Report
             report.residual = residual.0[lane];
         }
     }
-    p.v = velocity.map(|v| exact.select(Lanes::ZERO, v));
+    for (v, moving) in p.v.iter_mut().zip(velocity) {
+        *v = exact.select(Lanes::ZERO, moving);
+    }
 }

@@ -58,6 +58,8 @@ pub enum Body {
 #[derive(Clone, Debug)]
 pub struct Dynamics {
     scene: Scene,
+    /// Where the feet stand, see [`Scene::stance`].
+    stance: [[f64; 2]; 3],
     reach: f64,
     level: Level,
 }
@@ -134,7 +136,7 @@ impl<const W: usize> StepWork<W> {
 impl Dynamics {
     /// The dynamics of one scene, on the widest vector instructions that the machine has.
     pub fn new(scene: Scene) -> Self {
-        Self { reach: scene.object.shape.bounding_radius(), scene, level: Level::new() }
+        Self { reach: scene.object.shape.bounding_radius(), stance: scene.stance(), scene, level: Level::new() }
     }
 
     /// The same on other vector instructions; no result depends on them.
@@ -202,7 +204,7 @@ impl Dynamics {
     fn assemble<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, reach: Lanes<W>, chunk: usize, work: &mut StepWork<W>) {
         let assembly = &mut work.chunks[chunk];
         assembly.seek(reach);
-        assembly.collect(&self.scene, input, particles, &mut work.narrow, &mut work.ncps[chunk]);
+        assembly.collect((&self.scene, &self.stance), input, particles, &mut work.narrow, &mut work.ncps[chunk]);
         assembly.load_warm_start(&self.scene, particles, &mut work.impulses[chunk]);
     }
 

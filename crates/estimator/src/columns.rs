@@ -21,7 +21,7 @@ impl Columns {
     pub const CONTACT_PUSHER: usize = 10;
     /// 1 where the last step of a particle had no certified solution.
     pub const UNSOLVED: usize = 11;
-    /// 1 where the particle is at rest and no pusher presses on it.
+    /// 1 where nothing drove the particle in its last step: the pusher stands, or the particle is at rest and out of its way.
     pub const IDLE: usize = 12;
     /// How far the pusher stands behind its pose (m).
     pub const PUSHER_LAG: usize = 13;
@@ -38,7 +38,7 @@ impl Columns {
         Self::WARM_START + WARM + fixel
     }
 
-    /// 1 where the particle stands against fixel j: j pressed on it in the last step that moved it, or since.
+    /// c_j in the particle's last step under the pusher or in motion: whether fixel j bears it when it is pressed on.
     pub fn against_fixel(&self, fixel: usize) -> usize {
         self.contact_fixel(self.fixels) + fixel
     }

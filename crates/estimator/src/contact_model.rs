@@ -119,21 +119,23 @@ impl<'w> ContactModel<'w> {
     }
 
     /// log-probability of the tactile readings given particle `i`'s contacts.
+    ///
+    /// What a driven particle touches its impulses tell. An idle one stays where it is whether the pusher that stands behind it
+    /// presses on it or not, since the support's friction holds it: both are certified solutions of its step, and which of them a
+    /// step returns is an accident of the warm start and the tracking noise. The one that explains the readings counts.
     fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, i: usize) -> f64 {
-        let sensors = readings.iter().enumerate().filter_map(|(j, reading)| reading.map(|r| (j, r)));
-        sensors.map(|(j, reading)| self.reading_log_probability(reading, self.touches(reading, block, j, i))).sum()
+        let set = |column: usize| block.column(column)[i] > 0.5;
+        if set(Columns::IDLE) {
+            let pressed = self.readings_log_probability(readings, |j| set(self.columns.against_fixel(j)));
+            pressed.max(self.readings_log_probability(readings, |_| false))
+        } else {
+            self.readings_log_probability(readings, |j| set(self.columns.contact_fixel(j)))
+        }
     }
 
-    /// c_j of particle `i`; where its impulse is not unique, the value that explains the reading.
-    ///
-    /// An idle particle stays where it is whether a fixel that it stands against presses on it or not: the support's friction
-    /// holds it. Both are certified solutions of its step, and a reading does not tell it from its neighbours.
-    fn touches(&self, reading: bool, block: &Block<'_>, j: usize, i: usize) -> bool {
-        let set = |column: usize| block.column(column)[i] > 0.5;
-        match set(Columns::IDLE) && set(self.columns.against_fixel(j)) {
-            true => reading,
-            false => set(self.columns.contact_fixel(j)),
-        }
+    fn readings_log_probability(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> bool) -> f64 {
+        let sensors = readings.iter().enumerate().filter_map(|(j, reading)| reading.map(|r| (j, r)));
+        sensors.map(|(j, reading)| self.reading_log_probability(reading, touches(j))).sum()
     }
 
     fn reading_log_probability(&self, reading: bool, touches: bool) -> f64 {

@@ -202,15 +202,14 @@ impl Propagation {
             store_columns(block, Columns::UNSOLVED, chunk, &[flags(touched.unsolved)]);
             let pusher = self.work.normal_impulses(chunk, Body::Pusher).gt(Lanes::ZERO);
             store_columns(block, Columns::CONTACT_PUSHER, chunk, &[flags(pusher)]);
-            let moves = moving(&particles.twist, rho) & driven;
-            store_columns(block, Columns::IDLE, chunk, &[flags(!(moves | (pusher & driven)))]);
+            let pressed = moving(&particles.twist, rho) | pusher;
+            store_columns(block, Columns::IDLE, chunk, &[flags(!(pressed & driven))]);
             for j in 0..model.setup.scene.fixels.len() {
-                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j));
-                store_columns(block, model.columns.contact_fixel(j), chunk, &[flags(impulse.gt(touch_impulse))]);
-                let mut stood = [Lanes::ZERO];
-                load_columns(block, model.columns.against_fixel(j), chunk, &mut stood);
-                let stays = moves.select(Lanes::ZERO, stood[0]).gt(Lanes::ZERO);
-                store_columns(block, model.columns.against_fixel(j), chunk, &[flags(stays | impulse.gt(Lanes::ZERO))]);
+                let touches = flags(self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse));
+                store_columns(block, model.columns.contact_fixel(j), chunk, &[touches]);
+                let mut before = [Lanes::ZERO];
+                load_columns(block, model.columns.against_fixel(j), chunk, &mut before);
+                store_columns(block, model.columns.against_fixel(j), chunk, &[pressed.select(touches, before[0])]);
             }
             if model.columns.history() > 0 {
                 store_columns(block, model.columns.past_pose(plan.slot), chunk, &particles.pose);

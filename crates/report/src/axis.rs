@@ -138,7 +138,8 @@ mod tests {
         let axis = Axis { scale: Scale::Linear, limits: [-0.31, 0.28], pixels: [0.0, 300.0] };
         assert_eq!(labels(&axis, 50.0), ["\u{2212}0.3", "\u{2212}0.2", "\u{2212}0.1", "0.0", "0.1", "0.2"]);
         let axis = Axis { limits: [2.1, 11.0], ..axis };
-        assert_eq!(labels(&axis, 75.0), ["4", "6", "8", "10"]);
+        assert_eq!(labels(&axis, 60.0), ["4", "6", "8", "10"]);
+        assert_eq!(labels(&axis, 75.0), ["5", "10"]);
         let axis = Axis { scale: Scale::Log { floor: 0.01 }, limits: [0.01, 130.0], ..axis };
         assert_eq!(labels(&axis, 75.0), ["0.01", "0.1", "1", "10", "100"]);
     }

@@ -39,9 +39,9 @@ mod tests {
 
     #[test]
     fn width_grows_with_letters_size_and_weight() {
-        // advance widths of Roboto, units of 2048 per em: zero 1150, space 507
-        assert!((width("00", 2048.0, Weight::Regular) - 2300.0).abs() < 1e-9);
-        assert!((width("0 0", 20.48, Weight::Regular) - 28.07).abs() < 1e-9);
+        // advance widths of Roboto, units of 2048 per em: zero 1151, space 508
+        assert!((width("00", 2048.0, Weight::Regular) - 2302.0).abs() < 1e-9);
+        assert!((width("0 0", 20.48, Weight::Regular) - 28.10).abs() < 1e-9);
         assert!(width("contact", 14.0, Weight::Bold) > width("contact", 14.0, Weight::Regular));
         assert_eq!(width("\u{4e2d}", 10.0, Weight::Regular), 5.0);
     }

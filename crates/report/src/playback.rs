@@ -143,7 +143,11 @@ impl Playback {
                 }
                 div class="time" {
                     div class="marks" {}
-                    div class="strip" { svg viewBox="0 0 1000 100" preserveAspectRatio="none" role="img" aria-label="Position errors against time; dark where the camera is" {} }
+                    div class="strip" {
+                        svg viewBox="0 0 1000 100" preserveAspectRatio="none" role="img"
+                            aria-label="Position errors against time; dark where the camera is" {}
+                        span class="quantity" { "position error" }
+                    }
                     input type="range" min="0" max=(last) value="0" step="1" aria-label="time";
                     (controls())
                 }
