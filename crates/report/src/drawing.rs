@@ -52,15 +52,15 @@ impl Drawing {
     #[must_use]
     pub fn grid(drawings: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, drawings.len().max(1));
-        let width = drawings.iter().map(|drawing| drawing.width).fold(0.0, f64::max);
-        let height = drawings.iter().map(|drawing| drawing.height).fold(0.0, f64::max);
+        let width = drawings.iter().map(|drawing| drawing.width).fold(1.0, f64::max);
+        let height = drawings.iter().map(|drawing| drawing.height).fold(1.0, f64::max);
         let body = html! {
             @for (index, drawing) in drawings.iter().enumerate() {
                 g transform={ "translate(" (px((index % columns) as f64 * width)) " " (px((index / columns) as f64 * height)) ")" } { (drawing.body) }
             }
         };
         let labels: Vec<&str> = drawings.iter().map(|drawing| drawing.label.as_str()).filter(|label| !label.is_empty()).collect();
-        let rows = drawings.len().div_ceil(columns);
+        let rows = drawings.len().div_ceil(columns).max(1);
         Self { width: columns as f64 * width, height: rows as f64 * height, label: labels.join("; "), body }
     }
 

@@ -38,7 +38,7 @@ fn chromium(page: &Path, width: u32, what: &str) -> String {
     let size = format!("--window-size={width},1600");
     let fixed = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--virtual-time-budget=8000"];
     let run = Command::new("timeout")
-        .args(["60", &program])
+        .args(["120", &program])
         .args(fixed)
         .args([&size, &profile, what])
         .arg(format!("file://{}", page.display()))

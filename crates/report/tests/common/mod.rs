@@ -96,7 +96,10 @@ pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize)
         reference_name: "truth".to_owned(),
         hidden: (0..rows).map(|row| row >= dark).collect(),
         touches: vec![Some(vec![true; rows]), None, Some((0..rows).map(|row| row >= dark).collect())],
-        contacts: log.time.first().map(|time| Mark { time: *time, name: format!("pusher {name}") }).into_iter().collect(),
+        contacts: [(0, format!("pusher {name}")), (dark, "fixel 2".to_owned())]
+            .into_iter()
+            .filter_map(|(row, name)| Some(Mark { time: *log.time.get(row)?, name }))
+            .collect(),
         first_fixel: log.time.get(dark).copied(),
         friction: [Some(0.35), Some(0.2), None, Some(0.021)],
         methods: vec![
