@@ -235,7 +235,7 @@ impl Episode<'_> {
     /// The method whose particles and friction are shown: the last one that has any and did not see what was hidden.
     fn learner(&self) -> Option<&Contender> {
         let learns = |method: &&Contender| method.estimate.rows.iter().any(|row| row.friction.is_some());
-        let blind = self.methods.iter().filter(learns).filter(|method| !method.saw_all).next_back();
+        let blind = self.methods.iter().filter(learns).rfind(|method| !method.saw_all);
         blind.or_else(|| self.methods.iter().find(learns))
     }
 
