@@ -7,7 +7,6 @@ mod noise;
 mod page;
 mod participant;
 mod published;
-mod reasons;
 mod recording;
 mod results;
 mod standing;

@@ -173,7 +173,7 @@ impl Field<'_> {
         Row {
             title,
             cells: cells.iter().map(|(participant, paper_mm)| self.cell(experiment, *participant, *paper_mm)).collect(),
-            orderings: Standing::all(title, &entrants),
+            orderings: Standing::all(&entrants),
         }
     }
 

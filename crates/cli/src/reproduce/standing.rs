@@ -4,7 +4,6 @@ use serde::Serialize;
 use stickslip::{Direction, PairedDifference};
 
 use super::participant::Participant;
-use super::reasons::reason;
 
 /// Standard errors that a difference must exceed to count.
 pub const CLEAR: f64 = 2.0;
@@ -36,8 +35,6 @@ pub struct Standing {
     pub standard_error_mm: f64,
     /// What became of the order.
     pub finding: Finding,
-    /// Why, where it does not hold and the cause is known.
-    pub why: Option<&'static str>,
 }
 
 /// A method in a row: its number in the paper and its scores by seed (mm).
@@ -52,22 +49,21 @@ pub struct Entrant {
 }
 
 impl Standing {
-    /// All pairs of a row that is called `title`, the best of the paper first.
-    pub fn all(title: &str, entrants: &[Entrant]) -> Vec<Self> {
+    /// All pairs of a row, the best of the paper first.
+    pub fn all(entrants: &[Entrant]) -> Vec<Self> {
         let mut ranked: Vec<&Entrant> = entrants.iter().collect();
         ranked.sort_by(|a, b| a.paper_mm.total_cmp(&b.paper_mm));
         let pairs = ranked.iter().enumerate().flat_map(|(k, better)| ranked[k + 1..].iter().map(move |worse| (better, worse)));
-        pairs.filter_map(|(better, worse)| Self::of(title, better, worse)).collect()
+        pairs.filter_map(|(better, worse)| Self::of(better, worse)).collect()
     }
 
-    fn of(title: &str, better: &Entrant, worse: &Entrant) -> Option<Self> {
+    fn of(better: &Entrant, worse: &Entrant) -> Option<Self> {
         let difference = PairedDifference::of(&better.scores, &worse.scores)?;
         let finding = match difference.direction(CLEAR) {
             Direction::Below => Finding::Holds,
             Direction::Unclear => Finding::Unclear,
             Direction::Above => Finding::Reversed,
         };
-        let why = (finding != Finding::Holds).then(|| reason(title, better.participant, worse.participant)).flatten();
         Some(Self {
             better: better.participant.key(),
             worse: worse.participant.key(),
@@ -75,7 +71,6 @@ impl Standing {
             difference_mm: difference.median,
             standard_error_mm: difference.standard_error,
             finding,
-            why,
         })
     }
 }
@@ -97,7 +92,7 @@ mod tests {
             entrant(KALMAN, 17.0, |seed| 10.0 * seed as f64 + 0.01 * seed as f64),
             entrant(TACTILE, 0.2, |seed| 30.0 + (seed % 2) as f64),
         ];
-        let standings = Standing::all("none", &rows);
+        let standings = Standing::all(&rows);
         let order: Vec<[&str; 2]> = standings.iter().map(|s| [s.better, s.worse]).collect();
         assert_eq!(order, [["particle_tactile", "nominal"], ["particle_tactile", "kalman"], ["nominal", "kalman"]]);
         assert_eq!(standings[2].finding, Finding::Reversed);
@@ -109,6 +104,6 @@ mod tests {
     #[test]
     fn standing_of_one_seed_is_unclear() {
         let rows = [NOMINAL, KALMAN].map(|participant| Entrant { participant, paper_mm: 1.0, scores: vec![3.0] });
-        assert_eq!(Standing::all("none", &rows)[0].finding, Finding::Unclear);
+        assert_eq!(Standing::all(&rows)[0].finding, Finding::Unclear);
     }
 }

@@ -48,10 +48,9 @@ pub fn orders(standings: &[Standing]) -> String {
 }
 
 fn order(standing: &Standing) -> String {
-    let Standing { better, worse, difference_mm, standard_error_mm, finding, why, .. } = standing;
+    let Standing { better, worse, difference_mm, standard_error_mm, finding, .. } = standing;
     let finding = if *finding == Finding::Unclear { "unclear" } else { "reversed" };
-    let why = why.map_or(String::new(), |why| format!(": {why}"));
-    format!("    {better} < {worse} {finding} ({difference_mm:+.2} ± {standard_error_mm:.2}){why}\n")
+    format!("    {better} < {worse} {finding} ({difference_mm:+.2} ± {standard_error_mm:.2})\n")
 }
 
 /// The particle filter with tactile data after the blackout begins.
