@@ -13,8 +13,10 @@ use crate::paper::PaperExperiment;
 /// Time shown before the thumb touches (s).
 const BEFORE: f64 = 0.5;
 
-/// Parameters with the factor to the unit that they are shown in.
-const PARAMETERS: [(&str, f64, fn(&Friction) -> f64); 4] =
+/// A parameter's name, the factor to the unit that it is shown in, and where it is.
+type Shown = (&'static str, f64, fn(&Friction) -> f64);
+
+const PARAMETERS: [Shown; 4] =
     [("μ_s", 1.0, |f| f.mu_s), ("μ_p", 1.0, |f| f.mu_p), ("μ_f", 1.0, |f| f.mu_f), ("d_tri (mm)", 1e3, |f| f.d_tri)];
 
 /// A figure of the paper.
@@ -136,7 +138,7 @@ impl<'a> Album<'a> {
         let experiment = &self.first().recording.experiment;
         let (told, facts) = (&experiment.setup.scene.nominal, &experiment.facts);
         let truth = [facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri];
-        let panel = |((label, unit, of), truth): (&(&str, f64, fn(&Friction) -> f64), Option<f64>)| {
+        let panel = |((label, unit, of), truth): (&Shown, Option<f64>)| {
             let value = |row: &EstimateRow| row.friction.map_or(f64::NAN, |friction| unit * of(&friction));
             let run = |(_, course): (&Heat, &Course)| {
                 let rows = course.estimate.time.iter().zip(&course.estimate.rows);
