@@ -27,18 +27,22 @@ const TESTKIT: &str = "crates/testkit";
 
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, which know of nobody; the testbed and vision
 /// stand beside the estimator.
-pub const CRATES: [Rules; 10] = [
+pub const CRATES: [Rules; 11] = [
     Rules { must_not_use: &["rand", "rand_distr", "rand_core", "rayon"], ..Rules::of("crates/dynamics", &[]) },
     Rules::of("crates/filter", &[]),
     Rules::of("crates/estimator", &["crates/dynamics", "crates/filter"]),
     Rules::of("crates/formats", &["crates/estimator", "crates/dynamics"]),
+    Rules::of("crates/report", &["crates/estimator", "crates/dynamics"]),
     Rules {
         must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
         ..Rules::of("crates/testbed", &["crates/dynamics", "crates/filter"])
     },
     // rendered frames have a truth to be judged by; random numbers are the filter's
     Rules { may_test_with: &["crates/testbed", "crates/filter"], ..Rules::of("crates/vision", &["crates/dynamics"]) },
-    Rules::of("crates/cli", &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats", "crates/testbed", "crates/vision"]),
+    Rules::of(
+        "crates/cli",
+        &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats", "crates/report", "crates/testbed", "crates/vision"],
+    ),
     Rules::of(TESTKIT, &["crates/dynamics", "crates/estimator", "crates/formats"]),
     Rules::of("crates/bench", &["crates/dynamics", "crates/filter", "crates/estimator", "crates/formats"]),
     Rules::of("xtask", &[]),

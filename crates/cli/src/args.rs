@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
 
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
+use crate::contest::Rival;
 use crate::paper::PaperExperiment;
 
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
@@ -21,7 +22,7 @@ pub struct Program {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the embedded experiments through every method: tables and figures
+    /// Run the embedded experiments through every method: tables, figures, a report
     Demo(DemoArgs),
     /// Estimate the object's pose and the friction over one recorded experiment
     Filter(FilterArgs),
@@ -29,6 +30,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Simulate an experiment: a folder with scene, log and truth
     Simulate(SimulateArgs),
+    /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers
+    Reproduce(ReproduceArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
     Check(CheckArgs),
     /// Calibrate a camera from frames of a tag board
@@ -42,7 +45,7 @@ pub enum Command {
 /// Arguments of `stickslip demo`.
 #[derive(Debug, Args)]
 pub struct DemoArgs {
-    /// Write the figures into this folder
+    /// Write report.html and the figures into this folder
     #[arg(long, value_name = "DIR", default_value = "stickslip-demo")]
     pub out: PathBuf,
     /// Number of particles
@@ -85,6 +88,9 @@ pub struct FilterArgs {
     /// Write estimate.csv into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write a report with figures and a playback into this HTML file
+    #[arg(long, value_name = "HTML")]
+    pub report: Option<PathBuf>,
     /// Options shared with `compare`
     #[command(flatten)]
     pub shared: SharedArgs,
@@ -102,6 +108,9 @@ pub struct CompareArgs {
     /// Name of the scene file in each folder
     #[arg(long, value_name = "FILE", default_value = "scene.toml")]
     pub scene_name: String,
+    /// Write a report with all tables into this HTML file
+    #[arg(long, value_name = "HTML")]
+    pub report: Option<PathBuf>,
     /// Options shared with `filter`
     #[command(flatten)]
     pub shared: SharedArgs,
@@ -134,6 +143,29 @@ pub struct SimulateArgs {
     /// Draw the true friction within this share of the scene's, as 0.4
     #[arg(long, value_name = "SHARE", conflicts_with = "truth", value_parser = share)]
     pub friction_error: Option<f64>,
+}
+
+/// Arguments of `stickslip reproduce`.
+#[derive(Debug, Args)]
+pub struct ReproduceArgs {
+    /// Write reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of seeds: of rigs, sensors and filters [default: 20, from frames 6]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: Option<u64>,
+    /// Render camera frames and track them, instead of measuring poses with the paper's noise
+    #[arg(long)]
+    pub from_frames: bool,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
+    pub particles: usize,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `stickslip check`.
@@ -278,6 +310,18 @@ impl MethodName {
             Self::Kalman => "Kalman filter",
             Self::Nominal => "nominal simulation",
         }
+    }
+}
+
+impl MethodName {
+    /// Colour in figures, as in comparisons.
+    pub fn colour(self) -> stickslip_report::Colour {
+        match self {
+            Self::Particle => Rival::Particle,
+            Self::Kalman => Rival::Kalman,
+            Self::Nominal => Rival::Nominal,
+        }
+        .colour()
     }
 }
 

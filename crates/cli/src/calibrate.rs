@@ -12,8 +12,8 @@ use crate::failure::hinted;
 use crate::frames::FrameFolder;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
-use crate::table::Table;
 use crate::verdict::Verdict;
+use stickslip_report::Table;
 
 /// Names of a lens's numbers, in the order of their standard deviations.
 const LENS: [&str; 8] = ["fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2"];

@@ -1,6 +1,7 @@
 //! `stickslip compare`: every method on each experiment folder, medians over seeds, quantiles over folders.
 
 mod folders;
+mod page;
 pub mod results;
 pub mod tables;
 
@@ -14,6 +15,7 @@ use stickslip_formats::Experiment;
 
 use crate::args::{CompareArgs, SharedArgs};
 use crate::contest::{Rival, Rules};
+use crate::episode::write_report;
 use crate::experiment::read_folder;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
@@ -42,6 +44,10 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let text = if args.shared.json { serde_json::to_string_pretty(&comparison)? } else { tables::text(&comparison) };
     if !text.is_empty() {
         show(text)?;
+    }
+    if let Some(path) = &args.report {
+        let path = write_report(path.clone(), &page::report(&comparison))?;
+        talk(format_args!("wrote {}", path.display()));
     }
     for lost in &comparison.errors {
         talk(format_args!("error: {}", lost.error));
@@ -109,7 +115,7 @@ fn jobs(cases: &[Case], seeds: u64) -> Vec<Job> {
 /// Runs one job; a panic in it is an error of its folder.
 fn marks(cases: &[Case], job: Job, rules: &Rules) -> Result<Marks> {
     let case = &cases[job.case];
-    let attempt = catch_unwind(AssertUnwindSafe(|| job.rival.attempt(&case.experiment, case.occlusion, rules, job.seed)));
+    let attempt = catch_unwind(AssertUnwindSafe(|| job.rival.attempt(&case.experiment, case.occlusion, rules, job.seed, None)));
     let attempt =
         attempt.map_err(|_| anyhow!("{} with seed {} broke an invariant of the library (see above)", job.rival.name(), job.seed))??;
     Ok(Marks::new(&attempt.scores, attempt.run.unsolved))

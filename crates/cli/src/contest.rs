@@ -1,8 +1,9 @@
 //! The methods that are compared on one experiment: [`Rival`], and one [`Attempt`] of one of them.
 
 use anyhow::Result;
-use stickslip::{Method, Occlusion, Run, RunOptions, Scores, TactileUse, Tracking, run, score};
+use stickslip::{Method, Occlusion, Run, RunOptions, Scores, StepWatch, TactileUse, Tracking, run, run_watched, score};
 use stickslip_formats::Experiment;
+use stickslip_report::Colour;
 
 /// A way to estimate that takes part in a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +53,28 @@ impl Rival {
         }
     }
 
+    /// Colour in figures.
+    pub fn colour(self) -> Colour {
+        match self {
+            Self::Nominal => Colour::GREY,
+            Self::Kalman => Colour::ORANGE,
+            Self::ParticleNoTactile => Colour::SKY,
+            Self::Particle => Colour::VERMILLION,
+            Self::ParticleAlwaysOn => Colour::GREEN,
+        }
+    }
+
+    /// Name in reports.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal simulation",
+            Self::Kalman => "Kalman filter",
+            Self::ParticleNoTactile => "particle filter without touch",
+            Self::Particle => "particle filter",
+            Self::ParticleAlwaysOn => "particle filter, camera on",
+        }
+    }
+
     /// Name in JSON.
     pub fn key(self) -> &'static str {
         match self {
@@ -79,13 +102,36 @@ impl Rival {
         Self::ALL.into_iter().filter(differs).collect()
     }
 
-    /// Runs and scores it; `occlusion` is what is hidden, and scored even where this rival sees it.
-    pub fn attempt(self, experiment: &Experiment, occlusion: Occlusion, rules: &Rules, seed: u64) -> Result<Attempt> {
-        let options = self.options(occlusion, rules, seed);
-        let run = run(&experiment.setup, &experiment.log, &options, &mut |_| ())?;
+    /// Runs and scores it; `occlusion` is what is hidden, and scored even where this rival sees it. A `watch` changes no result.
+    pub fn attempt(
+        self,
+        experiment: &Experiment,
+        occlusion: Occlusion,
+        rules: &Rules,
+        seed: u64,
+        watch: Option<&dyn StepWatch>,
+    ) -> Result<Attempt> {
+        let run = self.run(experiment, occlusion, rules, seed, watch)?;
         let hidden = occlusion.hidden(&experiment.log);
         let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
         Ok(Attempt { run, scores })
+    }
+
+    /// Runs it while `occlusion` hides the object.
+    pub fn run(
+        self,
+        experiment: &Experiment,
+        occlusion: Occlusion,
+        rules: &Rules,
+        seed: u64,
+        watch: Option<&dyn StepWatch>,
+    ) -> Result<Run> {
+        let Experiment { setup, log, .. } = experiment;
+        let options = self.options(occlusion, rules, seed);
+        Ok(match watch {
+            Some(watch) => run_watched(setup, log, &options, watch, &mut |_| ())?,
+            None => run(setup, log, &options, &mut |_| ())?,
+        })
     }
 
     fn options(self, occlusion: Occlusion, rules: &Rules, seed: u64) -> RunOptions {

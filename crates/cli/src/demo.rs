@@ -1,28 +1,22 @@
 //! `stickslip demo`: two embedded experiments through every method, with tables and figures.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Occlusion, Reference, Tracking};
+use stickslip::{Estimate, Occlusion, Tracking};
 use stickslip_formats::Experiment;
+use stickslip_report::{Block, Contender, Episode, Report, Table};
 
 use crate::args::DemoArgs;
-use crate::compare::results::{Entry, Marks};
-use crate::compare::tables;
-use crate::contest::{Attempt, Rival, Rules};
+use crate::contest::{Rival, Rules};
+use crate::episode::{contender, episode, write_figures, write_report};
 use crate::experiment::Texts;
-use crate::failure::hinted;
-use crate::figure::{Figure, Mark, Series};
 use crate::output::show;
 use crate::parameters::Parameter;
-use crate::table::Table;
 use crate::verdict::Verdict;
 
-/// Time that figures show after the last contact begins (s).
-const AFTERMATH: f64 = 4.0;
+/// What the report begins with.
+const SUMMARY: &str = "Two grasps on a table, seen from above: a pusher moves an object against fixed fingers (fixels), and just before the \
+    first one is touched the camera goes dark. From then on each method must guess where the object is. Below, each grasp can be played back.";
 
 macro_rules! embedded {
     ($name:literal) => {
@@ -46,15 +40,23 @@ const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
 pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     let threads = args.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let mut between = "";
-    for (texts, story) in EXPERIMENTS {
-        let experiment = texts.parse()?;
-        let attempts = pool.install(|| attempts(&experiment, args.particles))?;
-        let path = write_figure(&args.out, texts.name, &figure(story, &experiment, &attempts)?)?;
-        let tables = tables(texts.name, story, &experiment, &attempts);
-        show(format_args!("{between}{tables}\nfigure: {}", path.display()))?;
-        between = "\n";
+    let experiments = EXPERIMENTS.map(|(texts, what)| texts.parse().map(|experiment| (texts.name, what, experiment)));
+    let mut summary = vec![Block::Text(SUMMARY.to_owned())];
+    let mut sections = Vec::new();
+    let mut figures = 0;
+    for parsed in experiments {
+        let (name, what, experiment) = parsed?;
+        let occlusion = occlusion(&experiment);
+        let contenders = pool.install(|| contenders(&experiment, occlusion, args.particles))?;
+        let episode = episode(name, what, &experiment, occlusion, contenders);
+        show(format_args!("{}\n", tables(&episode)))?;
+        figures += write_figures(&args.out, &episode)?;
+        summary.extend(episode.summary());
+        sections.push(episode.section());
     }
+    let report = Report { title: "stickslip: tracking a pushed object through a camera blackout".to_owned(), summary, sections };
+    let path = write_report(args.out.join("report.html"), &report)?;
+    show(format_args!("report: {} (open it in a browser), and {figures} figures beside it as SVG and PNG", path.display()))?;
     Ok(Verdict::Done)
 }
 
@@ -63,72 +65,26 @@ fn occlusion(experiment: &Experiment) -> Occlusion {
     experiment.facts.occlude_from.map_or(Occlusion::None, |from| Occlusion::Rows { from, to: None })
 }
 
-fn attempts(experiment: &Experiment, particles: usize) -> Result<Vec<(Rival, Attempt)>> {
+fn contenders(experiment: &Experiment, occlusion: Occlusion, particles: usize) -> Result<Vec<Contender>> {
     let rules = Rules { particles, tracking: Tracking::Smoothed };
-    let occlusion = occlusion(experiment);
-    let attempt = |rival: Rival| Ok((rival, rival.attempt(experiment, occlusion, &rules, 0)?));
-    Rival::on(experiment, occlusion).into_par_iter().map(attempt).collect()
+    let contender = |rival: Rival| contender(rival, experiment, occlusion, &rules, 0);
+    Rival::on(experiment, occlusion).into_par_iter().map(contender).collect()
 }
 
-fn tables(name: &str, story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) -> String {
-    let dark = experiment.facts.occlude_from.map_or(0.0, |row| experiment.log.time[row]);
-    let entries: Vec<Entry> =
-        attempts.iter().map(|(rival, attempt)| Entry::new(*rival, Marks::new(&attempt.scores, attempt.run.unsolved))).collect();
-    let scores = format!("{name}: {story}; no camera from {dark:.1} s on\n{}", tables::entries(&entries));
-    let particle = attempts.iter().find(|(rival, _)| *rival == Rival::Particle);
-    let friction = particle.map(|(_, attempt)| friction(experiment, &attempt.run.estimate).to_string());
+fn tables(episode: &Episode<'_>) -> String {
+    let sentences = episode.story().sentences().join("\n");
+    let particle = episode.methods.iter().find(|method| method.name == Rival::Particle.title());
+    let friction = particle.map(|method| friction(episode, &method.estimate).to_string());
+    let scores = format!("{}\n{sentences}\n\n{}", episode.name, episode.scores());
     [scores].into_iter().chain(friction).collect::<Vec<_>>().join("\n")
 }
 
 /// The particle filter's friction beside what it was told and what is true.
-fn friction(experiment: &Experiment, estimate: &Estimate) -> Table {
+fn friction(episode: &Episode<'_>, estimate: &Estimate) -> Table {
     let mut table = Table::new(["friction", "told", "particle", "truth"]);
-    for parameter in Parameter::at_end(estimate) {
-        let told = parameter.shown_value(parameter.nominal(&experiment.setup.scene.nominal));
-        let truth = parameter.shown_value(parameter.truth(&experiment.facts));
-        table.push([parameter.name.to_owned(), told, parameter.shown(), truth]);
+    for (parameter, truth) in Parameter::at_end(estimate).iter().zip(episode.friction) {
+        let told = parameter.shown_value(parameter.nominal(&episode.setup.scene.nominal));
+        table.push([parameter.name.to_owned(), told, parameter.shown(), parameter.shown_value(truth)]);
     }
     table
-}
-
-fn figure(story: &str, experiment: &Experiment, attempts: &[(Rival, Attempt)]) -> Result<String> {
-    let time_of = |row: usize| experiment.log.time.get(row).copied();
-    let fixels = experiment.facts.first_fixel_contacts.iter().enumerate();
-    let fixels = fixels.filter_map(|(k, row)| Some(Mark { time: time_of((*row)?)?, name: format!("fixel {}", k + 1) }));
-    let pusher = experiment.facts.first_pusher_contact.and_then(time_of).map(|time| Mark { time, name: "pusher".to_owned() });
-    let contacts: Vec<Mark> = pusher.into_iter().chain(fixels).collect();
-    let last = experiment.log.time.last().copied().unwrap_or(0.0);
-    let end = contacts.iter().map(|mark| mark.time + AFTERMATH).fold(0.0, f64::max).min(last);
-    let reference = experiment.reference();
-    Figure {
-        title: story.to_owned(),
-        span: [contacts.iter().map(|mark| mark.time - 1.0).fold(end, f64::min).max(0.0), end],
-        dark_from: experiment.facts.occlude_from.and_then(time_of),
-        contacts,
-        series: attempts.iter().map(|(rival, attempt)| series(*rival, &reference, &attempt.run.estimate)).collect(),
-    }
-    .to_svg()
-}
-
-/// The errors of one method against the truth, row by row.
-fn series(rival: Rival, reference: &Reference, estimate: &Estimate) -> Series {
-    let rows = reference.time.iter().zip(&reference.pose);
-    let pairs: Vec<(f64, Pose, Pose)> = rows.filter_map(|(time, pose)| Some((*time, (*pose)?, estimate.pose_at(*time)?))).collect();
-    let turn = |truth: &Pose, guess: &Pose| {
-        (guess.theta - truth.theta + 180_f64.to_radians()).rem_euclid(360_f64.to_radians()).to_degrees() - 180.0
-    };
-    Series {
-        name: rival.name(),
-        position: pairs.iter().map(|(time, truth, guess)| (*time, 1e3 * (guess.x - truth.x).hypot(guess.y - truth.y))).collect(),
-        angle: pairs.iter().map(|(time, truth, guess)| (*time, turn(truth, guess).abs())).collect(),
-    }
-}
-
-fn write_figure(folder: &Path, name: &str, svg: &str) -> Result<PathBuf> {
-    let path = folder.join(format!("{name}.svg"));
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, svg));
-    written.map_err(|error| {
-        hinted(format!("{}: cannot be written: {error}", path.display()), "give a folder that can be written to with --out")
-    })?;
-    Ok(path)
 }

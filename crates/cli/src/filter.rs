@@ -10,17 +10,18 @@ use anyhow::{Context, Result};
 use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Occlusion, Run, Scores, run, score};
+use stickslip::{Estimate, Occlusion, Run, Scores, run, run_watched, score};
 use stickslip_formats::{Experiment, write_estimate};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
+use crate::episode::{DRAWN, episode, write_report};
 use crate::experiment::{read_experiment, reference_name};
 use crate::failure::hinted;
 use crate::output::{show, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
-use crate::table::{Table, number};
 use crate::verdict::Verdict;
+use stickslip_report::{CloudSample, Contender, Report, Table, number};
 
 /// Particle steps above which a person would wait.
 const LONG: usize = 200_000;
@@ -48,13 +49,15 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     }
     let experiment = read_experiment(&args.scene, &args.log, args.truth.as_deref())?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
-    let (run, seconds) = timed_run(args, &experiment).with_context(|| args.log.display().to_string())?;
+    let sample = CloudSample::new(DRAWN);
+    let (run, seconds) = timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
     let scores = scores(args, &experiment, &run.estimate);
     let written = args.out.as_deref().map(|folder| write(folder, &run.estimate)).transpose()?;
+    let reported = args.report.as_deref().map(|path| report(args, &experiment, &run, &scores, sample, path)).transpose()?;
     let summary = Summary::new(&experiment, &run, &scores, seconds);
     let tables = || tables(args, &experiment, &run.estimate, &summary);
     show(if args.shared.json { serde_json::to_string_pretty(&summary)? } else { tables() })?;
-    if let Some(path) = written {
+    for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
     }
     Ok(Verdict::Done)
@@ -73,17 +76,40 @@ fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> 
     ))
 }
 
-/// The run and the wall time of its loop (s).
-fn timed_run(args: &FilterArgs, experiment: &Experiment) -> Result<(Run, f64)> {
+/// The run and the wall time of its loop (s); `sample` is shown the particles where a report wants them.
+fn timed_run(args: &FilterArgs, experiment: &Experiment, sample: &CloudSample) -> Result<(Run, f64)> {
     let options = args.run_options();
     let long = args.method == MethodName::Particle && experiment.log.len() * options.particles > LONG;
     let progress = bar(experiment.log.len(), "frames", if long { Work::Long } else { Work::Short });
     let pool = args.shared.pool()?;
     let start = Instant::now();
-    let result = pool.install(|| run(&experiment.setup, &experiment.log, &options, &mut |row| progress.set_position(row as u64)));
+    let Experiment { setup, log, .. } = experiment;
+    let mut advance = |row: usize| progress.set_position(row as u64);
+    let result = pool.install(|| match args.report {
+        Some(_) => run_watched(setup, log, &options, sample, &mut advance),
+        None => run(setup, log, &options, &mut advance),
+    });
     let seconds = start.elapsed().as_secs_f64();
     progress.finish_and_clear();
     Ok((result?, seconds))
+}
+
+/// Writes a report about the run.
+fn report(args: &FilterArgs, experiment: &Experiment, run: &Run, scores: &Scores, sample: CloudSample, path: &Path) -> Result<PathBuf> {
+    let contender = Contender {
+        name: args.method.name().to_owned(),
+        colour: args.method.colour(),
+        cloud: sample.into_rows(experiment.log.len()),
+        estimate: run.estimate.clone(),
+        scores: *scores,
+        unsolved: run.unsolved,
+        saw_all: false,
+    };
+    let name = args.log.display().to_string();
+    let episode = episode(&name, "", experiment, args.shared.occlusion(), vec![contender]);
+    let summary = episode.summary().to_vec();
+    let report = Report { title: format!("{}: {name}", args.method.name()), summary, sections: vec![episode.section()] };
+    write_report(path.to_owned(), &report)
 }
 
 fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {

@@ -9,20 +9,20 @@ mod check;
 mod compare;
 mod contest;
 mod demo;
+mod episode;
 mod experiment;
 mod failure;
-mod figure;
+mod film_set;
 mod filter;
 mod frames;
 mod output;
 mod paper;
 mod parameters;
 mod progress;
-mod quantile;
 mod render;
+mod reproduce;
 mod simulate;
 mod simulation;
-mod table;
 mod track;
 mod verdict;
 
@@ -38,6 +38,7 @@ fn main() -> ExitCode {
         Command::Filter(args) => filter::filter(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Simulate(args) => simulate::simulate(&args),
+        Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Check(args) => check::check(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Track(args) => track::track(&args),

@@ -50,6 +50,21 @@ pub struct PaperScene {
 }
 
 impl PaperExperiment {
+    /// All, in the paper's order.
+    pub const ALL: [Self; 6] = [Self::A, Self::B, Self::First, Self::Second, Self::Third, Self::Fourth];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::A => "A",
+            Self::B => "B",
+            Self::First => "1",
+            Self::Second => "2",
+            Self::Third => "3",
+            Self::Fourth => "4",
+        }
+    }
+
     /// Its scene.
     pub fn scene(self) -> PaperScene {
         match self {

@@ -3,7 +3,6 @@
 use serde::Serialize;
 use stickslip::Estimate;
 use stickslip::dynamics::Friction;
-use stickslip_formats::TruthFacts;
 
 /// One friction parameter at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -40,16 +39,6 @@ impl Parameter {
             (None, _) => "-".to_owned(),
             (Some(value), "d_tri") => format!("{:.1} mm", 1e3 * value),
             (Some(value), _) => format!("{value:.3}"),
-        }
-    }
-
-    /// Its true value, where that is known.
-    pub fn truth(&self, facts: &TruthFacts) -> Option<f64> {
-        match self.name {
-            "mu_s" => facts.mu_s,
-            "mu_p" => facts.mu_p,
-            "mu_f" => facts.mu_f,
-            _ => facts.d_tri,
         }
     }
 

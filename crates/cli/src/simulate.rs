@@ -14,9 +14,9 @@ use crate::experiment::{read_facts_file, text_of};
 use crate::failure::hinted;
 use crate::output::{show, talk};
 use crate::paper::PaperScene;
-use crate::simulation::{Options, Simulation};
-use crate::table::Table;
+use crate::simulation::{Options, REPEATS, Simulation};
 use crate::verdict::Verdict;
+use stickslip_report::Table;
 
 /// A scene's text with what is known of its truth.
 struct Source {
@@ -34,7 +34,7 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
         Some(share) => misjudged(&setup, share, args.seed),
         None => source.known,
     };
-    let options = Options { physics: args.physics, seed: args.seed, rate: args.rate };
+    let options = Options { physics: args.physics, seed: args.seed, rate: args.rate, repeats: REPEATS };
     let simulation = Simulation::run(&setup, &source.name, &known, &options)?;
     write(&args.out, &source.scene, &simulation)?;
     show(tables(&source.name, &setup, &simulation))?;

@@ -9,8 +9,8 @@ use stickslip_testbed::{Model, Rig, Sighting, TouchSensors, Trace, Tracker, Tria
 use crate::args::Physics;
 use crate::failure::hinted;
 
-/// Share of frames that the frame grabber repeats.
-const REPEATS: f64 = 0.02;
+/// Share of frames that the paper's frame grabber repeats.
+pub const REPEATS: f64 = 0.02;
 
 /// Time from the blackout to the first contact with a fixel (s): five frames at 30 Hz.
 const BLACKOUT_LEAD: f64 = 1.0 / 6.0;
@@ -24,6 +24,8 @@ pub struct Options {
     pub seed: u64,
     /// Frames per second (Hz).
     pub rate: f64,
+    /// Share of frames that the frame grabber repeats.
+    pub repeats: f64,
 }
 
 /// A simulated experiment.
@@ -55,7 +57,7 @@ impl Simulation {
             Physics::Model => Model { friction, touch }.run(&trial),
         };
         let trace = run.with_context(|| name.to_owned())?;
-        let log = log(&trace, &tracker(setup).sight(&trace, options.seed));
+        let log = log(&trace, &tracker(setup, options.repeats).sight(&trace, options.seed));
         let facts = facts(&trace, known, options);
         Ok(Self { truth: truth(&trace), log, facts, trace })
     }
@@ -80,14 +82,14 @@ fn friction(setup: &Setup, known: &TruthFacts) -> Friction {
 }
 
 /// A camera as noisy as the scene says, exact where it says nothing.
-fn tracker(setup: &Setup) -> Tracker {
+fn tracker(setup: &Setup, repeats: f64) -> Tracker {
     setup.camera.map_or(Tracker::EXACT, |camera| Tracker {
         position_std: camera.position_std,
         orientation_std: camera.orientation_std,
         pusher_position_std: camera.pusher_position_std,
         pusher_orientation_std: camera.pusher_orientation_std,
         latency: camera.latency,
-        repeats: REPEATS,
+        repeats,
     })
 }
 

@@ -18,9 +18,9 @@ use crate::failure::hinted;
 use crate::frames::FrameFolder;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
-use crate::quantile::quantile;
-use crate::table::{Table, number};
 use crate::verdict::Verdict;
+use stickslip_report::quantile;
+use stickslip_report::{Table, number};
 
 /// Rows of two logs this close are at the same time (s).
 const SAME_TIME: f64 = 1e-4;

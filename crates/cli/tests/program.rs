@@ -207,16 +207,56 @@ fn compare_of_nothing_but_broken_folders_fails() {
 }
 
 #[test]
-fn demo_prints_tables_and_writes_a_figure_per_experiment() {
+fn demo_prints_tables_and_writes_a_report_and_figures() {
     let folder = common::empty_folder("demo");
     let run = stickslip().arg("demo").args(FEW).current_dir(&folder).output().unwrap();
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     let told = String::from_utf8(run.stdout).unwrap();
-    for line in ["particle, no tactile", "particle, camera on", "kalman", "truth", "stickslip-demo/stop-square50-bar-000.svg"] {
+    let lines = ["particle filter without touch", "particle filter, camera on", "Kalman filter", "truth", "stickslip-demo/report.html"];
+    for line in lines {
         assert!(told.contains(line), "{line} is missing in\n{told}");
     }
-    let figures: Vec<String> =
-        fs::read_dir(folder.join("stickslip-demo")).unwrap().map(|f| fs::read_to_string(f.unwrap().path()).unwrap()).collect();
-    assert_eq!(figures.len(), 2);
-    assert!(figures.iter().all(|svg| svg.starts_with("<svg") && svg.contains("position error [mm]") && svg.contains("fixel 1")));
+    let file = |name: &str| fs::read(folder.join("stickslip-demo").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    for experiment in ["stop-square50-bar-000", "slide-pent-disc-118"] {
+        for figure in ["errors", "poses", "contacts", "friction", "cloud"] {
+            assert!(file(&format!("{experiment}-{figure}.svg")).starts_with(b"<svg"));
+            assert!(file(&format!("{experiment}-{figure}.png")).starts_with(b"\x89PNG"));
+        }
+    }
+    let errors = String::from_utf8(file("stop-square50-bar-000-errors.svg")).unwrap();
+    assert!(errors.contains("position error (mm)") && errors.contains("fixel 1") && errors.contains("camera dark"));
+    let report = String::from_utf8(file("report.html")).unwrap();
+    assert_eq!(report.matches("class=\"player\"").count(), 2);
+}
+
+#[test]
+fn filter_writes_a_report_and_the_same_estimate() {
+    let case = Experiment::copy(STOP, "filter_report");
+    let (page, plain, watched) = (case.folder.join("new/report.html"), case.folder.join("plain"), case.folder.join("watched"));
+    let filter = |out: &std::path::Path| {
+        let mut command = stickslip();
+        command.args(["filter", &case.log(), "--scene", &case.scene(), "--occlude", "153", "--out"]).arg(out).args(FEW);
+        command
+    };
+    assert_eq!(filter(&plain).output().unwrap().status.code(), Some(0));
+    let run = filter(&watched).arg("--report").arg(&page).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let estimate = |folder: &std::path::Path| fs::read(folder.join("estimate.csv")).unwrap();
+    assert!(estimate(&plain) == estimate(&watched), "a report changes no estimate");
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("class=\"player\"") && page.contains("At 5.1 s, 0.2 s before the object first touches a fixel"));
+    let unwritable = filter(&plain).arg("--report").arg(case.folder.join("log.csv/report.html")).output().unwrap();
+    assert_eq!(unwritable.status.code(), Some(1));
+}
+
+#[test]
+fn compare_writes_a_report_of_all_folders() {
+    let case = Experiment::copy(STOP, "compare_report");
+    let page = case.folder.join("report.html");
+    let run = stickslip().arg("compare").arg(&case.folder).arg("--report").arg(&page).args(FEW).output().unwrap();
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let page = fs::read_to_string(page).unwrap();
+    for text in ["1 experiments", "All experiments", "compare_report", "particle, no tactile"] {
+        assert!(page.contains(text), "{text}");
+    }
 }

@@ -3,8 +3,9 @@
 use crate::Shape;
 use crate::feature::{Cone, Edge, Ellipse, Round};
 use crate::narrow::Gap;
-use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
+use crate::plane::{Frame, Vec2, add, cross, dot, length, negate, scale, sub};
 use crate::separation::{Peak, Separation};
+use crate::solid::Solid;
 
 /// An ellipse against a feature, in the frame of the feature's body.
 #[derive(Clone, Copy)]
@@ -127,11 +128,13 @@ fn wider(best: Option<Meeting>, new: Meeting) -> Option<Meeting> {
     Some(best.filter(|best| best.gap >= new.gap).unwrap_or(new))
 }
 
-/// With a union it is every feature that has the ellipse's centre in front; where the centre is inside, the least penetration too.
+/// With a union it is every feature that has the ellipse's centre in front; where the centre is inside, the least penetration too;
+/// where none of these answers for an overlap, as about a part that the ellipse holds whole, the least penetration into the parts.
 fn with_union(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut report: impl FnMut(Meeting)) {
-    let mut way_out: Option<Meeting> = None;
+    let (mut way_out, mut answered): (Option<Meeting>, bool) = (None, false);
     let mut meet = |meeting: Meeting, from: Vec2| {
         let height = dot(meeting.normal, sub(ellipse.centre, from));
+        answered |= height >= 0.0 && meeting.gap < 0.0;
         if height >= 0.0 && meeting.gap < reach {
             report(meeting);
         } else if height < 0.0 && way_out.is_none_or(|way| meeting.gap > way.gap) {
@@ -149,9 +152,45 @@ fn with_union(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut re
         let hidden = round.covered && shape.hides(add(round.centre, scale(round.radius, meeting.normal)));
         meet(Meeting { hidden, ..meeting }, round.centre);
     }
-    if let Some(way) = way_out.filter(|way| way.gap < reach && shape.contains(ellipse.centre)) {
-        report(way);
-    }
+    let way_out = way_out.filter(|_| shape.contains(ellipse.centre));
+    let least = if answered || way_out.is_some() { None } else { least_penetration(ellipse, shape.solids()) };
+    way_out.or(least).filter(|way| way.gap < reach).into_iter().for_each(report);
+}
+
+/// Into the polygons of a union that an ellipse overlaps: each one's shallowest way out, the deepest of these.
+fn least_penetration(ellipse: &Ellipse, solids: &[Solid]) -> Option<Meeting> {
+    let overlapped = solids.iter().filter(|solid| reaches_into(ellipse, solid));
+    let ways = overlapped.filter_map(|solid| shallowest(ellipse, solid));
+    ways.reduce(|deepest, way| if way.gap < deepest.gap { way } else { deepest })
+}
+
+/// The side that an ellipse reaches least far behind; seams are no way out.
+fn shallowest(ellipse: &Ellipse, solid: &Solid) -> Option<Meeting> {
+    let Solid::Polygon(polygon) = solid else { return None };
+    polygon.sides.iter().filter(|side| side.exposed).fold(None, |best, side| {
+        let gap = dot(side.normal, ellipse.centre) - side.offset - ellipse.support(side.normal);
+        wider(best, Meeting { normal: side.normal, touch: ellipse.point(negate(side.normal)), gap, hidden: false })
+    })
+}
+
+/// Whether an ellipse and a polygon overlap: scaled so that the ellipse is the unit circle, by the distance from its centre.
+fn reaches_into(ellipse: &Ellipse, solid: &Solid) -> bool {
+    let Solid::Polygon(polygon) = solid else { return false };
+    let [a, b] = ellipse.semi_axes;
+    let scaled = |corner: &Vec2| {
+        let d = sub(*corner, ellipse.centre);
+        [dot(ellipse.axis, d) / a, cross(ellipse.axis, d) / b]
+    };
+    let next = polygon.corners.iter().cycle().skip(1);
+    let nearest = polygon.corners.iter().zip(next).map(|(from, to)| distance_to_segment(scaled(from), scaled(to)));
+    solid.depth(ellipse.centre) > 0.0 || nearest.fold(f64::INFINITY, f64::min) < 1.0
+}
+
+/// Distance from the origin to a segment.
+fn distance_to_segment(from: Vec2, to: Vec2) -> f64 {
+    let along = sub(to, from);
+    let share = (-dot(from, along) / dot(along, along)).clamp(0.0, 1.0);
+    length(add(from, scale(share, along)))
 }
 
 /// Closed form: the ellipse's lowest point, if it stands over the edge.

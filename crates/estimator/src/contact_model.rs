@@ -104,6 +104,11 @@ impl<'w> ContactModel<'w> {
         }
     }
 
+    /// log of the camera's likelihood of particle `i`; 0 where it saw nothing.
+    fn camera_log_likelihood_of(&self, observation: &Observation, block: &Block<'_>, i: usize) -> f64 {
+        observation.pose.map_or(0.0, |pose| self.camera_log_likelihood(&pose, &self.seen_pose(observation, block, i)))
+    }
+
     /// log of the camera's likelihood up to a constant: normal, its standard deviations widened by `likelihood_scale`.
     fn camera_log_likelihood(&self, measured: &Pose, pose: &Pose) -> f64 {
         let scale = self.setup.filter.likelihood_scale;
@@ -175,8 +180,14 @@ impl Model for ContactModel<'_> {
 
     fn log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
         for (i, out) in out.iter_mut().enumerate() {
-            let camera = observation.pose.map(|pose| self.camera_log_likelihood(&pose, &self.seen_pose(observation, block, i)));
-            *out = camera.unwrap_or(0.0) + self.tactile_log_likelihood(&observation.tactile, block, i);
+            *out = self.camera_log_likelihood_of(observation, block, i) + self.tactile_log_likelihood(&observation.tactile, block, i);
+        }
+    }
+
+    /// The camera's alone: a pose drawn anew makes no touch likelier.
+    fn redrawn_log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = self.camera_log_likelihood_of(observation, block, i);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 
 mod angle;
+mod cloud;
 mod columns;
 mod contact_model;
 pub mod diagnosis;
@@ -16,10 +17,12 @@ mod run;
 mod schedule;
 mod score;
 mod setup;
+mod statistics;
 mod track;
 mod trajectory;
 mod watch;
 
+pub use cloud::Cloud;
 pub use contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
@@ -29,6 +32,7 @@ pub use run::{Method, Run, RunOptions, TactileUse, run, run_watched};
 pub use schedule::Schedule;
 pub use score::{Reference, Scores, score};
 pub use setup::{Camera, FilterSettings, Limits, Setup, Tactile};
+pub use statistics::{Band, Direction, PairedDifference, quantile};
 pub use stickslip_dynamics as dynamics;
 pub use track::{PusherTrack, TrackedPose, Tracking};
 pub use trajectory::Trajectory;

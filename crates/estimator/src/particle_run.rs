@@ -4,6 +4,7 @@ use stickslip_dynamics::{Friction, Pose, Twist};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
 
 use crate::angle::unwrapped;
+use crate::cloud::Cloud;
 use crate::columns::Columns;
 use crate::contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 use crate::run::Prepared;
@@ -29,6 +30,7 @@ pub(crate) fn track(
     let mut estimate = prepared.empty_estimate(setup);
     let mut collapses = 0;
     estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, setup, prepared.start.theta) };
+    show(prepared, prepared.first, &filter);
     for row in prepared.first + 1..prepared.log.len() {
         let plan = plan(prepared, row, history);
         let observation = observation(prepared, &camera, options.tactile, row, history);
@@ -36,9 +38,17 @@ pub(crate) fn track(
         collapses += u32::from(report.collapsed());
         let near = estimate.rows[row - 1].pose.map_or(0.0, |pose| pose.theta);
         estimate.rows[row] = reported(summary(&filter, setup, near), &report, observation.pose.is_some());
+        show(prepared, row, &filter);
         progress(row);
     }
     Ok((estimate, collapses))
+}
+
+/// Shows a watch the particles after `row`.
+fn show(prepared: &Prepared<'_>, row: usize, filter: &ParticleFilter<ContactModel<'_>>) {
+    if let Some(watch) = prepared.watch {
+        watch.after(row, &Cloud::new(filter.particles(), filter.weights()));
+    }
 }
 
 /// The step that leads to `row`.

@@ -1,9 +1,10 @@
-//! Looking over a run's shoulder: a [`StepWatch`] is shown every time step that is solved.
+//! Looking over a run's shoulder: a [`StepWatch`] is shown every time step that is solved, and the particles after every row.
 
 use std::fmt::Debug;
 
 use stickslip_dynamics::{Particles, Report, StepInput, StepProblem, StepSolution};
 
+use crate::cloud::Cloud;
 use crate::propagation::LANES;
 
 /// One particle's time step.
@@ -28,5 +29,11 @@ pub trait StepWatch: Debug + Sync {
     /// What the coming step of up to 64 particles starts from, noise included; lanes past the last particle repeat it.
     fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let _ = (input, particles);
+    }
+
+    /// The particles after a row, weighed by what was measured there; the first one is the row where the estimate begins. Rows come in
+    /// order, from one thread. Only the particle filter has any.
+    fn after(&self, row: usize, cloud: &Cloud<'_>) {
+        let _ = (row, cloud);
     }
 }

@@ -67,7 +67,7 @@ pub enum Weighing {
     },
     /// No particle explained it; the set was drawn anew around it and the weights are equal.
     Collapsed {
-        /// The largest log-likelihood that a particle gave it.
+        /// The largest log-likelihood that a particle gave it, of what a redraw can raise.
         best_log_likelihood: f64,
     },
 }
@@ -102,6 +102,7 @@ pub struct ParticleFilter<M: Model> {
     /// Working memory of each block.
     scratch: Vec<M::Scratch>,
     log_likelihood: Vec<f64>,
+    redrawn_log_likelihood: Vec<f64>,
     ancestors: Vec<u32>,
 }
 
@@ -119,6 +120,7 @@ impl<M: Model> ParticleFilter<M> {
             weights: LogWeights::equal(settings.particles),
             scratch: (0..particles.block_count()).map(|_| model.scratch()).collect(),
             log_likelihood: vec![0.0; settings.particles],
+            redrawn_log_likelihood: vec![0.0; settings.particles],
             ancestors: vec![0; settings.particles],
             particles,
             model,
@@ -161,7 +163,12 @@ impl<M: Model> ParticleFilter<M> {
         let model = &self.model;
         self.particles.map_blocks(&mut self.log_likelihood, |block, out| model.log_likelihood(observation, block, out));
 
-        let best_log_likelihood = self.weights.best(&self.log_likelihood);
+        let mut best_log_likelihood = self.weights.best(&self.log_likelihood);
+        if model.collapsed(best_log_likelihood) {
+            let part = &mut self.redrawn_log_likelihood;
+            self.particles.map_blocks(part, |block, out| model.redrawn_log_likelihood(observation, block, out));
+            best_log_likelihood = self.weights.best(part);
+        }
         if !model.collapsed(best_log_likelihood)
             && let Some(log_evidence) = self.weights.multiply(&self.log_likelihood)
         {

@@ -40,6 +40,14 @@ pub trait Model: Sync {
         best_log_likelihood == f64::NEG_INFINITY
     }
 
+    /// Writes the part of the log-likelihood that a redraw can raise; all of it unless the model says otherwise.
+    ///
+    /// Asked for only where the whole seems to be a collapse: an observation that another sensor makes unlikely, as a false alarm
+    /// does, is no reason to draw the particles anew.
+    fn redrawn_log_likelihood(&self, observation: &Self::Observation, block: &Block<'_>, out: &mut [f64]) {
+        self.log_likelihood(observation, block, out);
+    }
+
     /// Draws particles anew around the observation after a collapse; the columns hold the propagated particles,
     /// resampled by their weights before the observation. The observation is not weighed again.
     fn redraw(&self, observation: &Self::Observation, draw: Draw, block: &mut BlockMut<'_>);

@@ -9,7 +9,7 @@ use stickslip::Scores;
 use crate::args::CompareArgs;
 use crate::contest::Rival;
 use crate::failure::one_line;
-use crate::quantile::quantile;
+use stickslip_report::quantile;
 
 /// The scores of one run, or their medians over runs.
 #[derive(Clone, Copy, Debug, Serialize)]

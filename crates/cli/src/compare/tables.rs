@@ -1,7 +1,7 @@
 //! A comparison as text: [`text`].
 
 use super::results::{COLUMNS, Comparison, Entry, Overall};
-use crate::table::{Table, number};
+use stickslip_report::{Table, number};
 
 /// A table per folder, then one over all of them; nothing where there is no folder.
 pub fn text(comparison: &Comparison) -> String {
@@ -20,23 +20,25 @@ pub fn text(comparison: &Comparison) -> String {
 
 /// The scores of each rival on one experiment.
 pub fn entries(entries: &[Entry]) -> Table {
-    let mut table = Table::default();
-    table.push(titles(["method"], ["unsolved"]));
+    let mut table = Table::new(titles(["method"], ["unsolved"]));
     for entry in entries {
         let scores = COLUMNS.iter().map(|column| number((column.of)(&entry.marks), 3));
-        table.push([entry.rival.name().to_owned()].into_iter().chain(scores).chain([entry.marks.unsolved.to_string()]));
+        table.push_coloured(
+            entry.rival.colour(),
+            [entry.rival.name().to_owned()].into_iter().chain(scores).chain([entry.marks.unsolved.to_string()]),
+        );
     }
     table
 }
 
-fn overall(rows: &[Overall]) -> Table {
-    let mut table = Table::default();
-    table.push(titles(["method"], ["unsolved", "folders"]));
+/// Each rival over all folders: median (90th percentile).
+pub fn overall(rows: &[Overall]) -> Table {
+    let mut table = Table::new(titles(["method"], ["unsolved", "folders"]));
     for row in rows {
         let both =
             |column: &super::results::Column| format!("{} ({})", number((column.of)(&row.median), 2), number((column.of)(&row.p90), 2));
         let counts = [row.unsolved.to_string(), row.folders.to_string()];
-        table.push([row.rival.name().to_owned()].into_iter().chain(COLUMNS.iter().map(both)).chain(counts));
+        table.push_coloured(row.rival.colour(), [row.rival.name().to_owned()].into_iter().chain(COLUMNS.iter().map(both)).chain(counts));
     }
     table
 }

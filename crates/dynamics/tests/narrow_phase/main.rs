@@ -1,5 +1,6 @@
 //! The narrow phase against independent answers: parry, brute force over directions, finite differences, and laws of geometry.
 
+mod engulfed;
 mod errors;
 mod fuzz;
 mod laws;

@@ -1,6 +1,7 @@
 //! Medians and other quantiles of a few numbers.
 
 /// The `q`-quantile, linear between order statistics: position q (n - 1) from the smallest; `None` of nothing.
+#[must_use]
 pub fn quantile(mut values: Vec<f64>, q: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;

@@ -1,0 +1,88 @@
+//! What a watch sees of the particles: all of them, with the weights that the estimate is made with; and it changes no bit of a run.
+
+use std::sync::Mutex;
+
+use stickslip::dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape};
+use stickslip::{Camera, Cloud, FilterSettings, Log, Occlusion, Run, RunOptions, Setup, SolvedStep, StepWatch, Tactile, run, run_watched};
+
+const ROWS: usize = 40;
+const FIRST: usize = 2;
+
+/// Number, row and the weighted sums of x, y, mu_s and 1 over the particles.
+#[derive(Debug, Default)]
+struct Sums(Mutex<Vec<(usize, usize, [f64; 4])>>);
+
+impl StepWatch for Sums {
+    fn see(&self, _: &SolvedStep<'_>) {}
+
+    fn after(&self, row: usize, cloud: &Cloud<'_>) {
+        let mut sums = [0.0; 4];
+        for (particle, weight) in cloud.weights().iter().enumerate() {
+            let (pose, friction) = (cloud.pose(particle), cloud.friction(particle));
+            for (sum, value) in sums.iter_mut().zip([pose.x, pose.y, friction.mu_s, 1.0]) {
+                *sum += weight * value;
+            }
+        }
+        self.0.lock().expect("one thread").push((cloud.len(), row, sums));
+    }
+}
+
+/// A disc that a disc pushes.
+fn setup() -> Setup {
+    let disc = |radius| Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]).expect("a disc");
+    let scene = Scene {
+        gravity: 9.81,
+        object: Object { mass: 0.5, inertia: 2e-4, shape: disc(0.03) },
+        feet: Feet::Tripod { angle: 0.0 },
+        pusher: Pusher { shape: disc(0.005), stall_force: None },
+        fixels: Vec::new(),
+        nominal: Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 },
+    };
+    let camera =
+        Camera { position_std: 3e-4, orientation_std: 5e-3, latency: 0.0, pusher_position_std: 1e-4, pusher_orientation_std: 2e-3 };
+    Setup { scene, camera: Some(camera), tactile: Tactile::default(), filter: FilterSettings::default(), start: None }
+}
+
+/// The camera misses the first rows.
+fn log() -> Log {
+    let object = |row| (row >= FIRST).then(|| Pose::new(0.001 * (row as f64 - 20.0).max(0.0), 0.0, 0.0));
+    Log {
+        time: (0..ROWS).map(|row| row as f64 / 30.0).collect(),
+        object: (0..ROWS).map(object).collect(),
+        pusher: (0..ROWS).map(|row| Some(Pose::new(-0.055 + 0.001 * row as f64, 0.001, 0.0))).collect(),
+        ..Log::default()
+    }
+}
+
+fn watched(options: &RunOptions) -> (Run, Vec<(usize, usize, [f64; 4])>) {
+    let sums = Sums::default();
+    let run = run_watched(&setup(), &log(), options, &sums, &mut |_| ()).expect("a run");
+    (run, sums.0.into_inner().expect("one thread"))
+}
+
+#[test]
+fn a_watch_sees_the_particles_that_the_estimate_is_made_of() {
+    let options = RunOptions { particles: 100, occlusion: Occlusion::Rows { from: 30, to: None }, ..RunOptions::default() };
+    let (run, sums) = watched(&options);
+    assert_eq!(sums.iter().map(|(_, row, _)| *row).collect::<Vec<_>>(), (FIRST..ROWS).collect::<Vec<_>>());
+    for (particles, row, [x, y, mu_s, one]) in sums {
+        let (pose, friction) = (run.estimate.rows[row].pose.expect("a pose"), run.estimate.rows[row].friction.expect("friction"));
+        assert_eq!(particles, 100);
+        for (sum, mean) in [(x, pose.x), (y, pose.y), (mu_s, friction.mu_s), (one, 1.0)] {
+            assert!((sum - mean).abs() < 1e-12, "row {row}: {sum} and {mean}");
+        }
+    }
+}
+
+#[test]
+fn a_watch_changes_no_bit() {
+    let options = RunOptions { particles: 100, ..RunOptions::default() };
+    let plain = run(&setup(), &log(), &options, &mut |_| ()).expect("a run");
+    assert_eq!(watched(&options).0, plain);
+}
+
+#[test]
+fn methods_without_particles_show_none() {
+    let options = RunOptions { method: stickslip::Method::Kalman, ..RunOptions::default() };
+    assert!(watched(&options).1.is_empty());
+}

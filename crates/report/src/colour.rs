@@ -1,0 +1,59 @@
+//! Colours that colour-blind people can tell apart (Okabe and Ito 2008): [`Colour`].
+
+/// An sRGB colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Colour(pub u8, pub u8, pub u8);
+
+impl Colour {
+    /// Text, axes and what is true.
+    pub const INK: Self = Self(51, 51, 51);
+    /// Bodies that stand still, and what needs no name.
+    pub const GREY: Self = Self(153, 153, 153);
+    /// Orange.
+    pub const ORANGE: Self = Self(230, 159, 0);
+    /// Sky blue.
+    pub const SKY: Self = Self(86, 180, 233);
+    /// Bluish green.
+    pub const GREEN: Self = Self(0, 158, 115);
+    /// Yellow; too light for lines on white.
+    pub const YELLOW: Self = Self(240, 228, 66);
+    /// Blue.
+    pub const BLUE: Self = Self(0, 114, 178);
+    /// Vermillion.
+    pub const VERMILLION: Self = Self(213, 94, 0);
+    /// Reddish purple.
+    pub const PURPLE: Self = Self(204, 121, 167);
+
+    /// As in CSS: `#d55e00`.
+    ///
+    /// ```
+    /// assert_eq!(stickslip_report::Colour::VERMILLION.hex(), "#d55e00");
+    /// ```
+    #[must_use]
+    pub fn hex(self) -> String {
+        format!("#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Line {
+    /// Through.
+    #[default]
+    Solid,
+    /// Dashes.
+    Dashed,
+    /// Dots.
+    Dotted,
+}
+
+impl Line {
+    /// SVG's `stroke-dasharray`; `None` for a solid line.
+    pub(crate) fn dashes(self) -> Option<&'static str> {
+        match self {
+            Self::Solid => None,
+            Self::Dashed => Some("7 4"),
+            Self::Dotted => Some("1.5 3"),
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! A finished picture: [`Drawing`], with what all pictures share: text, paper, numbers as SVG writes them.
+//!
+//! Presentation attributes give the look on white paper; the classes `ink`, `grid`, `axis`, `paper` and `dark` let a page give another
+//! one, as its dark mode does. Nothing has an `id`, so any number of drawings can stand in one page.
+
+use maud::{Markup, html};
+
+use crate::colour::Colour;
+use crate::font::{FAMILY, Weight};
+
+/// Grid lines.
+pub(crate) const GRID: Colour = Colour(228, 228, 228);
+
+/// Behind what happened while the camera was dark.
+pub(crate) const DARK: Colour = Colour(236, 233, 226);
+
+/// Font size of labels (px).
+pub(crate) const LABEL: f64 = 14.0;
+
+/// Font size of titles (px).
+pub(crate) const TITLE: f64 = 16.0;
+
+/// A picture as SVG.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// Width (px).
+    pub width: f64,
+    /// Height (px).
+    pub height: f64,
+    /// What it shows, in words, for those who cannot see it; empty where a caption says it.
+    pub label: String,
+    /// SVG elements.
+    pub(crate) body: Markup,
+}
+
+impl Drawing {
+    /// The picture as a text of SVG 1.1 that stands alone.
+    #[must_use]
+    pub fn to_svg(&self) -> String {
+        let Self { width, height, label, body } = self;
+        let markup = html! {
+            svg xmlns="http://www.w3.org/2000/svg" class="figure" width=(px(*width)) height=(px(*height)) viewBox={ "0 0 " (px(*width)) " " (px(*height)) }
+                font-family=(FAMILY) font-size=(px(LABEL)) role="img" aria-label=[(!label.is_empty()).then_some(label)] {
+                rect class="paper" width=(px(*width)) height=(px(*height)) fill="#ffffff" {}
+                (body)
+            }
+        };
+        markup.into_string()
+    }
+
+    /// Drawings side by side, row by row, in equal cells.
+    #[must_use]
+    pub fn grid(drawings: &[Self], columns: usize) -> Self {
+        let columns = columns.clamp(1, drawings.len().max(1));
+        let width = drawings.iter().map(|drawing| drawing.width).fold(1.0, f64::max);
+        let height = drawings.iter().map(|drawing| drawing.height).fold(1.0, f64::max);
+        let body = html! {
+            @for (index, drawing) in drawings.iter().enumerate() {
+                g transform={ "translate(" (px((index % columns) as f64 * width)) " " (px((index / columns) as f64 * height)) ")" } { (drawing.body) }
+            }
+        };
+        let labels: Vec<&str> = drawings.iter().map(|drawing| drawing.label.as_str()).filter(|label| !label.is_empty()).collect();
+        let rows = drawings.len().div_ceil(columns).max(1);
+        Self { width: columns as f64 * width, height: rows as f64 * height, label: labels.join("; "), body }
+    }
+
+    /// The same under a title.
+    #[must_use]
+    pub fn titled(self, title: &str) -> Self {
+        let head = 30.0;
+        let body = html! {
+            (Text { weight: Weight::Bold, ..Text::at([12.0, 21.0], title) }.sized(TITLE))
+            g transform={ "translate(0 " (px(head)) ")" } { (self.body) }
+        };
+        Self { height: self.height + head, body, ..self }
+    }
+}
+
+/// Where text stands about its point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A line of text, its point on the base line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Text<'a> {
+    pub at: [f64; 2],
+    pub text: &'a str,
+    pub anchor: Anchor,
+    pub weight: Weight,
+    /// Turned by a quarter, read from below.
+    pub upright: bool,
+}
+
+impl<'a> Text<'a> {
+    /// Text that begins at a point (px).
+    pub fn at(at: [f64; 2], text: &'a str) -> Self {
+        Self { at, text, anchor: Anchor::Start, weight: Weight::Regular, upright: false }
+    }
+
+    /// As an element, in a font size (px).
+    pub fn sized(&self, size: f64) -> Markup {
+        self.element(size, html! { (self.text) })
+    }
+
+    /// The same with letters after an underscore as indices: `mu_s`.
+    pub fn with_indices(&self, size: f64) -> Markup {
+        let mut parts = self.text.split('_');
+        let first = parts.next().unwrap_or_default();
+        let drop = px(0.22 * size);
+        let index = |part: &str| part.find(|letter: char| !letter.is_alphanumeric()).unwrap_or(part.len());
+        let content = html! {
+            (first)
+            @for (index, rest) in parts.map(|part| part.split_at(index(part))) {
+                tspan dy=(drop) font-size=(px(0.75 * size)) { (index) }
+                @if !rest.is_empty() { tspan dy={ "-" (drop) } { (rest) } }
+            }
+        };
+        self.element(size, content)
+    }
+
+    fn element(&self, size: f64, content: Markup) -> Markup {
+        let [x, y] = self.at.map(px);
+        let anchor = match self.anchor {
+            Anchor::Start => None,
+            Anchor::Middle => Some("middle"),
+            Anchor::End => Some("end"),
+        };
+        let weight = (self.weight == Weight::Bold).then_some("bold");
+        let turn = self.upright.then(|| format!("rotate(-90 {x} {y})"));
+        html! {
+            text class="ink" x=(x) y=(y) fill=(Colour::INK.hex()) font-size=(px(size)) text-anchor=[anchor] font-weight=[weight] transform=[turn] { (content) }
+        }
+    }
+}
+
+/// A number of pixels with at most two decimals.
+///
+/// Numbers that are not finite become 0: an SVG with `NaN` in it is not drawn at all.
+pub(crate) fn px(value: f64) -> String {
+    let text = format!("{:.2}", if value.is_finite() { value } else { 0.0 });
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// The path through points (px), closed or open; broken where a number is not finite.
+pub(crate) fn path(points: impl IntoIterator<Item = [f64; 2]>, closed: bool) -> String {
+    let mut path = String::new();
+    let mut pen_down = false;
+    for [x, y] in points {
+        if !(x.is_finite() && y.is_finite()) {
+            pen_down = false;
+            continue;
+        }
+        path.push_str(match (pen_down, path.is_empty()) {
+            (true, _) => "L",
+            (false, _) => "M",
+        });
+        path.push_str(&format!("{} {}", px(x), px(y)));
+        pen_down = true;
+    }
+    if closed && !path.is_empty() {
+        path.push('Z');
+    }
+    path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn px_is_short_and_always_a_number() {
+        assert_eq!([1.0, -0.001, 2.345_1, f64::NAN, -12.5, 100.0].map(px), ["1", "0", "2.35", "0", "-12.5", "100"]);
+    }
+
+    #[test]
+    fn path_breaks_where_a_number_is_missing() {
+        let points = [[0.0, 0.0], [1.0, 1.0], [2.0, f64::NAN], [3.0, 1.0], [4.0, 0.0]];
+        assert_eq!(path(points, false), "M0 0L1 1M3 1L4 0");
+        assert_eq!(path([], true), "");
+    }
+
+    #[test]
+    fn grid_puts_drawings_row_by_row() {
+        let cell = |label: &str| Drawing { width: 10.0, height: 20.0, label: label.to_owned(), body: html! {} };
+        let grid = Drawing::grid(&[cell("a"), cell("b"), cell("c")], 2);
+        assert_eq!((grid.width, grid.height, grid.label.as_str()), (20.0, 40.0, "a; b; c"));
+        assert!(grid.to_svg().contains(r#"<g transform="translate(0 20)">"#));
+    }
+}

@@ -1,0 +1,46 @@
+//! Figures, tables and the self-contained HTML report of pushing experiments. Nothing here computes an estimate or opens a file.
+//!
+//! Figures are drawn as SVG straight from the numbers: they are small, keep their text, take on the colours of the page that holds
+//! them, and the same code draws bodies on camera images. [`png_of`] turns them into pixels.
+
+mod axis;
+mod cloud_sample;
+mod colour;
+mod contact_timeline;
+mod courses;
+mod drawing;
+mod episode;
+mod font;
+mod legend;
+mod marks;
+mod outline;
+mod overlay;
+mod page;
+mod particle_cloud;
+mod playback;
+mod playback_data;
+mod plot;
+mod png;
+mod quantile;
+mod story;
+mod table;
+mod time_figure;
+
+pub use axis::Scale;
+pub use cloud_sample::CloudSample;
+pub use colour::{Colour, Line};
+pub use contact_timeline::{ContactEstimate, ContactLane, ContactTimeline};
+pub use courses::{PoseError, friction_panels, pose_errors};
+pub use drawing::Drawing;
+pub use episode::{Contender, Episode, Figure};
+pub use marks::Mark;
+pub use outline::Outline;
+pub use overlay::{Body, CameraImage, ImageError, Overlay};
+pub use page::{Block, Report, Section};
+pub use particle_cloud::ParticleCloud;
+pub use playback::{MethodTrack, Playback, Touch};
+pub use png::{PngError, png_of};
+pub use quantile::quantile;
+pub use story::{Fate, KEPT_MM, LOST_MM, Outcome, Story};
+pub use table::{Table, number};
+pub use time_figure::{Curve, Level, Panel, TimeFigure};

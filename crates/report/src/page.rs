@@ -1,0 +1,122 @@
+//! The self-contained HTML report: [`Report`], one file that opens anywhere and loads nothing.
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::drawing::Drawing;
+use crate::font::{BOLD, REGULAR};
+use crate::playback::Playback;
+use crate::story::{Fate, Story};
+use crate::table::Table;
+
+const STYLE: &str = include_str!("../page/report.css");
+const SCRIPT: &str = include_str!("../page/player.js");
+
+/// A page with a summary on top.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Title.
+    pub title: String,
+    /// What a reader should know after a minute.
+    pub summary: Vec<Block>,
+    /// The rest.
+    pub sections: Vec<Section>,
+}
+
+/// A part of a page.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// Heading; may be empty.
+    pub title: String,
+    /// What stands below it.
+    pub blocks: Vec<Block>,
+}
+
+/// What a section is made of.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// Which methods kept track of an object, and which lost it.
+    Fates(Story),
+    /// A remark in small letters.
+    Note(String),
+    /// A table under a caption, which may be empty.
+    Table(Table, String),
+    /// A figure over a caption, which may be empty.
+    Figure(Drawing, String),
+    /// An experiment to be played back.
+    Playback(Box<Playback>),
+}
+
+impl Report {
+    /// The page as HTML text, with styles, fonts, figures, data and script in it.
+    #[must_use]
+    pub fn to_html(&self) -> String {
+        let plays = self.sections.iter().flat_map(|section| &section.blocks).any(|block| matches!(block, Block::Playback(_)));
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    link rel="icon" href="data:,";
+                    title { (self.title) }
+                    style { (PreEscaped(font_face(REGULAR, "normal"))) (PreEscaped(font_face(BOLD, "bold"))) (PreEscaped(STYLE)) }
+                }
+                body {
+                    main {
+                        h1 { (self.title) }
+                        @if !self.summary.is_empty() { div class="summary" { @for block in &self.summary { (block.html()) } } }
+                        @for section in &self.sections { (section.html()) }
+                    }
+                    @if plays { script { (PreEscaped(SCRIPT)) } }
+                }
+            }
+        };
+        page.into_string()
+    }
+}
+
+impl Section {
+    fn html(&self) -> Markup {
+        html! {
+            @if !self.title.is_empty() { h2 { (self.title) } }
+            @for block in &self.blocks { (block.html()) }
+        }
+    }
+}
+
+impl Block {
+    fn html(&self) -> Markup {
+        match self {
+            Self::Text(text) => html! { p { (text) } },
+            Self::Fates(story) => fates(story),
+            Self::Note(text) => html! { p class="note" { (text) } },
+            Self::Table(table, caption) => table.html(caption),
+            Self::Figure(drawing, caption) => html! {
+                figure { (PreEscaped(drawing.to_svg())) @if !caption.is_empty() { figcaption { (caption) } } }
+            },
+            Self::Playback(playback) => playback.html(),
+        }
+    }
+}
+
+fn fates(story: &Story) -> Markup {
+    html! {
+        ul class="fates" {
+            @for (fate, names) in story.fates() {
+                @let (class, sign) = match fate { Fate::Kept => ("kept", "✓"), Fate::Drifted => ("drifted", "≈"), Fate::Lost => ("lost", "✗") };
+                li class=(class) { span aria-hidden="true" { (sign) } b { (fate.name()) } (names) }
+            }
+            @if let Some(seen) = story.seen() { li { span aria-hidden="true" { "•" } (seen) } }
+        }
+    }
+}
+
+/// The style rule by which a font comes from the page itself.
+fn font_face(font: &[u8], weight: &str) -> String {
+    let data = BASE64_STANDARD.encode(font);
+    format!("@font-face{{font-family:Roboto;font-weight:{weight};src:url(data:font/ttf;base64,{data}) format('truetype')}}\n")
+}

@@ -1,0 +1,184 @@
+//! An experiment that a page plays back: [`Playback`].
+
+use maud::{Markup, PreEscaped, html};
+use stickslip::dynamics::{Pose, Scene};
+use stickslip::{Estimate, Log, Reference};
+
+use crate::colour::Colour;
+use crate::courses::{PoseError, pose_errors};
+use crate::marks::Mark;
+use crate::outline::Outline;
+use crate::playback_data::data;
+
+/// What is shown of an experiment, row by row; every column has one entry per row of the log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Playback {
+    /// What is played back, for those who cannot see it.
+    pub name: String,
+    /// Time of each row (s).
+    pub time: Vec<f64>,
+    /// Rows that are played back; the others are left out.
+    pub rows: std::ops::Range<usize>,
+    /// The row that is shown first.
+    pub poster: usize,
+    /// The object in its own frame (m).
+    pub object: Outline,
+    /// The pusher in its own frame (m).
+    pub pusher: Outline,
+    /// The fixels in the world (m).
+    pub fixels: Vec<Outline>,
+    /// Where the object was: its truth, or what the camera measured.
+    pub reference: Vec<Option<Pose>>,
+    /// What that is, as "truth".
+    pub reference_name: String,
+    /// Where the pusher was measured.
+    pub pusher_poses: Vec<Option<Pose>>,
+    /// Whether the camera was dark.
+    pub hidden: Vec<bool>,
+    /// Contacts of the object: with the pusher, then with each fixel.
+    pub touches: Vec<Touch>,
+    /// Events that are named on the time bar.
+    pub marks: Vec<Mark>,
+    /// Methods.
+    pub methods: Vec<MethodTrack>,
+    /// In which order they are drawn, by number; those that agree cover each other. Methods that are not here follow.
+    pub lowest_first: Vec<usize>,
+}
+
+/// Contact of the object with one body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Touch {
+    /// The body.
+    pub name: String,
+    /// Whether they touch; `None` where that is not known.
+    pub truth: Option<Vec<bool>>,
+    /// What the body's sensor reads; `None` where it has none.
+    pub sensed: Option<Vec<Option<bool>>>,
+}
+
+/// What one method says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MethodTrack {
+    /// Name.
+    pub name: String,
+    /// Colour.
+    pub colour: Colour,
+    /// Estimated poses.
+    pub poses: Vec<Option<Pose>>,
+    /// Their errors.
+    pub errors: Vec<PoseError>,
+    /// Some of its particles, all of the same weight; empty for methods without.
+    pub cloud: Vec<Vec<Pose>>,
+    /// Probabilities of contact with the pusher, then with each fixel (0 to 1); `None` where there are none.
+    pub contacts: Vec<Option<Vec<f64>>>,
+}
+
+impl MethodTrack {
+    /// The track of an estimate, beside the reference that it is scored against; `cloud` as [`crate::CloudSample::into_rows`] gives it.
+    #[must_use]
+    pub fn new(name: &str, colour: Colour, estimate: &Estimate, reference: &Reference, cloud: Vec<Vec<Pose>>) -> Self {
+        let contacts = estimate.rows.iter().map(|row| {
+            let fixels = row.contact_fixels.as_ref()?;
+            Some(std::iter::once(row.contact_pusher?).chain(fixels.iter().copied()).collect())
+        });
+        Self {
+            name: name.to_owned(),
+            colour,
+            poses: estimate.rows.iter().map(|row| row.pose).collect(),
+            errors: pose_errors(estimate, reference),
+            cloud,
+            contacts: contacts.collect(),
+        }
+    }
+}
+
+impl Playback {
+    /// A log with what it is compared to; methods, true contacts, and marks are to be added. All rows are played back.
+    #[must_use]
+    pub fn new(scene: &Scene, log: &Log, reference: &Reference, hidden: Vec<bool>) -> Self {
+        let touch = |name: String, sensed: Option<&Vec<Option<bool>>>| Touch { name, truth: None, sensed: sensed.cloned() };
+        let fixels = (0..scene.fixels.len()).map(|k| touch(format!("fixel {}", k + 1), log.tactile.get(k)));
+        Self {
+            name: "the experiment".to_owned(),
+            time: log.time.clone(),
+            rows: 0..log.len(),
+            poster: log.len().saturating_sub(1),
+            object: Outline::new(&scene.object.shape, f64::INFINITY),
+            pusher: Outline::new(&scene.pusher.shape, f64::INFINITY),
+            fixels: scene.fixels.iter().map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose)).collect(),
+            reference: reference.pose.clone(),
+            reference_name: "truth".to_owned(),
+            pusher_poses: log.pusher.clone(),
+            hidden,
+            touches: std::iter::once(touch("pusher".to_owned(), None)).chain(fixels).collect(),
+            marks: Vec::new(),
+            methods: Vec::new(),
+            lowest_first: Vec::new(),
+        }
+    }
+
+    /// Controls, an empty stage and the data; the page's script does the rest.
+    pub(crate) fn html(&self) -> Markup {
+        // the only place in a script element where text could end it
+        let data = data(self).to_string().replace('<', "\\u003c");
+        let last = self.shown().len().saturating_sub(1);
+        html! {
+            section class="player" tabindex="0" aria-label={ "Playback of " (self.name) ". Space plays, arrow keys step." } {
+                div class="stage" {
+                    svg role="img" aria-label={ "The object, the pusher and the fixels seen from above: " (self.name) } {}
+                    div class="badge" {}
+                    div class="clock" {}
+                }
+                div class="side" {
+                    table class="readout" {
+                        thead { tr { th scope="col" { "estimate" } th scope="col" { "error (mm)" } th scope="col" { "turn (°)" } } }
+                        tbody {}
+                    }
+                    h3 { "Contacts of the object" }
+                    ul class="contacts" {}
+                    p class="legend" {
+                        "Filled: the " (self.reference_name) ", dashed while the camera is dark. Coloured outlines: estimates; thin ones: particles. "
+                        "Pusher and fixels are yellow while they touch the object; their rim turns yellow with the estimated probability."
+                    }
+                }
+                div class="time" {
+                    div class="marks" {}
+                    div class="strip" {
+                        svg viewBox="0 0 1000 100" preserveAspectRatio="none" role="img"
+                            aria-label="Position errors against time; dark where the camera is" {}
+                        span class="quantity" { "position error" }
+                    }
+                    input type="range" min="0" max=(last) value="0" step="1" aria-label="time";
+                    (controls())
+                }
+                script type="application/json" { (PreEscaped(data)) }
+            }
+        }
+    }
+
+    /// The rows played back, among those there are.
+    pub(crate) fn shown(&self) -> std::ops::Range<usize> {
+        let rows = self.time.len();
+        let from = self.rows.start.min(rows);
+        from..self.rows.end.clamp(from, rows)
+    }
+}
+
+fn controls() -> Markup {
+    html! {
+        div class="controls" {
+            button type="button" class="play" { "▶ play" }
+            button type="button" class="back" aria-label="one row back" { "◂" }
+            button type="button" class="next" aria-label="one row on" { "▸" }
+            label { "speed " select class="speed" {
+                @for (value, name) in [("0.125", "⅛"), ("0.25", "¼"), ("0.5", "½"), ("1", "1"), ("2", "2"), ("4", "4")] {
+                    option value=(value) selected[value == "1"] { (name) " ×" }
+                }
+            } }
+            label { "view " select class="view" {
+                option value="whole" { "whole table" }
+                option value="near" { "near the object" }
+            } }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Tables with aligned columns, as text and as HTML: [`Table`].
+
+use std::fmt;
+
+use maud::{Markup, html};
+
+use crate::colour::Colour;
+
+/// Rows of cells: the first column is left-aligned, the others right-aligned.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    titles: Vec<String>,
+    rows: Vec<(Option<Colour>, Vec<String>)>,
+}
+
+impl Table {
+    /// A table with these column titles.
+    #[must_use]
+    pub fn new<S: Into<String>>(titles: impl IntoIterator<Item = S>) -> Self {
+        Self { titles: titles.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push((None, cells.into_iter().collect()));
+    }
+
+    /// Appends a row that has this colour in figures.
+    pub fn push_coloured(&mut self, colour: Colour, cells: impl IntoIterator<Item = String>) {
+        self.rows.push((Some(colour), cells.into_iter().collect()));
+    }
+
+    /// The table as HTML, under a caption.
+    pub(crate) fn html(&self, caption: &str) -> Markup {
+        html! {
+            div class="scroll" tabindex="0" role="region" aria-label=(if caption.is_empty() { "table" } else { caption }) {
+                table {
+                    @if !caption.is_empty() { caption { (caption) } }
+                    thead { tr { @for title in &self.titles { th scope="col" { (title) } } } }
+                    tbody {
+                        @for (colour, cells) in &self.rows {
+                            tr { @for (column, cell) in cells.iter().enumerate() {
+                                @if column == 0 {
+                                    th scope="row" { @if let Some(colour) = colour { (swatch(*colour)) } (cell) }
+                                } @else {
+                                    td { (cell) }
+                                }
+                            } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn all_rows(&self) -> impl Iterator<Item = &Vec<String>> {
+        std::iter::once(&self.titles).chain(self.rows.iter().map(|(_, cells)| cells))
+    }
+
+    fn width(&self, column: usize) -> usize {
+        self.all_rows().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    }
+}
+
+/// A small patch of a colour.
+pub(crate) fn swatch(colour: Colour) -> Markup {
+    html! { span class="swatch" style={ "background:" (colour.hex()) } {} }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for row in self.all_rows() {
+            let cells = row.iter().enumerate().map(|(column, cell)| aligned(cell, self.width(column), column == 0));
+            writeln!(f, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+fn aligned(cell: &str, width: usize, left: bool) -> String {
+    if left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+}
+
+/// A number with `decimals` digits after the point; a dash where there is none.
+#[must_use]
+pub fn number(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_aligns_columns() {
+        let mut table = Table::new(["method", "mm"]);
+        table.push(["a".to_owned(), number(Some(12.345), 2)]);
+        table.push(["longer name".to_owned(), number(None, 2)]);
+        assert_eq!(table.to_string(), "method          mm\na            12.35\nlonger name      -\n");
+    }
+
+    #[test]
+    fn table_is_escaped_in_html() {
+        let mut table = Table::new(["<script>"]);
+        table.push_coloured(Colour::SKY, ["a & \"b\"".to_owned()]);
+        let text = table.html("x < y").into_string();
+        assert!(!text.contains("<script>") && text.contains("a &amp; &quot;b&quot;") && text.contains("x &lt; y"), "{text}");
+    }
+}

@@ -1,0 +1,203 @@
+//! Quantities against time: [`TimeFigure`], any number of panels over one time axis. Errors of methods, estimated parameters.
+
+use maud::{Markup, html};
+
+use crate::axis::{Axis, Scale};
+use crate::colour::{Colour, Line};
+use crate::drawing::{Anchor, Drawing, LABEL, TITLE, Text};
+use crate::font::Weight;
+use crate::legend::{Legend, Swatch};
+use crate::marks::{MARK_LINE, Mark, place};
+use crate::plot::Plot;
+
+/// Widths of a panel's surroundings (px).
+const LEFT: f64 = 76.0;
+const RIGHT: f64 = 18.0;
+const BOTTOM: f64 = 14.0;
+const TIMES: f64 = 36.0;
+const TOP: f64 = 10.0;
+
+/// Quantities against time, in panels of equal size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeFigure {
+    /// Title; may be empty, as in a paper, where the caption says it.
+    pub title: String,
+    /// Times that are shown: from, to.
+    pub span: [f64; 2],
+    /// Name of the time axis with its unit.
+    pub time_label: String,
+    /// Times without a camera, from..to; shaded in every panel that has none of its own.
+    pub dark: Vec<[f64; 2]>,
+    /// Events, as first contacts; a line in every panel, named above the upper ones.
+    pub marks: Vec<Mark>,
+    /// Panels, row by row.
+    pub panels: Vec<Panel>,
+    /// Panels side by side.
+    pub columns: usize,
+    /// Size of one panel, its own axis included (px).
+    pub panel_size: [f64; 2],
+    /// What bands are, as "10–90 % of 20 seeds"; empty: not told.
+    pub band_name: String,
+}
+
+/// One quantity.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// Title above the panel, as "a) no occlusion"; may be empty.
+    pub title: String,
+    /// Quantity with its unit, as "position error (mm)".
+    pub label: String,
+    /// How values are spread.
+    pub scale: Scale,
+    /// Smallest and largest value shown; `None`: what holds all curves and levels.
+    pub limits: Option<[f64; 2]>,
+    /// Times without a camera where they differ from the figure's.
+    pub dark: Option<Vec<[f64; 2]>>,
+    /// Curves; where they cover each other, earlier ones lie on top.
+    pub curves: Vec<Curve>,
+    /// Values that do not change, as the truth.
+    pub levels: Vec<Level>,
+}
+
+/// One line of a panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Name in the legend; those of the same name, colour and line are listed once.
+    pub name: String,
+    /// Colour.
+    pub colour: Colour,
+    /// How it is drawn.
+    pub line: Line,
+    /// Times and values; a NaN breaks the line.
+    pub points: Vec<[f64; 2]>,
+    /// Time, lower and upper end of the band about it; may be empty.
+    pub band: Vec<[f64; 3]>,
+}
+
+/// A horizontal line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Level {
+    /// Name in the legend.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Colour.
+    pub colour: Colour,
+    /// How it is drawn.
+    pub line: Line,
+}
+
+/// Where a panel stands.
+struct Place {
+    corner: [f64; 2],
+    first_row: bool,
+    /// Nothing stands below it: it names the times.
+    last_row: bool,
+}
+
+impl Default for TimeFigure {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            span: [0.0, 1.0],
+            time_label: "time (s)".to_owned(),
+            dark: Vec::new(),
+            marks: Vec::new(),
+            panels: Vec::new(),
+            columns: 1,
+            panel_size: [780.0, 240.0],
+            band_name: String::new(),
+        }
+    }
+}
+
+impl TimeFigure {
+    /// The figure as SVG text.
+    #[must_use]
+    pub fn to_svg(&self) -> String {
+        self.drawing().to_svg()
+    }
+
+    /// The figure, to be put beside others.
+    #[must_use]
+    pub fn drawing(&self) -> Drawing {
+        let columns = self.columns.clamp(1, self.panels.len().max(1));
+        let rows = self.panels.len().div_ceil(columns);
+        let [panel_width, panel_height] = self.panel_size;
+        let width = columns as f64 * panel_width;
+        let title = if self.title.is_empty() { 6.0 } else { 32.0 };
+        let (legend, legend_height) = self.legend().draw([LEFT, title], width - LEFT - RIGHT);
+        let names = place(&self.marks, &self.axis([LEFT, panel_width - RIGHT]));
+        let head = title + legend_height + names.height;
+        let body = html! {
+            (Text { weight: Weight::Bold, ..Text::at([LEFT, 22.0], &self.title) }.sized(TITLE))
+            (legend)
+            @for (index, panel) in self.panels.iter().enumerate() {
+                @let corner = [(index % columns) as f64 * panel_width, head + (index / columns) as f64 * panel_height];
+                @if index < columns { (names.draw([corner[0], corner[1] - names.height + TOP - 4.0])) }
+                @let place = Place { corner, first_row: index < columns, last_row: index + columns >= self.panels.len() };
+                (self.panel(panel, &place))
+            }
+        };
+        Drawing { width, height: head + rows as f64 * panel_height + TIMES, label: self.title.clone(), body }
+    }
+
+    fn axis(&self, pixels: [f64; 2]) -> Axis {
+        Axis { scale: Scale::Linear, limits: self.span, pixels }
+    }
+
+    fn panel(&self, panel: &Panel, place: &Place) -> Markup {
+        let ([left, top], [width, height]) = (place.corner, self.panel_size);
+        let head = if panel.title.is_empty() { TOP } else { TOP + 20.0 };
+        let plot = Plot {
+            x: self.axis([left + LEFT, left + width - RIGHT]),
+            y: Axis { scale: panel.scale, limits: panel.shown(self.span), pixels: [top + height - BOTTOM, top + head] },
+            x_label: if place.last_row { &self.time_label } else { "" },
+            y_label: &panel.label,
+        };
+        let title = Text { weight: Weight::Bold, anchor: Anchor::Start, ..Text::at([left + LEFT, top + head - 8.0], &panel.title) };
+        let [from, to] = self.span;
+        let curves = html! {
+            @for curve in panel.curves.iter().rev() { (plot.band(&curve.band, curve.colour)) }
+            @for level in &panel.levels { (plot.level(level.value, level.colour, level.line)) }
+            @for curve in panel.curves.iter().rev() { (plot.curve(&curve.points, curve.colour, curve.line)) }
+        };
+        html! {
+            (title.sized(LABEL))
+            (plot.shades(panel.dark.as_ref().unwrap_or(&self.dark)))
+            (plot.axes())
+            @for mark in self.marks.iter().filter(|mark| (from..=to).contains(&mark.time)) {
+                (plot.event(mark.time, if place.first_row && panel.title.is_empty() { 0.25 * MARK_LINE } else { 0.0 }))
+            }
+            (plot.clipped(curves))
+        }
+    }
+
+    fn legend(&self) -> Legend {
+        let mut legend = Legend::default();
+        let curves = || self.panels.iter().flat_map(|panel| &panel.curves);
+        curves().for_each(|curve| legend.push(Swatch::Line(curve.colour, curve.line), &curve.name));
+        for level in self.panels.iter().flat_map(|panel| &panel.levels) {
+            legend.push(Swatch::Line(level.colour, level.line), &level.name);
+        }
+        if let Some(banded) = curves().find(|curve| !curve.band.is_empty()) {
+            legend.push(Swatch::Area(banded.colour), &self.band_name);
+        }
+        let dark = |panel: &Panel| !panel.dark.as_ref().unwrap_or(&self.dark).is_empty();
+        if self.panels.iter().any(dark) {
+            legend.push(Swatch::Dark, "camera dark");
+        }
+        legend
+    }
+}
+
+impl Panel {
+    fn shown(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let within = |time: &f64| (from..=to).contains(time);
+        let points = self.curves.iter().flat_map(|curve| &curve.points).filter(|[time, _]| within(time)).map(|[_, value]| *value);
+        let bands =
+            self.curves.iter().flat_map(|curve| &curve.band).filter(|[time, ..]| within(time)).flat_map(|[_, low, high]| [*low, *high]);
+        let levels = self.levels.iter().map(|level| level.value);
+        self.limits.unwrap_or_else(|| self.scale.limits(points.chain(bands).chain(levels)))
+    }
+}
