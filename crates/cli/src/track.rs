@@ -6,8 +6,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
-use stickslip::Log;
+use stickslip::{Log, quantile};
 use stickslip_formats::write_log;
+use stickslip_report::{Table, number};
 use stickslip_vision::{
     BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera, read_tags, write_poses,
 };
@@ -19,8 +20,6 @@ use crate::frames::FrameFolder;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-use stickslip_report::quantile;
-use stickslip_report::{Table, number};
 
 /// Rows of two logs this close are at the same time (s).
 const SAME_TIME: f64 = 1e-4;
@@ -146,7 +145,7 @@ impl BodySummary {
         let measured: Vec<&Measurement> = seen.iter().filter_map(|s| if let Sighting::Measured(m) = s { Some(m) } else { None }).collect();
         let median = |of: &dyn Fn(&Measurement) -> f64| {
             let numbers: Vec<f64> = measured.iter().map(|m| of(m)).collect();
-            quantile(numbers, 0.5)
+            quantile(&numbers, 0.5)
         };
         let count = |kind: Sighting| seen.iter().filter(|s| **s == kind).count();
         Self {

@@ -148,7 +148,7 @@ fn readers_that_leave_early_do_not_bring_a_command_down() {
         assert_eq!((run.status.code(), talk.contains("panicked")), (Some(code), false), "{arguments:?}: {talk}");
         assert_eq!(unread(stickslip().args(arguments), Errors::Unread).status.code(), Some(code), "{arguments:?}");
     }
-    assert_eq!(fs::read_dir(figures).unwrap().count(), 2, "files are written all the same");
+    assert!(figures.join("report.html").exists(), "files are written all the same");
 }
 
 /// A full disk is a failure, other than a reader that has left.
@@ -226,7 +226,7 @@ fn demo_prints_tables_and_writes_a_report_and_figures() {
     let errors = String::from_utf8(file("stop-square50-bar-000-errors.svg")).unwrap();
     assert!(errors.contains("position error (mm)") && errors.contains("fixel 1") && errors.contains("camera dark"));
     let report = String::from_utf8(file("report.html")).unwrap();
-    assert_eq!(report.matches("class=\"player\"").count(), 2);
+    assert_eq!(report.matches("<section class=\"player\" tabindex").count(), 2);
 }
 
 #[test]

@@ -12,11 +12,21 @@ use crate::newton::{Mode, STIFFNESS};
 /// Relative change of the velocity at which the iteration ends.
 const CONVERGED: f64 = 1e-14;
 
+/// Contacts for which there is room without allocation.
+const ROOM: usize = 16;
+
 /// Newton's method in fixed modes, with its working memory.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Polish<const W: usize> {
     linearised: Linearised<W>,
     modes: Vec<Mode<W>>,
+}
+
+impl<const W: usize> Default for Polish<W> {
+    fn default() -> Self {
+        // room from the start: that it is first needed late must not make a late step allocate
+        Self { linearised: Linearised::default(), modes: Vec::with_capacity(ROOM) }
+    }
 }
 
 impl<const W: usize> Polish<W> {

@@ -125,7 +125,11 @@ impl<const W: usize> Solver<W> {
     pub fn solve(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
         assert!(ncps.len() == p.len() && p.len() == reports.len(), "as many chunks of impulses and reports as of problems");
         self.warm.resize_with(ncps.len().max(self.warm.len()), || Impulses::zero(0));
-        self.left.clear();
+        for places in [&mut self.left, &mut self.kept] {
+            places.clear();
+            // as many as can be left: how many there are changes from step to step, and no step after the first may allocate
+            places.reserve(W * ncps.len());
+        }
         for (chunk, (ncp, p)) in ncps.iter().zip(p.iter_mut()).enumerate() {
             assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
             self.warm[chunk].copy_from(p);

@@ -1,10 +1,9 @@
 //! From estimates to curves: [`pose_errors`], [`friction_panels`], and [`Curve::over_runs`] for many seeds.
 
 use stickslip::dynamics::Friction;
-use stickslip::{Estimate, Reference};
+use stickslip::{Estimate, Reference, quantile};
 
 use crate::colour::{Colour, Line};
-use crate::quantile::quantile;
 use crate::time_figure::{Curve, Level, Panel};
 
 /// Estimate minus reference at one row.
@@ -62,7 +61,7 @@ impl Curve {
         let rows = runs.iter().map(Vec::len).min().unwrap_or(0);
         let at = |row: usize, q: f64| {
             let values: Vec<f64> = runs.iter().map(|run| run[row][1]).collect();
-            if values.iter().all(|value| value.is_finite()) { quantile(values, q).unwrap_or(f64::NAN) } else { f64::NAN }
+            if values.iter().all(|value| value.is_finite()) { quantile(&values, q).unwrap_or(f64::NAN) } else { f64::NAN }
         };
         let time = |row: usize| runs[0][row][0];
         let points = (0..rows).map(|row| [time(row), at(row, 0.5)]).collect();

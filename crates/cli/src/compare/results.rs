@@ -4,12 +4,11 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
-use stickslip::Scores;
+use stickslip::{Scores, quantile};
 
 use crate::args::CompareArgs;
 use crate::contest::Rival;
 use crate::failure::one_line;
-use stickslip_report::quantile;
 
 /// The scores of one run, or their medians over runs.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -123,7 +122,7 @@ impl Marks {
 
     /// The `q`-quantile of each score, and all unsolved steps.
     fn quantile(of: &[Self], q: f64) -> Self {
-        let each = |score: fn(&Self) -> Option<f64>| quantile(of.iter().filter_map(score).collect(), q);
+        let each = |score: fn(&Self) -> Option<f64>| quantile(&of.iter().filter_map(score).collect::<Vec<_>>(), q);
         Self {
             wmse_mm: each(|m| m.wmse_mm),
             wmse_moving_mm: each(|m| m.wmse_moving_mm),

@@ -130,17 +130,13 @@ fn pose_noise(poses: &[Option<Pose>]) -> Option<PoseNoise> {
 }
 
 /// The median; NaN of nothing.
-pub(super) fn median(values: Vec<f64>) -> f64 {
+pub(super) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     quantile(values, 0.5)
 }
 
 /// The `q`-quantile, linear between order statistics: position q (n - 1) from the smallest; NaN of nothing.
-pub(super) fn quantile(mut values: Vec<f64>, q: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let Some(last) = values.len().checked_sub(1) else { return f64::NAN };
-    let position = q * last as f64;
-    let lower = position.floor() as usize;
-    values[lower] + (position - lower as f64) * (values[(lower + 1).min(last)] - values[lower])
+pub(super) fn quantile(values: impl IntoIterator<Item = f64>, q: f64) -> f64 {
+    crate::quantile(&values.into_iter().collect::<Vec<_>>(), q).unwrap_or(f64::NAN)
 }
 
 /// A length in mm, as text.

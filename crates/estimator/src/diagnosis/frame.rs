@@ -43,7 +43,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if gaps.len() < FEWEST {
         return vec![Finding::ok(Subject::Frames, "the object hardly moves while the pusher is there: nothing to tell")];
     }
-    let (off, nearest) = (distance(&gaps), median(gaps.clone()));
+    let (off, nearest) = (distance(&gaps), median(gaps.iter().copied()));
     if off < APART * evidence.size() {
         return vec![Finding::ok(
             Subject::Frames,
@@ -73,7 +73,7 @@ fn swapped_distance(evidence: &Evidence<'_>) -> f64 {
 
 /// How far gaps are from zero, for most rows (m).
 fn distance(gaps: &[f64]) -> f64 {
-    let far = quantile(gaps.iter().map(|gap| gap.abs()).collect(), 0.75);
+    let far = quantile(gaps.iter().map(|gap| gap.abs()), 0.75);
     if far.is_nan() { f64::INFINITY } else { far }
 }
 

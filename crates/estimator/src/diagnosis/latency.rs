@@ -56,7 +56,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 pub(super) fn estimate(evidence: &Evidence<'_>) -> Option<Latency> {
     let time = &evidence.log.time;
     let speeds: Vec<Option<f64>> = (0..time.len()).map(|row| pusher_speed(evidence, row)).collect();
-    let speed = quantile(speeds.iter().flatten().copied().collect(), 0.9);
+    let speed = quantile(speeds.iter().flatten().copied(), 0.9);
     let delays: Vec<f64> = stops(time, &speeds, speed).into_iter().filter_map(|row| delay_at(evidence, row)).collect();
     (!delays.is_empty()).then(|| Latency { stops: delays.len(), delay: median(delays), speed })
 }

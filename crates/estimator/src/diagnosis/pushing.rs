@@ -13,9 +13,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if gaps.len() < FEWEST {
         return vec![Finding::ok(Subject::PushingGap, "too few poses of a moving object to tell")];
     }
-    let (low, middle, high) = (quantile(gaps.clone(), 0.05), median(gaps.clone()), quantile(gaps.clone(), 0.95));
+    let all = || gaps.iter().copied();
+    let (low, middle, high) = (quantile(all(), 0.05), median(all()), quantile(all(), 0.95));
     let third = gaps.len() / 3;
-    let drift = median(gaps[gaps.len() - third..].to_vec()) - median(gaps[..third].to_vec());
+    let drift = median(gaps[gaps.len() - third..].iter().copied()) - median(gaps[..third].iter().copied());
     let found = format!(
         "while the object moves the pusher is {} away (5 to 95 %: {} to {}), drifting by {}",
         mm(middle),

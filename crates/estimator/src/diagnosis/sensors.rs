@@ -86,5 +86,5 @@ fn free_rows(evidence: &Evidence<'_>, sensor: usize, near: f64) -> (usize, usize
 
 /// Median gap of a fixel over `rows` (m).
 fn fixel_distance(evidence: &Evidence<'_>, rows: &[usize], fixel: usize) -> f64 {
-    median(rows.iter().filter_map(|row| evidence.fixel_gap(*row, fixel)).collect())
+    median(rows.iter().filter_map(|row| evidence.fixel_gap(*row, fixel)))
 }

@@ -17,7 +17,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if steps.is_empty() {
         return vec![Finding::problem(Subject::Timing, "the log has a single row", "record one row per camera frame")];
     }
-    let typical = median(steps.clone());
+    let typical = median(steps.iter().copied());
     let (shortest, longest) = (steps.iter().copied().fold(f64::INFINITY, f64::min), steps.iter().copied().fold(0.0, f64::max));
     let holes = steps.iter().filter(|step| **step > HOLE * typical && **step > SHORT).count();
     let rate = format!("{:.1} Hz, steps of {:.1} to {:.1} ms", 1.0 / typical, 1e3 * shortest, 1e3 * longest);
