@@ -5,7 +5,7 @@
 
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, Triple, dot};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, dot};
 
 /// Linear model of one contact: dp_n = n − nn dγ, dp_t = t − tn dγ − tt ds.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +72,7 @@ impl<const W: usize> Default for Linearised<W> {
         let o = Lanes::ZERO;
         Self {
             imbalance: [o; 3],
-            contacts: Vec::new(),
+            contacts: Vec::with_capacity(ROOM),
             feet: [FootStep { r: [o; 2], k: [[o; 2]; 2] }; 3],
             stall: StallStep { slack: o, pusher: Lanes::splat(1.0), rhs: o },
         }

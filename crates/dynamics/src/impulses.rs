@@ -2,7 +2,7 @@
 
 use crate::Twist;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{Ncp, Triple};
+use crate::ncp::{Ncp, ROOM, Triple};
 use crate::problem::{StepProblem, StepSolution};
 
 /// Unknowns of an [`Ncp`], all in m/s.
@@ -23,13 +23,12 @@ pub struct Impulses<const W: usize> {
 impl<const W: usize> Impulses<W> {
     /// No impulse at all on `contacts` contacts, at rest.
     pub fn zero(contacts: usize) -> Self {
-        Self {
-            v: [Lanes::ZERO; 3],
-            normal: vec![Lanes::ZERO; contacts],
-            tangential: vec![Lanes::ZERO; contacts],
-            feet: [[Lanes::ZERO; 2]; 3],
-            pusher_yield: Lanes::ZERO,
-        }
+        let zeros = || {
+            let mut zeros = Vec::with_capacity(contacts.max(ROOM));
+            zeros.resize(contacts, Lanes::ZERO);
+            zeros
+        };
+        Self { v: [Lanes::ZERO; 3], normal: zeros(), tangential: zeros(), feet: [[Lanes::ZERO; 2]; 3], pusher_yield: Lanes::ZERO }
     }
 
     /// Makes room for `contacts` contacts; new entries are zero.

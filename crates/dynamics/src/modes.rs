@@ -29,7 +29,11 @@ const SLACK: f64 = 1e-9;
 /// Pieces of a line or curve that may be looked at before it counts as unclear: in a first and a second round.
 const PIECES: [usize; 2] = [2_000, 50_000];
 
-/// Candidates of one line or curve that are polished; its pieces differ little, so that more would not help.
+/// Widths of pieces below which candidates are polished [m/s, relative where above 1]: where an object creeps, only the middle of a
+/// narrow piece is near the solution.
+const WIDTHS: [f64; 3] = [1e-5, 1e-8, 1e-11];
+
+/// Candidates of one line or curve that are polished at each of these; its pieces differ little, so that more would not help.
 const ATTEMPTS: u32 = 6;
 
 /// An extreme direction of a friction cone (`sign` = ±1 or 0 where μ = 0), or the stall pair (`contact` = None).
@@ -352,7 +356,7 @@ impl Search {
     fn bisect(&self, whole: (f64, f64), examine: &mut dyn FnMut(f64, f64) -> Piece, accept: &mut dyn FnMut(&Guess) -> bool) -> Finding {
         let mut stack = vec![whole];
         let mut unclear = false;
-        let mut attempts = ATTEMPTS;
+        let mut attempts = [ATTEMPTS; WIDTHS.len()];
         let mut budget = self.pieces;
         while let Some((low, high)) = stack.pop() {
             if budget == 0 {
@@ -361,8 +365,11 @@ impl Search {
             budget -= 1;
             let Piece::Candidate(guess) = examine(low, high) else { continue };
             let width = (high - low) / (1.0 + low.abs().max(high.abs()));
-            if width < 1e-5 && attempts > 0 {
-                attempts -= 1;
+            let narrowest = WIDTHS.iter().rposition(|limit| width < *limit);
+            if let Some(left) = narrowest.map(|k| &mut attempts[k])
+                && *left > 0
+            {
+                *left -= 1;
                 if accept(&guess) {
                     return Finding::Solved;
                 }

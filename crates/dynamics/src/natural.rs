@@ -5,7 +5,7 @@
 
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, Triple, worse};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, worse};
 
 /// Smallest excess of |p − s| over a foot's bound that counts, as a share of the bound.
 const LEAST_EXCESS: f64 = 1e-6;
@@ -52,7 +52,7 @@ impl<const W: usize> Default for NaturalMap<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
         let foot = FootMap { slip: [o; 2], sliding: Mask::splat(false), direction: [o; 2], across: o };
-        Self { imbalance: [o; 3], feet: [foot; 3], contacts: Vec::new(), slack: o }
+        Self { imbalance: [o; 3], feet: [foot; 3], contacts: Vec::with_capacity(ROOM), slack: o }
     }
 }
 

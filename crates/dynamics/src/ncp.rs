@@ -59,6 +59,10 @@ pub struct ContactRow<const W: usize> {
     pub mu: Lanes<W>,
 }
 
+/// Contacts for which working memory has room from the start: a part of it that is first needed late must not make a late step
+/// allocate.
+pub(crate) const ROOM: usize = 16;
+
 /// `W` mixed NCPs with equally many contact rows (rows that a particle does not need are [`ContactRow::OPEN`]).
 #[derive(Clone, Debug)]
 pub struct Ncp<const W: usize> {
@@ -166,7 +170,8 @@ impl<const W: usize> Ncp<W> {
     /// No contact, no friction, at rest; a workspace to fill.
     pub fn empty() -> Self {
         let foot = FootRow { jx: Lanes::ZERO, jy: Lanes::ZERO, bound: Lanes::ZERO };
-        Self { free: [Lanes::ZERO; 3], feet: [foot; 3], contacts: Vec::new(), stall: Lanes::splat(f64::INFINITY), compliance: Lanes::ZERO }
+        let contacts = Vec::with_capacity(ROOM);
+        Self { free: [Lanes::ZERO; 3], feet: [foot; 3], contacts, stall: Lanes::splat(f64::INFINITY), compliance: Lanes::ZERO }
     }
 
     /// The largest speed that appears in a problem (m/s); its natural scale.

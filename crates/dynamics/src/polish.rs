@@ -6,14 +6,11 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, Triple};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple};
 use crate::newton::{Mode, STIFFNESS};
 
 /// Relative change of the velocity at which the iteration ends.
 const CONVERGED: f64 = 1e-14;
-
-/// Contacts for which there is room without allocation.
-const ROOM: usize = 16;
 
 /// Newton's method in fixed modes, with its working memory.
 #[derive(Clone, Debug)]
@@ -24,7 +21,6 @@ pub struct Polish<const W: usize> {
 
 impl<const W: usize> Default for Polish<W> {
     fn default() -> Self {
-        // room from the start: that it is first needed late must not make a late step allocate
         Self { linearised: Linearised::default(), modes: Vec::with_capacity(ROOM) }
     }
 }

@@ -7,7 +7,7 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::ncp::{ContactRow, FootRow, Ncp, worse};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, worse};
 
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;
@@ -50,7 +50,7 @@ impl<const W: usize> Default for SmoothedMap<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
         let foot = SmoothedFoot { slip: [o; 2], inverse: o };
-        Self { epsilon: o, feet: [foot; 3], contacts: Vec::new(), stall: SmoothedPair { difference: o, root: o, value: o } }
+        Self { epsilon: o, feet: [foot; 3], contacts: Vec::with_capacity(ROOM), stall: SmoothedPair { difference: o, root: o, value: o } }
     }
 }
 
