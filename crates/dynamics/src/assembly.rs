@@ -67,6 +67,8 @@ struct Other<'a, const W: usize> {
     motion: Option<&'a PusherMotion>,
     /// Direction in which it may give way.
     direction: [f64; 2],
+    /// Commanded speed along it from where the body stands to its pose (m/s).
+    catch_up: Lanes<W>,
 }
 
 impl<const W: usize> Assembly<W> {
@@ -111,12 +113,13 @@ impl<const W: usize> Assembly<W> {
         if let Some(motion) = &input.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
             let (frame, mu) = (Frame::new(motion.pose), particles.friction[1]);
-            let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction };
+            let catch_up = particles.pusher_lag / input.h;
+            let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction, catch_up };
             self.meet(scene, &object, &pusher, narrow, ncp);
         }
         for (j, Fixel { shape, pose }) in scene.fixels.iter().enumerate() {
             let (frame, mu) = (Frame::new(*pose), particles.friction[2]);
-            let fixel = Other { body: Body::Fixel(j), shape, frame, mu, motion: None, direction: [0.0; 2] };
+            let fixel = Other { body: Body::Fixel(j), shape, frame, mu, motion: None, direction: [0.0; 2], catch_up: Lanes::ZERO };
             self.meet(scene, &object, &fixel, narrow, ncp);
         }
     }
@@ -169,14 +172,16 @@ impl<const W: usize> Assembly<W> {
             [arm[1] * -omega + vx, arm[0] * omega + vy]
         });
         let d = other.direction;
+        let (nd, td) = (nx * d[0] + ny * d[1], nx * d[1] - ny * d[0]);
         let keep = |value: Lanes<W>| present.keep(value);
         ContactRow {
             n: [keep(nx), keep(ny), keep((x * ny - y * nx) / rho)],
             t: [keep(-ny), keep(nx), keep((x * nx + y * ny) / rho)],
             gap: present.select(gap / self.setting.h - (nx * u[0] + ny * u[1]), ContactRow::<W>::OPEN.gap),
-            slip: keep(ny * u[0] - nx * u[1]),
-            nd: keep(nx * d[0] + ny * d[1]),
-            td: keep(nx * d[1] - ny * d[0]),
+            // the way back to the pose lies in the gap already
+            slip: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
+            nd: keep(nd),
+            td: keep(td),
             mu: keep(other.mu),
         }
     }
@@ -211,6 +216,7 @@ impl<const W: usize> Assembly<W> {
             *to = *from;
         }
         warm[6] = p.pusher_yield;
+        particles.pusher_lag = p.pusher_yield * self.setting.h;
         warm[FIRST_CONTACT..].fill(Lanes::ZERO);
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {

@@ -16,6 +16,9 @@ pub struct Particle {
     pub twist: Twist,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
+    /// How far the pusher stands behind its pose, against its direction, since it gave way in the step before (m); 0 where its pose is
+    /// where it stands.
+    pub pusher_lag: f64,
     /// Impulses of the step before.
     pub warm: WarmStart,
 }
@@ -64,6 +67,8 @@ pub struct Particles<const W: usize> {
     pub applied: [Lanes<W>; 3],
     /// μ_s, μ_p, μ_f, d_tri (m).
     pub friction: [Lanes<W>; 4],
+    /// How far the pusher stands behind its pose (m).
+    pub pusher_lag: Lanes<W>,
     /// Impulses of the step before, in the order of [`WarmStart::to_array`].
     pub warm: [Lanes<W>; WarmStart::LEN],
 }
@@ -71,7 +76,7 @@ pub struct Particles<const W: usize> {
 impl<const W: usize> Default for Particles<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
-        Self { pose: [o; 3], twist: [o; 3], applied: [o; 3], friction: [o; 4], warm: [o; WarmStart::LEN] }
+        Self { pose: [o; 3], twist: [o; 3], applied: [o; 3], friction: [o; 4], pusher_lag: o, warm: [o; WarmStart::LEN] }
     }
 }
 
@@ -83,11 +88,12 @@ fn set_lane<const W: usize, const N: usize>(to: &mut [Lanes<W>; N], lane: usize,
 impl<const W: usize> Particles<W> {
     /// Overwrites one lane.
     pub fn set(&mut self, lane: usize, particle: &Particle, friction: &Friction) {
-        let Particle { pose, twist, applied, warm } = particle;
+        let Particle { pose, twist, applied, pusher_lag, warm } = particle;
         set_lane(&mut self.pose, lane, [pose.x, pose.y, pose.theta]);
         set_lane(&mut self.twist, lane, [twist.vx, twist.vy, twist.omega]);
         set_lane(&mut self.applied, lane, [applied.fx, applied.fy, applied.torque]);
         set_lane(&mut self.friction, lane, [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri]);
+        self.pusher_lag.0[lane] = *pusher_lag;
         set_lane(&mut self.warm, lane, warm.to_array());
     }
 
@@ -100,6 +106,7 @@ impl<const W: usize> Particles<W> {
             pose: Pose { x, y, theta },
             twist: Twist { vx, vy, omega },
             applied: Wrench { fx, fy, torque },
+            pusher_lag: self.pusher_lag.0[lane],
             warm: WarmStart::from_array(&self.warm.map(|x| x.0[lane])),
         }
     }

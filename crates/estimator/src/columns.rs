@@ -23,8 +23,10 @@ impl Columns {
     pub const UNSOLVED: usize = 11;
     /// 1 where nothing drove the particle in its last step: the pusher stands, or the particle is at rest and out of its way.
     pub const IDLE: usize = 12;
+    /// How far the pusher stands behind its pose (m).
+    pub const PUSHER_LAG: usize = 13;
     /// First column of the warm start.
-    pub const WARM_START: usize = 13;
+    pub const WARM_START: usize = 14;
 
     /// For `fixels` fixels and `history` past poses.
     pub fn new(fixels: usize, history: usize) -> Self {

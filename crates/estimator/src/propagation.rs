@@ -115,6 +115,7 @@ impl Propagation {
             load_columns(block, Columns::POSE, chunk, &mut particles.pose);
             load_columns(block, Columns::TWIST, chunk, &mut particles.twist);
             load_columns(block, Columns::FRICTION, chunk, &mut particles.friction);
+            load_columns(block, Columns::PUSHER_LAG, chunk, std::array::from_mut(&mut particles.pusher_lag));
             load_columns(block, Columns::WARM_START, chunk, &mut particles.warm);
             self.touched[chunk] = Touched::NOTHING;
             if drawn {
@@ -190,6 +191,7 @@ impl Propagation {
             let (particles, touched) = (&self.particles[chunk], &self.touched[chunk]);
             store_columns(block, Columns::POSE, chunk, &particles.pose);
             store_columns(block, Columns::TWIST, chunk, &particles.twist);
+            store_columns(block, Columns::PUSHER_LAG, chunk, &[particles.pusher_lag]);
             store_columns(block, Columns::WARM_START, chunk, &particles.warm);
             let took_part = [touched.moved, touched.pusher, touched.fixel, touched.moved];
             for (k, took_part) in took_part.into_iter().enumerate() {

@@ -35,6 +35,8 @@ impl Model {
             let short = work.solution(0).pusher_yield;
             let moved = Twist { vx: twist.vx - short * direction[0], vy: twist.vy - short * direction[1], ..twist };
             pusher = pusher.advance(moved, h);
+            // it stands where it is said to be
+            object.pusher_lag = 0.0;
             frames.push(frame(trial, k, &object, pusher, contacts(&work, object.pose, h)));
         }
         self.touch.feel(&mut frames, trial);
