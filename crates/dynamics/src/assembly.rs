@@ -186,7 +186,7 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// The impulses and twists that the particles remember.
+    /// The impulses and twists that the particles remember, as a start.
     #[inline(always)]
     pub fn load_warm_start(&self, scene: &Scene, particles: &Particles<W>, p: &mut Impulses<W>) {
         let [vx, vy, omega] = particles.twist;
@@ -208,7 +208,7 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// Remembers the impulses; of the contacts the first [`REMEMBERED`] that press.
+    /// Remembers the impulses, of the contacts the first [`REMEMBERED`] that press, and where the pusher stands.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Impulses<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;

@@ -69,6 +69,8 @@ pub struct ContactModel<'w> {
     pub(crate) dynamics: Dynamics,
     pub(crate) setup: Setup,
     camera: Camera,
+    /// log-probability of a reading, by whether the particle touches and by what was read.
+    reading: [[f64; 2]; 2],
     start: Pose,
     pub(crate) columns: Columns,
     pub(crate) watch: Option<&'w dyn StepWatch>,
@@ -78,7 +80,9 @@ impl<'w> ContactModel<'w> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
     pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
         let columns = Columns::new(setup.scene.fixels.len(), history);
-        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, start, columns, watch: None }
+        let (missed, invented) = (setup.tactile.false_negative, setup.tactile.false_positive);
+        let reading = [[1.0 - invented, invented], [missed, 1.0 - missed]].map(|row| row.map(libm::log));
+        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, reading, start, columns, watch: None }
     }
 
     /// The same, with a `watch` that is shown every step solved.
@@ -135,17 +139,7 @@ impl<'w> ContactModel<'w> {
 
     fn readings_log_probability(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> bool) -> f64 {
         let sensors = readings.iter().enumerate().filter_map(|(j, reading)| reading.map(|r| (j, r)));
-        sensors.map(|(j, reading)| self.reading_log_probability(reading, touches(j))).sum()
-    }
-
-    fn reading_log_probability(&self, reading: bool, touches: bool) -> f64 {
-        let tactile = &self.setup.tactile;
-        libm::log(match (touches, reading) {
-            (true, true) => 1.0 - tactile.false_negative,
-            (true, false) => tactile.false_negative,
-            (false, true) => tactile.false_positive,
-            (false, false) => 1.0 - tactile.false_positive,
-        })
+        sensors.map(|(j, reading)| self.reading[usize::from(touches(j))][usize::from(reading)]).sum()
     }
 }
 

@@ -14,6 +14,7 @@ pub(crate) fn simulate(setup: &Setup, prepared: &Prepared<'_>, progress: &mut dy
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[prepared.first] = row(&particle, None, 0);
     for k in prepared.first..prepared.log.len() - 1 {
+        particle.pusher_lag = particle.pusher_lag.min(setup.most_pusher_lag());
         let unsolved = advance(&dynamics, prepared, k, &mut particle, &mut work);
         let touch = touch_flags(setup, &work, prepared.schedule.step(k).last().map_or(0.0, |s| s.h));
         estimate.rows[k + 1] = row(&particle, Some(touch), u32::from(unsolved));

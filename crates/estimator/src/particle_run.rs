@@ -92,22 +92,20 @@ fn reported(row: EstimateRow, report: &StepReport, visual: bool) -> EstimateRow 
 fn summary(filter: &ParticleFilter<ContactModel<'_>>, setup: &Setup, near: f64) -> EstimateRow {
     let layout = filter.model().layout();
     let mean = |column: usize| filter.weighted_mean(column);
-    let std = |column: usize| filter.weighted_std(column);
-    let friction = |of: &dyn Fn(usize) -> f64| {
-        let [mu_s, mu_p, mu_f, d_tri] = [0, 1, 2, 3].map(|k| of(Columns::FRICTION + k));
-        Friction { mu_s, mu_p, mu_f, d_tri }
-    };
-    let theta = unwrapped(filter.weighted_circular_mean(Columns::POSE + 2), near);
+    let std = |mean: f64, column: usize| filter.weighted_std_about(mean, column);
+    let (x, y, angle) = (mean(Columns::POSE), mean(Columns::POSE + 1), filter.weighted_circular_mean(Columns::POSE + 2));
+    let frictions = [0, 1, 2, 3].map(|k| mean(Columns::FRICTION + k));
+    let friction = |[mu_s, mu_p, mu_f, d_tri]: [f64; 4]| Friction { mu_s, mu_p, mu_f, d_tri };
     let unsolved: f64 = filter.particles().column(Columns::UNSOLVED).sum();
     EstimateRow {
-        pose: Some(Pose::new(mean(Columns::POSE), mean(Columns::POSE + 1), theta)),
+        pose: Some(Pose::new(x, y, unwrapped(angle, near))),
         twist: Some(Twist { vx: mean(Columns::TWIST), vy: mean(Columns::TWIST + 1), omega: mean(Columns::TWIST + 2) }),
-        friction: Some(friction(&mean)),
+        friction: Some(friction(frictions)),
         contact_pusher: Some(mean(Columns::CONTACT_PUSHER)),
         contact_fixels: Some((0..setup.scene.fixels.len()).map(|j| mean(layout.contact_fixel(j))).collect()),
         spread: Some(Spread {
-            pose: Pose::new(std(Columns::POSE), std(Columns::POSE + 1), filter.weighted_circular_std(Columns::POSE + 2)),
-            friction: Some(friction(&std)),
+            pose: Pose::new(std(x, Columns::POSE), std(y, Columns::POSE + 1), filter.weighted_circular_std_about(angle, Columns::POSE + 2)),
+            friction: Some(friction([0, 1, 2, 3].map(|k| std(frictions[k], Columns::FRICTION + k)))),
         }),
         unsolved: Some(unsolved as u32),
         ess: Some(filter.weights().effective_sample_size()),

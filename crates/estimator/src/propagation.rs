@@ -25,7 +25,7 @@ const FORCE_PAIR: u32 = 2;
 
 type Column = Lanes<LANES>;
 
-/// Working memory of one block.
+/// Working memory for the particles of one block.
 #[derive(Debug)]
 pub struct Propagation {
     work: StepWork<LANES>,
@@ -107,6 +107,7 @@ impl Propagation {
             self.draw_normals(draw, 0, block);
         }
         let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let most_lag = Lanes::splat(model.setup.most_pusher_lag());
         let settings = &model.setup.filter;
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();
         let limits = [&settings.mu_s, &settings.mu_p, &settings.mu_f, &settings.d_tri];
@@ -116,6 +117,7 @@ impl Propagation {
             load_columns(block, Columns::TWIST, chunk, &mut particles.twist);
             load_columns(block, Columns::FRICTION, chunk, &mut particles.friction);
             load_columns(block, Columns::PUSHER_LAG, chunk, std::array::from_mut(&mut particles.pusher_lag));
+            particles.pusher_lag = particles.pusher_lag.min(most_lag);
             load_columns(block, Columns::WARM_START, chunk, &mut particles.warm);
             self.touched[chunk] = Touched::NOTHING;
             if drawn {

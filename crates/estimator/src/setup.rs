@@ -79,6 +79,9 @@ impl Default for FilterSettings {
     }
 }
 
+/// Standard deviations of a logged pusher position within which the pusher stands.
+const PUSHER_SIGMAS: f64 = 3.0;
+
 /// A scene with its sensors and filter settings.
 #[derive(Clone, Debug)]
 pub struct Setup {
@@ -95,6 +98,12 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`] standard deviations of that pose. What
+    /// stood farther behind the log contradicts: it is dragged to that distance.
+    pub(crate) fn most_pusher_lag(&self) -> f64 {
+        PUSHER_SIGMAS * self.camera.map_or(0.0, |camera| camera.pusher_position_std)
+    }
+
     /// r_v, the weight of an angle in the scores, where no other is given: the object's radius of gyration (m).
     pub fn virtual_radius(&self) -> f64 {
         self.scene.object.gyration_radius()

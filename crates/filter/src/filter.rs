@@ -1,6 +1,7 @@
 //! The particle filter: sampling, importance weighting, resampling (Gordon, Salmond & Smith 1993; Doucet & Johansen
 //! 2009, algorithm "SMC" with adaptive resampling), over any [`Model`].
 
+use crate::parallel::PerThread;
 use crate::{Block, Draw, LogWeights, Model, ParticleSet, Purpose, Resampling, Streams};
 
 /// How a filter runs.
@@ -99,8 +100,7 @@ pub struct ParticleFilter<M: Model> {
     step: u64,
     particles: ParticleSet,
     weights: LogWeights,
-    /// Working memory of each block.
-    scratch: Vec<M::Scratch>,
+    scratch: PerThread<M::Scratch>,
     log_likelihood: Vec<f64>,
     redrawn_log_likelihood: Vec<f64>,
     ancestors: Vec<u32>,
@@ -118,7 +118,7 @@ impl<M: Model> ParticleFilter<M> {
             streams: Streams::new(settings.seed),
             step: 0,
             weights: LogWeights::equal(settings.particles),
-            scratch: (0..particles.block_count()).map(|_| model.scratch()).collect(),
+            scratch: PerThread::new(|| model.scratch()),
             log_likelihood: vec![0.0; settings.particles],
             redrawn_log_likelihood: vec![0.0; settings.particles],
             ancestors: vec![0; settings.particles],
@@ -151,12 +151,12 @@ impl<M: Model> ParticleFilter<M> {
 
     fn initialise(&mut self) {
         let (model, draw) = (&self.model, self.draw(Purpose::Initialise));
-        self.particles.for_each_block(&mut self.scratch, |block, _| model.initialise(draw, block));
+        self.particles.for_each_block(|block| model.initialise(draw, block));
     }
 
     fn propagate(&mut self, input: &M::Input) {
-        let (model, draw) = (&self.model, self.draw(Purpose::Propagate));
-        self.particles.for_each_block(&mut self.scratch, |block, scratch| model.propagate(input, draw, block, scratch));
+        let (model, scratch, draw) = (&self.model, &self.scratch, self.draw(Purpose::Propagate));
+        self.particles.for_each_block(|block| scratch.lend(|scratch| model.propagate(input, draw, block, scratch)));
     }
 
     fn weigh(&mut self, observation: &M::Observation) -> Weighing {
@@ -182,7 +182,7 @@ impl<M: Model> ParticleFilter<M> {
     fn recover(&mut self, observation: &M::Observation) {
         self.resample(Purpose::Recover);
         let (model, draw) = (&self.model, self.draw(Purpose::Redraw));
-        self.particles.for_each_block(&mut self.scratch, |block, _| model.redraw(observation, draw, block));
+        self.particles.for_each_block(|block| model.redraw(observation, draw, block));
     }
 
     fn resample(&mut self, purpose: Purpose) {

@@ -12,14 +12,14 @@ pub trait Model: Sync {
     type Input: Sync + ?Sized;
     /// One observation.
     type Observation: Sync + ?Sized;
-    /// Working memory of one block, made once. It may remember nothing that a result depends on: resampling
-    /// moves particles between blocks. What belongs to a particle is a column.
+    /// Working memory of one thread, made once. It may remember nothing that a result depends on: a thread takes up
+    /// any block. What belongs to a particle is a column.
     type Scratch: Send;
 
     /// The number of columns, at least 1.
     fn columns(&self) -> usize;
 
-    /// The working memory of one block.
+    /// The working memory of one thread.
     fn scratch(&self) -> Self::Scratch;
 
     /// Draws the particles at the start. All columns are zero before.

@@ -4,10 +4,13 @@ use std::f64::consts::{PI, TAU};
 
 use crate::{Model, ParticleFilter};
 
+/// Sums that run side by side.
+const PARTIAL: usize = 8;
+
 impl<M: Model> ParticleFilter<M> {
     /// `sum w_i f(x_i)` over one column.
     pub fn expectation(&self, column: usize, f: impl Fn(f64) -> f64 + Sync) -> f64 {
-        self.reduce(|block, weights| block.column(column).iter().zip(weights).fold(0.0, |sum, (&x, w)| sum + w * f(x)), |a, b| a + b)
+        self.reduce(|block, weights| weighted_sum(block.column(column), weights, &f), |a, b| a + b)
     }
 
     /// The weighted mean of a column.
@@ -17,7 +20,11 @@ impl<M: Model> ParticleFilter<M> {
 
     /// The weighted standard deviation of a column about its mean.
     pub fn weighted_std(&self, column: usize) -> f64 {
-        let mean = self.weighted_mean(column);
+        self.weighted_std_about(self.weighted_mean(column), column)
+    }
+
+    /// The weighted root mean square of a column about `mean`.
+    pub fn weighted_std_about(&self, mean: f64, column: usize) -> f64 {
         self.expectation(column, |x| (x - mean) * (x - mean)).sqrt()
     }
 
@@ -39,13 +46,28 @@ impl<M: Model> ParticleFilter<M> {
     /// The weighted root mean square of a column of angles \[rad\] about their mean direction, differenced on the
     /// circle.
     pub fn weighted_circular_std(&self, column: usize) -> f64 {
-        let mean = self.weighted_circular_mean(column);
+        self.weighted_circular_std_about(self.weighted_circular_mean(column), column)
+    }
+
+    /// The weighted root mean square of a column of angles \[rad\] about `mean`, differenced on the circle.
+    pub fn weighted_circular_std_about(&self, mean: f64, column: usize) -> f64 {
         self.expectation(column, |angle| {
             let difference = wrap(angle - mean);
             difference * difference
         })
         .sqrt()
     }
+}
+
+/// `sum w_i f(x_i)` in [`PARTIAL`] partial sums: one would wait for every addition.
+fn weighted_sum(x: &[f64], weights: &[f64], f: &impl Fn(f64) -> f64) -> f64 {
+    let mut partial = [0.0; PARTIAL];
+    for (x, weights) in x.chunks(PARTIAL).zip(weights.chunks(PARTIAL)) {
+        for ((sum, &x), w) in partial.iter_mut().zip(x).zip(weights) {
+            *sum += w * f(x);
+        }
+    }
+    partial.iter().sum()
 }
 
 /// The angle in [-pi, pi] that equals `angle` on the circle.

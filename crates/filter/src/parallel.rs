@@ -1,6 +1,7 @@
 //! Loops over equal chunks and sums over one fixed tree: the same bits on any number of threads.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
@@ -12,22 +13,26 @@ pub(crate) fn shared(tasks: usize) -> bool {
     tasks > 1 && rayon::current_num_threads() > 1
 }
 
-/// Runs `body(index, chunk, item)` over `chunk`-sized pieces of `data` (the last may be short), each with its item.
-pub(crate) fn for_each_chunk<T: Send, E: Send>(
-    data: &mut [T],
-    chunk: usize,
-    items: &mut [E],
-    body: impl Fn(usize, &mut [T], &mut E) + Sync,
-) {
-    assert_eq!(data.len().div_ceil(chunk), items.len());
-    if shared(items.len()) {
-        data.par_chunks_mut(chunk).zip(items).enumerate().for_each(|(i, (c, e))| body(i, c, e));
-    } else {
-        data.chunks_mut(chunk).zip(items).enumerate().for_each(|(i, (c, e))| body(i, c, e));
+/// Working memory for the threads of a pool, one piece each.
+pub(crate) struct PerThread<S> {
+    pieces: Vec<Mutex<S>>,
+}
+
+impl<S> PerThread<S> {
+    /// As many pieces as the current pool has threads.
+    pub fn new(make: impl Fn() -> S) -> Self {
+        Self { pieces: (0..rayon::current_num_threads()).map(|_| Mutex::new(make())).collect() }
+    }
+
+    /// Lends the thread's piece to `body`, which must not wait for other tasks: its thread might take one up that needs the piece.
+    pub fn lend<T>(&self, body: impl FnOnce(&mut S) -> T) -> T {
+        let thread = rayon::current_thread_index().unwrap_or(0);
+        let piece = &self.pieces[thread % self.pieces.len()];
+        body(&mut piece.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-/// Runs `body(index, chunk)` over `chunk`-sized pieces of `data`; each thread takes at least `grain` of them.
+/// Runs `body(index, chunk)` over `chunk`-sized pieces of `data` (the last may be short); each thread takes at least `grain` of them.
 pub(crate) fn for_each<T: Send>(data: &mut [T], chunk: usize, grain: usize, body: impl Fn(usize, &mut [T]) + Sync) {
     if shared(data.len().div_ceil(chunk).div_ceil(grain)) {
         data.par_chunks_mut(chunk).with_min_len(grain).enumerate().for_each(|(i, c)| body(i, c));

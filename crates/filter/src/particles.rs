@@ -69,11 +69,11 @@ impl ParticleSet {
         self.block(particle / BLOCK).column(column)[particle % BLOCK]
     }
 
-    /// Runs `body` on every block with the block's own `scratch` (one per block), in parallel where threads allow.
-    pub fn for_each_block<S: Send>(&mut self, scratch: &mut [S], body: impl Fn(&mut BlockMut<'_>, &mut S) + Sync) {
+    /// Runs `body` on every block, in parallel where threads allow.
+    pub fn for_each_block(&mut self, body: impl Fn(&mut BlockMut<'_>) + Sync) {
         let particles = self.particles;
-        parallel::for_each_chunk(&mut self.data, self.columns * BLOCK, scratch, |index, data, scratch| {
-            body(&mut BlockMut { data, span: Span::of(index, particles) }, scratch);
+        parallel::for_each(&mut self.data, self.columns * BLOCK, 1, |index, data| {
+            body(&mut BlockMut { data, span: Span::of(index, particles) });
         });
     }
 

@@ -7,8 +7,7 @@ mod common;
 /// Particle i's column c is 1000 c + i.
 fn numbered(particles: usize, columns: usize) -> ParticleSet {
     let mut set = ParticleSet::zeros(particles, columns);
-    let mut scratch = vec![(); set.block_count()];
-    set.for_each_block(&mut scratch, |block, ()| {
+    set.for_each_block(|block| {
         let first = block.first_particle() as usize;
         for (c, column) in block.all_columns_mut().enumerate() {
             for (lane, x) in column.iter_mut().enumerate() {
@@ -47,8 +46,7 @@ fn gather_copies_whole_particles() {
 #[test]
 fn columns_mut_lends_different_columns_in_the_order_asked() {
     let mut set = numbered(BLOCK + 3, 4);
-    let mut scratch = vec![(); set.block_count()];
-    set.for_each_block(&mut scratch, |block, ()| {
+    set.for_each_block(|block| {
         let [c, a] = block.columns_mut([3, 1]);
         assert_eq!(c.len(), a.len());
         a.copy_from_slice(c);
@@ -59,7 +57,7 @@ fn columns_mut_lends_different_columns_in_the_order_asked() {
 #[test]
 #[should_panic(expected = "columns [1, 1]")]
 fn columns_mut_with_a_column_twice_panics() {
-    numbered(3, 2).for_each_block(&mut [()], |block, ()| {
+    numbered(3, 2).for_each_block(|block| {
         let _ = block.columns_mut([1, 1]);
     });
 }

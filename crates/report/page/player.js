@@ -288,8 +288,8 @@ class Player {
     const [x, y] = [this.data.truth.x[row], this.data.truth.y[row]];
     const near = this.find(".view").value === "near" && x !== null;
     const [, , width, height] = this.data.view;
-    const size = 3 * this.data.reach;
-    const scale = size / Math.min(width, height);
+    const size = 2.4 * this.data.reach;
+    const scale = Math.min(1, size / Math.min(width, height));
     const [w, h] = [width * scale, height * scale];
     this.svg.setAttribute("viewBox", near ? `${x / 100 - w / 2} ${-y / 100 - h / 2} ${w} ${h}` : this.whole);
     this.find(".scale").style.display = near ? "none" : "";
