@@ -34,7 +34,9 @@ fn page() -> String {
 /// What Chromium prints, or the screenshot that it makes, at a width (px).
 fn chromium(page: &Path, width: u32, what: &str) -> String {
     let program = std::env::var("STICKSLIP_CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
-    let profile = format!("--user-data-dir={}", folder().join(format!("profile-{width}")).display());
+    // browsers that run at the same time may not share a profile
+    let name = page.file_stem().unwrap().display();
+    let profile = format!("--user-data-dir={}", folder().join(format!("profile-{name}-{width}")).display());
     let size = format!("--window-size={width},1600");
     let fixed = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--virtual-time-budget=8000"];
     let run = Command::new("timeout")
