@@ -4,7 +4,9 @@
 mod common;
 
 use common::{FRAME, Rng, at, disc, fixel, pushing, square, square_scene, step};
-use stickslip_dynamics::{Dynamics, Feet, Friction, Object, Outcome, Particle, Pose, Pusher, PusherMotion, Scene, StepInput, StepWork, Twist};
+use stickslip_dynamics::{
+    Dynamics, Feet, Friction, Object, Outcome, Particle, Pose, Pusher, PusherMotion, Scene, StepInput, StepWork, Twist,
+};
 
 /// A plate of 60 mm x 45 mm between a round thumb and a fixel; the line through the two contacts is within both friction cones.
 fn squeezed() -> (Scene, Particle) {

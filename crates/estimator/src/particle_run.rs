@@ -91,21 +91,24 @@ fn reported(row: EstimateRow, report: &StepReport, visual: bool) -> EstimateRow 
 /// Weighted means and standard deviations of the particle set; θ is unwrapped from `near`.
 fn summary(filter: &ParticleFilter<ContactModel<'_>>, setup: &Setup, near: f64) -> EstimateRow {
     let layout = filter.model().layout();
-    let mean = |column: usize| filter.weighted_mean(column);
-    let std = |mean: f64, column: usize| filter.weighted_std_about(mean, column);
-    let (x, y, angle) = (mean(Columns::POSE), mean(Columns::POSE + 1), filter.weighted_circular_mean(Columns::POSE + 2));
-    let frictions = [0, 1, 2, 3].map(|k| mean(Columns::FRICTION + k));
-    let friction = |[mu_s, mu_p, mu_f, d_tri]: [f64; 4]| Friction { mu_s, mu_p, mu_f, d_tri };
-    let unsolved: f64 = filter.particles().column(Columns::UNSOLVED).sum();
+    const SPREAD: [usize; 6] =
+        [Columns::POSE, Columns::POSE + 1, Columns::FRICTION, Columns::FRICTION + 1, Columns::FRICTION + 2, Columns::FRICTION + 3];
+    const OTHERS: [usize; 4] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST + 2, Columns::CONTACT_PUSHER];
+    let means = filter.weighted_means(&SPREAD);
+    let stds = filter.weighted_stds_about(&means, &SPREAD);
+    let [vx, vy, omega, contact_pusher] = filter.weighted_means(&OTHERS);
+    let angle = filter.weighted_circular_mean(Columns::POSE + 2);
+    let friction = |[_, _, mu_s, mu_p, mu_f, d_tri]: [f64; 6]| Friction { mu_s, mu_p, mu_f, d_tri };
+    let unsolved = filter.particles().reduce(|block| block.column(Columns::UNSOLVED).iter().sum::<f64>(), |a, b| a + b);
     EstimateRow {
-        pose: Some(Pose::new(x, y, unwrapped(angle, near))),
-        twist: Some(Twist { vx: mean(Columns::TWIST), vy: mean(Columns::TWIST + 1), omega: mean(Columns::TWIST + 2) }),
-        friction: Some(friction(frictions)),
-        contact_pusher: Some(mean(Columns::CONTACT_PUSHER)),
-        contact_fixels: Some((0..setup.scene.fixels.len()).map(|j| mean(layout.contact_fixel(j))).collect()),
+        pose: Some(Pose::new(means[0], means[1], unwrapped(angle, near))),
+        twist: Some(Twist { vx, vy, omega }),
+        friction: Some(friction(means)),
+        contact_pusher: Some(contact_pusher),
+        contact_fixels: Some((0..setup.scene.fixels.len()).map(|j| filter.weighted_mean(layout.contact_fixel(j))).collect()),
         spread: Some(Spread {
-            pose: Pose::new(std(x, Columns::POSE), std(y, Columns::POSE + 1), filter.weighted_circular_std_about(angle, Columns::POSE + 2)),
-            friction: Some(friction([0, 1, 2, 3].map(|k| std(frictions[k], Columns::FRICTION + k)))),
+            pose: Pose::new(stds[0], stds[1], filter.weighted_circular_std_about(angle, Columns::POSE + 2)),
+            friction: Some(friction(stds)),
         }),
         unsolved: Some(unsolved as u32),
         ess: Some(filter.weights().effective_sample_size()),
