@@ -15,11 +15,11 @@ use crate::solver::{Outcome, Report, Route, TOLERANCE};
 const POLISH_ITERATIONS: u32 = 30;
 
 /// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a fold, and most folds lie on
-/// few paths.
-const HOLDING: [f64; 10] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e1, 1e2, 1e-6, 1e-5, 1e-7];
+/// few paths. What none of these solves costs the search over modes less than ten more of them.
+const HOLDING: [f64; 2] = [1.0, 1e-1];
 
 /// The same with the pusher yielding at its stall force.
-const YIELDING: [f64; 3] = [1e-4, 1.0, 1e-2];
+const YIELDING: [f64; 1] = [1e-4];
 
 /// Compliance ten times above the one at which the way to the compliant solution begins.
 const SOFT: f64 = 10.0;
