@@ -26,8 +26,8 @@ impl<S> PerThread<S> {
 
     /// Lends the thread's piece to `body`, which must not wait for other tasks: its thread might take one up that needs the piece.
     pub fn lend<T>(&self, body: impl FnOnce(&mut S) -> T) -> T {
-        let thread = rayon::current_thread_index().unwrap_or(0);
-        let piece = &self.pieces[thread % self.pieces.len()];
+        let worker = rayon::current_thread_index().unwrap_or(0);
+        let piece = &self.pieces[worker % self.pieces.len()];
         body(&mut piece.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
