@@ -33,7 +33,7 @@ macro_rules! embedded {
 /// The experiments, with what happens in them.
 const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
     (embedded!("stop-square50-bar-000"), "a bar pushes a square until it jams at a fixel"),
-    (embedded!("slide-pent-disc-118"), "a disc pushes a pentagon, which slides and turns on two fixels"),
+    (embedded!("slide-ell-disc-110"), "a disc pushes an L-shaped plate, which slides and turns on two fixels"),
 ];
 
 /// Runs the command.

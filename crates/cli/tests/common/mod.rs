@@ -9,7 +9,7 @@ use std::process::Command;
 pub const STOP: &str = "stop-square50-bar-000";
 
 /// The embedded experiment that slides.
-pub const SLIDE: &str = "slide-pent-disc-118";
+pub const SLIDE: &str = "slide-ell-disc-110";
 
 /// The program.
 pub fn stickslip() -> Command {
