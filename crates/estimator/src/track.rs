@@ -28,6 +28,9 @@ const DWELL: f64 = 30.0;
 /// Standard deviations of its own that a tracked speed must exceed to tell the pusher's direction.
 const TELLING: f64 = 3.0;
 
+/// Speed below which a pusher stands, however exactly its poses are known (m/s): the recoil of a stalled drive tells no direction.
+const STANDSTILL: f64 = 1e-5;
+
 /// How much of the log the track may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Tracking {
@@ -53,7 +56,7 @@ impl TrackedPose {
     /// Whether the tracked speed is more than what noise makes of a pusher that stands.
     fn moves(&self) -> bool {
         let speed = self.velocity[0].hypot(self.velocity[1]);
-        speed > TELLING * self.speed_std && speed > 1e-9
+        speed > TELLING * self.speed_std && speed > STANDSTILL
     }
 }
 

@@ -134,3 +134,18 @@ fn causal_pusher_leaves_the_plane_when_a_gap_has_become_too_long() {
     let smoothed = PusherTrack::new(&log, Some(&CAMERA), Tracking::Smoothed).expect("a track");
     assert!((120..133).all(|row| smoothed.pose(row).is_none()), "off-line the gap is known from its first row on");
 }
+
+/// A stalled drive springs back by nanometres: with exact poses that is all that is left of its motion.
+#[test]
+fn recoil_of_an_exactly_known_pusher_tells_no_direction() {
+    let recoil = |row: usize| if row.is_multiple_of(2) { 1e-8 } else { -1e-8 };
+    let mut log = log(1);
+    log.pusher = log.time.iter().enumerate().map(|(row, time)| Some(Pose { x: moved(*time).x + recoil(row), ..moved(*time) })).collect();
+    let track = PusherTrack::new(&log, None, Tracking::Smoothed).expect("a track");
+    let schedule = Schedule::new(&log.time, &track, None);
+    for row in 65..log.len() - 1 {
+        let directions = schedule.step(row).iter().map(|input| input.pusher.expect("a pusher").direction);
+        assert!(directions.into_iter().all(|[x, y]| x > 0.999 && y.abs() < 1e-3), "row {row}");
+        assert_eq!(schedule.driven(row), row < 120, "row {row}");
+    }
+}
