@@ -94,7 +94,7 @@ fn weighted_circular_mean_crosses_the_seam() {
 fn weighted_moments_of_several_columns_are_the_sums_over_all_particles() {
     use common::{Axis, POSITION, VELOCITY};
     let mut filter = ParticleFilter::new(Axis::OPEN, common::settings(3 * BLOCK + 5, 1)).unwrap();
-    filter.step(&0.1, Some(&0.2));
+    assert!(!filter.step(&0.1, Some(&0.2)).collapsed());
     let columns = [VELOCITY, POSITION];
     let (means, weights) = (filter.weighted_means(&columns), filter.weights().weights());
     let stds = filter.weighted_stds_about(&means, &columns);
