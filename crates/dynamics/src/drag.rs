@@ -5,22 +5,46 @@ use crate::homotopy::Homotopy;
 use crate::impulses::Impulses;
 use crate::ncp::{FootRow, Ncp};
 use crate::newton::Newton;
-use crate::rows::{Rows, Vector};
+use crate::rows::{Foot, Vector};
 
-/// Velocity and foot impulses of the problem without contacts and with free velocity `load`.
-///
-/// It is the minimiser of ½|v − load|² + Σ bound_k |J_k v|, unique, and moves no farther than the load does.
-pub fn drag(rows: &Rows, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
-    let mut ncp = Ncp::<1>::empty();
-    ncp.free = load.map(|x| Lanes([x]));
-    ncp.feet = rows.feet.map(|f| FootRow { jx: Lanes([f.jx]), jy: Lanes([f.jy]), bound: Lanes([f.bound]) });
-    let mut p = Impulses { v: ncp.free, ..Impulses::zero(0) };
-    let mut newton = Newton::default();
-    let (residual, _) = newton.solve(&ncp, &mut p, 1e-11, 12);
-    if residual.0[0] > 1e-11 {
-        let start = Impulses { v: ncp.free, ..Impulses::zero(0) };
-        p.copy_from(Homotopy::default().follow(&ncp, &start, 1.0));
-        newton.solve(&ncp, &mut p, 1e-11, 12);
+/// Largest residual (m/s) and iterations of the fast solver.
+const AIM: (f64, u32) = (1e-11, 12);
+
+/// The problem without contacts, with its working memory: a search over curves solves it many times.
+pub struct Drag {
+    ncp: Ncp<1>,
+    p: Impulses<1>,
+    newton: Newton<1>,
+    homotopy: Homotopy,
+}
+
+impl Drag {
+    /// On these feet.
+    pub fn on(feet: &[Foot; 3]) -> Self {
+        let mut ncp = Ncp::empty();
+        ncp.feet = feet.map(|f| FootRow { jx: Lanes([f.jx]), jy: Lanes([f.jy]), bound: Lanes([f.bound]) });
+        Self { ncp, p: Impulses::zero(0), newton: Newton::default(), homotopy: Homotopy::default() }
     }
-    (p.v.map(|x| x.0[0]), p.feet.map(|f| f.map(|x| x.0[0])))
+
+    /// Velocity and foot impulses with free velocity `load`.
+    ///
+    /// It is the minimiser of ½|v − load|² + Σ bound_k |J_k v|, unique, and moves no farther than the load does.
+    pub fn under(&mut self, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
+        let (aim, iterations) = AIM;
+        self.ncp.free = load.map(|x| Lanes([x]));
+        self.start();
+        let (residual, _) = self.newton.solve(&self.ncp, &mut self.p, aim, iterations);
+        if residual.0[0] > aim {
+            self.start();
+            self.p.copy_from(self.homotopy.follow(&self.ncp, &self.p, 1.0));
+            self.newton.solve(&self.ncp, &mut self.p, aim, iterations);
+        }
+        (self.p.v.map(|x| x.0[0]), self.p.feet.map(|f| f.map(|x| x.0[0])))
+    }
+
+    /// The free motion.
+    fn start(&mut self) {
+        self.p.clear(0);
+        self.p.v = self.ncp.free;
+    }
 }

@@ -8,7 +8,7 @@
 //! interval bisection with bounds that hold rigorously on every piece: pieces without a solution are discarded, what remains
 //! is handed to `accept`. Where nothing remains, there is no solution.
 
-use crate::drag::drag;
+use crate::drag::Drag;
 use crate::rows::{Guess, Rows, Vector, dot, norm, plus, solve_dense};
 use crate::subspace::{DEPENDENT, Equation, clip, dual_basis, first_three, least_squares, null_vector, unit_range};
 
@@ -197,7 +197,7 @@ impl Search {
             return Finding::Excluded;
         }
         let push = generator.contact.map_or(0.0, |_| alpha);
-        let (v, feet) = drag(&self.rows, &plus(&self.rows.free, push, &first_three(&generator.g)));
+        let (v, feet) = Drag::on(&self.rows.feet).under(&plus(&self.rows.free, push, &first_three(&generator.g)));
         let yielded = match generator.contact.map(|i| &self.rows.contacts[i]) {
             None => 0.0,
             Some(c) => -(dot(&first_three(&c.n), &v) + c.gap) / c.n[3],
@@ -334,13 +334,14 @@ impl Search {
             return Finding::Excluded;
         }
         let inequalities = self.inequalities(&chosen);
+        let mut drag = Drag::on(&self.rows.feet);
         let y_gain = norm(&first_three(&gives_y.row)) / gives_y.row[3].abs();
         self.bisect(
             (interval.0, interval.1.min(1e6)),
             &mut |low, high| {
                 let middle = 0.5 * (low + high);
                 let reach = 0.5 * (high - low) * norm(&load);
-                let (v, feet) = drag(&self.rows, &plus(&load0, middle, &load));
+                let (v, feet) = drag.under(&plus(&load0, middle, &load));
                 if (dot(&w, &v) + offset).abs() > reach * norm(&w) + self.slack {
                     return Piece::Excluded;
                 }

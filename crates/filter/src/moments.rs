@@ -10,7 +10,8 @@ const PARTIAL: usize = 8;
 impl<M: Model> ParticleFilter<M> {
     /// `sum w_i f(x_i)` over one column.
     pub fn expectation(&self, column: usize, f: impl Fn(f64) -> f64 + Sync) -> f64 {
-        self.reduce(|block, weights| weighted_sum(block.column(column), weights, &f), |a, b| a + b)
+        let [expectation] = self.expectations(&[column], |_, x| f(x));
+        expectation
     }
 
     /// The weighted mean of a column.
