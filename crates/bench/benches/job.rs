@@ -1,10 +1,10 @@
 //! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log of 600 frames, camera and touch
-//! sensors weighing all the way: wall time and the latency of a frame, on one thread and on two.
+//! sensors weighing all the way: wall time and the latency of a frame, on one thread and on two. `... -- NAME` runs that log only.
 
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Occlusion, RunOptions, run};
+use stickslip::{Occlusion, RunOptions, keep_threads_awake, run};
 use stickslip_bench::{Results, median, quantile};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
@@ -17,7 +17,8 @@ const LOGS: [&str; 3] = ["slide-pent-disc-104", "slide-ell-bar-117", "slide-trap
 fn main() -> Result<(), Box<dyn Error>> {
     let root = data_root().ok_or("no recorded experiments: point STICKSLIP_DATA at them")?;
     let mut results = Results::open()?;
-    for log in LOGS {
+    let named = |log: &str| std::env::args().skip(1).all(|arg| arg.starts_with('-') || arg == log);
+    for log in LOGS.into_iter().filter(|log| named(log)) {
         let cases = recorded_cases(&root.join("mujoco").join(log))?;
         let case = cases.iter().find(|case| case.occlusion == Occlusion::None).ok_or("no case without a blackout")?;
         write(log, case, &mut results)?;
@@ -33,7 +34,7 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
     for round in 0..=ROUNDS {
         for (k, pool) in pools.iter().enumerate() {
             let pool = pool.as_ref().map_err(ToString::to_string)?;
-            let (wall, frames) = pool.install(|| timed(case))?;
+            let (wall, frames) = pool.install(|| keep_threads_awake(|| timed(case)))?;
             if round > 0 {
                 walls[k].push(wall);
                 latencies[k].extend(frames);

@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Log, Occlusion, RunOptions, Setup, run};
+use stickslip::{Log, Occlusion, RunOptions, Setup, keep_threads_awake, run};
 use stickslip_bench::Results;
 use stickslip_testkit::{data_root, recorded_cases};
 
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         for &particles in &counts {
-            let time = pool.install(|| frame_time(&case.setup, &log, particles))?;
+            let time = pool.install(|| keep_threads_awake(|| frame_time(&case.setup, &log, particles)))?;
             let name = format!("particles / {threads} threads / {particles}");
             results.write(&name, time * 1e9 / particles as f64, "ns/particle-frame")?;
             results.write(&format!("{name} / frames"), 1.0 / time, "1/s")?;

@@ -10,6 +10,7 @@ use crate::particles::{Particles, REMEMBERED};
 use crate::plane::Frame;
 use crate::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::scene::{Feet, Fixel, Friction, Scene};
+use crate::stage::{Moment, Stage};
 use crate::step::{Body, PusherMotion, StepInput};
 use crate::{Shape, Twist, Wrench};
 
@@ -96,30 +97,23 @@ impl<const W: usize> Assembly<W> {
         sum * self.setting.mass
     }
 
-    /// Writes the step's problems; `stance` is the scene's.
+    /// Writes the step's problems.
     #[inline(always)]
-    pub fn collect(
-        &mut self,
-        (scene, stance): (&Scene, &[[f64; 2]; 3]),
-        input: &StepInput,
-        particles: &Particles<W>,
-        narrow: &mut NarrowWork<W>,
-        ncp: &mut Ncp<W>,
-    ) {
+    pub fn collect(&mut self, stage: &Stage, moment: &Moment<'_>, particles: &Particles<W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
         self.rows.clear();
         ncp.clear();
         let object = Frames::new(&particles.pose);
-        self.set_body((scene, stance), input, (particles, &object), ncp);
-        if let Some(motion) = &input.pusher {
+        self.set_body(stage, moment.input, (particles, &object), ncp);
+        let scene = &stage.scene;
+        if let Some((motion, frame)) = moment.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
-            let (frame, mu) = (Frame::new(motion.pose), particles.friction[1]);
-            let catch_up = particles.pusher_lag / input.h;
+            let (mu, catch_up) = (particles.friction[1], particles.pusher_lag / moment.input.h);
             let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction, catch_up };
             self.meet(scene, &object, &pusher, narrow, ncp);
         }
-        for (j, Fixel { shape, pose }) in scene.fixels.iter().enumerate() {
-            let (frame, mu) = (Frame::new(*pose), particles.friction[2]);
-            let fixel = Other { body: Body::Fixel(j), shape, frame, mu, motion: None, direction: [0.0; 2], catch_up: Lanes::ZERO };
+        let mu = particles.friction[2];
+        for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate() {
+            let fixel = Other { body: Body::Fixel(j), shape, frame: *frame, mu, motion: None, direction: [0.0; 2], catch_up: Lanes::ZERO };
             self.meet(scene, &object, &fixel, narrow, ncp);
         }
     }
@@ -128,7 +122,7 @@ impl<const W: usize> Assembly<W> {
     #[inline(always)]
     fn set_body(
         &mut self,
-        (scene, stance): (&Scene, &[[f64; 2]; 3]),
+        Stage { scene, stance, .. }: &Stage,
         input: &StepInput,
         (particles, object): (&Particles<W>, &Frames<W>),
         ncp: &mut Ncp<W>,

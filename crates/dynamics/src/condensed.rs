@@ -3,7 +3,9 @@
 //! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a 3×3 system in the twist,
 //! whatever the number of contacts, and one equation in y.
 
+use crate::elimination::Elimination;
 use crate::impulses::Impulses;
+use crate::inverse::Inverse;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, dot};
 
@@ -80,26 +82,38 @@ impl<const W: usize> Default for Linearised<W> {
 }
 
 impl<const W: usize> Linearised<W> {
-    /// Moves `p` by the full Newton step in the lanes of `open`.
+    /// Moves `p` by the full Newton step in the lanes of `open`, however badly conditioned.
     #[inline(always)]
     pub fn step(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
-        let change = self.condense::<4>(ncp).solve(&self.stall, p.pusher_yield);
-        self.take_step(change, ncp, p, open);
+        let (Momentum { matrix, rhs }, push) = (self.momentum(ncp), self.push(ncp));
+        let [x, y, turn, dy] = push.bordered(&self.stall, &matrix, &rhs, p.pusher_yield).solve();
+        self.take_step([x, y, turn], dy, ncp, p, open);
     }
 
-    /// The same to the bit, sooner where no lane's pusher yields.
+    /// The same, faster, where no row is held harder than the fast solver holds it.
     #[inline(always)]
-    pub fn step_mostly_commanded(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
-        if self.stall.slack.gt(Lanes::ZERO).any() {
-            return self.step(ncp, p, open);
+    pub fn step_fast(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
+        let Momentum { matrix, rhs } = self.momentum(ncp);
+        let inverse = Inverse::of(matrix);
+        let mut dv = inverse.apply(&rhs);
+        let mut dy = Lanes::ZERO;
+        let stall = &self.stall;
+        // where no lane's pusher changes its yield, dv is known
+        if (stall.slack.gt(Lanes::ZERO) | stall.rhs.abs().gt(Lanes::ZERO)).any() {
+            let push = self.push(ncp);
+            let along = inverse.apply(&push.column);
+            dy = push.yield_change(stall, [&dv, &along], p.pusher_yield);
+            for (dv, along) in dv.iter_mut().zip(&along) {
+                *dv -= *along * dy;
+            }
         }
-        let change = self.condense::<3>(ncp).solve(&self.stall, p.pusher_yield);
-        self.take_step(change, ncp, p, open);
+        // −0 becomes 0 on both ways
+        self.take_step(dv.map(|dv| dv + Lanes::ZERO), dy, ncp, p, open);
     }
 
     /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
     #[inline(always)]
-    fn take_step(&self, (dv, dy): (Triple<W>, Lanes<W>), ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
+    fn take_step(&self, dv: Triple<W>, dy: Lanes<W>, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
         for ((foot, step), p_k) in ncp.feet.iter().zip(&self.feet).zip(&mut p.feet) {
             let ds = foot.slip(&dv);
             for i in 0..2 {
@@ -120,9 +134,8 @@ impl<const W: usize> Linearised<W> {
     }
 
     #[inline(always)]
-    fn condense<const N: usize>(&self, ncp: &Ncp<W>) -> Condensed<W, N> {
-        let mut system = Condensed::identity();
-        system.rhs[..3].copy_from_slice(&self.imbalance);
+    fn momentum(&self, ncp: &Ncp<W>) -> Momentum<W> {
+        let mut system = Momentum::identity(self.imbalance);
         for (foot, step) in ncp.feet.iter().zip(&self.feet) {
             system.add_foot(foot, step);
         }
@@ -131,23 +144,32 @@ impl<const W: usize> Linearised<W> {
         }
         system
     }
-}
 
-/// The condensed system in (dv, dy), the first N rows of it: matrix and right-hand side of the three momentum balances, then of the
-/// pusher's force, by which the object's resistance F grows.
-struct Condensed<const W: usize, const N: usize> {
-    matrix: [[Lanes<W>; 4]; N],
-    rhs: [Lanes<W>; N],
-}
-
-impl<const W: usize, const N: usize> Condensed<W, N> {
     #[inline(always)]
-    fn identity() -> Self {
-        let mut system = Self { matrix: [[Lanes::ZERO; 4]; N], rhs: [Lanes::ZERO; N] };
-        for i in 0..3 {
-            system.matrix[i][i] = Lanes::splat(1.0);
+    fn push(&self, ncp: &Ncp<W>) -> Push<W> {
+        let o = Lanes::ZERO;
+        let mut push = Push { column: [o; 3], row: [o; 3], corner: o, rhs: o };
+        for (row, step) in ncp.contacts.iter().zip(&self.contacts) {
+            push.add_contact(row, step);
         }
-        system
+        push
+    }
+}
+
+/// The three momentum balances, condensed: matrix·dv = rhs where the pusher's yield stays.
+struct Momentum<const W: usize> {
+    matrix: [Triple<W>; 3],
+    rhs: Triple<W>,
+}
+
+impl<const W: usize> Momentum<W> {
+    #[inline(always)]
+    fn identity(rhs: Triple<W>) -> Self {
+        let mut matrix = [[Lanes::ZERO; 3]; 3];
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] = Lanes::splat(1.0);
+        }
+        Self { matrix, rhs }
     }
 
     /// A += Jᵀ K J, rhs += Jᵀ r.
@@ -164,78 +186,62 @@ impl<const W: usize, const N: usize> Condensed<W, N> {
         }
     }
 
-    /// A += n ⊗ nn n + t ⊗ (tt t + tn n), with n and t extended by their parts along d.
+    /// A += n ⊗ nn n + t ⊗ (tt t + tn n).
     #[inline(always)]
-    fn add_contact(&mut self, row: &ContactRow<W>, step: &ContactStep<W>) {
-        let (n, t) = ([row.n[0], row.n[1], row.n[2], row.nd], [row.t[0], row.t[1], row.t[2], row.td]);
-        for j in 0..4 {
+    fn add_contact(&mut self, ContactRow { n, t, .. }: &ContactRow<W>, step: &ContactStep<W>) {
+        for j in 0..3 {
             let (normal, tangential) = (step.nn * n[j], step.tt * t[j] + step.tn * n[j]);
-            for i in 0..N {
+            for i in 0..3 {
                 self.matrix[i][j] += n[i] * normal + t[i] * tangential;
             }
         }
-        for i in 0..N {
+        for i in 0..3 {
             self.rhs[i] += n[i] * step.n + t[i] * step.t;
         }
     }
+}
 
-    /// (dv, dy); `pusher_yield` is the present y. The fourth row becomes the stall pair; without one dy is known.
+/// The pusher's force F, by which the object resists along d: dF = rhs − row·dv − corner dy; and what its yield does to the momentum:
+/// matrix·dv + column dy = rhs.
+struct Push<const W: usize> {
+    column: Triple<W>,
+    row: Triple<W>,
+    corner: Lanes<W>,
+    rhs: Lanes<W>,
+}
+
+impl<const W: usize> Push<W> {
+    /// [`Momentum::add_contact`] with n and t extended by their parts along d.
     #[inline(always)]
-    fn solve(mut self, stall: &StallStep<W>, pusher_yield: Lanes<W>) -> (Triple<W>, Lanes<W>) {
-        if let (Some(row), Some(rhs)) = (self.matrix.get_mut(3), self.rhs.get_mut(3)) {
-            let determined = ((stall.slack * row[3]).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
-            for number in row.iter_mut() {
-                *number = determined.keep(stall.slack * *number);
-            }
-            row[3] += determined.select(stall.pusher, Lanes::splat(1.0));
-            *rhs = determined.select(stall.rhs + stall.slack * *rhs, -pusher_yield);
+    fn add_contact(&mut self, ContactRow { n, t, nd, td, .. }: &ContactRow<W>, step: &ContactStep<W>) {
+        let (normal, tangential) = (step.nn * *nd, step.tt * *td + step.tn * *nd);
+        for j in 0..3 {
+            self.column[j] += n[j] * normal + t[j] * tangential;
+            self.row[j] += *nd * (step.nn * n[j]) + *td * (step.tt * t[j] + step.tn * n[j]);
         }
-        let inverse = self.eliminate();
-        let mut x = [Lanes::ZERO, Lanes::ZERO, Lanes::ZERO, stall.rhs];
-        if N == 4 {
-            x[3] = stall.slack.gt(Lanes::ZERO).select(self.rhs[N - 1] * inverse[N - 1], stall.rhs);
-        }
-        for c in (0..3).rev() {
-            x[c] = self.rhs[c];
-            for k in c + 1..4 {
-                x[c] -= self.matrix[c][k] * x[k];
-            }
-            x[c] = x[c] * inverse[c];
-        }
-        let [x, y, turn, dy] = x;
-        ([x, y, turn], dy)
+        self.corner += *nd * normal + *td * tangential;
+        self.rhs += *nd * step.n + *td * step.t;
     }
 
-    /// Makes the matrix upper triangular; one over its diagonal.
-    ///
-    /// Gauss elimination with row pivoting stays accurate where some directions are held a million times stiffer than others.
+    /// The system in (dv, dy) whose fourth row is the stall pair; `pusher_yield` is the present y.
     #[inline(always)]
-    fn eliminate(&mut self) -> [Lanes<W>; N] {
-        let mut inverse = [Lanes::ZERO; N];
-        for c in 0..N {
-            for r in c + 1..N {
-                let larger = self.matrix[r][c].abs().gt(self.matrix[c][c].abs());
-                self.swap_rows(c, r, larger);
-            }
-            inverse[c] = Lanes::splat(1.0) / self.matrix[c][c];
-            for r in c + 1..N {
-                let factor = self.matrix[r][c] * inverse[c];
-                for k in c + 1..4 {
-                    self.matrix[r][k] -= factor * self.matrix[c][k];
-                }
-                self.rhs[r] -= factor * self.rhs[c];
-            }
+    fn bordered(&self, stall: &StallStep<W>, a: &[Triple<W>; 3], rhs: &Triple<W>, pusher_yield: Lanes<W>) -> Elimination<W> {
+        let determined = ((stall.slack * self.corner).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
+        let last = |number: Lanes<W>| determined.keep(stall.slack * number);
+        let corner = last(self.corner) + determined.select(stall.pusher, Lanes::splat(1.0));
+        let equation = |i: usize| [a[i][0], a[i][1], a[i][2], self.column[i]];
+        Elimination {
+            matrix: [equation(0), equation(1), equation(2), [last(self.row[0]), last(self.row[1]), last(self.row[2]), corner]],
+            rhs: [rhs[0], rhs[1], rhs[2], determined.select(stall.rhs + stall.slack * self.rhs, -pusher_yield)],
         }
-        inverse
     }
 
-    /// Swaps rows i < j, from column i on, where `mask` holds.
+    /// dy by the stall pair, where dv = `held` − `along` dy; `pusher_yield` is the present y.
     #[inline(always)]
-    fn swap_rows(&mut self, i: usize, j: usize, mask: Mask<W>) {
-        let swapped = |a: Lanes<W>, b: Lanes<W>| (mask.select(b, a), mask.select(a, b));
-        for k in i..4 {
-            (self.matrix[i][k], self.matrix[j][k]) = swapped(self.matrix[i][k], self.matrix[j][k]);
-        }
-        (self.rhs[i], self.rhs[j]) = swapped(self.rhs[i], self.rhs[j]);
+    fn yield_change(&self, stall: &StallStep<W>, [held, along]: [&Triple<W>; 2], pusher_yield: Lanes<W>) -> Lanes<W> {
+        let weight = stall.slack * (self.corner - dot(&self.row, along)) + stall.pusher;
+        let determined = weight.gt(Lanes::splat(UNDETERMINED));
+        let rhs = stall.rhs + stall.slack * (self.rhs - dot(&self.row, held));
+        determined.select(rhs / determined.select(weight, Lanes::splat(1.0)), -pusher_yield)
     }
 }

@@ -234,10 +234,10 @@ impl<const W: usize> LaneStates<W> {
         self.waiting = self.busy & (self.waiting | look);
     }
 
-    /// Whether half of the lanes wait, or nobody else is left.
+    /// Whether half of the lanes with a problem wait.
     #[inline(always)]
     fn enough_wait(&self) -> bool {
-        let waiting = self.waiting.lanes().count();
-        waiting > 0 && (2 * waiting >= W || !(self.busy & !self.waiting).any())
+        let [waiting, busy] = [self.waiting, self.busy].map(|mask| mask.lanes().count());
+        waiting > 0 && 2 * waiting >= busy
     }
 }

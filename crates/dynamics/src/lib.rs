@@ -1,16 +1,19 @@
 //! Planar frictional contact dynamics of one pushed object.
 
 mod assembly;
+mod cluster;
 mod condensed;
 mod contact;
 mod continuation;
 mod drag;
+mod elimination;
 mod ellipse_pair;
 mod feature;
 mod frames;
 mod homotopy;
 mod impulses;
 mod instructions;
+mod inverse;
 mod lanes;
 mod modes;
 mod narrow;
@@ -34,6 +37,7 @@ mod slow;
 mod smoothing;
 mod solid;
 mod solver;
+mod stage;
 mod stand;
 mod start;
 mod step;
@@ -55,3 +59,4 @@ pub use shape_error::ShapeError;
 pub use solver::{Outcome, Report, Route, Solver, TOLERANCE, solve};
 pub use start::{SpeedProfile, Start};
 pub use step::{Body, Dynamics, PusherMotion, StepInput, StepWork};
+pub use trig::sin_cos;

@@ -5,7 +5,7 @@
 
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, worse};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, Worst};
 
 /// Smallest excess of |p − s| over a foot's bound that counts, as a share of the bound.
 const LEAST_EXCESS: f64 = 1e-6;
@@ -62,18 +62,27 @@ impl<const W: usize> NaturalMap<W> {
     pub fn take(&mut self, ncp: &Ncp<W>, p: &Impulses<W>) -> Lanes<W> {
         self.imbalance = ncp.imbalance(p);
         self.slack = ncp.stall - ncp.resistance(p);
-        let mut worst = self.imbalance.iter().fold(worse(Lanes::ZERO, self.slack.min(p.pusher_yield)), |worst, off| worse(worst, *off));
+        let mut worst = Worst::NONE;
+        worst.note(self.slack.min(p.pusher_yield));
+        for off in self.imbalance {
+            worst.note(off);
+        }
+        let mut squares = Worst::NONE;
         for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             *map = FootMap::new(foot, p_k, &p.v);
-            worst = worse(worst, map.violation(foot, p_k));
+            let [x, y] = map.miss(foot, p_k);
+            squares.note(x * x + y * y);
         }
+        worst.note(squares.root());
         self.contacts.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
             let map = ContactMap::new(row, *p_n, p, ncp.compliance);
-            worst = worse(worst, map.violation(row, [*p_n, *p_t]));
+            for row in map.violations(row, [*p_n, *p_t]) {
+                worst.note(row);
+            }
             self.contacts.push(map);
         }
-        worst
+        worst.size()
     }
 }
 
@@ -92,13 +101,6 @@ impl<const W: usize> FootMap<W> {
         Self { slip, sliding, direction: [z[0] * unit, z[1] * unit], across: foot.bound * (inverse * length) }
     }
 
-    /// |p − Π(p − s)|.
-    #[inline(always)]
-    fn violation(&self, foot: &FootRow<W>, p: &[Lanes<W>; 2]) -> Lanes<W> {
-        let miss = self.miss(foot, p);
-        (miss[0] * miss[0] + miss[1] * miss[1]).sqrt()
-    }
-
     /// Π(p − s) − p.
     #[inline(always)]
     pub fn miss(&self, foot: &FootRow<W>, p: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
@@ -113,11 +115,11 @@ impl<const W: usize> ContactMap<W> {
         Self { gap: row.gap_velocity(&p.v, p.pusher_yield) + compliance * p_n, slip: row.slip_velocity(&p.v, p.pusher_yield) }
     }
 
-    /// The larger of the contact's two rows.
+    /// The contact's two rows.
     #[inline(always)]
-    fn violation(&self, row: &ContactRow<W>, [p_n, p_t]: [Lanes<W>; 2]) -> Lanes<W> {
+    fn violations(&self, row: &ContactRow<W>, [p_n, p_t]: [Lanes<W>; 2]) -> [Lanes<W>; 2] {
         let bound = row.mu * p_n.max(Lanes::ZERO);
         let slides_to = (p_t - self.slip).min(bound).max(-bound);
-        worse(worse(Lanes::ZERO, p_n.min(self.gap)), p_t - slides_to)
+        [p_n.min(self.gap), p_t - slides_to]
     }
 }

@@ -222,19 +222,37 @@ impl<const W: usize> Ncp<W> {
     }
 }
 
-/// The larger of `worst` and |`violation`|; NaN counts as infinite.
-#[inline(always)]
-pub fn worse<const W: usize>(worst: Lanes<W>, violation: Lanes<W>) -> Lanes<W> {
-    let size = violation.abs();
-    Lanes(std::array::from_fn(|i| {
-        if size.0[i] <= worst.0[i] {
-            worst.0[i]
-        } else if size.0[i].is_nan() {
-            f64::INFINITY
-        } else {
-            size.0[i]
+/// The largest size of some numbers; NaN is larger than all.
+#[derive(Clone, Copy, Debug)]
+pub struct Worst<const W: usize>(Lanes<W>);
+
+impl<const W: usize> Worst<W> {
+    /// Of no number.
+    pub const NONE: Self = Self(Lanes::ZERO);
+
+    /// Takes one more number in.
+    #[inline(always)]
+    pub fn note(&mut self, number: Lanes<W>) {
+        let Self(worst) = self;
+        // sizes are ordered as their bits are, NaN after infinity
+        for (worst, number) in worst.0.iter_mut().zip(number.0) {
+            let size = number.abs().to_bits() as i64;
+            *worst = f64::from_bits(size.max(worst.to_bits() as i64) as u64);
         }
-    }))
+    }
+
+    /// The largest size; infinite for NaN.
+    #[inline(always)]
+    pub fn size(self) -> Lanes<W> {
+        let infinity = Lanes::splat(f64::INFINITY);
+        self.0.lt(infinity).select(self.0, infinity)
+    }
+
+    /// The largest size of numbers whose squares were noted.
+    #[inline(always)]
+    pub fn root(self) -> Lanes<W> {
+        self.0.sqrt()
+    }
 }
 
 impl<const W: usize> Ncp<W> {

@@ -42,7 +42,7 @@ impl<const W: usize> Newton<W> {
                 break;
             }
             self.linearised.by_natural_map(ncp, p, &self.map);
-            self.linearised.step_mostly_commanded(ncp, p, open);
+            self.linearised.step_fast(ncp, p, open);
             residual = open.select(self.map.take(ncp, p), residual);
             iterations += open.keep(Lanes::splat(1.0));
         }

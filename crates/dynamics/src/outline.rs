@@ -5,6 +5,7 @@
 //! union's own normal cone; a reflex one is no feature, but both its edges are known to run on inside the body.
 
 use crate::Part;
+use crate::cluster::Cluster;
 use crate::feature::{Cone, Edge, Ellipse, Round};
 use crate::plane::{Vec2, cross, dot, length, sub};
 use crate::solid::Solid;
@@ -18,6 +19,8 @@ pub(crate) struct Outline {
     pub edges: Vec<Edge>,
     pub rounds: Vec<Round>,
     pub ellipses: Vec<Ellipse>,
+    /// Of a convex polygon with many corners several, else one of all edges and round vertices.
+    pub clusters: Vec<Cluster>,
 }
 
 /// A directed piece of boundary, and the parts that its ends come from.
@@ -39,6 +42,11 @@ impl Outline {
         for (part, covered) in parts.iter().zip(covered(solids, tolerance)) {
             outline.push_smooth(part, covered);
         }
+        // the corners of a convex polygon follow each other as its edges do
+        outline.clusters = match parts {
+            [Part::Polygon { .. }] if outline.rounds.len() == outline.edges.len() => Cluster::of_polygon(&outline.edges),
+            _ => vec![Cluster::of_all(outline.edges.len().max(outline.rounds.len()))],
+        };
         outline
     }
 

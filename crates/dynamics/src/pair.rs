@@ -1,5 +1,7 @@
 //! The features of two placed shapes, each against each: [`Pair`].
 
+use std::ops::Range;
+
 use crate::Shape;
 use crate::contact::Contact;
 use crate::ellipse_pair::EllipsePair;
@@ -10,7 +12,7 @@ use crate::narrow::{Gap, NarrowWork, PairFrames};
 use crate::outline::Outline;
 use crate::overlap::{least_penetration, separated};
 use crate::plane::{Vec2, negate, scale};
-use crate::stand::{Stand, stands};
+use crate::stand::{Search, Stand};
 
 /// Width of the borders between features, as a share of the bodies' size: at least one of two neighbours always answers.
 const BORDER: f64 = 1e-12;
@@ -105,13 +107,13 @@ impl<'a, const W: usize> Pair<'a, W> {
     fn rounds_on_object(&mut self, mine: &Outline, theirs: &Outline) {
         for (i, round) in theirs.rounds.iter().enumerate() {
             let centre = self.in_object.point(round.centre);
-            let within = self.within(&centre, self.object, round.radius);
-            if !within.any() {
+            let search = self.search(self.object, &centre, round.radius);
+            if !search.within.any() {
                 continue;
             }
             let frame = self.in_object;
-            let at = Over { shape: self.object, centre: &centre, frame: &frame, round, within };
-            self.stand(&at);
+            let at = Over { frame: &frame, round };
+            search.stands(|edge| at.faces(edge), &mut self.work.near);
             for k in 0..self.work.near.len() {
                 let Stand { edge: index, s, height, present, .. } = self.work.near[k];
                 let edge = &mine.edges[index];
@@ -122,9 +124,11 @@ impl<'a, const W: usize> Pair<'a, W> {
                     Contact { place: (i * mine.edges.len() + index) as u32, present, normal, arm: self.object_frame.turn(&foot), gap };
                 self.push(contact, round.covered, || at.touch(edge), self.other);
             }
-            for (j, own) in mine.rounds.iter().enumerate() {
-                let place = self.places.round_on_round + (i * mine.rounds.len() + j) as u32;
-                self.round_on_round(place, own, round, &centre);
+            for cluster in mine.clusters.iter().filter(|cluster| search.meets(cluster)) {
+                for j in members(&cluster.members, mine.rounds.len()) {
+                    let place = self.places.round_on_round + (i * mine.rounds.len() + j) as u32;
+                    self.round_on_round(place, &mine.rounds[j], round, &centre);
+                }
             }
         }
     }
@@ -132,38 +136,43 @@ impl<'a, const W: usize> Pair<'a, W> {
     /// The object's corners and discs against the other's edges, in the other's frame.
     #[inline(always)]
     fn rounds_on_other(&mut self, mine: &Outline, theirs: &Outline) {
-        for (j, round) in mine.rounds.iter().enumerate() {
-            let centre = self.in_other.point(round.centre);
-            let within = self.within(&centre, self.other, round.radius);
-            if !within.any() {
-                continue;
-            }
-            let frame = self.in_other;
-            let at = Over { shape: self.other, centre: &centre, frame: &frame, round, within };
-            self.stand(&at);
-            for k in 0..self.work.near.len() {
-                let Stand { edge: index, height, present, .. } = self.work.near[k];
-                let edge = &theirs.edges[index];
-                let place = self.places.round_on_other + (j * theirs.edges.len() + index) as u32;
-                let normal = self.other_frame.turn_fixed(edge.normal());
-                let contact = Contact { place, present, normal, arm: self.object_frame.turn(&at.touch(edge)), gap: height - round.radius };
-                self.push(contact, round.covered, || at.touch(edge), self.object);
+        let limit = self.reach + self.other.bounding_radius();
+        for cluster in &mine.clusters {
+            if cluster.is_near(&self.in_object.origin, limit).any() {
+                for j in members(&cluster.members, mine.rounds.len()) {
+                    self.round_on_other(j, &mine.rounds[j], theirs);
+                }
             }
         }
     }
 
-    /// Over which edges a corner or disc stands; left in `work.near`.
+    /// The object's corner or disc of number `j` against the other's edges.
     #[inline(always)]
-    fn stand(&mut self, at: &Over<'_, W>) {
-        let limit = self.reach + at.round.radius;
-        stands(at.shape, at.centre, at.within, [limit, Lanes::splat(self.slack)], |edge| at.faces(edge), &mut self.work.near);
+    fn round_on_other(&mut self, j: usize, round: &Round, theirs: &Outline) {
+        let centre = self.in_other.point(round.centre);
+        let search = self.search(self.other, &centre, round.radius);
+        if !search.within.any() {
+            return;
+        }
+        let frame = self.in_other;
+        let at = Over { frame: &frame, round };
+        search.stands(|edge| at.faces(edge), &mut self.work.near);
+        for k in 0..self.work.near.len() {
+            let Stand { edge: index, height, present, .. } = self.work.near[k];
+            let edge = &theirs.edges[index];
+            let place = self.places.round_on_other + (j * theirs.edges.len() + index) as u32;
+            let normal = self.other_frame.turn_fixed(edge.normal());
+            let contact = Contact { place, present, normal, arm: self.object_frame.turn(&at.touch(edge)), gap: height - round.radius };
+            self.push(contact, round.covered, || at.touch(edge), self.object);
+        }
     }
 
-    /// Where a disc about `centre`, in the frame of `shape`, comes near the shape's bounding disc.
+    /// The search for a disc about `centre`, in the frame of `shape`, where it comes near the shape's bounding disc.
     #[inline(always)]
-    fn within(&self, centre: &Vec2s<W>, shape: &Shape, radius: f64) -> Mask<W> {
-        let limit = self.reach + (shape.bounding_radius() + radius);
-        self.near & limit.gt(Lanes::ZERO) & dot(centre, centre).lt(limit * limit)
+    fn search<'s>(&self, shape: &'s Shape, centre: &'s Vec2s<W>, radius: f64) -> Search<'s, W> {
+        let near = self.reach + (shape.bounding_radius() + radius);
+        let within = self.near & near.gt(Lanes::ZERO) & dot(centre, centre).lt(near * near);
+        Search { shape, centre, within, limit: self.reach + radius, slack: Lanes::splat(self.slack) }
     }
 
     /// Two corners or discs; `centre` is that of the other's one in the object's frame.
@@ -272,15 +281,16 @@ impl<'a, const W: usize> Pair<'a, W> {
     }
 }
 
+/// The numbers of a range that are below `count`.
+fn members(range: &Range<usize>, count: usize) -> Range<usize> {
+    range.start..range.end.min(count)
+}
+
 /// A corner or disc above a shape's edges.
 struct Over<'a, const W: usize> {
-    shape: &'a Shape,
-    /// Its centre in the shape's frame.
-    centre: &'a Vec2s<W>,
-    /// The frame of the round's own body, seen from the shape's.
+    /// The frame of its own body, seen from the shape's.
     frame: &'a Frames<W>,
     round: &'a Round,
-    within: Mask<W>,
 }
 
 impl<const W: usize> Over<'_, W> {

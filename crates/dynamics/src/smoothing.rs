@@ -7,7 +7,7 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, worse};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Worst};
 
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;
@@ -60,27 +60,30 @@ impl<const W: usize> SmoothedMap<W> {
     pub fn take(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, epsilon: Lanes<W>) -> Lanes<W> {
         self.epsilon = epsilon;
         let squared = epsilon * epsilon;
-        let mut worst = Lanes::ZERO;
+        let mut worst = Worst::NONE;
         self.contacts.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
             let gap = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             let pair = SmoothedPair::new(*p_n, gap, squared);
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
             let inverse = Lanes::splat(1.0) / (slip * slip + squared).sqrt();
-            worst = worse(worst, pair.value);
-            worst = worse(worst, row.mu * p_n.max(Lanes::ZERO) * (slip * inverse) + *p_t);
+            worst.note(pair.value);
+            worst.note(row.mu * p_n.max(Lanes::ZERO) * (slip * inverse) + *p_t);
             self.contacts.push(SmoothedContact { pair, slip, inverse });
         }
+        let mut squares = Worst::NONE;
         for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             let slip = foot.slip(&p.v);
             let inverse = Lanes::splat(1.0) / (slip[0] * slip[0] + slip[1] * slip[1] + squared).sqrt();
             let off = [foot.bound * (slip[0] * inverse) + p_k[0], foot.bound * (slip[1] * inverse) + p_k[1]];
-            worst = worse(worst, (off[0] * off[0] + off[1] * off[1]).sqrt());
+            squares.note(off[0] * off[0] + off[1] * off[1]);
             *map = SmoothedFoot { slip, inverse };
         }
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
         self.stall = SmoothedPair::new(finite.keep(ncp.stall) - ncp.resistance(p), p.pusher_yield, squared);
-        worse(worst, finite.keep(self.stall.value))
+        worst.note(squares.root());
+        worst.note(finite.keep(self.stall.value));
+        worst.size()
     }
 }
 

@@ -1,8 +1,9 @@
-//! Over which edges of a shape a point stands: [`stands`].
+//! Over which edges of a shape a round vertex stands: [`Search`].
 
 use crate::Shape;
+use crate::cluster::Cluster;
 use crate::feature::Edge;
-use crate::frames::{Vec2s, lane_of};
+use crate::frames::{Vec2s, dot, lane_of};
 use crate::lanes::{Lanes, Mask};
 
 /// A point that stands over an edge, in the lanes where it does.
@@ -18,38 +19,84 @@ pub(crate) struct Stand<const W: usize> {
     pub present: Mask<W>,
 }
 
-/// Finds the edges of `shape` over which `centre` stands, less than `limit` high, among those that the round vertex faces.
-///
-/// From outside these are all that see it on their outward side; from inside, the edge of least penetration and those that meet it
-/// in a reflex corner as well.
-#[inline(always)]
-pub(crate) fn stands<const W: usize>(
-    shape: &Shape,
-    centre: &Vec2s<W>,
-    within: Mask<W>,
-    [limit, slack]: [Lanes<W>; 2],
-    faces: impl Fn(&Edge) -> Mask<W>,
-    near: &mut Vec<Stand<W>>,
-) {
-    near.clear();
-    let mut highest = Lanes::splat(f64::NEG_INFINITY);
-    let mut behind = Mask::splat(false);
-    for (index, edge) in shape.outline().edges.iter().enumerate() {
-        let (s, height) = edge.coordinates_each(centre);
-        highest = highest.max(height);
-        let mut present = within & height.lt(limit) & edge.holds_each(s, slack);
-        if !present.any() {
-            continue;
+/// What a round vertex is looked for over: the edges of a shape.
+pub(crate) struct Search<'a, const W: usize> {
+    pub shape: &'a Shape,
+    /// Centre of the round vertex in the shape's frame.
+    pub centre: &'a Vec2s<W>,
+    /// The lanes in which it comes near the shape.
+    pub within: Mask<W>,
+    /// Height below which it counts (m).
+    pub limit: Lanes<W>,
+    /// Width of the borders between features (m).
+    pub slack: Lanes<W>,
+}
+
+impl<const W: usize> Search<'_, W> {
+    /// Finds the edges over which the centre stands, less than the limit high, among those that the round vertex `faces`.
+    ///
+    /// From outside these are all that see it on their outward side; from inside, the edge of least penetration and those that meet
+    /// it in a reflex corner as well.
+    #[inline(always)]
+    pub fn stands(&self, faces: impl Fn(&Edge) -> Mask<W>, near: &mut Vec<Stand<W>>) {
+        let clusters = &self.shape.outline().clusters;
+        let mut found = self.scan(clusters.len() == 1, &faces, near);
+        if clusters.len() > 1 && self.maybe_inside(&found).any() {
+            found = self.scan(true, &faces, near);
         }
-        present = present & faces(edge);
-        if present.any() {
-            near.push(Stand { edge: index, s, height, present });
-            behind = behind | present & height.lt(Lanes::ZERO);
+        if found.behind.any() {
+            leave_ways_out(self.shape, self.centre, found.behind, !found.highest.gt(self.slack), near);
         }
     }
-    if behind.any() {
-        leave_ways_out(shape, centre, behind, !highest.gt(slack), near);
+
+    /// Whether some feature of a cluster may be nearer than the limit.
+    #[inline(always)]
+    pub fn meets(&self, cluster: &Cluster) -> bool {
+        self.shape.outline().clusters.len() == 1 || (self.within & cluster.is_near(self.centre, self.limit.max(Lanes::ZERO))).any()
     }
+
+    /// Where the centre lies below all edges looked at, and so perhaps inside: then it meets the edge of least penetration that it
+    /// faces, wherever that is.
+    #[inline(always)]
+    fn maybe_inside(&self, found: &Scanned<W>) -> Mask<W> {
+        let radius = self.shape.bounding_radius();
+        self.within & dot(self.centre, self.centre).lt(Lanes::splat(radius * radius)) & !found.highest.gt(self.slack)
+    }
+
+    #[inline(always)]
+    fn scan(&self, everything: bool, faces: &impl Fn(&Edge) -> Mask<W>, near: &mut Vec<Stand<W>>) -> Scanned<W> {
+        near.clear();
+        let outline = self.shape.outline();
+        let mut found = Scanned { highest: Lanes::splat(f64::NEG_INFINITY), behind: Mask::splat(false) };
+        for cluster in &outline.clusters {
+            if !everything && !self.meets(cluster) {
+                continue;
+            }
+            let start = cluster.members.start;
+            for (k, edge) in outline.edges[start..outline.edges.len().min(cluster.members.end)].iter().enumerate() {
+                let (s, height) = edge.coordinates_each(self.centre);
+                found.highest = found.highest.max(height);
+                let mut present = self.within & height.lt(self.limit) & edge.holds_each(s, self.slack);
+                if !present.any() {
+                    continue;
+                }
+                present = present & faces(edge);
+                if present.any() {
+                    near.push(Stand { edge: start + k, s, height, present });
+                    found.behind = found.behind | present & height.lt(Lanes::ZERO);
+                }
+            }
+        }
+        found
+    }
+}
+
+/// What a look at some edges tells.
+struct Scanned<const W: usize> {
+    /// Largest height over the line of one of them (m).
+    highest: Lanes<W>,
+    /// Where the centre stands behind one of those found.
+    behind: Mask<W>,
 }
 
 /// Of the edges behind which the point lies, keeps the way out: where it is inside, the edge of least penetration and those in a

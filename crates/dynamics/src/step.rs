@@ -14,6 +14,7 @@ use crate::particles::{Particle, Particles};
 use crate::problem::{StepProblem, StepSolution};
 use crate::scene::{Friction, Scene};
 use crate::solver::{Report, Solver};
+use crate::stage::{Moment, Stage};
 use crate::{Pose, Twist};
 
 /// Added to the distance that bodies can close within one step when contacts are sought (m).
@@ -57,9 +58,7 @@ pub enum Body {
 /// Γ for one scene.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
-    scene: Scene,
-    /// Where the feet stand, see [`Scene::stance`].
-    stance: [[f64; 2]; 3],
+    stage: Stage,
     reach: f64,
     level: Level,
 }
@@ -136,7 +135,7 @@ impl<const W: usize> StepWork<W> {
 impl Dynamics {
     /// The dynamics of one scene, on the widest vector instructions that the machine has.
     pub fn new(scene: Scene) -> Self {
-        Self { reach: scene.object.shape.bounding_radius(), stance: scene.stance(), scene, level: Level::new() }
+        Self { reach: scene.object.shape.bounding_radius(), stage: Stage::new(scene), level: Level::new() }
     }
 
     /// The same on other vector instructions; no result depends on them.
@@ -146,7 +145,7 @@ impl Dynamics {
 
     /// The scene.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.stage.scene
     }
 
     /// Advances `W` particles by one step; `friction` holds each one's parameters.
@@ -187,58 +186,66 @@ impl Dynamics {
     #[inline(always)]
     fn step_lanes<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
         work.resize(particles.len());
+        let moment = &Moment::new(input);
         for (chunk, particles) in particles.iter().enumerate() {
             let reach = self.search_distance(input, particles);
-            self.assemble(input, particles, reach, chunk, work);
+            self.assemble(moment, particles, reach, chunk, work);
         }
         let count = particles.len();
         work.solver.solve(&work.ncps[..count], &mut work.impulses[..count], &mut work.reports);
         for (chunk, particles) in particles.iter_mut().enumerate() {
-            self.widen(input, particles, chunk, work);
+            self.widen(moment, particles, chunk, work);
             self.integrate(input.h, particles, chunk, work);
         }
     }
 
     /// Writes a chunk's problems and warm starts.
     #[inline(always)]
-    fn assemble<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, reach: Lanes<W>, chunk: usize, work: &mut StepWork<W>) {
+    fn assemble<const W: usize>(
+        &self,
+        moment: &Moment<'_>,
+        particles: &Particles<W>,
+        reach: Lanes<W>,
+        chunk: usize,
+        work: &mut StepWork<W>,
+    ) {
         let assembly = &mut work.chunks[chunk];
         assembly.seek(reach);
-        assembly.collect((&self.scene, &self.stance), input, particles, &mut work.narrow, &mut work.ncps[chunk]);
-        assembly.load_warm_start(&self.scene, particles, &mut work.impulses[chunk]);
+        assembly.collect(&self.stage, moment, particles, &mut work.narrow, &mut work.ncps[chunk]);
+        assembly.load_warm_start(&self.stage.scene, particles, &mut work.impulses[chunk]);
     }
 
     /// Solves a chunk again while some lane's solution moves farther than its search covered.
     #[inline(always)]
-    fn widen<const W: usize>(&self, input: &StepInput, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
+    fn widen<const W: usize>(&self, moment: &Moment<'_>, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
         loop {
             let reach = work.chunks[chunk].reach();
-            let needed = (self.point_speed(&work.twist(chunk, &self.scene)) + self.pusher_speed(input)) * input.h;
+            let needed = (self.point_speed(&work.twist(chunk, &self.stage.scene)) + self.pusher_speed(moment.input)) * moment.input.h;
             let wider = needed.gt(reach) & needed.lt(Lanes::splat(f64::INFINITY)) & reach.lt(Lanes::splat(WIDEST));
             if !wider.any() {
                 return;
             }
-            self.solve_wider(input, particles, wider.select(needed * 2.0, reach), chunk, work);
+            self.solve_wider(moment, particles, wider.select(needed * 2.0, reach), chunk, work);
         }
     }
 
     #[inline(never)]
     fn solve_wider<const W: usize>(
         &self,
-        input: &StepInput,
+        moment: &Moment<'_>,
         particles: &Particles<W>,
         reach: Lanes<W>,
         chunk: usize,
         work: &mut StepWork<W>,
     ) {
-        self.assemble(input, particles, reach, chunk, work);
+        self.assemble(moment, particles, reach, chunk, work);
         let one = chunk..chunk + 1;
         work.solver.solve(&work.ncps[one.clone()], &mut work.impulses[one.clone()], &mut work.reports[one]);
     }
 
     #[inline(always)]
     fn integrate<const W: usize>(&self, h: f64, particles: &mut Particles<W>, chunk: usize, work: &StepWork<W>) {
-        particles.twist = work.twist(chunk, &self.scene);
+        particles.twist = work.twist(chunk, &self.stage.scene);
         for (q, v) in particles.pose.iter_mut().zip(&particles.twist) {
             *q += *v * h;
         }
@@ -253,14 +260,14 @@ impl Dynamics {
 
     /// Fastest point of the pusher.
     fn pusher_speed(&self, input: &StepInput) -> f64 {
-        let radius = self.scene.pusher.shape.bounding_radius();
+        let radius = self.stage.scene.pusher.shape.bounding_radius();
         let speed = |v: &Twist| (v.vx * v.vx + v.vy * v.vy).sqrt() + v.omega.abs() * radius;
         input.pusher.map_or(0.0, |pusher| speed(&pusher.twist))
     }
 
     #[inline(always)]
     fn search_distance<const W: usize>(&self, input: &StepInput, particles: &Particles<W>) -> Lanes<W> {
-        let object = &self.scene.object;
+        let object = &self.stage.scene.object;
         let [fx, fy, torque] = &particles.applied;
         let kick = (*fx * *fx + *fy * *fy).sqrt() / object.mass + torque.abs() / object.inertia * self.reach;
         let pusher = self.pusher_speed(input);

@@ -1,14 +1,12 @@
 //! The particle filter over a log, in the paper's mode: grasp acquisition as section III-D has it.
 
-use stickslip_dynamics::{Friction, Pose, Twist};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
 
-use crate::angle::unwrapped;
 use crate::cloud::Cloud;
-use crate::columns::Columns;
 use crate::contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 use crate::run::Prepared;
-use crate::{Camera, Estimate, EstimateRow, RunError, RunOptions, Setup, Spread, TactileUse};
+use crate::summary::summary;
+use crate::{Camera, Estimate, EstimateRow, RunError, RunOptions, Setup, TactileUse};
 
 /// Tracks the object of `prepared`; also the number of collapses.
 pub(crate) fn track(
@@ -28,8 +26,8 @@ pub(crate) fn track(
     };
     let mut filter = ParticleFilter::new(model, settings)?;
     let mut estimate = prepared.empty_estimate(setup);
-    let mut collapses = 0;
-    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, setup, prepared.start.theta) };
+    let (mut collapses, fixels) = (0, setup.scene.fixels.len());
+    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, fixels, prepared.start.theta) };
     show(prepared, prepared.first, &filter);
     for row in prepared.first + 1..prepared.log.len() {
         let plan = plan(prepared, row, history);
@@ -37,7 +35,7 @@ pub(crate) fn track(
         let report = filter.step(&plan, Some(&observation).filter(|o| !o.is_empty()));
         collapses += u32::from(report.collapsed());
         let near = estimate.rows[row - 1].pose.map_or(0.0, |pose| pose.theta);
-        estimate.rows[row] = reported(summary(&filter, setup, near), &report, observation.pose.is_some());
+        estimate.rows[row] = reported(summary(&filter, fixels, near), &report, observation.pose.is_some());
         show(prepared, row, &filter);
         progress(row);
     }
@@ -86,32 +84,4 @@ fn lookback(prepared: &Prepared<'_>, camera: &Camera, row: usize, history: usize
 
 fn reported(row: EstimateRow, report: &StepReport, visual: bool) -> EstimateRow {
     EstimateRow { ess: Some(report.effective_sample_size), resampled: Some(report.resampled), visual, ..row }
-}
-
-/// Weighted means and standard deviations of the particle set; θ is unwrapped from `near`.
-fn summary(filter: &ParticleFilter<ContactModel<'_>>, setup: &Setup, near: f64) -> EstimateRow {
-    let layout = filter.model().layout();
-    const SPREAD: [usize; 6] =
-        [Columns::POSE, Columns::POSE + 1, Columns::FRICTION, Columns::FRICTION + 1, Columns::FRICTION + 2, Columns::FRICTION + 3];
-    const OTHERS: [usize; 4] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST + 2, Columns::CONTACT_PUSHER];
-    let means = filter.weighted_means(&SPREAD);
-    let stds = filter.weighted_stds_about(&means, &SPREAD);
-    let [vx, vy, omega, contact_pusher] = filter.weighted_means(&OTHERS);
-    let angle = filter.weighted_circular_mean(Columns::POSE + 2);
-    let friction = |[_, _, mu_s, mu_p, mu_f, d_tri]: [f64; 6]| Friction { mu_s, mu_p, mu_f, d_tri };
-    let unsolved = filter.particles().reduce(|block| block.column(Columns::UNSOLVED).iter().sum::<f64>(), |a, b| a + b);
-    EstimateRow {
-        pose: Some(Pose::new(means[0], means[1], unwrapped(angle, near))),
-        twist: Some(Twist { vx, vy, omega }),
-        friction: Some(friction(means)),
-        contact_pusher: Some(contact_pusher),
-        contact_fixels: Some((0..setup.scene.fixels.len()).map(|j| filter.weighted_mean(layout.contact_fixel(j))).collect()),
-        spread: Some(Spread {
-            pose: Pose::new(stds[0], stds[1], filter.weighted_circular_std_about(angle, Columns::POSE + 2)),
-            friction: Some(friction(stds)),
-        }),
-        unsolved: Some(unsolved as u32),
-        ess: Some(filter.weights().effective_sample_size()),
-        ..EstimateRow::default()
-    }
 }

@@ -149,10 +149,9 @@ fn track_span(time: &[f64], seen: &[Option<Pose>], camera: Option<&Camera>, trac
         track_axis(time, &measured, std, tracking)
     };
     let (position_std, orientation_std) = camera.map_or((0.0, 0.0), |c| (c.pusher_position_std, c.pusher_orientation_std));
-    let x = axis(|p| p.x, position_std)?;
-    let y = axis(|p| p.y, position_std)?;
-    let theta = axis(|p| p.theta, orientation_std)?;
-    let tracked = x.iter().zip(&y).zip(&theta).map(|((x, y), theta)| TrackedPose {
+    let position = || rayon::join(|| axis(|p| p.x, position_std), || axis(|p| p.y, position_std));
+    let ((x, y), theta) = rayon::join(position, || axis(|p| p.theta, orientation_std));
+    let tracked = x?.into_iter().zip(y?).zip(theta?).map(|((x, y), theta)| TrackedPose {
         pose: Pose::new(x.position, y.position, theta.position),
         velocity: [x.velocity, y.velocity],
         speed_std: (x.velocity_variance + y.velocity_variance).sqrt(),

@@ -8,22 +8,32 @@ use stickslip::{Camera, Cloud, FilterSettings, Log, Occlusion, Run, RunOptions, 
 const ROWS: usize = 40;
 const FIRST: usize = 2;
 
-/// Number, row and the weighted sums of x, y, mu_s and 1 over the particles.
+/// What the particles after one row come to, each weighted: sum of weights, means and standard deviations of x, y, θ and μ_s.
+#[derive(Debug)]
+struct Moments {
+    row: usize,
+    particles: usize,
+    weight: f64,
+    means: [f64; 4],
+    stds: [f64; 4],
+}
+
 #[derive(Debug, Default)]
-struct Sums(Mutex<Vec<(usize, usize, [f64; 4])>>);
+struct Sums(Mutex<Vec<Moments>>);
 
 impl StepWatch for Sums {
     fn see(&self, _: &SolvedStep<'_>) {}
 
     fn after(&self, row: usize, cloud: &Cloud<'_>) {
-        let mut sums = [0.0; 4];
-        for (particle, weight) in cloud.weights().iter().enumerate() {
+        let values = |particle: usize| {
             let (pose, friction) = (cloud.pose(particle), cloud.friction(particle));
-            for (sum, value) in sums.iter_mut().zip([pose.x, pose.y, friction.mu_s, 1.0]) {
-                *sum += weight * value;
-            }
-        }
-        self.0.lock().expect("one thread").push((cloud.len(), row, sums));
+            [pose.x, pose.y, pose.theta, friction.mu_s]
+        };
+        let sum = |f: &dyn Fn([f64; 4]) -> f64| -> f64 { cloud.weights().iter().enumerate().map(|(i, w)| w * f(values(i))).sum() };
+        let means = std::array::from_fn(|k| sum(&|x| x[k]));
+        let stds = std::array::from_fn(|k| sum(&|x| (x[k] - means[k]).powi(2)).sqrt());
+        let moments = Moments { row, particles: cloud.len(), weight: sum(&|_| 1.0), means, stds };
+        self.0.lock().expect("one thread").push(moments);
     }
 }
 
@@ -54,7 +64,7 @@ fn log() -> Log {
     }
 }
 
-fn watched(options: &RunOptions) -> (Run, Vec<(usize, usize, [f64; 4])>) {
+fn watched(options: &RunOptions) -> (Run, Vec<Moments>) {
     let sums = Sums::default();
     let run = run_watched(&setup(), &log(), options, &sums, &mut |_| ()).expect("a run");
     (run, sums.0.into_inner().expect("one thread"))
@@ -64,13 +74,20 @@ fn watched(options: &RunOptions) -> (Run, Vec<(usize, usize, [f64; 4])>) {
 fn a_watch_sees_the_particles_that_the_estimate_is_made_of() {
     let options = RunOptions { particles: 100, occlusion: Occlusion::Rows { from: 30, to: None }, ..RunOptions::default() };
     let (run, sums) = watched(&options);
-    assert_eq!(sums.iter().map(|(_, row, _)| *row).collect::<Vec<_>>(), (FIRST..ROWS).collect::<Vec<_>>());
-    for (particles, row, [x, y, mu_s, one]) in sums {
-        let (pose, friction) = (run.estimate.rows[row].pose.expect("a pose"), run.estimate.rows[row].friction.expect("friction"));
-        assert_eq!(particles, 100);
-        for (sum, mean) in [(x, pose.x), (y, pose.y), (mu_s, friction.mu_s), (one, 1.0)] {
-            assert!((sum - mean).abs() < 1e-12, "row {row}: {sum} and {mean}");
+    assert_eq!(sums.iter().map(|moments| moments.row).collect::<Vec<_>>(), (FIRST..ROWS).collect::<Vec<_>>());
+    for Moments { row, particles, weight, means, stds } in sums {
+        let told = &run.estimate.rows[row];
+        let (pose, friction, spread) = (told.pose.expect("a pose"), told.friction.expect("friction"), told.spread.expect("a spread"));
+        assert!(particles == 100 && (weight - 1.0).abs() < 1e-12);
+        // the mean direction of angles some hundredths apart is their mean but for a third power of them
+        for ((mean, told), tolerance) in means.iter().zip([pose.x, pose.y, pose.theta, friction.mu_s]).zip([1e-12, 1e-12, 1e-5, 1e-12]) {
+            assert!((mean - told).abs() < tolerance, "row {row}: {mean} and {told}");
         }
+        let told = [spread.pose.x, spread.pose.y, spread.pose.theta, spread.friction.expect("friction").mu_s];
+        for (std, told) in stds.iter().zip(told) {
+            assert!((std - told).abs() < 1e-5 * std + 1e-10, "row {row}: {std} and {told}");
+        }
+        assert!(stds[..3].iter().all(|std| *std > 1e-6), "{stds:?}");
     }
 }
 

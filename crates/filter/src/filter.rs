@@ -134,10 +134,7 @@ impl<M: Model> ParticleFilter<M> {
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
         let resampled = self.is_degenerate();
-        if resampled {
-            self.resample(Purpose::Resample);
-        }
-        self.propagate(input);
+        self.advance(resampled, input, observation);
         let weighing = match observation {
             Some(observation) => self.weigh(observation),
             None => Weighing::Unobserved,
@@ -154,15 +151,25 @@ impl<M: Model> ParticleFilter<M> {
         self.particles.for_each_block(|block| model.initialise(draw, block));
     }
 
-    fn propagate(&mut self, input: &M::Input) {
+    /// Resamples where asked to, propagates, and takes the log-likelihoods, all of it block by block.
+    fn advance(&mut self, resample: bool, input: &M::Input, observation: Option<&M::Observation>) {
+        if resample {
+            self.choose_ancestors(Purpose::Resample);
+            self.weights.reset();
+        }
         let (model, scratch, draw) = (&self.model, &self.scratch, self.draw(Purpose::Propagate));
-        self.particles.for_each_block(|block| scratch.lend(|scratch| model.propagate(input, draw, block, scratch)));
+        let ancestors = resample.then_some(&*self.ancestors);
+        self.particles.advance(ancestors, &mut self.log_likelihood, |block, log_likelihood| {
+            scratch.lend(|scratch| model.propagate(input, draw, block, scratch));
+            if let Some(observation) = observation {
+                model.log_likelihood(observation, &block.as_block(), log_likelihood);
+            }
+        });
     }
 
+    /// Multiplies the weights by the likelihoods just taken.
     fn weigh(&mut self, observation: &M::Observation) -> Weighing {
         let model = &self.model;
-        self.particles.map_blocks(&mut self.log_likelihood, |block, out| model.log_likelihood(observation, block, out));
-
         let mut best_log_likelihood = self.weights.best(&self.log_likelihood);
         if model.collapsed(best_log_likelihood) {
             let part = &mut self.redrawn_log_likelihood;
@@ -186,10 +193,14 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     fn resample(&mut self, purpose: Purpose) {
-        let draw = self.draw(purpose);
-        self.settings.resampling.ancestors(self.weights.weights(), draw, &mut self.ancestors);
+        self.choose_ancestors(purpose);
         self.particles.gather(&self.ancestors);
         self.weights.reset();
+    }
+
+    fn choose_ancestors(&mut self, purpose: Purpose) {
+        let draw = self.draw(purpose);
+        self.settings.resampling.ancestors(self.weights.weights(), draw, &mut self.ancestors);
     }
 
     fn draw(&self, purpose: Purpose) -> Draw {

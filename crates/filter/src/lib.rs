@@ -9,8 +9,10 @@
 //! - a weight is never NaN; a set that no longer explains its observation is a counted outcome, [`Weighing::Collapsed`];
 //! - after the first steps, a step on one thread allocates nothing.
 //!
-//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them.
+//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them, and inside [`keep_threads_awake`] where
+//! one filter has them to itself.
 
+mod awake;
 mod box_muller;
 mod constant_velocity;
 mod filter;
@@ -26,6 +28,7 @@ mod streams;
 mod velocity_bank;
 mod weights;
 
+pub use awake::keep_threads_awake;
 pub use constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
 pub use filter::{ParticleFilter, Settings, SettingsError, StepReport, Weighing};
 pub use kalman::{Gaussian, Update};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::{Block, Model, ParticleFilter};
+use crate::{Model, ParticleFilter};
 
 /// Sums that run side by side.
 const PARTIAL: usize = 8;
@@ -10,8 +10,7 @@ const PARTIAL: usize = 8;
 impl<M: Model> ParticleFilter<M> {
     /// `sum w_i f(x_i)` over one column.
     pub fn expectation(&self, column: usize, f: impl Fn(f64) -> f64 + Sync) -> f64 {
-        let [expectation] = self.expectations(&[column], |_, x| f(x));
-        expectation
+        self.reduce(|block, weights| weighted_sum(block.column(column), weights, &f), |a, b| a + b)
     }
 
     /// The weighted mean of a column.
@@ -19,32 +18,10 @@ impl<M: Model> ParticleFilter<M> {
         self.expectation(column, |x| x)
     }
 
-    /// The weighted means of several columns, in one pass over the particles.
-    pub fn weighted_means<const K: usize>(&self, columns: &[usize; K]) -> [f64; K] {
-        self.expectations(columns, |_, x| x)
-    }
-
     /// The weighted standard deviation of a column about its mean.
     pub fn weighted_std(&self, column: usize) -> f64 {
-        let [std] = self.weighted_stds_about(&[self.weighted_mean(column)], &[column]);
-        std
-    }
-
-    /// The weighted root mean squares of several columns about their `means`, in one pass over the particles.
-    pub fn weighted_stds_about<const K: usize>(&self, means: &[f64; K], columns: &[usize; K]) -> [f64; K] {
-        self.expectations(columns, |k, x| (x - means[k]) * (x - means[k])).map(f64::sqrt)
-    }
-
-    /// `sum w_i f(k, x_i)` over each of `columns`, k its number there.
-    fn expectations<const K: usize>(&self, columns: &[usize; K], f: impl Fn(usize, f64) -> f64 + Sync) -> [f64; K] {
-        let of_block = |block: &Block<'_>, weights: &[f64]| {
-            let mut sums = [0.0; K];
-            for (k, (sum, column)) in sums.iter_mut().zip(columns).enumerate() {
-                *sum = weighted_sum(block.column(*column), weights, &|x| f(k, x));
-            }
-            sums
-        };
-        self.reduce(of_block, |a, b| std::array::from_fn(|k| a[k] + b[k]))
+        let mean = self.weighted_mean(column);
+        self.expectation(column, |x| (x - mean) * (x - mean)).sqrt()
     }
 
     /// The weighted mean direction of a column of angles \[rad\], in (-pi, pi]: the direction of the mean unit

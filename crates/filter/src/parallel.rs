@@ -41,6 +41,22 @@ pub(crate) fn for_each<T: Send>(data: &mut [T], chunk: usize, grain: usize, body
     }
 }
 
+/// Runs `body(index, piece of a, piece of b)` over both arrays cut into pieces of the lengths `pieces` (the last may be short).
+pub(crate) fn for_each_pair<A: Send, B: Send>(
+    a: &mut [A],
+    b: &mut [B],
+    pieces: [usize; 2],
+    body: impl Fn(usize, &mut [A], &mut [B]) + Sync,
+) {
+    if shared(a.len().div_ceil(pieces[0])) {
+        let both = a.par_chunks_mut(pieces[0]).zip(b.par_chunks_mut(pieces[1]));
+        both.enumerate().for_each(|(i, (a, b))| body(i, a, b));
+    } else {
+        let both = a.chunks_mut(pieces[0]).zip(b.chunks_mut(pieces[1]));
+        both.enumerate().for_each(|(i, (a, b))| body(i, a, b));
+    }
+}
+
 /// `leaf(start)` combined with ... combined with `leaf(end - 1)` over the balanced binary tree of the range.
 ///
 /// The tree is a function of the range alone, and nothing is allocated. The range must not be empty.

@@ -77,6 +77,27 @@ impl ParticleSet {
         });
     }
 
+    /// Runs `body(block, its part of out)` on every block, in parallel where threads allow; `out` holds N values.
+    ///
+    /// Where there are `ancestors`, particle i becomes a copy of particle `ancestors[i]` first, while its block is at hand.
+    pub fn advance(&mut self, ancestors: Option<&[u32]>, out: &mut [f64], body: impl Fn(&mut BlockMut<'_>, &mut [f64]) + Sync) {
+        assert_eq!(out.len(), self.particles);
+        let (particles, stride) = (self.particles, self.columns * BLOCK);
+        let Some(ancestors) = ancestors else {
+            return parallel::for_each_pair(&mut self.data, out, [stride, BLOCK], |index, data, out| {
+                body(&mut BlockMut { data, span: Span::of(index, particles) }, out);
+            });
+        };
+        assert_eq!(ancestors.len(), particles);
+        let source = &self.data;
+        parallel::for_each_pair(&mut self.spare, out, [stride, BLOCK], |index, target, out| {
+            let span = Span::of(index, particles);
+            gather_block(source, &ancestors[span.range()], target);
+            body(&mut BlockMut { data: target, span }, out);
+        });
+        std::mem::swap(&mut self.data, &mut self.spare);
+    }
+
     /// Fills `out` (N values) with `body(block, its part of out)`, in parallel where threads allow.
     pub fn map_blocks(&self, out: &mut [f64], body: impl Fn(&Block<'_>, &mut [f64]) + Sync) {
         assert_eq!(out.len(), self.particles);

@@ -1,5 +1,7 @@
 //! The process noise of a constant-velocity axis by maximum likelihood.
 
+use rayon::prelude::*;
+
 use crate::ConstantVelocity;
 use crate::series::{Series, SeriesError};
 
@@ -56,13 +58,13 @@ impl ConstantVelocity {
 }
 
 /// Maximises `objective(ln q)` around `centre`.
-fn search(centre: f64, objective: impl Fn(f64) -> f64) -> ProcessNoiseFit {
+fn search(centre: f64, objective: impl Fn(f64) -> f64 + Sync) -> ProcessNoiseFit {
     const HALF_DECADE: f64 = std::f64::consts::LN_10 / 2.0;
     const REACH: i32 = 18;
     let at = |i: i32| centre + f64::from(i) * HALF_DECADE;
-    let (mut best, mut highest) = (-REACH, objective(at(-REACH)));
-    for i in 1 - REACH..=REACH {
-        let value = objective(at(i));
+    let values: Vec<f64> = (-REACH..=REACH).into_par_iter().map(|i| objective(at(i))).collect();
+    let (mut best, mut highest) = (-REACH, f64::NEG_INFINITY);
+    for (i, value) in (-REACH..).zip(values) {
         if value > highest {
             (best, highest) = (i, value);
         }

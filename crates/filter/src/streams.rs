@@ -178,14 +178,14 @@ impl Draw {
 fn open_unit<const L: usize>(low: [u64; L], high: [u64; L]) -> [f64; L] {
     const HALF_CELL: f64 = f64::EPSILON / 2.0;
     std::array::from_fn(|i| {
-        let mantissa = (high[i] << 32 | low[i]) >> 12;
+        let mantissa = (high[i] << 32 | low[i] & LOW_WORD) >> 12;
         f64::from_bits(mantissa | 1.0f64.to_bits()) - (1.0 - HALF_CELL)
     })
 }
 
 /// Philox4x32 with 10 rounds (Salmon et al. 2011, section 3.3) on L counters side by side.
 ///
-/// The 32-bit words are held in u64, whose products SIMD has.
+/// The 32-bit words are the low halves of u64, whose products SIMD has; what the high halves hold does not matter.
 #[inline(always)]
 fn philox4x32_10<const L: usize>(mut counter: [[u64; L]; 4], mut key: [u32; 2]) -> [[u64; L]; 4] {
     for _ in 0..ROUNDS {
@@ -202,9 +202,9 @@ fn philox_round<const L: usize>([c0, c1, c2, c3]: [[u64; L]; 4], [k0, k1]: [u64;
         let a = (c0[i] & LOW_WORD) * 0xD251_1F53;
         let b = (c2[i] & LOW_WORD) * 0xCD9E_8D57;
         out[0][i] = (b >> 32) ^ c1[i] ^ k0;
-        out[1][i] = b & LOW_WORD;
+        out[1][i] = b;
         out[2][i] = (a >> 32) ^ c3[i] ^ k1;
-        out[3][i] = a & LOW_WORD;
+        out[3][i] = a;
     }
     out
 }
@@ -226,7 +226,8 @@ mod tests {
                 [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1],
             ),
         ] {
-            assert_eq!(philox4x32_10(counter.map(|c: u32| [u64::from(c); 3]), key), answer.map(|a: u32| [u64::from(a); 3]));
+            let words = philox4x32_10(counter.map(|c: u32| [u64::from(c); 3]), key);
+            assert_eq!(words.map(|word| word.map(|w| w as u32)), answer.map(|a: u32| [a; 3]));
         }
     }
 

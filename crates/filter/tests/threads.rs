@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Axis, POSITION, VELOCITY, series, settings};
-use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
+use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, keep_threads_awake};
 
 const PARTICLES: usize = 5003;
 
@@ -54,6 +54,20 @@ fn step_on_one_two_three_and_eight_threads_gives_the_same_bits() {
             assert!(on(threads) == reference, "{threads} threads differ from one, {resampling:?}");
         }
     }
+}
+
+#[test]
+fn keep_threads_awake_changes_no_bit() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let awake = pool.install(|| keep_threads_awake(|| run(Resampling::Systematic)));
+    assert!(awake == run(Resampling::Systematic));
+}
+
+#[test]
+fn keep_threads_awake_ends_with_a_body_that_panics() {
+    let pool = std::panic::AssertUnwindSafe(rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap());
+    let ended = std::panic::catch_unwind(|| pool.install(|| keep_threads_awake(|| panic!("on purpose"))));
+    assert!(ended.is_err());
 }
 
 /// FNV-1a over the bits of a run. The number changes where the algorithm or its random numbers change, and then says

@@ -5,7 +5,7 @@ use parry2d_f64::query::contact;
 use parry2d_f64::shape::{Ball, ConvexPolygon, Shape as ParryShape};
 use stickslip_dynamics::{Part, Pose, Shape};
 
-use crate::shapes::{Random, contacts, disc, random_polygon, rectangle, shape, smallest};
+use crate::shapes::{Random, contacts, disc, random_polygon, random_polygon_of_many, rectangle, shape, smallest};
 
 /// Parry's shape with its offset from the body frame.
 fn parry(part: &Part) -> (Box<dyn ParryShape>, [f64; 2]) {
@@ -75,6 +75,14 @@ fn polygon_pairs_match_parry() {
 fn polygon_and_disc_match_parry() {
     compare(2, 20_000, |r| [random_polygon(r), random_disc(r)]);
     compare(3, 20_000, |r| [random_disc(r), random_polygon(r)]);
+}
+
+#[test]
+fn polygons_of_many_corners_match_parry() {
+    compare(5, 5_000, |r| [random_polygon_of_many(r), random_disc(r)]);
+    compare(6, 5_000, |r| [random_disc(r), random_polygon_of_many(r)]);
+    compare(7, 5_000, |r| [random_polygon_of_many(r), random_polygon(r)]);
+    compare(8, 2_000, |r| [random_polygon_of_many(r), random_polygon_of_many(r)]);
 }
 
 #[test]

@@ -49,6 +49,16 @@ pub fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Part {
 /// A convex polygon of 3 to 8 corners on an ellipse of random axes.
 pub fn random_polygon(random: &mut Random) -> Part {
     let count = 3 + random.below(6);
+    polygon_of(count, random)
+}
+
+/// The same of 16 to 79 corners.
+pub fn random_polygon_of_many(random: &mut Random) -> Part {
+    let count = 16 + random.below(64);
+    polygon_of(count, random)
+}
+
+fn polygon_of(count: usize, random: &mut Random) -> Part {
     let axes = [random.range(0.01, 0.05), random.range(0.01, 0.05)];
     let centre = [random.range(-0.01, 0.01), random.range(-0.01, 0.01)];
     let start = random.range(0.0, 6.0);

@@ -1,0 +1,163 @@
+//! What a particle set amounts to: weighted means and standard deviations of its columns, in one pass over the particles: [`summary`].
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use stickslip_dynamics::{Friction, Lanes, Level, Pose, Twist, on_widest, sin_cos};
+use stickslip_filter::{Block, ParticleFilter};
+
+use crate::angle::unwrapped;
+use crate::columns::Columns;
+use crate::contact_model::ContactModel;
+use crate::propagation::LANES;
+use crate::{EstimateRow, Spread};
+
+/// Columns whose spread is told: x, y, μ_s, μ_p, μ_f, d_tri.
+const SPREAD: [usize; 6] =
+    [Columns::POSE, Columns::POSE + 1, Columns::FRICTION, Columns::FRICTION + 1, Columns::FRICTION + 2, Columns::FRICTION + 3];
+
+/// Columns of which the mean is enough: vx, vy, ω, contact with the pusher.
+const OTHERS: [usize; 4] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST + 2, Columns::CONTACT_PUSHER];
+
+/// θ.
+const ANGLE: usize = Columns::POSE + 2;
+
+type Column = Lanes<LANES>;
+
+/// Adding and subtracting it rounds to a whole number.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// One particle of the set: sums of deviations from it, which is near the others, lose no digits.
+#[derive(Clone, Copy, Debug)]
+struct Reference {
+    spread: [f64; 6],
+    angle: f64,
+}
+
+/// Weighted sums over some particles; d is the deviation from the reference.
+#[derive(Clone, Copy, Debug)]
+struct Sums {
+    /// Σ w d.
+    first: [f64; 6],
+    /// Σ w d².
+    second: [f64; 6],
+    /// Σ w x.
+    others: [f64; 4],
+    /// Σ w sin d, Σ w cos d, Σ w d, Σ w d² of the angles.
+    angle: [f64; 4],
+    /// Largest |d| of the angles (rad).
+    widest: f64,
+    /// Number of particles whose last step was not solved.
+    unsolved: f64,
+}
+
+/// The row of weighted means and standard deviations; θ is unwrapped from `near`.
+pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, fixels: usize, near: f64) -> EstimateRow {
+    let level = Level::new();
+    let value = |column: usize| filter.particles().value(0, column);
+    let reference = Reference { spread: SPREAD.map(value), angle: value(ANGLE) };
+    let of_block = |block: &Block<'_>, weights: &[f64]| {
+        on_widest(
+            level,
+            #[inline(always)]
+            || Sums::of_block(block, weights, &reference),
+        )
+    };
+    let sums = filter.reduce(of_block, Sums::plus);
+
+    let [x, y, mu_s, mu_p, mu_f, d_tri] = std::array::from_fn(|k| reference.spread[k] + sums.first[k]);
+    let stds: [f64; 6] = std::array::from_fn(|k| (sums.second[k] - sums.first[k] * sums.first[k]).max(0.0).sqrt());
+    let [vx, vy, omega, contact_pusher] = sums.others;
+    let turn = libm::atan2(sums.angle[0], sums.angle[1]);
+    let theta_std = if sums.widest <= FRAC_PI_2 {
+        sums.angle_std_about(turn)
+    } else {
+        filter.weighted_circular_std_about(reference.angle + turn, ANGLE)
+    };
+    let contact_fixel = |j: usize| filter.weighted_mean(filter.model().layout().contact_fixel(j));
+    EstimateRow {
+        pose: Some(Pose::new(x, y, unwrapped(reference.angle + turn, near))),
+        twist: Some(Twist { vx, vy, omega }),
+        friction: Some(Friction { mu_s, mu_p, mu_f, d_tri }),
+        contact_pusher: Some(contact_pusher),
+        contact_fixels: Some((0..fixels).map(contact_fixel).collect()),
+        spread: Some(Spread {
+            pose: Pose::new(stds[0], stds[1], theta_std),
+            friction: Some(Friction { mu_s: stds[2], mu_p: stds[3], mu_f: stds[4], d_tri: stds[5] }),
+        }),
+        unsolved: Some(sums.unsolved as u32),
+        ess: Some(filter.weights().effective_sample_size()),
+        ..EstimateRow::default()
+    }
+}
+
+impl Sums {
+    #[inline(always)]
+    fn of_block(block: &Block<'_>, weights: &[f64], reference: &Reference) -> Self {
+        let o = Column::ZERO;
+        let (mut first, mut second, mut others, mut angle) = ([o; 6], [o; 6], [o; 4], [o; 4]);
+        let (mut widest, mut unsolved) = (o, o);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let of_column = |column: usize| part(block.column(column), chunk);
+            let w = part(weights, chunk);
+            for k in 0..6 {
+                let d = of_column(SPREAD[k]) - reference.spread[k];
+                first[k] += w * d;
+                second[k] += w * d * d;
+            }
+            for k in 0..4 {
+                others[k] += w * of_column(OTHERS[k]);
+            }
+            let d = of_column(ANGLE) - reference.angle;
+            let d = d - ((d / TAU + ROUND) - ROUND) * TAU;
+            let (sin, cos) = sin_cos(d);
+            for (sum, value) in angle.iter_mut().zip([sin, cos, d, d * d]) {
+                *sum += w * value;
+            }
+            widest = widest.max(w.gt(o).keep(d.abs()));
+            unsolved += of_column(Columns::UNSOLVED);
+        }
+        let total = |lanes: Column| lanes.0.iter().sum::<f64>();
+        Self {
+            first: first.map(total),
+            second: second.map(total),
+            others: others.map(total),
+            angle: angle.map(total),
+            widest: widest.0.into_iter().fold(0.0, f64::max),
+            unsolved: total(unsolved),
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            first: added(self.first, other.first),
+            second: added(self.second, other.second),
+            others: added(self.others, other.others),
+            angle: added(self.angle, other.angle),
+            widest: self.widest.max(other.widest),
+            unsolved: self.unsolved + other.unsolved,
+        }
+    }
+
+    /// Standard deviation of the angles about their mean direction, `turn` from the reference, if none is on the other side of the
+    /// circle.
+    fn angle_std_about(&self, turn: f64) -> f64 {
+        let [_, _, d, square] = self.angle;
+        (square - 2.0 * turn * d + turn * turn).max(0.0).sqrt()
+    }
+}
+
+fn added<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// One chunk of a column; 0 past its end.
+#[inline(always)]
+fn part(column: &[f64], chunk: usize) -> Column {
+    let rest = &column[chunk * LANES..];
+    let mut part = Column::ZERO;
+    match rest.first_chunk() {
+        Some(lanes) => part.0 = *lanes,
+        None => part.0[..rest.len()].copy_from_slice(rest),
+    }
+    part
+}
