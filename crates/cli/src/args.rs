@@ -151,7 +151,7 @@ pub struct ReproduceArgs {
     /// Write reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of seeds: of rigs, sensors and filters [default: 20, from frames 6]
+    /// Number of seeds: of rigs, sensors and filters [default: 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: Option<u64>,
     /// Render camera frames and track them, instead of measuring poses with the paper's noise

@@ -39,9 +39,8 @@ use participant::Participant;
 use recording::Recording;
 use results::{Ratio, Reproduction};
 
-/// Seeds where the command line does not say: from poses, and from frames.
+/// Seeds where the command line does not say.
 const SEEDS: u64 = 20;
-const SEEDS_FROM_FRAMES: u64 = 6;
 
 /// All that the command says.
 #[derive(Debug, Serialize)]
@@ -79,7 +78,7 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
 }
 
 fn report(args: &ReproduceArgs, rules: &Rules) -> Result<Report> {
-    let seeds = args.seeds.unwrap_or(if args.from_frames { SEEDS_FROM_FRAMES } else { SEEDS });
+    let seeds = args.seeds.unwrap_or(SEEDS);
     let recordings = recordings(seeds)?;
     let (heats, equal) = if args.from_frames {
         let (tracked, simulated, noise) = filmed(&recordings)?;
