@@ -160,6 +160,13 @@ fn check_names_swapped_object_and_pusher() {
 }
 
 #[test]
+fn check_warns_of_a_noisy_pusher_that_is_taken_for_exact() {
+    let case = Experiment::copy(STOP, "exact_pusher");
+    case.edit("scene.toml", |text| text.replace("pusher_position_std = 0.0001", "pusher_position_std = 0.0"));
+    assert!(check(&case, "warning").1.iter().any(|w| w.contains("noise: pusher poses scatter by 0.1") && w.contains("says 0.00 mm")));
+}
+
+#[test]
 fn check_counts_what_is_missing_and_repeated() {
     let case = Experiment::copy(STOP, "missing");
     case.edit_rows(|rows| {

@@ -21,7 +21,7 @@ pub(super) struct Evidence<'a> {
     pub moving: Vec<bool>,
 }
 
-/// Standard deviations of one object pose.
+/// Standard deviations of one pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PoseNoise {
     /// Of x and y (m).
@@ -119,7 +119,7 @@ impl<'a> Evidence<'a> {
 }
 
 /// Noise from second differences, which a steady motion does not change; robust to jumps and stops.
-fn pose_noise(poses: &[Option<Pose>]) -> Option<PoseNoise> {
+pub(super) fn pose_noise(poses: &[Option<Pose>]) -> Option<PoseNoise> {
     let triples = || poses.windows(3).filter_map(|w| Some((w[0]?, w[1]?, w[2]?))).filter(|(a, b, c)| a != b && b != c);
     let std = |pick: fn(&Pose) -> f64| {
         let bends: Vec<f64> = triples().map(|(a, b, c)| (pick(&a) - 2.0 * pick(&b) + pick(&c)).abs()).collect();
