@@ -19,8 +19,8 @@ const SLACK: f64 = 1e-9;
 /// Edges that follow each other, with the corners at their ends, and a disc that holds them.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
-    /// Numbers of the edges, and of the corners, in the outline.
-    pub members: Range<usize>,
+    /// Numbers of the edges, and of the round vertices, in the outline.
+    members: Range<usize>,
     centre: Vec2,
     /// Radius (m).
     radius: f64,
@@ -47,6 +47,12 @@ impl Cluster {
         let centre = ends().fold([0.0; 2], |sum, p| [sum[0] + p[0] / count, sum[1] + p[1] / count]);
         let radius = ends().map(|p| length(sub(p, centre))).fold(0.0, f64::max) * (1.0 + SLACK);
         Self { members, centre, radius }
+    }
+
+    /// Its members among `count` edges, or round vertices.
+    #[inline(always)]
+    pub fn among(&self, count: usize) -> Range<usize> {
+        self.members.start..self.members.end.min(count)
     }
 
     /// Where some of its features may be less than `limit` (m) from a point.

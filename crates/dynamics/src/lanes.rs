@@ -53,6 +53,14 @@ impl<const W: usize> Lanes<W> {
         Self(from_fn(|i| self.0[i].sqrt()))
     }
 
+    /// The nearest whole number, of sizes below 2⁵⁰; halves go to the even one.
+    #[inline(always)]
+    pub fn round(self) -> Self {
+        // from here on doubles are whole numbers
+        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        (self + WHOLE) - WHOLE
+    }
+
     /// Where `self > other`.
     #[inline(always)]
     pub fn gt(self, other: Self) -> Mask<W> {

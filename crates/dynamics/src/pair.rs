@@ -1,7 +1,5 @@
 //! The features of two placed shapes, each against each: [`Pair`].
 
-use std::ops::Range;
-
 use crate::Shape;
 use crate::contact::Contact;
 use crate::ellipse_pair::EllipsePair;
@@ -111,8 +109,7 @@ impl<'a, const W: usize> Pair<'a, W> {
             if !search.within.any() {
                 continue;
             }
-            let frame = self.in_object;
-            let at = Over { frame: &frame, round };
+            let at = Over { frame: self.in_object, round };
             search.stands(|edge| at.faces(edge), &mut self.work.near);
             for k in 0..self.work.near.len() {
                 let Stand { edge: index, s, height, present, .. } = self.work.near[k];
@@ -125,7 +122,7 @@ impl<'a, const W: usize> Pair<'a, W> {
                 self.push(contact, round.covered, || at.touch(edge), self.other);
             }
             for cluster in mine.clusters.iter().filter(|cluster| search.meets(cluster)) {
-                for j in members(&cluster.members, mine.rounds.len()) {
+                for j in cluster.among(mine.rounds.len()) {
                     let place = self.places.round_on_round + (i * mine.rounds.len() + j) as u32;
                     self.round_on_round(place, &mine.rounds[j], round, &centre);
                 }
@@ -139,7 +136,7 @@ impl<'a, const W: usize> Pair<'a, W> {
         let limit = self.reach + self.other.bounding_radius();
         for cluster in &mine.clusters {
             if cluster.is_near(&self.in_object.origin, limit).any() {
-                for j in members(&cluster.members, mine.rounds.len()) {
+                for j in cluster.among(mine.rounds.len()) {
                     self.round_on_other(j, &mine.rounds[j], theirs);
                 }
             }
@@ -154,8 +151,7 @@ impl<'a, const W: usize> Pair<'a, W> {
         if !search.within.any() {
             return;
         }
-        let frame = self.in_other;
-        let at = Over { frame: &frame, round };
+        let at = Over { frame: self.in_other, round };
         search.stands(|edge| at.faces(edge), &mut self.work.near);
         for k in 0..self.work.near.len() {
             let Stand { edge: index, height, present, .. } = self.work.near[k];
@@ -281,15 +277,10 @@ impl<'a, const W: usize> Pair<'a, W> {
     }
 }
 
-/// The numbers of a range that are below `count`.
-fn members(range: &Range<usize>, count: usize) -> Range<usize> {
-    range.start..range.end.min(count)
-}
-
 /// A corner or disc above a shape's edges.
 struct Over<'a, const W: usize> {
     /// The frame of its own body, seen from the shape's.
-    frame: &'a Frames<W>,
+    frame: Frames<W>,
     round: &'a Round,
 }
 

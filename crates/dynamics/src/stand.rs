@@ -39,9 +39,8 @@ impl<const W: usize> Search<'_, W> {
     /// it in a reflex corner as well.
     #[inline(always)]
     pub fn stands(&self, faces: impl Fn(&Edge) -> Mask<W>, near: &mut Vec<Stand<W>>) {
-        let clusters = &self.shape.outline().clusters;
-        let mut found = self.scan(clusters.len() == 1, &faces, near);
-        if clusters.len() > 1 && self.maybe_inside(&found).any() {
+        let mut found = self.scan(false, &faces, near);
+        if self.shape.outline().clusters.len() > 1 && self.maybe_inside(&found).any() {
             found = self.scan(true, &faces, near);
         }
         if found.behind.any() {
@@ -72,8 +71,9 @@ impl<const W: usize> Search<'_, W> {
             if !everything && !self.meets(cluster) {
                 continue;
             }
-            let start = cluster.members.start;
-            for (k, edge) in outline.edges[start..outline.edges.len().min(cluster.members.end)].iter().enumerate() {
+            let members = cluster.among(outline.edges.len());
+            let start = members.start;
+            for (k, edge) in outline.edges[members].iter().enumerate() {
                 let (s, height) = edge.coordinates_each(self.centre);
                 found.highest = found.highest.max(height);
                 let mut present = self.within & height.lt(self.limit) & edge.holds_each(s, self.slack);

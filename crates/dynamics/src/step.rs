@@ -188,8 +188,8 @@ impl Dynamics {
         work.resize(particles.len());
         let moment = &Moment::new(input);
         for (chunk, particles) in particles.iter().enumerate() {
-            let reach = self.search_distance(input, particles);
-            self.assemble(moment, particles, reach, chunk, work);
+            work.chunks[chunk].seek(self.search_distance(input, particles));
+            self.assemble(moment, particles, chunk, work);
         }
         let count = particles.len();
         work.solver.solve(&work.ncps[..count], &mut work.impulses[..count], &mut work.reports);
@@ -201,16 +201,8 @@ impl Dynamics {
 
     /// Writes a chunk's problems and warm starts.
     #[inline(always)]
-    fn assemble<const W: usize>(
-        &self,
-        moment: &Moment<'_>,
-        particles: &Particles<W>,
-        reach: Lanes<W>,
-        chunk: usize,
-        work: &mut StepWork<W>,
-    ) {
+    fn assemble<const W: usize>(&self, moment: &Moment<'_>, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
         let assembly = &mut work.chunks[chunk];
-        assembly.seek(reach);
         assembly.collect(&self.stage, moment, particles, &mut work.narrow, &mut work.ncps[chunk]);
         assembly.load_warm_start(&self.stage.scene, particles, &mut work.impulses[chunk]);
     }
@@ -225,20 +217,14 @@ impl Dynamics {
             if !wider.any() {
                 return;
             }
-            self.solve_wider(moment, particles, wider.select(needed * 2.0, reach), chunk, work);
+            work.chunks[chunk].seek(wider.select(needed * 2.0, reach));
+            self.solve_again(moment, particles, chunk, work);
         }
     }
 
     #[inline(never)]
-    fn solve_wider<const W: usize>(
-        &self,
-        moment: &Moment<'_>,
-        particles: &Particles<W>,
-        reach: Lanes<W>,
-        chunk: usize,
-        work: &mut StepWork<W>,
-    ) {
-        self.assemble(moment, particles, reach, chunk, work);
+    fn solve_again<const W: usize>(&self, moment: &Moment<'_>, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
+        self.assemble(moment, particles, chunk, work);
         let one = chunk..chunk + 1;
         work.solver.solve(&work.ncps[one.clone()], &mut work.impulses[one.clone()], &mut work.reports[one]);
     }

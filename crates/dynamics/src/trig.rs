@@ -6,9 +6,6 @@ use crate::lanes::{Lanes, Mask};
 /// (Cody & Waite 1980).
 const QUARTER: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_95e-21];
 
-/// Adding and subtracting it rounds to a whole number.
-const ROUND: f64 = 6_755_399_441_055_744.0;
-
 const SIN: [f64; 6] = [
     1.589_690_995_211_55e-10,
     -2.505_076_025_340_686_3e-8,
@@ -30,23 +27,18 @@ const COS: [f64; 6] = [
 /// (sin x, cos x) to a few units in the last place, for |x| up to 10⁶ rad.
 #[inline(always)]
 pub fn sin_cos<const W: usize>(x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
-    let turns = round(x * std::f64::consts::FRAC_2_PI);
+    let turns = (x * std::f64::consts::FRAC_2_PI).round();
     let reduced = x - turns * QUARTER[0] - turns * QUARTER[1] - turns * QUARTER[2];
     let (sin, cos) = sin_cos_eighth(reduced);
 
     // the quarter turn, in −2..=2: odd ones swap sine and cosine, both signs follow
-    let quarter = turns - round(turns * 0.25) * 4.0;
+    let quarter = turns - (turns * 0.25).round() * 4.0;
     let odd = equal(quarter.abs(), 1.0);
     let half = equal(quarter.abs(), 2.0);
     let (s, c) = (odd.select(cos, sin), odd.select(sin, cos));
     let negative_sin = half | equal(quarter, -1.0);
     let negative_cos = half | equal(quarter, 1.0);
     (negative_sin.select(-s, s), negative_cos.select(-c, c))
-}
-
-#[inline(always)]
-fn round<const W: usize>(x: Lanes<W>) -> Lanes<W> {
-    (x + ROUND) - ROUND
 }
 
 #[inline(always)]

@@ -23,7 +23,8 @@ const MOVING: f64 = 1e-9;
 /// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of which three numbers are used.
 const FORCE_PAIR: u32 = 2;
 
-type Column = Lanes<LANES>;
+/// One number of each particle of a chunk.
+pub(crate) type Column = Lanes<LANES>;
 
 /// Working memory for the particles of one block.
 #[derive(Debug)]
@@ -122,7 +123,7 @@ impl Propagation {
             self.touched[chunk] = Touched::NOTHING;
             if drawn {
                 for (k, value) in self.particles[chunk].friction.iter_mut().enumerate() {
-                    *value = disturbed(*value, lanes_of(&self.normals[k], chunk) * std, limits[k]);
+                    *value = disturbed(*value, part(&self.normals[k], chunk, 0.0) * std, limits[k]);
                 }
             }
         }
@@ -147,7 +148,7 @@ impl Propagation {
         for (chunk, particles) in self.particles.iter_mut().enumerate().take(block.len().div_ceil(LANES)) {
             let std = particles.friction[0] * share;
             for (k, arm) in [1.0, 1.0, rho].into_iter().enumerate() {
-                particles.applied[k] = std * arm * lanes_of(&self.normals[k], chunk);
+                particles.applied[k] = std * arm * part(&self.normals[k], chunk, 0.0);
             }
             self.touched[chunk].moved = self.touched[chunk].moved | moving(&particles.twist, rho);
         }
@@ -238,23 +239,24 @@ fn flags(mask: Mask<LANES>) -> Column {
     mask.keep(Lanes::splat(1.0))
 }
 
-/// One chunk of a column of a whole block.
+/// One chunk of a column; `past` beyond its end.
 #[inline(always)]
-fn lanes_of(column: &[f64; BLOCK], chunk: usize) -> Column {
-    let mut lanes = Lanes::ZERO;
-    lanes.0.copy_from_slice(&column[chunk * LANES..][..LANES]);
-    lanes
+pub(crate) fn part(column: &[f64], chunk: usize, past: f64) -> Column {
+    let rest = &column[chunk * LANES..];
+    let mut part = Column::splat(past);
+    match rest.first_chunk() {
+        Some(lanes) => part.0 = *lanes,
+        None => part.0[..rest.len()].copy_from_slice(rest),
+    }
+    part
 }
 
 /// Reads one chunk of neighbouring columns; lanes past the last particle repeat it.
 #[inline(always)]
 fn load_columns<const N: usize>(block: &BlockMut<'_>, first_column: usize, chunk: usize, to: &mut [Column; N]) {
     for (k, to) in to.iter_mut().enumerate() {
-        let column = &block.column(first_column + k)[chunk * LANES..];
-        match column.first_chunk() {
-            Some(lanes) => to.0 = *lanes,
-            None => to.0 = std::array::from_fn(|lane| column[lane.min(column.len() - 1)]),
-        }
+        let column = block.column(first_column + k);
+        *to = part(column, chunk, column[column.len() - 1]);
     }
 }
 

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use stickslip_dynamics::{Friction, Lanes, Level, Pose, Twist, on_widest, sin_cos};
+use stickslip_dynamics::{Friction, Level, Pose, Twist, on_widest, sin_cos};
 use stickslip_filter::{Block, ParticleFilter};
 
 use crate::angle::unwrapped;
 use crate::columns::Columns;
 use crate::contact_model::ContactModel;
-use crate::propagation::LANES;
+use crate::propagation::{Column, LANES, part};
 use crate::{EstimateRow, Spread};
 
 /// Columns whose spread is told: x, y, μ_s, μ_p, μ_f, d_tri.
@@ -20,11 +20,6 @@ const OTHERS: [usize; 4] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST +
 
 /// θ.
 const ANGLE: usize = Columns::POSE + 2;
-
-type Column = Lanes<LANES>;
-
-/// Adding and subtracting it rounds to a whole number.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// One particle of the set: sums of deviations from it, which is near the others, lose no digits.
 #[derive(Clone, Copy, Debug)]
@@ -97,8 +92,8 @@ impl Sums {
         let (mut first, mut second, mut others, mut angle) = ([o; 6], [o; 6], [o; 4], [o; 4]);
         let (mut widest, mut unsolved) = (o, o);
         for chunk in 0..block.len().div_ceil(LANES) {
-            let of_column = |column: usize| part(block.column(column), chunk);
-            let w = part(weights, chunk);
+            let of_column = |column: usize| part(block.column(column), chunk, 0.0);
+            let w = part(weights, chunk, 0.0);
             for k in 0..6 {
                 let d = of_column(SPREAD[k]) - reference.spread[k];
                 first[k] += w * d;
@@ -108,7 +103,7 @@ impl Sums {
                 others[k] += w * of_column(OTHERS[k]);
             }
             let d = of_column(ANGLE) - reference.angle;
-            let d = d - ((d / TAU + ROUND) - ROUND) * TAU;
+            let d = d - (d / TAU).round() * TAU;
             let (sin, cos) = sin_cos(d);
             for (sum, value) in angle.iter_mut().zip([sin, cos, d, d * d]) {
                 *sum += w * value;
@@ -148,16 +143,4 @@ impl Sums {
 
 fn added<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
     std::array::from_fn(|k| a[k] + b[k])
-}
-
-/// One chunk of a column; 0 past its end.
-#[inline(always)]
-fn part(column: &[f64], chunk: usize) -> Column {
-    let rest = &column[chunk * LANES..];
-    let mut part = Column::ZERO;
-    match rest.first_chunk() {
-        Some(lanes) => part.0 = *lanes,
-        None => part.0[..rest.len()].copy_from_slice(rest),
-    }
-    part
 }

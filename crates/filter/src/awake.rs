@@ -12,14 +12,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// assert_eq!(stickslip_filter::keep_threads_awake(|| 6 * 7), 42);
 /// ```
 pub fn keep_threads_awake<T: Send>(body: impl FnOnce() -> T + Send) -> T {
-    let over = Over(AtomicBool::new(false));
+    let over = AtomicBool::new(false);
     rayon::scope(|scope| {
-        let home = rayon::current_thread_index();
-        let over = &over;
+        let (home, over) = (rayon::current_thread_index(), &over);
         scope.spawn_broadcast(move |_, worker| {
             // the thread of the body may look for work in one of the body's loops: it must come back to it
             if Some(worker.index()) != home {
-                over.attend();
+                attend(over);
             }
         });
         let _end = End(over);
@@ -27,25 +26,20 @@ pub fn keep_threads_awake<T: Send>(body: impl FnOnce() -> T + Send) -> T {
     })
 }
 
-/// Whether the body is over.
-struct Over(AtomicBool);
-
-impl Over {
-    /// Does the pool's work as it comes, until the body is over.
-    fn attend(&self) {
-        while !self.0.load(Ordering::Acquire) {
-            if rayon::yield_now() != Some(rayon::Yield::Executed) {
-                spin_loop();
-            }
+/// Does the pool's work as it comes, until all is over.
+fn attend(over: &AtomicBool) {
+    while !over.load(Ordering::Acquire) {
+        if rayon::yield_now() != Some(rayon::Yield::Executed) {
+            spin_loop();
         }
     }
 }
 
-/// Ends the body when dropped, so that a panic ends it too.
-struct End<'a>(&'a Over);
+/// Says that all is over when dropped, so that a panic says so too.
+struct End<'a>(&'a AtomicBool);
 
 impl Drop for End<'_> {
     fn drop(&mut self) {
-        self.0.0.store(true, Ordering::Release);
+        self.0.store(true, Ordering::Release);
     }
 }

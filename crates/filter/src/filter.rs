@@ -155,7 +155,6 @@ impl<M: Model> ParticleFilter<M> {
     fn advance(&mut self, resample: bool, input: &M::Input, observation: Option<&M::Observation>) {
         if resample {
             self.choose_ancestors(Purpose::Resample);
-            self.weights.reset();
         }
         let (model, scratch, draw) = (&self.model, &self.scratch, self.draw(Purpose::Propagate));
         let ancestors = resample.then_some(&*self.ancestors);
@@ -187,20 +186,16 @@ impl<M: Model> ParticleFilter<M> {
 
     /// After a collapse: resample by the weights before the observation, then draw anew around it.
     fn recover(&mut self, observation: &M::Observation) {
-        self.resample(Purpose::Recover);
+        self.choose_ancestors(Purpose::Recover);
         let (model, draw) = (&self.model, self.draw(Purpose::Redraw));
-        self.particles.for_each_block(|block| model.redraw(observation, draw, block));
+        self.particles.advance(Some(&self.ancestors), &mut self.log_likelihood, |block, _| model.redraw(observation, draw, block));
     }
 
-    fn resample(&mut self, purpose: Purpose) {
-        self.choose_ancestors(purpose);
-        self.particles.gather(&self.ancestors);
-        self.weights.reset();
-    }
-
+    /// Draws the ancestors by the weights, which become equal.
     fn choose_ancestors(&mut self, purpose: Purpose) {
         let draw = self.draw(purpose);
         self.settings.resampling.ancestors(self.weights.weights(), draw, &mut self.ancestors);
+        self.weights.reset();
     }
 
     fn draw(&self, purpose: Purpose) -> Draw {

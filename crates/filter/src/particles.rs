@@ -9,9 +9,6 @@ use crate::parallel;
 /// Particles in a block. Part of the determinism contract: never the number of threads.
 pub const BLOCK: usize = 64;
 
-/// Blocks that one thread copies at least when gathering.
-const GATHER_GRAIN: usize = 16;
-
 /// N particles of C columns each.
 #[derive(Clone, Debug)]
 pub struct ParticleSet {
@@ -107,17 +104,6 @@ impl ParticleSet {
     /// `map` of every block, combined over a fixed tree: the same bits on any number of threads.
     pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
         parallel::tree_reduce(0..self.block_count(), &|index| map(&self.block(index)), &combine)
-    }
-
-    /// Resampling: particle i becomes a copy of particle `ancestors[i]`, all columns of it.
-    pub fn gather(&mut self, ancestors: &[u32]) {
-        assert_eq!(ancestors.len(), self.particles);
-        let (stride, source) = (self.columns * BLOCK, &self.data);
-        parallel::for_each(&mut self.spare, stride, GATHER_GRAIN, |index, target| {
-            let span = Span::of(index, ancestors.len());
-            gather_block(source, &ancestors[span.range()], target);
-        });
-        std::mem::swap(&mut self.data, &mut self.spare);
     }
 }
 

@@ -31,11 +31,11 @@ fn blocks_cover_every_particle_once_and_hide_the_padding() {
 }
 
 #[test]
-fn gather_copies_whole_particles() {
+fn advance_copies_whole_ancestors() {
     let n = 20 * BLOCK + 7;
     let ancestors: Vec<u32> = (0..n).map(|i| ((i * 7919 + 3) % n) as u32).collect();
     let mut set = numbered(n, 3);
-    set.gather(&ancestors);
+    set.advance(Some(&ancestors), &mut vec![0.0; n], |_, _| ());
     for (i, &ancestor) in ancestors.iter().enumerate() {
         for c in 0..3 {
             assert_eq!(set.value(i, c), f64::from(1000 * c as u32 + ancestor));

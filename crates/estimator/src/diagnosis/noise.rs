@@ -20,10 +20,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         Some(noise) => compared(&noise, &stated),
     }];
     let stated = PoseNoise { position: camera.pusher_position_std, angle: camera.pusher_orientation_std };
-    let far_off = |noise: &PoseNoise| {
-        is_far_off(noise.position, stated.position, NEGLIGIBLE.position) || is_far_off(noise.angle, stated.angle, NEGLIGIBLE.angle)
-    };
-    if let Some(noise) = pose_noise(&evidence.log.pusher).filter(far_off) {
+    if let Some(noise) = pose_noise(&evidence.log.pusher).filter(|noise| is_far_off(noise, &stated, &NEGLIGIBLE)) {
         let advice = "set pusher_position_std and pusher_orientation_std under [camera] to what is measured: what is taken for exact jerks \
                       the object at every row";
         findings.push(Finding::warning(Subject::Noise, told("pusher", &noise, &stated), advice));
@@ -33,14 +30,16 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
     let found = told("object", noise, stated);
-    match is_far_off(noise.position, stated.position, 0.0) || is_far_off(noise.angle, stated.angle, 0.0) {
+    match is_far_off(noise, stated, &PoseNoise { position: 0.0, angle: 0.0 }) {
         true => Finding::warning(Subject::Noise, found, "set position_std and orientation_std under [camera] to what is measured"),
         false => Finding::ok(Subject::Noise, found),
     }
 }
 
-fn is_far_off(measured: f64, stated: f64, negligible: f64) -> bool {
-    measured > FAR_OFF * stated && measured > negligible
+/// Whether a noise is far above the stated one, and above what needs no statement.
+fn is_far_off(measured: &PoseNoise, stated: &PoseNoise, negligible: &PoseNoise) -> bool {
+    let is = |pick: fn(&PoseNoise) -> f64| pick(measured) > FAR_OFF * pick(stated) && pick(measured) > pick(negligible);
+    is(|noise| noise.position) || is(|noise| noise.angle)
 }
 
 fn told(body: &str, noise: &PoseNoise, stated: &PoseNoise) -> String {
