@@ -1,7 +1,7 @@
 //! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`, `truth.csv`, `truth.json` and
-//! `frames.csv`.
+//! `frames.csv`; logs as MCAP recordings of ROS 2 messages too.
 //!
-//! Nothing here opens a file: readers take text or an [`std::io::Read`] with the name to show in errors, writers an
+//! Nothing here opens a file: readers take text, bytes or an [`std::io::Read`] with the name to show in errors, writers an
 //! [`std::io::Write`]. Every refusal names the file, the line, the place in the line, the value found, the rule and what to do.
 //! Input is never repaired: a file is read as it stands or refused.
 
@@ -11,6 +11,8 @@ mod estimate_csv;
 mod experiment;
 mod frames_csv;
 mod log_csv;
+mod log_mcap;
+mod log_warning;
 mod nearest;
 mod number;
 mod scene;
@@ -21,7 +23,11 @@ pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_csv::{read_estimate, write_estimate};
 pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
-pub use log_csv::{LogWarning, SensorError, check_sensors, read_log, write_log};
+pub use log_csv::{SensorError, check_sensors, read_log, write_log};
+pub use log_mcap::{
+    McapError, McapPlace, McapProblem, McapWriteError, Topic, TopicError, TopicMapping, Topics, read_log_mcap, write_log_mcap,
+};
+pub use log_warning::LogWarning;
 pub use scene::{SceneError, SceneProblem, read_scene};
 pub use truth_csv::{Truth, read_truth_csv, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

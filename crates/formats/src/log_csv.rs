@@ -3,7 +3,6 @@
 //! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y]`, the
 //! columns found by name, in any order. An empty cell is a missing measurement.
 
-use std::fmt;
 use std::io::{Read, Write};
 
 use stickslip::{Log, Setup};
@@ -11,33 +10,13 @@ use stickslip_dynamics::Pose;
 
 use crate::csv_error::{CsvProblem, LogError};
 use crate::csv_table::{CsvTable, Row};
+use crate::log_warning::LogWarning;
 use crate::number;
 
 const OBJECT: [&str; 3] = ["object_x", "object_y", "object_theta"];
 const PUSHER: [&str; 3] = ["pusher_x", "pusher_y", "pusher_theta"];
 const FORCE: [&str; 2] = ["pusher_force_x", "pusher_force_y"];
 const TACTILE: &str = "tactile_";
-
-/// Something in a log that was read over.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LogWarning {
-    /// Columns that the format does not have.
-    ExtraColumns {
-        /// Display name of the file.
-        file: String,
-        /// Their names.
-        columns: Vec<String>,
-    },
-}
-
-impl fmt::Display for LogWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::ExtraColumns { file, columns } => write!(f, "{file}:1: extra columns are ignored: {}", columns.join(", ")),
-        }
-    }
-}
 
 /// A log has more tactile sensors than its scene has fixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

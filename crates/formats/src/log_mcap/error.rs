@@ -1,0 +1,179 @@
+//! Why a recording was refused: [`McapError`].
+
+use std::fmt;
+
+use crate::log_mcap::topics::Topic;
+
+/// A message of a recording, as a person finds it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct McapPlace {
+    /// Name of the topic.
+    pub topic: String,
+    /// Number of the message among those of the topic in the file, counted from 1, and its log time (ns); `None` where the whole
+    /// topic is meant.
+    pub message: Option<(usize, u64)>,
+}
+
+/// Why a recording was refused, and where.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub struct McapError {
+    /// Display name of the file.
+    pub file: String,
+    /// Topic and message; `None` where the whole file is meant.
+    pub place: Option<McapPlace>,
+    /// What is wrong.
+    pub problem: Box<McapProblem>,
+}
+
+impl fmt::Display for McapError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.file)?;
+        if let Some(place) = &self.place {
+            write!(f, "{}", place.topic)?;
+            if let Some((number, time)) = place.message {
+                write!(f, ", message {number} (log time {}.{:09} s)", time / 1_000_000_000, time % 1_000_000_000)?;
+            }
+            write!(f, ": ")?;
+        }
+        write!(f, "{}", self.problem)
+    }
+}
+
+/// What is wrong with a recording.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum McapProblem {
+    /// The file does not begin as an MCAP file.
+    #[error(
+        "the file begins with the bytes {found}, an MCAP recording with 89 4D 43 41 50 30 0D 0A. Give a file of `ros2 bag record -s mcap`"
+    )]
+    NotMcap {
+        /// The first bytes.
+        found: String,
+    },
+    /// The file is damaged before anything could be read.
+    #[error("nothing could be read: {why}. Try `mcap recover` on the file, or give another recording")]
+    Unreadable {
+        /// The damage.
+        why: String,
+    },
+    /// A chunk is packed in a way that is not known.
+    #[error("a chunk is compressed with `{found}`; none, zstd and lz4 can be read. Rewrite the file with `mcap compress`")]
+    Compression {
+        /// Name of the compression.
+        found: String,
+    },
+    /// A topic that must be there is not.
+    #[error(
+        "the topic `{name}` ({topic}) is not there{hint}. Say which topic it is with {topic}=TOPIC; the recording has {}",
+        if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
+    )]
+    MissingTopic {
+        /// What it carries.
+        topic: Topic,
+        /// Its name.
+        name: String,
+        /// The nearest topic, as `, the nearest is ...`, or empty.
+        hint: String,
+        /// All topics of the recording.
+        found: Vec<String>,
+    },
+    /// Fixels are misnumbered.
+    #[error(
+        "sensors are numbered fixel_1, fixel_2, ... without gaps, and fixel_{missing} is not there. Map fixel_{missing} to a topic, in the order of the [[fixel]] tables"
+    )]
+    SensorNumber {
+        /// The first missing one.
+        missing: usize,
+    },
+    /// A topic of another message type.
+    #[error("its messages are {found}, and {expected} is needed. Map another topic, or convert the messages before recording")]
+    WrongType {
+        /// The type that is there; empty where none is told.
+        found: String,
+        /// The type that is needed.
+        expected: &'static str,
+    },
+    /// A message encoding that is not CDR.
+    #[error("its messages are encoded as `{found}`; only cdr, that of ROS 2, can be read. Record the topic with `ros2 bag record -s mcap`")]
+    WrongEncoding {
+        /// The encoding.
+        found: String,
+    },
+    /// CDR of a kind that ROS 2 does not write.
+    #[error(
+        "the message begins with the bytes {:02X} {:02X}; plain CDR begins with 00 00 or 00 01. A bag compressed message by message must be rewritten with `ros2 bag convert` first",
+        .found[0], .found[1]
+    )]
+    Encapsulation {
+        /// The first two bytes.
+        found: [u8; 2],
+    },
+    /// A message that its type does not fit.
+    #[error("the message is no {expected}: {why}. Record the topic again, or map another one")]
+    Message {
+        /// The type.
+        expected: &'static str,
+        /// What does not fit.
+        why: String,
+    },
+    /// A stamp whose nanoseconds are a second or more.
+    #[error("header.stamp.nanosec is {found}; it must be below 1000000000. Correct what publishes the stamp")]
+    Nanoseconds {
+        /// The nanoseconds.
+        found: u32,
+    },
+    /// Two messages of a topic at one time.
+    #[error(
+        "header.stamp is {stamp} s, as in message {first}; each message of a topic needs a stamp of its own. Fill header.stamp with the time of measurement"
+    )]
+    SameStamp {
+        /// The stamp (s).
+        stamp: String,
+        /// Number of the other message.
+        first: usize,
+    },
+    /// Infinite or NaN.
+    #[error("{field} is {found}; numbers must be finite. Publish no message where nothing was measured")]
+    NotFinite {
+        /// The field.
+        field: &'static str,
+        /// The number.
+        found: f64,
+    },
+    /// A quaternion that is no rotation.
+    #[error("the orientation's length is {found}; it must be 1 within 0.01. Correct the quaternion that is published")]
+    NotUnit {
+        /// The length.
+        found: f64,
+    },
+    /// Upside down, so that there is no angle about the vertical.
+    #[error("the pose is upside down, and its angle about z is undefined. Publish poses whose z-axis points up from the table")]
+    UpsideDown,
+    /// Two frames.
+    #[error("header.frame_id is `{found}`, and `{expected}` in {of}; all must be in one frame. Transform them before recording{}", if *.wrench { ", or leave forces out with wrench=" } else { "" })]
+    Frame {
+        /// The frame of this message.
+        found: String,
+        /// The frame of those before.
+        expected: String,
+        /// The topic that has it.
+        of: String,
+        /// Whether this is the wrench, which can be left out.
+        wrench: bool,
+    },
+    /// Stamps that are different and the same in seconds.
+    #[error("two rows are both at {time} s, since their stamps differ by less than numbers can tell. Record stamps further apart")]
+    SameTime {
+        /// The time (s).
+        time: f64,
+    },
+    /// Topics without a message.
+    #[error("there is no message on `{object}` or `{pusher}`; at least one is needed. Record while poses are published")]
+    NoRows {
+        /// The object's topic.
+        object: String,
+        /// The pusher's topic.
+        pusher: String,
+    },
+}

@@ -1,0 +1,249 @@
+//! An MCAP file as messages by topic, as far as it can be read: [`Recording`].
+//!
+//! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in them. An attachment is never
+//! looked at.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+
+use mcap::read::{ChannelAccumulator, parse_record};
+use mcap::records::{ChunkHeader, Record, op};
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+
+use crate::log_mcap::error::McapProblem;
+use crate::log_mcap::topics::{Topic, Topics};
+
+/// Largest size of an unpacked chunk (bytes); recorders write a few MB.
+const CHUNK_LIMIT: u64 = 1 << 30;
+
+/// A message as it is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RawMessage {
+    /// Log time (ns).
+    pub log_time: u64,
+    /// What it says.
+    pub data: Vec<u8>,
+}
+
+/// Where a recording ends before its end.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Damage {
+    /// Bytes that were read.
+    pub at: u64,
+    /// What follows them.
+    pub why: String,
+}
+
+/// Type and encoding of the messages of a channel.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Kind {
+    /// Message type.
+    pub schema: String,
+    /// Message encoding.
+    pub encoding: String,
+}
+
+/// What a topic holds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Content {
+    /// Types and encodings of its channels.
+    pub kinds: BTreeSet<Kind>,
+    /// Its messages in the order of the file.
+    pub messages: Vec<RawMessage>,
+}
+
+/// The topics of a recording that a log needs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Recording {
+    /// Names of all topics.
+    pub names: BTreeSet<String>,
+    /// The needed ones.
+    pub topics: BTreeMap<Topic, Content>,
+    /// Where it was cut off.
+    pub damage: Option<Damage>,
+}
+
+/// Why reading stopped.
+enum Stop {
+    Damage(String),
+    Refused(McapProblem),
+}
+
+impl From<mcap::McapError> for Stop {
+    fn from(error: mcap::McapError) -> Self {
+        Self::Damage(error.to_string())
+    }
+}
+
+/// A recording while it is read.
+struct Progress<'t> {
+    wanted: &'t Topics,
+    links: ChannelAccumulator<'static>,
+    recording: Recording,
+}
+
+impl Recording {
+    /// Reads the topics that `wanted` names, up to the first damage.
+    pub(crate) fn read(bytes: &[u8], wanted: &Topics) -> Result<Self, McapProblem> {
+        if !bytes.starts_with(mcap::MAGIC) {
+            let found = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(" ");
+            return Err(McapProblem::NotMcap { found });
+        }
+        let mut progress = Progress { wanted, links: ChannelAccumulator::default(), recording: Self::default() };
+        let mut at = mcap::MAGIC.len() as u64;
+        let mut in_summary = false;
+        let read = records(bytes, Part::Whole, &mut |opcode, body| {
+            // the summary repeats what came before it
+            in_summary |= opcode == op::DATA_END;
+            match opcode {
+                _ if in_summary => {}
+                op::CHUNK => progress.take_chunk(body)?,
+                _ => progress.take(opcode, body)?,
+            }
+            at += 9 + body.len() as u64;
+            Ok(())
+        });
+        match read {
+            Ok(()) => Ok(progress.recording),
+            Err(Stop::Damage(why)) => Ok(Self { damage: Some(Damage { at, why }), ..progress.recording }),
+            Err(Stop::Refused(problem)) => Err(problem),
+        }
+    }
+}
+
+impl Progress<'_> {
+    fn take_chunk(&mut self, body: &[u8]) -> Result<(), Stop> {
+        let (header, packed) = match parse(op::CHUNK, body)? {
+            Record::Chunk { header, data } => (header, data),
+            _ => return Err(damage("a chunk is none")),
+        };
+        let content = unpacked(&header, &packed)?;
+        records(&content, Part::Chunk, &mut |opcode, body| self.take(opcode, body))
+    }
+
+    fn take(&mut self, opcode: u8, body: &[u8]) -> Result<(), Stop> {
+        if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+            return Ok(());
+        }
+        match parse(opcode, body)? {
+            Record::Schema { header, data } => self.links.add_schema_from_slice(header, &data)?,
+            Record::Channel(channel) => {
+                let id = channel.id;
+                self.links.add_channel(channel)?;
+                self.take_channel(id)?;
+            }
+            Record::Message { header, data } => {
+                let channel = self.links.get(header.channel_id).ok_or_else(|| damage("a message is of no channel"))?;
+                if let Some(content) = self.wanted.carries(&channel.topic).and_then(|topic| self.recording.topics.get_mut(&topic)) {
+                    content.messages.push(RawMessage { log_time: header.log_time, data: data.into_owned() });
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn take_channel(&mut self, id: u16) -> Result<(), Stop> {
+        let channel = self.links.get(id).ok_or_else(|| damage("a channel is lost"))?;
+        self.recording.names.insert(channel.topic.clone());
+        if let Some(topic) = self.wanted.carries(&channel.topic) {
+            let schema = channel.schema.as_ref().map_or(String::new(), |schema| schema.name.clone());
+            let kind = Kind { schema, encoding: channel.message_encoding.clone() };
+            self.recording.topics.entry(topic).or_default().kinds.insert(kind);
+        }
+        Ok(())
+    }
+}
+
+fn damage(why: &str) -> Stop {
+    Stop::Damage(why.to_owned())
+}
+
+/// What bytes are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// A whole file, with the bytes that open and close one.
+    Whole,
+    /// What is in a chunk.
+    Chunk,
+}
+
+/// Takes a record: opcode and body.
+type Take<'t> = dyn FnMut(u8, &[u8]) -> Result<(), Stop> + 't;
+
+/// Shows all records to `take`.
+fn records(bytes: &[u8], part: Part, take: &mut Take<'_>) -> Result<(), Stop> {
+    let options = LinearReaderOptions::default()
+        .with_emit_chunks(true)
+        .with_skip_start_magic(part == Part::Chunk)
+        .with_skip_end_magic(part == Part::Chunk)
+        .with_record_length_limit(bytes.len());
+    let mut reader = LinearReader::new_with_options(options);
+    let mut rest = bytes;
+    while let Some(event) = reader.next_event() {
+        match event? {
+            LinearReadEvent::ReadRequest(need) => {
+                let (next, after) = rest.split_at(need.min(rest.len()));
+                reader.insert(next.len()).copy_from_slice(next);
+                reader.notify_read(next.len());
+                rest = after;
+            }
+            LinearReadEvent::Record { opcode, data } => take(opcode, data)?,
+        }
+    }
+    Ok(())
+}
+
+/// A record whose texts lie within it; the library reserves memory by their lengths before it looks.
+fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
+    let fits = match opcode {
+        op::SCHEMA => body.get(2..).and_then(|rest| after_texts(rest, 2)).is_some(),
+        op::CHANNEL => body.get(4..).and_then(|rest| after_texts(rest, 2)).and_then(map_fits).is_some(),
+        op::CHUNK => body.get(28..).and_then(|rest| after_texts(rest, 1)).is_some(),
+        _ => true,
+    };
+    if fits { Ok(parse_record(opcode, body)?) } else { Err(damage("a text is longer than its record")) }
+}
+
+/// What follows `count` texts, each behind its length.
+fn after_texts(bytes: &[u8], count: usize) -> Option<&[u8]> {
+    (0..count).try_fold(bytes, |rest, _| {
+        let (length, rest) = rest.split_first_chunk()?;
+        rest.get(u32::from_le_bytes(*length) as usize..)
+    })
+}
+
+/// Whether all keys and values of a map lie in it.
+fn map_fits(bytes: &[u8]) -> Option<()> {
+    let (length, rest) = bytes.split_first_chunk()?;
+    let mut map = rest.get(..u32::from_le_bytes(*length) as usize)?;
+    while !map.is_empty() {
+        map = after_texts(map, 2)?;
+    }
+    Some(())
+}
+
+/// The records in a chunk; their checksum is right.
+fn unpacked(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, Stop> {
+    let size = header.uncompressed_size;
+    if size > CHUNK_LIMIT {
+        return Err(Stop::Damage(format!("a chunk claims {size} bytes, more than {CHUNK_LIMIT}")));
+    }
+    let failed = |error: std::io::Error| Stop::Damage(format!("a chunk cannot be unpacked: {error}"));
+    let mut content = Vec::new();
+    let read = match header.compression.as_str() {
+        "" => packed.take(size).read_to_end(&mut content),
+        "zstd" => zstd::stream::read::Decoder::new(packed).map_err(failed)?.take(size).read_to_end(&mut content),
+        "lz4" => lz4::Decoder::new(packed).map_err(failed)?.take(size).read_to_end(&mut content),
+        found => return Err(Stop::Refused(McapProblem::Compression { found: found.to_owned() })),
+    };
+    read.map_err(failed)?;
+    if content.len() as u64 != size {
+        return Err(Stop::Damage(format!("a chunk has {} bytes, and its header says {size}", content.len())));
+    }
+    match header.uncompressed_crc {
+        0 => Ok(content),
+        crc if crc == crc32fast::hash(&content) => Ok(content),
+        _ => Err(damage("a chunk's checksum is wrong")),
+    }
+}

@@ -1,0 +1,79 @@
+//! What was odd about a log and did not keep it from being read: [`LogWarning`].
+
+use std::fmt;
+
+/// Something in a log that was read over.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LogWarning {
+    /// Columns that the format does not have.
+    ExtraColumns {
+        /// Display name of the file.
+        file: String,
+        /// Their names.
+        columns: Vec<String>,
+    },
+    /// A recording that is cut off or damaged; it was read up to there.
+    CutOff {
+        /// Display name of the file.
+        file: String,
+        /// Bytes that were read.
+        at: u64,
+        /// Bytes of the file.
+        size: usize,
+        /// What is wrong there.
+        why: String,
+    },
+    /// Poses that are not in the plane; only their turn about the vertical was read.
+    Tilted {
+        /// Display name of the file.
+        file: String,
+        /// Name of the topic.
+        topic: String,
+        /// How many are tilted by more than 5°.
+        count: usize,
+        /// How many there are.
+        of: usize,
+        /// Largest tilt (rad).
+        largest: f64,
+    },
+    /// A topic whose messages are all at other times than the poses; its cells are empty.
+    Elsewhere {
+        /// Display name of the file.
+        file: String,
+        /// Name of the topic.
+        topic: String,
+        /// Its times.
+        at: String,
+        /// Those of the poses.
+        rows: String,
+    },
+}
+
+impl LogWarning {
+    /// Whether some of the file could not be read.
+    #[must_use]
+    pub fn is_loss(&self) -> bool {
+        matches!(self, Self::CutOff { .. })
+    }
+}
+
+impl fmt::Display for LogWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ExtraColumns { file, columns } => write!(f, "{file}:1: extra columns are ignored: {}", columns.join(", ")),
+            Self::CutOff { file, at, size, why } => {
+                write!(f, "{file}: the recording is cut off or damaged after {at} of {size} bytes ({why}); what follows is lost")
+            }
+            Self::Tilted { file, topic, count, of, largest } => write!(
+                f,
+                "{file}: {topic}: {count} of {of} poses are tilted by more than 5 deg, the most by {:.1} deg; only their turn about z is read. Look whether the z-axis points up from the table",
+                largest.to_degrees()
+            ),
+            Self::Elsewhere { file, topic, at, rows } => write!(
+                f,
+                "{file}: {topic}: all messages are at {at} and the poses at {rows}, so its cells are empty. Record all topics by one clock"
+            ),
+        }
+    }
+}
