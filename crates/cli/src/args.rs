@@ -9,6 +9,7 @@ use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::contest::Rival;
 use crate::paper::PaperExperiment;
+use crate::topic_args::TopicArgs;
 
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 #[derive(Debug, Parser)]
@@ -59,11 +60,14 @@ pub struct DemoArgs {
 /// Arguments of `stickslip filter`.
 #[derive(Debug, Args)]
 pub struct FilterArgs {
-    /// The recorded experiment (log.csv)
+    /// The recorded experiment (log.csv, or an MCAP recording of ROS 2 messages, log.mcap)
     pub log: PathBuf,
     /// What is known before the experiment (scene.toml)
     #[arg(long)]
     pub scene: PathBuf,
+    /// Topics of an MCAP log
+    #[command(flatten)]
+    pub topics: TopicArgs,
     /// How to estimate
     #[arg(long, value_enum, default_value_t = MethodName::Particle)]
     pub method: MethodName,
@@ -99,7 +103,7 @@ pub struct FilterArgs {
 /// Arguments of `stickslip compare`.
 #[derive(Debug, Args)]
 pub struct CompareArgs {
-    /// Experiment folders (scene.toml, log.csv and what is known of the truth), or folders of such folders
+    /// Experiment folders (scene.toml, log.csv or log.mcap, and what is known of the truth), or folders of such folders
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
     /// Run the particle filter with the seeds 0 to K - 1 and take the median of each score
@@ -173,8 +177,11 @@ pub struct ReproduceArgs {
 pub struct CheckArgs {
     /// What is known before the experiment (scene.toml)
     pub scene: PathBuf,
-    /// The recorded experiment (log.csv)
+    /// The recorded experiment (log.csv, or an MCAP recording of ROS 2 messages, log.mcap)
     pub log: PathBuf,
+    /// Topics of an MCAP log
+    #[command(flatten)]
+    pub topics: TopicArgs,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

@@ -44,10 +44,10 @@ pub struct TrackArgs {
     /// Frames per second of images without frames.csv, in the order of their names
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub rate: Option<f64>,
-    /// Take tactile and force readings from this log, whose rows have the frames' times
-    #[arg(long, value_name = "CSV")]
+    /// Take tactile and force readings from this log (CSV or MCAP), whose rows have the frames' times
+    #[arg(long, value_name = "LOG")]
     pub sensors: Option<PathBuf>,
-    /// Write log.csv and poses.csv (with covariances) into this folder
+    /// Write log.csv, log.mcap and poses.csv (with covariances) into this folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Threads [default: one per processor]; results do not depend on it
@@ -61,7 +61,7 @@ pub struct TrackArgs {
 /// Arguments of `stickslip render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Experiment folder (scene.toml, log.csv, truth.csv)
+    /// Experiment folder (scene.toml, log.csv or log.mcap, truth.csv)
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
     /// Write frames/, board/, board.toml, tags.toml and copies of scene and truth into this folder

@@ -31,7 +31,7 @@ struct Report {
 /// Runs the command.
 pub fn check(args: &CheckArgs) -> Result<Verdict> {
     let setup = read_scene_file(&args.scene)?;
-    let log = read_log_file(&args.log)?;
+    let (log, verdict) = read_log_file(&args.log, &args.topics.topics()?)?;
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
     if args.json {
@@ -39,7 +39,7 @@ pub fn check(args: &CheckArgs) -> Result<Verdict> {
     } else {
         show(&report)?
     };
-    Ok(if report.problems == 0 { Verdict::Done } else { Verdict::Failed })
+    Ok(if report.problems == 0 { verdict } else { Verdict::Failed })
 }
 
 impl Report {

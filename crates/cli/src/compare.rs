@@ -27,6 +27,8 @@ struct Case {
     folder: PathBuf,
     experiment: Experiment,
     occlusion: Occlusion,
+    /// Whether all of the log could be read.
+    verdict: Verdict,
 }
 
 /// One run that is to be made.
@@ -40,7 +42,7 @@ struct Job {
 /// Runs the command.
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let folders = folders::expand(&args.folders, &args.scene_name)?;
-    let comparison = args.shared.pool()?.install(|| compare_all(args, folders));
+    let (comparison, verdict) = args.shared.pool()?.install(|| compare_all(args, folders));
     let text = if args.shared.json { serde_json::to_string_pretty(&comparison)? } else { tables::text(&comparison) };
     if !text.is_empty() {
         show(text)?;
@@ -54,12 +56,13 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     }
     Ok(match (comparison.folders.is_empty(), comparison.errors.is_empty()) {
         (true, _) => Verdict::Failed,
-        (false, true) => Verdict::Done,
+        (false, true) => verdict,
         (false, false) => Verdict::InputLost,
     })
 }
 
-fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> Comparison {
+/// The comparison, and whether all of the logs in it could be read.
+fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> (Comparison, Verdict) {
     // read all folders; those that cannot be read are reported and left out
     let read: Vec<Result<Case, LostFolder>> = folders.into_par_iter().map(|folder| read_case(args, folder)).collect();
     let mut errors = Vec::new();
@@ -86,14 +89,15 @@ fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> Comparison {
             Err(error) => errors.push(LostFolder::new(&case.folder, error)),
         }
     }
-    Comparison::new(args, results, errors)
+    let cut_off = cases.iter().find(|case| case.verdict != Verdict::Done);
+    (Comparison::new(args, results, errors), cut_off.map_or(Verdict::Done, |case| case.verdict))
 }
 
 fn read_case(args: &CompareArgs, folder: PathBuf) -> Result<Case, LostFolder> {
     let read = || -> Result<Case> {
-        let experiment = read_folder(&folder, &args.scene_name)?;
+        let (experiment, verdict) = read_folder(&folder, &args.scene_name)?;
         let occlusion = occlusion(&experiment, &args.shared);
-        Ok(Case { folder: folder.clone(), experiment, occlusion })
+        Ok(Case { folder: folder.clone(), experiment, occlusion, verdict })
     };
     read().map_err(|error| LostFolder::new(&folder, &error))
 }

@@ -47,7 +47,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         let text = "--mode contact does not exist yet; --mode paper is the only one";
         return Err(Program::command().error(clap::error::ErrorKind::InvalidValue, text).into());
     }
-    let experiment = read_experiment(&args.scene, &args.log, args.truth.as_deref())?;
+    let (experiment, verdict) = read_experiment(&args.scene, &args.log, &args.topics.topics()?, args.truth.as_deref())?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) = timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
@@ -60,7 +60,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
     }
-    Ok(Verdict::Done)
+    Ok(verdict)
 }
 
 /// An occlusion that hides no pose is a slip of the pen.

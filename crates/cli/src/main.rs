@@ -23,6 +23,7 @@ mod render;
 mod reproduce;
 mod simulate;
 mod simulation;
+mod topic_args;
 mod track;
 mod verdict;
 

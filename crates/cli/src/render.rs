@@ -12,7 +12,7 @@ use stickslip_vision::{BoardOnTable, write_board, write_tags};
 
 use crate::args::Rows;
 use crate::camera_args::RenderArgs;
-use crate::experiment::{read_folder, reference_name};
+use crate::experiment::{log_path, read_folder, reference_name};
 use crate::failure::hinted;
 use crate::film_set::FilmSet;
 use crate::output::{show, talk};
@@ -21,7 +21,7 @@ use crate::verdict::Verdict;
 
 /// Runs the command.
 pub fn render(args: &RenderArgs) -> Result<Verdict> {
-    let experiment = read_folder(&args.folder, "scene.toml")?;
+    let (experiment, verdict) = read_folder(&args.folder, "scene.toml")?;
     let recorded = recorded(args, &experiment)?;
     let scene = &experiment.setup.scene;
     let optics = Optics { blur: args.blur, ..Optics::default() };
@@ -50,9 +50,9 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         "stickslip calibrate {0}/board --board {0}/board.toml --out {0}/calibration.toml\n\
          stickslip track {0}/frames --calibration {0}/calibration.toml --tags {0}/tags.toml --sensors {1} --out {0}",
         args.out.display(),
-        args.folder.join("log.csv").display()
+        log_path(&args.folder).display()
     ))?;
-    Ok(Verdict::Done)
+    Ok(verdict)
 }
 
 /// Where object and pusher are: the object as the truth has it, else as the log.

@@ -10,7 +10,7 @@ use stickslip_formats::{TruthFacts, read_scene, read_truth_json, write_log, writ
 use stickslip_testbed::true_friction;
 
 use crate::args::SimulateArgs;
-use crate::experiment::{read_facts_file, text_of};
+use crate::experiment::{log_path, read_facts_file, text_of};
 use crate::failure::hinted;
 use crate::output::{show, talk};
 use crate::paper::PaperScene;
@@ -47,7 +47,7 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
 
 /// A log that is there may be a recorded one.
 fn refuse_recorded(out: &Path) -> Result<()> {
-    let log = out.join("log.csv");
+    let log = log_path(out);
     if log.exists() {
         return Err(hinted(format!("{} is there already", log.display()), "give another folder with --out, or remove that log first"));
     }

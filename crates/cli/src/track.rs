@@ -1,13 +1,13 @@
 //! `stickslip track`: object and pusher through camera frames, into a log.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
 use stickslip::{Log, quantile};
-use stickslip_formats::write_log;
+use stickslip_formats::{McapWriteError, Topics, write_log, write_log_mcap};
 use stickslip_report::{Table, number};
 use stickslip_vision::{
     BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera, read_tags, write_poses,
@@ -54,15 +54,15 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
     let folder = FrameFolder::list(&args.frames)?;
     let time = times(args, &folder)?;
     let found = found(args, &folder, &camera, &tags)?;
-    let log = with_sensors(args, Log { object: found.object(), pusher: found.pusher(), time, ..Log::default() })?;
+    let (log, verdict) = with_sensors(args, Log { object: found.object(), pusher: found.pusher(), time, ..Log::default() })?;
     write(&args.out, &log, &found)?;
     let summary = Summary::new(&found);
     show(if args.json { serde_json::to_string_pretty(&summary)? } else { summary.text() })?;
     for (body, seen, given) in [("object", &summary.object, tags.object), ("pusher", &summary.pusher, tags.pusher)] {
         warn_of_size(body, seen, given);
     }
-    talk(format_args!("wrote {} and poses.csv", args.out.join("log.csv").display()));
-    Ok(Verdict::Done)
+    talk(format_args!("wrote {}, log.mcap and poses.csv", args.out.join("log.csv").display()));
+    Ok(verdict)
 }
 
 /// Times of the frames: those of frames.csv, else by the rate.
@@ -94,10 +94,10 @@ fn found(args: &TrackArgs, folder: &FrameFolder, camera: &Camera, tags: &Tags) -
     track.map_err(|error| if error.is::<TrackError>() { error.context(args.frames.display().to_string()) } else { error })
 }
 
-/// The log with the readings of another one at the same times.
-fn with_sensors(args: &TrackArgs, log: Log) -> Result<Log> {
-    let Some(path) = &args.sensors else { return Ok(log) };
-    let sensors = read_log_file(path)?;
+/// The log with the readings of another one at the same times, and whether all of that could be read.
+fn with_sensors(args: &TrackArgs, log: Log) -> Result<(Log, Verdict)> {
+    let Some(path) = &args.sensors else { return Ok((log, Verdict::Done)) };
+    let (sensors, verdict) = read_log_file(path, &Topics::default())?;
     let differ = || (0..log.len().max(sensors.len())).find(|row| differs(log.time.get(*row), sensors.time.get(*row)));
     if let Some(row) = differ() {
         let shown = |time: Option<&f64>| time.map_or("nothing".to_owned(), |time| format!("{time} s"));
@@ -106,26 +106,35 @@ fn with_sensors(args: &TrackArgs, log: Log) -> Result<Log> {
             "give a log with one row for each frame, at its time",
         ));
     }
-    Ok(Log { tactile: sensors.tactile, force: sensors.force, ..log })
+    Ok((Log { tactile: sensors.tactile, force: sensors.force, ..log }, verdict))
 }
 
 fn differs(a: Option<&f64>, b: Option<&f64>) -> bool {
     a.zip(b).is_none_or(|(a, b)| (a - b).abs() > SAME_TIME)
 }
 
-/// Writes log.csv and poses.csv into `folder`; other files there stay as they are.
+/// Writes log.csv, poses.csv and log.mcap into `folder`; other files there stay as they are.
 fn write(folder: &Path, log: &Log, track: &Track) -> Result<()> {
-    let write = || -> std::io::Result<()> {
+    let write = || -> Result<(), McapWriteError> {
         fs::create_dir_all(folder)?;
         let mut file = BufWriter::new(File::create(folder.join("log.csv"))?);
         write_log(&mut file, log)?;
         file.flush()?;
         let mut file = BufWriter::new(File::create(folder.join("poses.csv"))?);
         write_poses(&mut file, &log.time, track)?;
-        file.flush()
+        file.flush()?;
+        let mut bytes = Cursor::new(Vec::new());
+        write_log_mcap(&mut bytes, log, &Topics::default())?;
+        Ok(fs::write(folder.join("log.mcap"), bytes.into_inner())?)
     };
-    write().map_err(|error| {
-        hinted(format!("{}: cannot be written: {error}", folder.display()), "give a folder that can be written to with --out")
+    write().map_err(|error| match error {
+        McapWriteError::Output(error) => {
+            hinted(format!("{}: cannot be written: {error}", folder.display()), "give a folder that can be written to with --out")
+        }
+        error => hinted(
+            format!("{}: {error}", folder.join("log.mcap").display()),
+            "log.csv and poses.csv are written; log.mcap needs other times in frames.csv",
+        ),
     })
 }
 

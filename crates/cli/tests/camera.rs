@@ -10,6 +10,7 @@ use std::process::Output;
 use std::sync::LazyLock;
 
 use common::{Experiment, SLIDE, empty_folder, json, stickslip};
+use stickslip_formats::{Topics, read_log_mcap};
 
 /// Rows of the experiment that are rendered: the object moves.
 const ROWS: std::ops::Range<usize> = 100..130;
@@ -86,6 +87,9 @@ fn track_finds_what_was_rendered() {
     let (log, poses, truth) = (cells(&out.join("log.csv")), cells(&out.join("poses.csv")), cells(&RENDERED.join("truth.csv")));
     assert_eq!(log[0].last().unwrap(), "tactile_3");
     assert_eq!([log.len(), poses.len()], [1 + ROWS.len(); 2]);
+    let (recording, warnings) = read_log_mcap(&fs::read(out.join("log.mcap")).unwrap(), "log.mcap", &Topics::default()).unwrap();
+    // a row without any pose is no message
+    assert!(warnings.is_empty() && recording.tactile.len() == 3 && (20..=ROWS.len()).contains(&recording.len()), "{recording:?}");
     let (mut measured, mut repeated) = (0, 0);
     for ((log, poses), truth) in log.iter().zip(&poses).zip(&truth).skip(1) {
         repeated += usize::from(poses[1] == "1");

@@ -144,10 +144,13 @@ fn scene_or_paper_experiment_is_needed_and_not_both() {
 
 #[test]
 fn log_that_is_there_is_not_written_over() {
-    let folder = folder("simulate_recorded", SCENE);
-    fs::write(folder.join("log.csv"), "recorded\n").unwrap();
-    let run = simulate(&folder, ".", &[]);
-    let talk = String::from_utf8(run.stderr).unwrap();
-    assert!(run.status.code() == Some(1) && talk.contains("log.csv") && talk.contains("--out"), "{talk}");
-    assert_eq!(fs::read_to_string(folder.join("log.csv")).unwrap(), "recorded\n");
+    for name in ["log.csv", "log.mcap"] {
+        let folder = folder(&format!("simulate_recorded/{name}"), SCENE);
+        fs::write(folder.join(name), "recorded\n").unwrap();
+        let run = simulate(&folder, ".", &[]);
+        let talk = String::from_utf8(run.stderr).unwrap();
+        assert!(run.status.code() == Some(1) && talk.contains(name) && talk.contains("--out"), "{talk}");
+        assert_eq!(fs::read_to_string(folder.join(name)).unwrap(), "recorded\n");
+        assert!(name == "log.csv" || !folder.join("log.csv").exists());
+    }
 }

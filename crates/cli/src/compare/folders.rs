@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
+use crate::experiment::log_path;
 use crate::failure::hinted;
 
 /// The experiment folders among `given`: a folder that is none itself stands for those below it, in the order of their names.
@@ -16,14 +17,14 @@ pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
         if below.is_empty() { folders.push(folder.clone()) } else { folders.extend(below) }
     }
     match folders.is_empty() {
-        true => Err(hinted("no experiment folder was given", "give folders with scene.toml and log.csv")),
+        true => Err(hinted("no experiment folder was given", "give folders with scene.toml and log.csv or log.mcap")),
         false => Ok(folders),
     }
 }
 
 /// A folder with a log or a scene means to be an experiment, even if the other is missing.
 fn is_experiment(folder: &Path, scene_name: &str) -> bool {
-    folder.join("log.csv").is_file() || folder.join(scene_name).is_file()
+    log_path(folder).is_file() || folder.join(scene_name).is_file()
 }
 
 fn experiments_below(folder: &Path, scene_name: &str) -> Vec<PathBuf> {
