@@ -196,6 +196,16 @@ fn chunk_with_a_wrong_checksum_ends_the_recording() {
     assert!(warnings[0].to_string().contains("a chunk's checksum is wrong"), "{}", warnings[0]);
 }
 
+#[test]
+fn attachments_are_not_looked_at() {
+    let mut bytes = file(&[object(0, 1.0), pusher(0, 2.0)]);
+    // shorter than an attachment's fields and checksum
+    let record = [vec![9], 34_u64.to_le_bytes().to_vec(), vec![0; 34]].concat();
+    bytes.splice(8..8, record);
+    let (log, warnings) = read(&bytes);
+    assert_eq!((xs(&log.object), warnings), (vec![Some(1.0)], vec![]));
+}
+
 #[track_caller]
 fn refused(lines: &[Line], topics: &Topics, words: &str) {
     let message = read_log_mcap(&file(lines), "bag.mcap", topics).expect_err(words).to_string();
