@@ -45,9 +45,9 @@ fn rows_stand_at_object_stamps_and_at_pusher_stamps_more_than_a_millisecond_away
         pusher(MS, 11.0),
         pusher(50 * MS, 12.0),
         pusher(101 * MS, 13.0),
-        pusher(102 * MS + 1, 14.0),
+        pusher(101 * MS + 1, 14.0),
     ]);
-    assert_eq!(log.time, [0.0, 0.05, 0.1, 0.102_000_001]);
+    assert_eq!(log.time, [0.0, 0.05, 0.1, 0.101_000_001]);
     assert_eq!(xs(&log.object), [Some(1.0), None, Some(2.0), None]);
     // half a millisecond is nearer than a whole one
     assert_eq!(xs(&log.pusher), [Some(10.0), Some(12.0), Some(13.0), Some(14.0)]);
@@ -94,6 +94,15 @@ fn force_cell_is_the_mean_over_the_interval() {
     let rows = [0, 100, 200, 300].map(|ms| object(ms * MS, 0.0));
     let log = log(&[rows.as_slice(), &[pusher(0, 0.0)], &forces].concat());
     assert_eq!(log.force, [Some([1.0, 0.0]), Some([3.0, 1.0]), None, None]);
+}
+
+#[test]
+fn first_interval_is_as_long_as_the_second_and_that_of_a_single_row_is_its_time() {
+    let before = [wrench(899 * MS, 9.0, 0.0), wrench(900 * MS, 8.0, 0.0), wrench(900 * MS + 1, 1.0, 0.0), wrench(1000 * MS, 2.0, 0.0)];
+    let two = [object(1000 * MS, 0.0), object(1100 * MS, 0.0), pusher(1000 * MS, 0.0)];
+    assert_eq!(log(&[two.as_slice(), &before].concat()).force, [Some([1.5, 0.0]), None]);
+    let one = [object(1000 * MS, 0.0), pusher(1000 * MS, 0.0)];
+    assert_eq!(log(&[one.as_slice(), &before].concat()).force, [Some([2.0, 0.0])]);
 }
 
 #[test]
@@ -151,9 +160,10 @@ fn large_stamps_keep_their_place() {
 
 #[test]
 fn odd_recordings_are_read_with_a_warning() {
-    // 10 degrees about x
-    let (sin, cos) = libm::sincos(PI / 36.0);
-    let lines = [object(0, 0.0), quaternion("/object/pose", 100 * MS, 0.0, [sin, 0.0, 0.0, cos]), pusher(0, 0.0)];
+    // 10 and 4.9 degrees about x
+    let tilted =
+        |stamp: i64, angle: f64| quaternion("/object/pose", stamp, 0.0, [libm::sin(angle / 2.0), 0.0, 0.0, libm::cos(angle / 2.0)]);
+    let lines = [tilted(0, 4.9 / 180.0 * PI), tilted(100 * MS, PI / 18.0), pusher(0, 0.0)];
     let (log, warnings) = read(&file(&lines));
     assert_eq!((log.len(), warnings.len(), warnings[0].is_loss()), (2, 1, false));
     let words = warnings[0].to_string();
