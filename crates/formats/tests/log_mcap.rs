@@ -289,6 +289,10 @@ fn files_are_refused_with_place_value_rule_and_next_step() {
     refused(b"", "the file begins with the bytes , an MCAP");
     let whole = file(&[object(0, 0.0), pusher(0, 0.0)]);
     refused(&whole[..100], "nothing could be read: ");
+    let late: Vec<Line> = (0..50).map(|k| object(30 * MS * k, 0.0)).chain([pusher(0, 0.0)]).collect();
+    let chunks = file_with(&late, None, 1000);
+    let words = "the topic `/pusher/pose` (pusher) is not there, and the recording is cut off after ";
+    refused(&chunks[..chunks.len() / 4], words);
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
     for topic in ["/object/pose", "/pusher/pose"] {
         let schema = writer.add_schema(POSE, "ros2msg", b"").unwrap();

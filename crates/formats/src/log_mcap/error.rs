@@ -73,7 +73,7 @@ pub enum McapProblem {
         topic: Topic,
         /// Its name.
         name: String,
-        /// The nearest topic, as `, the nearest is ...`, or empty.
+        /// The nearest topic and where the recording is damaged, each behind a comma, or empty.
         hint: String,
         /// All topics of the recording.
         found: Vec<String>,

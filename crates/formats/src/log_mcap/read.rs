@@ -92,8 +92,11 @@ impl<'a> Reader<'a> {
         if let Some(damage) = self.recording.damage.as_ref().filter(|_| found.is_empty()) {
             return McapProblem::Unreadable { why: damage.why.clone() };
         }
-        let hint = nearest(&name, found.iter().map(String::as_str)).filter(|(_, distance)| *distance <= name.len() / 2);
+        let free = found.iter().map(String::as_str).filter(|name| self.topics.carries(name).is_none());
+        let hint = nearest(&name, free).filter(|(_, distance)| *distance <= name.len() / 2);
         let hint = hint.map_or(String::new(), |(nearest, _)| format!(", the nearest is `{nearest}`"));
+        let damage = self.recording.damage.as_ref().map(|damage| format!(", and the recording is cut off after {} bytes", damage.at));
+        let hint = hint + &damage.unwrap_or_default();
         McapProblem::MissingTopic { topic, name, hint, found: found.iter().cloned().collect() }
     }
 
