@@ -1,12 +1,15 @@
 //! Loops over equal chunks and sums over one fixed tree: the same bits on any number of threads.
 
+use std::hint::spin_loop;
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-
-use rayon::prelude::*;
 
 /// Ranges of at most this many leaves are summed by one thread.
 const SERIAL_LEAVES: usize = 16;
+
+/// Times that a thread looks whether the others are done before it lets the pool decide what it does.
+const SPINS: u32 = 1 << 13;
 
 /// Whether more than one thread can share `tasks` pieces of work.
 pub(crate) fn shared(tasks: usize) -> bool {
@@ -32,13 +35,12 @@ impl<S> PerThread<S> {
     }
 }
 
-/// Runs `body(index, chunk)` over `chunk`-sized pieces of `data` (the last may be short); each thread takes at least `grain` of them.
+/// Runs `body(index, chunk)` over `chunk`-sized pieces of `data` (the last may be short); a thread takes `grain` of them at a time.
 pub(crate) fn for_each<T: Send>(data: &mut [T], chunk: usize, grain: usize, body: impl Fn(usize, &mut [T]) + Sync) {
-    if shared(data.len().div_ceil(chunk).div_ceil(grain)) {
-        data.par_chunks_mut(chunk).with_min_len(grain).enumerate().for_each(|(i, c)| body(i, c));
-    } else {
-        data.chunks_mut(chunk).enumerate().for_each(|(i, c)| body(i, c));
-    }
+    let count = data.len().div_ceil(chunk * grain);
+    for_all(data.chunks_mut(chunk * grain).enumerate(), count, |(first, several)| {
+        several.chunks_mut(chunk).enumerate().for_each(|(i, c)| body(first * grain + i, c));
+    });
 }
 
 /// Runs `body(index, piece of a, piece of b)` over both arrays cut into pieces of the lengths `pieces` (the last may be short).
@@ -48,12 +50,54 @@ pub(crate) fn for_each_pair<A: Send, B: Send>(
     pieces: [usize; 2],
     body: impl Fn(usize, &mut [A], &mut [B]) + Sync,
 ) {
-    if shared(a.len().div_ceil(pieces[0])) {
-        let both = a.par_chunks_mut(pieces[0]).zip(b.par_chunks_mut(pieces[1]));
-        both.enumerate().for_each(|(i, (a, b))| body(i, a, b));
-    } else {
-        let both = a.chunks_mut(pieces[0]).zip(b.chunks_mut(pieces[1]));
-        both.enumerate().for_each(|(i, (a, b))| body(i, a, b));
+    let count = a.len().div_ceil(pieces[0]);
+    let both = a.chunks_mut(pieces[0]).zip(b.chunks_mut(pieces[1]));
+    for_all(both.enumerate(), count, |(i, (a, b))| body(i, a, b));
+}
+
+/// Runs `body` on `count` items, which the threads take one after the other, from both ends: in the next loop a thread mostly finds
+/// those again that it has in its cache.
+fn for_all<I>(items: impl DoubleEndedIterator<Item = I> + Send, count: usize, body: impl Fn(I) + Sync) {
+    if !shared(count) {
+        return items.for_each(body);
+    }
+    let (items, left) = (Mutex::new(items), AtomicUsize::new(count));
+    let next = |end| {
+        let mut items = items.lock().unwrap_or_else(PoisonError::into_inner);
+        if end == End::Front { items.next() } else { items.next_back() }
+    };
+    on_threads(count.min(rayon::current_num_threads()), End::Front, &|end| {
+        while let Some(item) = next(end) {
+            body(item);
+            left.fetch_sub(1, Ordering::Release);
+        }
+        wait_shortly(&left);
+    });
+}
+
+/// Where a thread takes its items.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Front,
+    Back,
+}
+
+/// Calls `work` so many times, on as many threads as have nothing else to do; the calling thread's end is `end`.
+fn on_threads(times: usize, end: End, work: &(impl Fn(End) + Sync)) {
+    if times < 2 {
+        return work(end);
+    }
+    rayon::join(|| on_threads(times / 2, end, work), || on_threads(times - times / 2, End::Back, work));
+}
+
+/// Waits until nothing is left, if that is soon: a thread that the pool sends to sleep meanwhile takes longer to wake up than a
+/// filter step of some hundred particles.
+fn wait_shortly(left: &AtomicUsize) {
+    for _ in 0..SPINS {
+        if left.load(Ordering::Acquire) == 0 {
+            return;
+        }
+        spin_loop();
     }
 }
 
