@@ -5,7 +5,6 @@
 
 use crate::elimination::Elimination;
 use crate::impulses::Impulses;
-use crate::inverse::Inverse;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, dot};
 
@@ -88,27 +87,6 @@ impl<const W: usize> Linearised<W> {
         let (Momentum { matrix, rhs }, push) = (self.momentum(ncp), self.push(ncp));
         let [x, y, turn, dy] = push.bordered(&self.stall, &matrix, &rhs, p.pusher_yield).solve();
         self.take_step([x, y, turn], dy, ncp, p, open);
-    }
-
-    /// The same, faster, where no row is held harder than the fast solver holds it.
-    #[inline(always)]
-    pub fn step_fast(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
-        let Momentum { matrix, rhs } = self.momentum(ncp);
-        let inverse = Inverse::of(matrix);
-        let mut dv = inverse.apply(&rhs);
-        let mut dy = Lanes::ZERO;
-        let stall = &self.stall;
-        // where no lane's pusher changes its yield, dv is known
-        if (stall.slack.gt(Lanes::ZERO) | stall.rhs.abs().gt(Lanes::ZERO)).any() {
-            let push = self.push(ncp);
-            let along = inverse.apply(&push.column);
-            dy = push.yield_change(stall, [&dv, &along], p.pusher_yield);
-            for (dv, along) in dv.iter_mut().zip(&along) {
-                *dv -= *along * dy;
-            }
-        }
-        // −0 becomes 0 on both ways
-        self.take_step(dv.map(|dv| dv + Lanes::ZERO), dy, ncp, p, open);
     }
 
     /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
@@ -234,14 +212,5 @@ impl<const W: usize> Push<W> {
             matrix: [equation(0), equation(1), equation(2), [last(self.row[0]), last(self.row[1]), last(self.row[2]), corner]],
             rhs: [rhs[0], rhs[1], rhs[2], determined.select(stall.rhs + stall.slack * self.rhs, -pusher_yield)],
         }
-    }
-
-    /// dy by the stall pair, where dv = `held` − `along` dy; `pusher_yield` is the present y.
-    #[inline(always)]
-    fn yield_change(&self, stall: &StallStep<W>, [held, along]: [&Triple<W>; 2], pusher_yield: Lanes<W>) -> Lanes<W> {
-        let weight = stall.slack * (self.corner - dot(&self.row, along)) + stall.pusher;
-        let determined = weight.gt(Lanes::splat(UNDETERMINED));
-        let rhs = stall.rhs + stall.slack * (self.rhs - dot(&self.row, held));
-        determined.select(rhs / determined.select(weight, Lanes::splat(1.0)), -pusher_yield)
     }
 }

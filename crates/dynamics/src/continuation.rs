@@ -1,8 +1,8 @@
 //! The second solver: one Newton step on the smoothed rows per reduction of ε, `W` particles side by side.
 //!
 //! Where an object jams or rests among redundant contacts the natural map of the first solver jumps between modes; smoothed rows
-//! do not. There is no line search: ε falls whenever the smoothed residual is of its size, so that every particle does the same
-//! arithmetic. Long before ε is small the modes show, and Newton's method with these modes held ends it. A lane that is done takes
+//! do not. There is no line search: ε falls while the smoothed residual is not too far above it, so that every particle does the
+//! same arithmetic. Long before ε is small the modes show, and Newton's method with these modes held ends it. A lane that is done takes
 //! up the next problem; lanes that look at their modes wait for others to look with them, so that neither kind of step runs for few.
 
 use crate::condensed::Linearised;

@@ -13,7 +13,6 @@ mod frames;
 mod homotopy;
 mod impulses;
 mod instructions;
-mod inverse;
 mod lanes;
 mod modes;
 mod narrow;

@@ -8,7 +8,7 @@ use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, Worst};
 
 /// Smallest excess of |p − s| over a foot's bound that counts, as a share of the bound.
-const LEAST_EXCESS: f64 = 1e-6;
+const LEAST_EXCESS: f64 = 1e-8;
 
 /// Keeps quotients finite.
 const TINY: f64 = 1e-300;

@@ -11,8 +11,9 @@ use crate::lanes::{Lanes, Mask};
 use crate::natural::{ContactMap, FootMap, NaturalMap};
 use crate::ncp::{ContactRow, FootRow, Ncp, dot};
 
-/// Stiffness k of held rows, in units of the object's mass per step.
-pub const STIFFNESS: f64 = 1.0e6;
+/// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
+/// a jammed object's creep of 1e-8 m/s.
+const STIFFNESS: f64 = 1.0e8;
 
 /// The fast solver's working memory.
 #[derive(Clone, Debug)]
@@ -42,7 +43,7 @@ impl<const W: usize> Newton<W> {
                 break;
             }
             self.linearised.by_natural_map(ncp, p, &self.map);
-            self.linearised.step_fast(ncp, p, open);
+            self.linearised.step(ncp, p, open);
             residual = open.select(self.map.take(ncp, p), residual);
             iterations += open.keep(Lanes::splat(1.0));
         }
@@ -95,7 +96,8 @@ impl<const W: usize> ContactMap<W> {
         let inertia = dot(&row.t, &row.t).max(one);
         let z = p[1] * inertia - self.slip;
         let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
-        ContactStep::in_mode(p, [self.gap, self.slip], Mode { closed, sliding, ratio: z.sign() * row.mu }, compliance)
+        let mode = Mode { closed, sliding, ratio: z.sign() * row.mu };
+        ContactStep::in_mode(p, [self.gap, self.slip], mode, Hold { stiffness: STIFFNESS, compliance })
     }
 }
 
@@ -110,13 +112,22 @@ pub struct Mode<const W: usize> {
     pub ratio: Lanes<W>,
 }
 
+/// How hard a contact's held rows are held.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold<const W: usize> {
+    /// Stiffness k, in units of the object's mass per step.
+    pub stiffness: f64,
+    /// Compliance κ of the gap row.
+    pub compliance: Lanes<W>,
+}
+
 impl<const W: usize> ContactStep<W> {
     /// A contact of impulses `p` and velocities (γ, s) in a given mode.
     #[inline(always)]
-    pub fn in_mode(p: [Lanes<W>; 2], [gamma, slip]: [Lanes<W>; 2], mode: Mode<W>, compliance: Lanes<W>) -> Self {
+    pub fn in_mode(p: [Lanes<W>; 2], [gamma, slip]: [Lanes<W>; 2], mode: Mode<W>, hold: Hold<W>) -> Self {
         let one = Lanes::splat(1.0);
-        let stick = Lanes::splat(STIFFNESS);
-        let k = one / (Lanes::splat(1.0 / STIFFNESS) + compliance);
+        let stick = Lanes::splat(hold.stiffness);
+        let k = one / (Lanes::splat(1.0 / hold.stiffness) + hold.compliance);
         let n = mode.closed.select(-gamma * k, -p[0]);
         let nn = mode.closed.keep(k);
         let free = mode.sliding | !mode.closed;

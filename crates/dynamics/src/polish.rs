@@ -7,7 +7,11 @@ use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple};
-use crate::newton::{Mode, STIFFNESS};
+use crate::newton::{Hold, Mode};
+
+/// Stiffness of held rows, in units of the object's mass per step: softer than the fast solver's, since a guess may hold rows that
+/// contradict each other, and the impulses grow with it.
+const STIFFNESS: f64 = 1.0e6;
 
 /// Relative change of the velocity at which the iteration ends.
 const CONVERGED: f64 = 1e-14;
@@ -60,7 +64,12 @@ impl<const W: usize> Polish<W> {
         for ((row, mode), (p_n, p_t)) in ncp.contacts.iter().zip(&self.modes).zip(p.normal.iter().zip(&p.tangential)) {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            contacts.push(ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, ncp.compliance));
+            contacts.push(ContactStep::in_mode(
+                [*p_n, *p_t],
+                [gamma, slip],
+                *mode,
+                Hold { stiffness: STIFFNESS, compliance: ncp.compliance },
+            ));
         }
         for k in 0..3 {
             self.linearised.feet[k] = foot(&ncp.feet[k], &p.feet[k], &p.v, slides[k]);

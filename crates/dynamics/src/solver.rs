@@ -20,11 +20,11 @@ pub const TOLERANCE: f64 = 1e-9;
 const AIM: f64 = 1e-10;
 
 /// Iterations of the fast solver before the next one takes over.
-const FAST_ITERATIONS: u32 = 6;
+const FAST_ITERATIONS: u32 = 8;
 
-/// Ways down from a warm start that the smoothed steps try one after the other: close to it, from afar, and slowly.
+/// Ways down from a warm start that the smoothed steps try one after the other: from next to it, from afar, and slowly.
 const DESCENTS: [Descent; 3] = [
-    Descent { start: 1e-5, reduction: 0.01, near: 1e3, sliding: 0.98 },
+    Descent { start: 1e-7, reduction: 0.01, near: 1e6, sliding: 0.9999 },
     Descent { start: 1e-1, reduction: 0.01, near: 1e3, sliding: 0.9999 },
     Descent { start: 1e-3, reduction: 0.1, near: 10.0, sliding: 0.9999 },
 ];
