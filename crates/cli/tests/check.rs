@@ -184,6 +184,16 @@ fn check_counts_what_is_missing_and_repeated() {
 }
 
 #[test]
+fn check_and_filter_refuse_two_clocks() {
+    let case = Experiment::copy(STOP, "clocks");
+    case.edit_rows(|rows| rows[1..].iter_mut().for_each(|row| row[0] += 1.7e9));
+    assert_problem(&case, &["timing", "rows are more than 600 s apart", "one clock"]);
+    let run = stickslip().args(["filter", &case.log(), "--scene", &case.scene()]).output().unwrap();
+    let talk = String::from_utf8(run.stderr).unwrap();
+    assert!(run.status.code() == Some(1) && talk.contains("row 1 is at 1700000000") && talk.contains("one clock"), "{talk}");
+}
+
+#[test]
 fn check_reports_an_unreadable_scene_as_an_error() {
     let case = Experiment::copy(STOP, "clockwise");
     let square = "[[-0.025000, -0.025000], [0.025000, -0.025000], [0.025000, 0.025000], [-0.025000, 0.025000]]";

@@ -2,8 +2,8 @@
 //!
 //! Every row is either held (its velocity is driven to zero) or given (its impulse is known up to the other rows), decided by
 //! the natural map of the iterate as in Alart & Curnier (1991). Held rows enter with a finite stiffness k and keep their impulse
-//! from one iteration to the next (a method of multipliers), so that redundant contacts do no harm. The error shrinks by about
-//! 1/k an iteration once the modes are right; a particle's warm start is its last step's impulses.
+//! from one iteration to the next (a method of multipliers), so that redundant contacts do no harm. The error shrinks by K/(K + k)
+//! an iteration once the modes are right, K what else resists; a particle's warm start is its last step's impulses.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;

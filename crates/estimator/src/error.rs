@@ -12,6 +12,19 @@ pub enum RunError {
         /// Rows of the log.
         rows: usize,
     },
+    /// Two rows are so far apart that nothing can be said of what happened between them.
+    #[error(
+        "row {row} is at {to} s and the row before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or cut the log in the pause",
+        longest = crate::schedule::LONGEST_PAUSE
+    )]
+    Pause {
+        /// The later row, from 0.
+        row: usize,
+        /// Time of the row before it (s).
+        from: f64,
+        /// Its time (s).
+        to: f64,
+    },
     /// The method weighs camera poses but the scene has no `[camera]`.
     #[error("the scene has no [camera] table, which this method needs; add position_std and orientation_std")]
     NoCamera,

@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::Pose;
 
-use crate::schedule::Schedule;
+use crate::schedule::{LONGEST_PAUSE, Schedule};
 use crate::track::PusherTrack;
 use crate::watch::StepWatch;
 use crate::{Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal, particle_run};
@@ -107,6 +107,14 @@ fn run_prepared(setup: &Setup, prepared: &Prepared<'_>, options: &RunOptions, pr
     Ok(Run { estimate, unsolved, collapses })
 }
 
+/// Refuses a log whose steps no substeps can follow.
+fn check_pauses(time: &[f64]) -> Result<(), RunError> {
+    match time.array_windows().position(|[from, to]| to - from > LONGEST_PAUSE) {
+        Some(row) => Err(RunError::Pause { row: row + 1, from: time[row], to: time[row + 1] }),
+        None => Ok(()),
+    }
+}
+
 /// A log made ready: who sees what, from where it starts, and the steps between its rows.
 pub(crate) struct Prepared<'a> {
     pub log: &'a Log,
@@ -124,6 +132,7 @@ impl<'a> Prepared<'a> {
         if log.tactile.len() > fixels {
             return Err(RunError::Sensors { sensors: log.tactile.len(), fixels });
         }
+        check_pauses(&log.time)?;
         let hidden = options.occlusion.hidden(log);
         let seen = (0..log.len()).find_map(|row| log.object[row].filter(|_| !hidden[row]).map(|pose| (row, pose)));
         let (first, start) = seen.ok_or(RunError::NoObjectPose { rows: log.len() })?;

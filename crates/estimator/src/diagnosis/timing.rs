@@ -2,6 +2,7 @@
 
 use super::evidence::{Evidence, median};
 use super::finding::{Finding, Subject};
+use crate::schedule::LONGEST_PAUSE;
 
 /// Slowest camera that follows a push (s).
 const SLOWEST: f64 = 0.2;
@@ -21,6 +22,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let (shortest, longest) = (steps.iter().copied().fold(f64::INFINITY, f64::min), steps.iter().copied().fold(0.0, f64::max));
     let holes = steps.iter().filter(|step| **step > HOLE * typical && **step > SHORT).count();
     let rate = format!("{:.1} Hz, steps of {:.1} to {:.1} ms", 1.0 / typical, 1e3 * shortest, 1e3 * longest);
+    if longest > LONGEST_PAUSE {
+        let found = format!("{rate}: rows are more than {LONGEST_PAUSE} s apart");
+        return vec![Finding::problem(Subject::Timing, found, "give all times by one clock, or cut the log in the pause")];
+    }
     vec![match (typical > SLOWEST, holes) {
         (true, _) if typical > 5.0 => {
             Finding::problem(Subject::Timing, format!("{rate}: time seems to be in milliseconds"), "give time in seconds")
