@@ -79,13 +79,18 @@ pub fn check_sensors(log: &Log, setup: &Setup) -> Result<(), SensorError> {
 /// # Panics
 /// If the columns differ in length.
 pub fn write_log(mut writer: impl Write, log: &Log) -> std::io::Result<()> {
+    assert_equal_columns(log);
+
+    writeln!(writer, "{}", header(log).join(","))?;
+    (0..log.len()).try_for_each(|row| writeln!(writer, "{}", cells(log, row).join(",")))
+}
+
+/// Our own logs have columns of equal length.
+pub(crate) fn assert_equal_columns(log: &Log) {
     let rows = log.len();
     assert!(log.object.len() == rows && log.pusher.len() == rows, "columns of equal length");
     assert!(log.tactile.iter().all(|column| column.len() == rows), "columns of equal length");
     assert!(log.force.is_empty() || log.force.len() == rows, "columns of equal length");
-
-    writeln!(writer, "{}", header(log).join(","))?;
-    (0..rows).try_for_each(|row| writeln!(writer, "{}", cells(log, row).join(",")))
 }
 
 impl Columns {

@@ -8,6 +8,7 @@ use mcap::{WriteOptions, Writer};
 use stickslip::Log;
 use stickslip_dynamics::Pose;
 
+use crate::log_csv::assert_equal_columns;
 use crate::log_mcap::message::{Bool, Header, Message, PoseStamped, Quaternion, SECOND, Time, Vector3, WrenchStamped, encode};
 use crate::log_mcap::series::ENCODING;
 use crate::log_mcap::topics::{Topic, Topics};
@@ -69,10 +70,7 @@ impl From<mcap::McapError> for McapWriteError {
 /// # Panics
 /// If the columns differ in length.
 pub fn write_log_mcap(writer: impl Write + Seek, log: &Log, topics: &Topics) -> Result<(), McapWriteError> {
-    let rows = log.len();
-    assert!(log.object.len() == rows && log.pusher.len() == rows, "columns of equal length");
-    assert!(log.tactile.iter().all(|column| column.len() == rows), "columns of equal length");
-    assert!(log.force.is_empty() || log.force.len() == rows, "columns of equal length");
+    assert_equal_columns(log);
 
     let stamps = stamps(&log.time)?;
     let mut recorder = Recorder::new(writer)?;
