@@ -1,6 +1,10 @@
 //! Where tags are in an image, roughly: [`Detector`], around the library's detector.
 
+use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use image::GrayImage;
+use kornia_apriltag::decoder::Detection;
 use kornia_apriltag::family::TagFamilyKind;
 use kornia_apriltag::{AprilTagDecoder, DecodeTagsConfig};
 use kornia_image::{Image, ImageSize};
@@ -12,7 +16,7 @@ const SMALLEST: usize = 32;
 
 /// Finds tags of the family 36h11 in images of one size.
 pub struct Detector {
-    decoder: AprilTagDecoder,
+    decoder: Arc<Mutex<AprilTagDecoder>>,
     size: ImageSize,
     /// The library shares an image out among the threads it finds, and its last digits depend on their number: it gets one.
     one_thread: rayon::ThreadPool,
@@ -37,22 +41,19 @@ impl Detector {
         let config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11]).expect("the library has this family");
         let size = ImageSize { width: size[0] as usize, height: size[1] as usize };
         let decoder = AprilTagDecoder::new(config, size).expect("an image of usual size");
-        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("the system gives a thread");
-        Self { decoder, size, one_thread }
+        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).panic_handler(|_| ()).build().expect("the system gives a thread");
+        Self { decoder: Arc::new(Mutex::new(decoder)), size, one_thread }
     }
 
     /// The tags in an image, by number and then by place; one may be there twice.
     ///
     /// # Panics
     /// If the image has another size.
-    pub fn find(&mut self, image: &GrayImage) -> Vec<FoundTag> {
+    pub fn find(&self, image: &GrayImage) -> Vec<FoundTag> {
         if self.size.width.min(self.size.height) < SMALLEST {
             return Vec::new();
         }
-        let view = Image::from_size_slice(self.size, image.as_raw()).expect("an image of the detector's size");
-        let decoder = &mut self.decoder;
-        let detections = self.one_thread.install(|| decoder.decode(&view)).expect("an image of the detector's size");
-        self.decoder.clear();
+        let detections = self.decode(image);
         let mut tags: Vec<FoundTag> = detections
             .iter()
             .map(|detection| {
@@ -66,6 +67,22 @@ impl Detector {
             .collect();
         tags.sort_by(|a, b| a.id.cmp(&b.id).then(a.corners()[0][0].total_cmp(&b.corners()[0][0])));
         tags
+    }
+
+    /// What the library finds. Its thread is waited for outside of any pool: a thread of a pool that waits inside takes up the next
+    /// frame meanwhile, which waits in turn, one within the other until the stack is full.
+    fn decode(&self, image: &GrayImage) -> Vec<Detection> {
+        let view = Image::new(self.size, image.as_raw().clone()).expect("an image of the detector's size");
+        let (found, wait) = sync_channel(1);
+        let decoder = Arc::clone(&self.decoder);
+        self.one_thread.spawn(move || {
+            let mut decoder = decoder.lock().unwrap_or_else(PoisonError::into_inner);
+            let detections = decoder.decode(&view).expect("an image of the detector's size");
+            decoder.clear();
+            // the one who asked is gone only if it panicked
+            let _ = found.send(detections);
+        });
+        wait.recv().expect("the library looks through any image")
     }
 }
 

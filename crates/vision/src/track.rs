@@ -101,9 +101,9 @@ pub fn track<E: From<TrackError> + Send>(
     tags: &Tags,
 ) -> Result<Track, E> {
     let chunk = |chunk: usize| {
-        let mut detector = Detector::new(camera.lens().size);
+        let detector = Detector::new(camera.lens().size);
         let frames = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
-        frames.map(|index| look(&mut detector, load(index)?, camera, tags).map_err(E::from)).collect::<Result<Vec<Seen>, E>>()
+        frames.map(|index| look(&detector, load(index)?, camera, tags).map_err(E::from)).collect::<Result<Vec<Seen>, E>>()
     };
     let seen: Vec<Vec<Seen>> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect::<Result<_, E>>()?;
     let mut before = None;
@@ -117,7 +117,7 @@ pub fn track<E: From<TrackError> + Send>(
 }
 
 /// What one image shows.
-fn look(detector: &mut Detector, (name, image): (String, GrayImage), camera: &Camera, tags: &Tags) -> Result<Seen, TrackError> {
+fn look(detector: &Detector, (name, image): (String, GrayImage), camera: &Camera, tags: &Tags) -> Result<Seen, TrackError> {
     let (size, expected) = ([image.width(), image.height()], camera.lens().size);
     if size != expected {
         let text = |[columns, rows]: [u32; 2]| format!("{columns} x {rows}");

@@ -134,7 +134,7 @@ fn find_agrees_with_the_reference_detector() {
     let (frames, _) = RIG.random_frames(10, Pose::default(), 9);
     let (board, _) = RIG.board_frames(3);
     let mut reference = apriltag::DetectorBuilder::new().add_family_bits(apriltag::Family::tag_36h11(), 1).build().unwrap();
-    let mut detector = Detector::new([640, 480]);
+    let detector = Detector::new([640, 480]);
     let mut compared = 0;
     for frame in frames.iter().chain(&board) {
         let mut copy = apriltag::Image::zeros_with_alignment(640, 480, 1).unwrap();
@@ -159,7 +159,7 @@ fn find_agrees_with_the_reference_detector() {
 #[test]
 fn find_takes_any_image() {
     for size in [[1, 1], [31, 200], [32, 32], [33, 47], [200, 150]] {
-        let mut detector = Detector::new(size);
+        let detector = Detector::new(size);
         let streams = stickslip_filter::Streams::new(u64::from(size[0]));
         for index in 0..20 {
             let noise = GrayImage::from_fn(size[0], size[1], |x, y| image::Luma([(256.0 * streams.uniform(index, x, y)) as u8]));
@@ -176,6 +176,16 @@ fn track_is_the_same_on_any_number_of_threads() {
     let one = on(1);
     assert_eq!(one, on(2));
     assert_eq!(one, on(3));
+}
+
+/// Frames must not be looked at one inside the other: thousands of them with the stack of a few.
+#[test]
+fn track_takes_no_more_stack_for_more_frames() {
+    let load = |index: usize| Ok::<_, TrackError>((format!("{index}.png"), GrayImage::new(640, 480)));
+    let track = || stickslip_vision::track(100 * 32, load, &CALIBRATION.camera, &RIG.tags);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).stack_size(1 << 17).build().unwrap();
+    let text = pool.install(track).unwrap_err().to_string();
+    assert!(text.contains("no tag of the family 36h11 is in any of the 3200 frames"), "{text}");
 }
 
 #[test]
