@@ -4,39 +4,23 @@
 //! min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row is min(F_stall − F, y).
 
 use crate::impulses::Impulses;
-use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, Worst};
-
-/// Smallest excess of |p − s| over a foot's bound that counts, as a share of the bound.
-const LEAST_EXCESS: f64 = 1e-8;
+use crate::lanes::Lanes;
+use crate::ncp::{ContactRow, Ncp, ROOM, Triple, Worst};
 
 /// Keeps quotients finite.
-const TINY: f64 = 1e-300;
+pub const TINY: f64 = 1e-300;
 
 /// The natural map at one point, with what leads to it.
 #[derive(Clone, Debug)]
 pub struct NaturalMap<const W: usize> {
     /// Velocity that follows from the impulses, less the point's.
     pub imbalance: Triple<W>,
-    /// One per foot.
-    pub feet: [FootMap<W>; 3],
+    /// Slip velocity s of each foot.
+    pub slips: [[Lanes<W>; 2]; 3],
     /// One per contact.
     pub contacts: Vec<ContactMap<W>>,
     /// F_stall − F.
     pub slack: Lanes<W>,
-}
-
-/// One foot.
-#[derive(Clone, Copy, Debug)]
-pub struct FootMap<const W: usize> {
-    /// Slip velocity s.
-    pub slip: [Lanes<W>; 2],
-    /// |p − s| is above the bound.
-    pub sliding: Mask<W>,
-    /// (p − s) / |p − s| where sliding.
-    pub direction: [Lanes<W>; 2],
-    /// bound / (|p − s| − bound) where sliding.
-    pub across: Lanes<W>,
 }
 
 /// One contact.
@@ -51,8 +35,7 @@ pub struct ContactMap<const W: usize> {
 impl<const W: usize> Default for NaturalMap<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
-        let foot = FootMap { slip: [o; 2], sliding: Mask::splat(false), direction: [o; 2], across: o };
-        Self { imbalance: [o; 3], feet: [foot; 3], contacts: Vec::with_capacity(ROOM), slack: o }
+        Self { imbalance: [o; 3], slips: [[o; 2]; 3], contacts: Vec::with_capacity(ROOM), slack: o }
     }
 }
 
@@ -68,9 +51,9 @@ impl<const W: usize> NaturalMap<W> {
             worst.note(off);
         }
         let mut squares = Worst::NONE;
-        for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
-            *map = FootMap::new(foot, p_k, &p.v);
-            let [x, y] = map.miss(foot, p_k);
+        for (slip, (foot, p_k)) in self.slips.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
+            *slip = foot.slip(&p.v);
+            let [x, y] = miss(foot.bound, p_k, slip);
             squares.note(x * x + y * y);
         }
         worst.note(squares.root());
@@ -86,27 +69,14 @@ impl<const W: usize> NaturalMap<W> {
     }
 }
 
-impl<const W: usize> FootMap<W> {
-    #[inline(always)]
-    fn new(foot: &FootRow<W>, p: &[Lanes<W>; 2], v: &Triple<W>) -> Self {
-        let slip = foot.slip(v);
-        let z = [p[0] - slip[0], p[1] - slip[1]];
-        let length = (z[0] * z[0] + z[1] * z[1]).sqrt();
-        let sliding = length.gt(foot.bound);
-        let excess = (length - foot.bound).max(foot.bound * LEAST_EXCESS);
-        // one division for both 1 / length and 1 / excess
-        let both = sliding.select(length * excess, Lanes::splat(1.0)).max(Lanes::splat(TINY));
-        let inverse = Lanes::splat(1.0) / both;
-        let unit = inverse * excess;
-        Self { slip, sliding, direction: [z[0] * unit, z[1] * unit], across: foot.bound * (inverse * length) }
-    }
-
-    /// Π(p − s) − p.
-    #[inline(always)]
-    pub fn miss(&self, foot: &FootRow<W>, p: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
-        let [x, y] = self.direction;
-        [self.sliding.select(foot.bound * x - p[0], -self.slip[0]), self.sliding.select(foot.bound * y - p[1], -self.slip[1])]
-    }
+/// Π(p − s) − p of a foot.
+#[inline(always)]
+fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
+    let z = [p[0] - slip[0], p[1] - slip[1]];
+    let length = (z[0] * z[0] + z[1] * z[1]).sqrt();
+    let sliding = length.gt(bound);
+    let shrink = bound / length.max(bound).max(Lanes::splat(TINY));
+    [sliding.select(shrink * z[0] - p[0], -slip[0]), sliding.select(shrink * z[1] - p[1], -slip[1])]
 }
 
 impl<const W: usize> ContactMap<W> {

@@ -8,8 +8,8 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::natural::{ContactMap, FootMap, NaturalMap};
-use crate::ncp::{ContactRow, FootRow, Ncp, dot};
+use crate::natural::{ContactMap, NaturalMap, TINY};
+use crate::ncp::{ContactRow, Ncp, dot};
 
 /// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
 /// a jammed object's creep of 1e-8 m/s.
@@ -57,7 +57,7 @@ impl<const W: usize> Linearised<W> {
     fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>) {
         self.imbalance = map.imbalance;
         for k in 0..3 {
-            self.feet[k] = map.feet[k].linearised(&ncp.feet[k], &p.feet[k]);
+            self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k]);
         }
         self.contacts.clear();
         for ((row, contact), (p_n, p_t)) in ncp.contacts.iter().zip(&map.contacts).zip(p.normal.iter().zip(&p.tangential)) {
@@ -67,22 +67,65 @@ impl<const W: usize> Linearised<W> {
     }
 }
 
-impl<const W: usize> FootMap<W> {
-    /// Stuck where |p − s| ≤ bound, else sliding with p on the rim.
+/// What it would take to hold a foot: the impulse z = p − k s.
+#[derive(Clone, Copy, Debug)]
+pub struct Holding<const W: usize> {
+    z: [Lanes<W>; 2],
+    /// |z|.
+    length: Lanes<W>,
+}
+
+impl<const W: usize> Holding<W> {
+    /// Of a foot with impulse p and slip velocity s.
     #[inline(always)]
-    fn linearised(&self, foot: &FootRow<W>, p: &[Lanes<W>; 2]) -> FootStep<W> {
-        let Self { slip, sliding, direction: [x, y], across } = *self;
-        // sliding: along the direction the impulse is the bound, across it turns with stiffness bound / (|p − s| − bound)
-        let miss = self.miss(foot, p);
-        let miss_along = miss[0] * x + miss[1] * y;
-        let miss_across = (miss[1] * x - miss[0] * y) * (across + Lanes::splat(1.0));
-        let slide = [miss_along * x - miss_across * y, miss_along * y + miss_across * x];
-        // stuck: s is driven to zero
+    pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> Self {
         let k = Lanes::splat(STIFFNESS);
-        let cross = sliding.keep(-across * x * y);
-        FootStep {
-            r: [sliding.select(slide[0], -slip[0] * k), sliding.select(slide[1], -slip[1] * k)],
-            k: [[sliding.select(across * y * y, k), cross], [cross, sliding.select(across * x * x, k)]],
+        let z = [p[0] - k * slip[0], p[1] - k * slip[1]];
+        Self { z, length: (z[0] * z[0] + z[1] * z[1]).sqrt() }
+    }
+}
+
+impl<const W: usize> FootStep<W> {
+    /// A foot that sticks while what would hold it is within its bound, else slides.
+    #[inline(always)]
+    fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> Self {
+        let holding = Holding::new(p, slip);
+        Self::in_mode(bound, p, slip, &holding, holding.length.gt(bound), STIFFNESS)
+    }
+
+    /// A foot that slides where `slides`, with p = bound z / |z|; elsewhere its slip is driven to zero with `stiffness`.
+    ///
+    /// Sliding is linearised with p itself, kept inside its disc, in place of bound z / |z| (Andersen et al. 2000): far from the
+    /// solution, where p and s do not oppose each other yet, the impulse then does not turn too far.
+    #[inline(always)]
+    pub fn in_mode(
+        bound: Lanes<W>,
+        p: &[Lanes<W>; 2],
+        slip: &[Lanes<W>; 2],
+        holding: &Holding<W>,
+        slides: Mask<W>,
+        stiffness: f64,
+    ) -> Self {
+        let Holding { z, length } = *holding;
+        // k |s|, where it slides
+        let speed = (length - bound).max(bound);
+        let rim = bound * bound;
+        let square = (p[0] * p[0] + p[1] * p[1]).max(rim);
+        // one division for 1 / |z|, k / speed and the share of p that is inside the disc
+        let inverse = Lanes::splat(1.0) / (length * speed * square).max(Lanes::splat(TINY));
+        let unit = inverse * (speed * square);
+        let along = inverse * (length * square) * STIFFNESS;
+        let inside = inverse * (length * speed) * rim;
+        let u = [z[0] * unit, z[1] * unit];
+        let q = [p[0] * inside * along, p[1] * inside * along];
+        let full = bound * along;
+        let k = Lanes::splat(stiffness);
+        Self {
+            r: [slides.select(bound * u[0] - p[0], -slip[0] * k), slides.select(bound * u[1] - p[1], -slip[1] * k)],
+            k: [
+                [slides.select(full - q[0] * u[0], k), slides.keep(-q[0] * u[1])],
+                [slides.keep(-q[1] * u[0]), slides.select(full - q[1] * u[1], k)],
+            ],
         }
     }
 }

@@ -6,8 +6,8 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple};
-use crate::newton::{Hold, Mode};
+use crate::ncp::{ContactRow, Ncp, ROOM, Triple};
+use crate::newton::{Hold, Holding, Mode};
 
 /// Stiffness of held rows, in units of the object's mass per step: softer than the fast solver's, since a guess may hold rows that
 /// contradict each other, and the impulses grow with it.
@@ -72,7 +72,9 @@ impl<const W: usize> Polish<W> {
             ));
         }
         for k in 0..3 {
-            self.linearised.feet[k] = foot(&ncp.feet[k], &p.feet[k], &p.v, slides[k]);
+            let slip = ncp.feet[k].slip(&p.v);
+            let holding = Holding::new(&p.feet[k], &slip);
+            self.linearised.feet[k] = FootStep::in_mode(ncp.feet[k].bound, &p.feet[k], &slip, &holding, slides[k], STIFFNESS);
         }
         self.linearised.stall = StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);
     }
@@ -98,29 +100,4 @@ fn length<const W: usize>(p: &[Lanes<W>; 2]) -> Lanes<W> {
 #[inline(always)]
 fn contact_mode<const W: usize>(row: &ContactRow<W>, p: [Lanes<W>; 2], gamma: Lanes<W>, sliding: f64) -> Mode<W> {
     Mode { closed: p[0].gt(gamma), sliding: p[1].abs().gt(row.mu * p[0] * sliding), ratio: p[1].sign() * row.mu }
-}
-
-#[inline(always)]
-fn foot<const W: usize>(foot: &FootRow<W>, p: &[Lanes<W>; 2], v: &Triple<W>, slides: Mask<W>) -> FootStep<W> {
-    let one = Lanes::splat(1.0);
-    let s = foot.slip(v);
-    let speed = length(&s);
-    let slides = slides & speed.gt(Lanes::ZERO);
-    let inverse = one / slides.select(speed, one);
-    let unit = [s[0] * inverse, s[1] * inverse];
-    // primal–dual: the impulse turns with the slip's new direction, p kept inside its disc
-    let size = length(p);
-    let outside = size.gt(foot.bound);
-    let shrink = outside.select(foot.bound / outside.select(size, one), one) * inverse;
-    let inside = [p[0] * shrink, p[1] * shrink];
-    let bound = foot.bound * inverse;
-    let k = Lanes::splat(STIFFNESS);
-    let choose = |slide: Lanes<W>, stick: Lanes<W>| slides.select(slide, stick);
-    FootStep {
-        r: [choose(-foot.bound * unit[0] - p[0], -s[0] * k), choose(-foot.bound * unit[1] - p[1], -s[1] * k)],
-        k: [
-            [choose(bound + inside[0] * unit[0], k), slides.keep(inside[0] * unit[1])],
-            [slides.keep(inside[1] * unit[0]), choose(bound + inside[1] * unit[1], k)],
-        ],
-    }
 }
