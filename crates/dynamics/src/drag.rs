@@ -4,11 +4,11 @@ use crate::Lanes;
 use crate::homotopy::Homotopy;
 use crate::impulses::Impulses;
 use crate::ncp::{FootRow, Ncp};
-use crate::newton::Newton;
+use crate::newton::{Goal, Newton};
 use crate::rows::{Foot, Vector};
 
-/// Largest residual (m/s) and iterations of the fast solver.
-const AIM: (f64, u32) = (1e-11, 12);
+/// What the fast solver tries.
+const GOAL: Goal = Goal { aim: 1e-11, enough: 1e-11, iterations: 12 };
 
 /// The problem without contacts, with its working memory: a search over curves solves it many times.
 pub struct Drag {
@@ -30,14 +30,13 @@ impl Drag {
     ///
     /// It is the minimiser of ½|v − load|² + Σ bound_k |J_k v|, unique, and moves no farther than the load does.
     pub fn under(&mut self, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
-        let (aim, iterations) = AIM;
         self.ncp.free = load.map(|x| Lanes([x]));
         self.start();
-        let (residual, _) = self.newton.solve(&self.ncp, &mut self.p, aim, iterations);
-        if residual.0[0] > aim {
+        let (residual, _) = self.newton.solve(&self.ncp, &mut self.p, GOAL);
+        if residual.0[0] > GOAL.aim {
             self.start();
             self.p.copy_from(self.homotopy.follow(&self.ncp, &self.p, 1.0));
-            self.newton.solve(&self.ncp, &mut self.p, aim, iterations);
+            self.newton.solve(&self.ncp, &mut self.p, GOAL);
         }
         (self.p.v.map(|x| x.0[0]), self.p.feet.map(|f| f.map(|x| x.0[0])))
     }

@@ -15,37 +15,61 @@ use crate::ncp::{ContactRow, Ncp, dot};
 /// a jammed object's creep of 1e-8 m/s.
 const STIFFNESS: f64 = 1.0e8;
 
+/// When the iteration ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Goal {
+    /// Residual aimed at (m/s).
+    pub aim: f64,
+    /// Residual that is good enough (m/s), at least `aim`.
+    pub enough: f64,
+    /// Most iterations.
+    pub iterations: u32,
+}
+
 /// The fast solver's working memory.
 #[derive(Clone, Debug)]
 pub struct Newton<const W: usize> {
     map: NaturalMap<W>,
     linearised: Linearised<W>,
+    before: Impulses<W>,
 }
 
 impl<const W: usize> Default for Newton<W> {
     fn default() -> Self {
-        Self { map: NaturalMap::default(), linearised: Linearised::default() }
+        Self { map: NaturalMap::default(), linearised: Linearised::default(), before: Impulses::zero(0) }
     }
 }
 
 impl<const W: usize> Newton<W> {
-    /// Iterates from `p` (velocity and impulses) until every lane's residual is at most `tolerance`, or `limit` iterations.
+    /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations.
     ///
-    /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on its neighbours.
-    /// Returns the residual and the iterations of each lane.
+    /// A lane that is good enough, but not as good as aimed at, takes one more step and keeps the better point: an object that creeps may
+    /// hover there and lose its modes again. Lanes that are done keep their result while others go on, so a lane's bits do not depend on
+    /// its neighbours. Returns the residual and the iterations of each lane.
     #[inline(always)]
-    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, tolerance: f64, limit: u32) -> (Lanes<W>, Lanes<W>) {
+    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> (Lanes<W>, Lanes<W>) {
+        let [aim, enough] = [goal.aim, goal.enough].map(Lanes::splat);
         let mut residual = self.map.take(ncp, p);
         let mut iterations = Lanes::ZERO;
-        for _ in 0..limit {
-            let open = residual.gt(Lanes::splat(tolerance));
+        let mut open = residual.gt(aim);
+        for _ in 0..goal.iterations {
             if !open.any() {
                 break;
             }
+            let near = open & !residual.gt(enough);
+            if near.any() {
+                self.before.copy_from(p);
+            }
             self.linearised.by_natural_map(ncp, p, &self.map);
             self.linearised.step(ncp, p, open);
-            residual = open.select(self.map.take(ncp, p), residual);
+            let next = self.map.take(ncp, p);
+            let worse = near & !next.lt(residual);
+            if worse.any() {
+                p.copy_where(worse, &self.before);
+            }
+            residual = (open & !worse).select(next, residual);
             iterations += open.keep(Lanes::splat(1.0));
+            open = open & !near & residual.gt(aim);
         }
         (residual, iterations)
     }

@@ -6,13 +6,16 @@ use crate::lanes::{Lanes, Mask};
 use crate::modes::{Verdict, search};
 use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::Newton;
+use crate::newton::{Goal, Newton};
 use crate::polish::Polish;
 use crate::rows::{Guess, Rows};
 use crate::solver::{Outcome, Report, Route, TOLERANCE};
 
 /// Iterations that polish an end point.
 const POLISH_ITERATIONS: u32 = 30;
+
+/// The same by the fast solver.
+const POLISHED: Goal = Goal { aim: TOLERANCE, enough: TOLERANCE, iterations: POLISH_ITERATIONS };
 
 /// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a fold, and most folds lie on
 /// few paths. What none of these solves costs the search over modes less than ten more of them.
@@ -202,7 +205,7 @@ impl Polisher {
             return residual;
         }
         self.p.copy_from(guess);
-        self.newton.solve(ncp, &mut self.p, TOLERANCE, POLISH_ITERATIONS).0.0[0]
+        self.newton.solve(ncp, &mut self.p, POLISHED).0.0[0]
     }
 }
 

@@ -9,18 +9,15 @@ use crate::impulses::Impulses;
 use crate::lanes::Lanes;
 use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::Newton;
+use crate::newton::{Goal, Newton};
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;
 
 /// Largest natural-map residual of a solved step (m/s).
 pub const TOLERANCE: f64 = 1e-9;
 
-/// The iterations aim lower than [`TOLERANCE`], so that rounding does not decide.
-const AIM: f64 = 1e-10;
-
-/// Iterations of the fast solver before the next one takes over.
-const FAST_ITERATIONS: u32 = 8;
+/// What the fast solver tries: an aim below [`TOLERANCE`], since Newton's last step mostly ends far below it.
+const FAST: Goal = Goal { aim: 1e-10, enough: TOLERANCE, iterations: 14 };
 
 /// Ways down from a warm start that the smoothed steps try one after the other: from next to it, from afar, and slowly.
 const DESCENTS: [Descent; 3] = [
@@ -133,7 +130,7 @@ impl<const W: usize> Solver<W> {
         for (chunk, (ncp, p)) in ncps.iter().zip(p.iter_mut()).enumerate() {
             assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
             self.warm[chunk].copy_from(p);
-            let (residual, iterations) = self.newton.solve(ncp, p, AIM, FAST_ITERATIONS);
+            let (residual, iterations) = self.newton.solve(ncp, p, FAST);
             for (lane, report) in reports[chunk].iter_mut().enumerate() {
                 let (residual, iterations) = (residual.0[lane], iterations.0[lane] as u32);
                 *report = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
