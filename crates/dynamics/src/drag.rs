@@ -8,7 +8,7 @@ use crate::newton::{Goal, Newton};
 use crate::rows::{Foot, Vector};
 
 /// What the fast solver tries.
-const GOAL: Goal = Goal { aim: 1e-11, enough: 1e-11, iterations: 12 };
+const GOAL: Goal = Goal { aim: 1e-11, enough: 1e-11, iterations: 12, weight: 1.0 };
 
 /// The problem without contacts, with its working memory: a search over curves solves it many times.
 pub struct Drag {

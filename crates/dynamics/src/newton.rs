@@ -13,7 +13,7 @@ use crate::ncp::{ContactRow, Ncp, dot};
 
 /// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
 /// a jammed object's creep of 1e-8 m/s.
-const STIFFNESS: f64 = 1.0e8;
+pub const STIFFNESS: f64 = 1.0e8;
 
 /// When the iteration ends.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,8 @@ pub struct Goal {
     pub enough: f64,
     /// Most iterations.
     pub iterations: u32,
+    /// Weight k of slip against impulse where feet are told to stick or slide: [`STIFFNESS`] near a solution, 1 from afar.
+    pub weight: f64,
 }
 
 /// The fast solver's working memory.
@@ -60,7 +62,7 @@ impl<const W: usize> Newton<W> {
             if near.any() {
                 self.before.copy_from(p);
             }
-            self.linearised.by_natural_map(ncp, p, &self.map);
+            self.linearised.by_natural_map(ncp, p, &self.map, goal.weight);
             self.linearised.step(ncp, p, open);
             let next = self.map.take(ncp, p);
             let worse = near & !next.lt(residual);
@@ -78,10 +80,10 @@ impl<const W: usize> Newton<W> {
 impl<const W: usize> Linearised<W> {
     /// The natural map's own choice of modes at `p`, where it is `map`.
     #[inline(always)]
-    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>) {
+    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>, weight: f64) {
         self.imbalance = map.imbalance;
         for k in 0..3 {
-            self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k]);
+            self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k], weight);
         }
         self.contacts.clear();
         for ((row, contact), (p_n, p_t)) in ncp.contacts.iter().zip(&map.contacts).zip(p.normal.iter().zip(&p.tangential)) {
@@ -91,29 +93,31 @@ impl<const W: usize> Linearised<W> {
     }
 }
 
-/// What it would take to hold a foot: the impulse z = p − k s.
+/// What it would take to hold a foot: the impulse z = p − k s, k the weight of slip against impulse.
 #[derive(Clone, Copy, Debug)]
 pub struct Holding<const W: usize> {
     z: [Lanes<W>; 2],
     /// |z|.
     length: Lanes<W>,
+    /// k.
+    weight: f64,
 }
 
 impl<const W: usize> Holding<W> {
     /// Of a foot with impulse p and slip velocity s.
     #[inline(always)]
-    pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> Self {
-        let k = Lanes::splat(STIFFNESS);
+    pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
+        let k = Lanes::splat(weight);
         let z = [p[0] - k * slip[0], p[1] - k * slip[1]];
-        Self { z, length: (z[0] * z[0] + z[1] * z[1]).sqrt() }
+        Self { z, length: (z[0] * z[0] + z[1] * z[1]).sqrt(), weight }
     }
 }
 
 impl<const W: usize> FootStep<W> {
     /// A foot that sticks while what would hold it is within its bound, else slides.
     #[inline(always)]
-    fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> Self {
-        let holding = Holding::new(p, slip);
+    fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
+        let holding = Holding::new(p, slip, weight);
         Self::in_mode(bound, p, slip, &holding, holding.length.gt(bound), STIFFNESS)
     }
 
@@ -130,7 +134,7 @@ impl<const W: usize> FootStep<W> {
         slides: Mask<W>,
         stiffness: f64,
     ) -> Self {
-        let Holding { z, length } = *holding;
+        let Holding { z, length, weight } = *holding;
         // k |s|, where it slides
         let speed = (length - bound).max(bound);
         let rim = bound * bound;
@@ -138,7 +142,7 @@ impl<const W: usize> FootStep<W> {
         // one division for 1 / |z|, k / speed and the share of p that is inside the disc
         let inverse = Lanes::splat(1.0) / (length * speed * square).max(Lanes::splat(TINY));
         let unit = inverse * (speed * square);
-        let along = inverse * (length * square) * STIFFNESS;
+        let along = inverse * (length * square) * weight;
         let inside = inverse * (length * speed) * rim;
         let u = [z[0] * unit, z[1] * unit];
         let q = [p[0] * inside * along, p[1] * inside * along];

@@ -7,7 +7,7 @@ use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, Ncp, ROOM, Triple};
-use crate::newton::{Hold, Holding, Mode};
+use crate::newton::{self, Hold, Holding, Mode};
 
 /// Stiffness of held rows, in units of the object's mass per step: softer than the fast solver's, since a guess may hold rows that
 /// contradict each other, and the impulses grow with it.
@@ -73,7 +73,7 @@ impl<const W: usize> Polish<W> {
         }
         for k in 0..3 {
             let slip = ncp.feet[k].slip(&p.v);
-            let holding = Holding::new(&p.feet[k], &slip);
+            let holding = Holding::new(&p.feet[k], &slip, newton::STIFFNESS);
             self.linearised.feet[k] = FootStep::in_mode(ncp.feet[k].bound, &p.feet[k], &slip, &holding, slides[k], STIFFNESS);
         }
         self.linearised.stall = StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);

@@ -9,7 +9,7 @@ use crate::impulses::Impulses;
 use crate::lanes::Lanes;
 use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::{Goal, Newton};
+use crate::newton::{Goal, Newton, STIFFNESS};
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;
 
@@ -17,7 +17,7 @@ use crate::slow::SlowSolver;
 pub const TOLERANCE: f64 = 1e-9;
 
 /// What the fast solver tries: an aim below [`TOLERANCE`], since Newton's last step mostly ends far below it.
-const FAST: Goal = Goal { aim: 1e-10, enough: TOLERANCE, iterations: 14 };
+const FAST: Goal = Goal { aim: 1e-10, enough: TOLERANCE, iterations: 14, weight: STIFFNESS };
 
 /// Ways down from a warm start that the smoothed steps try one after the other: from next to it, from afar, and slowly.
 const DESCENTS: [Descent; 3] = [
