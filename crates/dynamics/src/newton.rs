@@ -1,9 +1,10 @@
 //! The fast solver: a semismooth Newton iteration on the natural map of the mixed NCP, `W` particles side by side.
 //!
 //! Every row is either held (its velocity is driven to zero) or given (its impulse is known up to the other rows), decided by
-//! the natural map of the iterate as in Alart & Curnier (1991), in which a foot's slip has a weight of its own. Held rows enter with a finite stiffness k and keep their impulse
-//! from one iteration to the next (a method of multipliers), so that redundant contacts do no harm. The error shrinks by K/(K + k)
-//! an iteration once the modes are right, K what else resists; a particle's warm start is its last step's impulses.
+//! the natural map of the iterate as in Alart & Curnier (1991), in which a foot's slip has a weight of its own. Held rows enter with a
+//! finite stiffness k and keep their impulse from one iteration to the next (a method of multipliers), so that redundant contacts do no
+//! harm. The error shrinks by K/(K + k) an iteration once the modes are right, K what else resists; a particle's warm start is its last
+//! step's impulses.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
