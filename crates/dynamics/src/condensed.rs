@@ -3,7 +3,7 @@
 //! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a 3×3 system in the twist,
 //! whatever the number of contacts, and one equation in y.
 
-use crate::elimination::Elimination;
+use crate::elimination::{solve_four, solve_three};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Triple, dot};
@@ -53,6 +53,12 @@ impl<const W: usize> StallStep<W> {
         let one = Lanes::splat(1.0);
         Self { slack: yields.keep(one), pusher: (!yields).keep(one), rhs: -yields.select(slack, pusher_yield) }
     }
+
+    /// Whether y is 0 and stays so in every lane.
+    #[inline(always)]
+    fn holds_all(&self, pusher_yield: Lanes<W>) -> bool {
+        !(self.slack.abs() + pusher_yield.abs() + self.rhs.abs()).gt(Lanes::ZERO).any()
+    }
 }
 
 /// All rows of a problem, linearised at a guess.
@@ -60,8 +66,8 @@ impl<const W: usize> StallStep<W> {
 pub struct Linearised<const W: usize> {
     /// Velocity that follows from the guess's impulses, less the guess's own.
     pub imbalance: Triple<W>,
-    /// One per contact.
-    pub contacts: Vec<ContactStep<W>>,
+    /// Those contacts, by number, that carry an impulse or may come to: the others keep none.
+    pub contacts: Vec<(usize, ContactStep<W>)>,
     /// One per foot.
     pub feet: [FootStep<W>; 3],
     /// The stall pair.
@@ -84,8 +90,13 @@ impl<const W: usize> Linearised<W> {
     /// Moves `p` by the full Newton step in the lanes of `open`, however badly conditioned.
     #[inline(always)]
     pub fn step(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
-        let (Momentum { matrix, rhs }, push) = (self.momentum(ncp), self.push(ncp));
-        let [x, y, turn, dy] = push.bordered(&self.stall, &matrix, &rhs, p.pusher_yield).solve();
+        let momentum = self.momentum(ncp);
+        let [x, y, turn, dy] = if self.stall.holds_all(p.pusher_yield) {
+            let [x, y, turn] = solve_three(&momentum.equations());
+            [x, y, turn, Lanes::ZERO]
+        } else {
+            solve_four(&self.push(ncp).bordered(&self.stall, &momentum, p.pusher_yield))
+        };
         self.take_step([x, y, turn], dy, ncp, p, open);
     }
 
@@ -98,8 +109,8 @@ impl<const W: usize> Linearised<W> {
                 p_k[i] = open.select(p_k[i] + step.r[i] - step.k[i][0] * ds[0] - step.k[i][1] * ds[1], p_k[i]);
             }
         }
-        let impulses = p.normal.iter_mut().zip(&mut p.tangential);
-        for ((row, step), (p_n, p_t)) in ncp.contacts.iter().zip(&self.contacts).zip(impulses) {
+        for (i, step) in &self.contacts {
+            let (row, p_n, p_t) = (&ncp.contacts[*i], &mut p.normal[*i], &mut p.tangential[*i]);
             let dgamma = dot(&row.n, &dv) + row.nd * dy;
             let ds = dot(&row.t, &dv) + row.td * dy;
             *p_n = open.select(*p_n + step.n - step.nn * dgamma, *p_n);
@@ -117,8 +128,8 @@ impl<const W: usize> Linearised<W> {
         for (foot, step) in ncp.feet.iter().zip(&self.feet) {
             system.add_foot(foot, step);
         }
-        for (row, step) in ncp.contacts.iter().zip(&self.contacts) {
-            system.add_contact(row, step);
+        for (i, step) in &self.contacts {
+            system.add_contact(&ncp.contacts[*i], step);
         }
         system
     }
@@ -127,8 +138,8 @@ impl<const W: usize> Linearised<W> {
     fn push(&self, ncp: &Ncp<W>) -> Push<W> {
         let o = Lanes::ZERO;
         let mut push = Push { column: [o; 3], row: [o; 3], corner: o, rhs: o };
-        for (row, step) in ncp.contacts.iter().zip(&self.contacts) {
-            push.add_contact(row, step);
+        for (i, step) in &self.contacts {
+            push.add_contact(&ncp.contacts[*i], step);
         }
         push
     }
@@ -148,6 +159,13 @@ impl<const W: usize> Momentum<W> {
             row[i] = Lanes::splat(1.0);
         }
         Self { matrix, rhs }
+    }
+
+    /// As rows of coefficients and right-hand side.
+    #[inline(always)]
+    fn equations(&self) -> [[Lanes<W>; 4]; 3] {
+        let (a, r) = (&self.matrix, &self.rhs);
+        [[a[0][0], a[0][1], a[0][2], r[0]], [a[1][0], a[1][1], a[1][2], r[1]], [a[2][0], a[2][1], a[2][2], r[2]]]
     }
 
     /// A += Jᵀ K J, rhs += Jᵀ r.
@@ -203,14 +221,17 @@ impl<const W: usize> Push<W> {
 
     /// The system in (dv, dy) whose fourth row is the stall pair; `pusher_yield` is the present y.
     #[inline(always)]
-    fn bordered(&self, stall: &StallStep<W>, a: &[Triple<W>; 3], rhs: &Triple<W>, pusher_yield: Lanes<W>) -> Elimination<W> {
+    fn bordered(&self, stall: &StallStep<W>, momentum: &Momentum<W>, pusher_yield: Lanes<W>) -> [[Lanes<W>; 5]; 4] {
         let determined = ((stall.slack * self.corner).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
         let last = |number: Lanes<W>| determined.keep(stall.slack * number);
         let corner = last(self.corner) + determined.select(stall.pusher, Lanes::splat(1.0));
-        let equation = |i: usize| [a[i][0], a[i][1], a[i][2], self.column[i]];
-        Elimination {
-            matrix: [equation(0), equation(1), equation(2), [last(self.row[0]), last(self.row[1]), last(self.row[2]), corner]],
-            rhs: [rhs[0], rhs[1], rhs[2], determined.select(stall.rhs + stall.slack * self.rhs, -pusher_yield)],
-        }
+        let stalled = determined.select(stall.rhs + stall.slack * self.rhs, -pusher_yield);
+        let [a, b, c] = &momentum.equations();
+        [
+            [a[0], a[1], a[2], self.column[0], a[3]],
+            [b[0], b[1], b[2], self.column[1], b[3]],
+            [c[0], c[1], c[2], self.column[2], c[3]],
+            [last(self.row[0]), last(self.row[1]), last(self.row[2]), corner, stalled],
+        ]
     }
 }

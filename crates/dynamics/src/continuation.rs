@@ -10,6 +10,7 @@ use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
+use crate::packed::{Packed, Place};
 use crate::polish::Polish;
 use crate::smoothing::SmoothedMap;
 
@@ -36,15 +37,6 @@ pub struct Descent {
     pub near: f64,
     /// Share of its bound above which an impulse is taken to slide.
     pub sliding: f64,
-}
-
-/// One particle of a block: which chunk of lanes, and which lane of it.
-#[derive(Clone, Copy, Debug)]
-pub struct Place {
-    /// Number of the chunk.
-    pub chunk: usize,
-    /// Lane of it.
-    pub lane: usize,
 }
 
 /// The problems of a block, `W` to a chunk, and the impulses they start from.
@@ -74,8 +66,8 @@ pub struct End<'a, const W: usize> {
 /// The continuation with its working memory.
 #[derive(Clone, Debug)]
 pub struct Continuation<const W: usize> {
-    ncp: Ncp<W>,
-    path: Impulses<W>,
+    /// Where each problem's path has come to.
+    packed: Packed<W>,
     trial: Impulses<W>,
     map: SmoothedMap<W>,
     linearised: Linearised<W>,
@@ -87,11 +79,7 @@ pub struct Continuation<const W: usize> {
 /// How far each lane is.
 #[derive(Clone, Debug)]
 struct LaneStates<const W: usize> {
-    /// Number of the problem that the lane works on.
-    task: [Option<usize>; W],
-    /// Lanes with a problem.
-    busy: Mask<W>,
-    /// Those of them that are about to look at their modes.
+    /// Those that are about to look at their modes.
     waiting: Mask<W>,
     epsilon: Lanes<W>,
     smallest: Lanes<W>,
@@ -103,16 +91,14 @@ struct LaneStates<const W: usize> {
 impl<const W: usize> Default for Continuation<W> {
     fn default() -> Self {
         let (o, no) = (Lanes::ZERO, Mask::splat(false));
-        let none = Impulses::zero(0);
         Self {
-            ncp: Ncp::empty(),
-            path: none.clone(),
-            trial: none,
+            packed: Packed::default(),
+            trial: Impulses::zero(0),
             map: SmoothedMap::default(),
             linearised: Linearised::default(),
             certificate: NaturalMap::default(),
             polish: Polish::default(),
-            lanes: LaneStates { task: [None; W], busy: no, waiting: no, epsilon: o, smallest: o, next_look: o, steps: o, residual: o },
+            lanes: LaneStates { waiting: no, epsilon: o, smallest: o, next_look: o, steps: o, residual: o },
         }
     }
 }
@@ -130,20 +116,19 @@ impl<const W: usize> Continuation<W> {
         finish: &mut impl FnMut(&End<'_, W>),
     ) {
         let mut next = 0;
-        self.ncp.clear();
-        self.path.clear(0);
+        self.packed.clear();
         loop {
-            while next < places.len() && !self.lanes.busy.all() {
+            while next < places.len() && !self.packed.busy.all() {
                 self.load(block, places[next], next, descent);
                 next += 1;
             }
-            if !self.lanes.busy.any() {
+            if !self.packed.busy.any() {
                 return;
             }
-            let violation = self.map.take(&self.ncp, &self.path, self.lanes.epsilon);
+            let violation = self.map.take(&self.packed.ncp, &self.packed.p, self.lanes.epsilon);
             let near = violation.lt(self.lanes.epsilon * descent.near);
-            self.lanes.note(near);
-            if self.lanes.enough_wait() {
+            self.lanes.note(self.packed.busy, near);
+            if self.lanes.enough_wait(self.packed.busy) {
                 self.look(descent, tolerance);
             }
             self.end_where_over(tolerance, finish);
@@ -154,17 +139,9 @@ impl<const W: usize> Continuation<W> {
     /// Puts a problem into a free lane.
     #[inline(always)]
     fn load(&mut self, Block { ncps, warm }: Block<'_, W>, Place { chunk, lane }: Place, task: usize, descent: &Descent) {
-        let Some(slot) = (0..W).find(|slot| !self.lanes.busy.lane(*slot)) else { return };
-        self.ncp.clear_lane(slot);
-        ncps[chunk].pack_lane(lane, &mut self.ncp, slot);
-        self.path.resize(self.ncp.contacts.len());
-        self.path.clear_lane(slot);
-        warm[chunk].pack_lane(&ncps[chunk], lane, &mut self.path, slot);
-
+        let Some(slot) = self.packed.load(&ncps[chunk], &warm[chunk], lane, task) else { return };
         let scale = ncps[chunk].speed_scale().0[lane];
         let lanes = &mut self.lanes;
-        lanes.task[slot] = Some(task);
-        lanes.busy.set(slot, true);
         lanes.waiting.set(slot, false);
         for (number, value) in [
             (&mut lanes.epsilon, scale * descent.start),
@@ -181,9 +158,9 @@ impl<const W: usize> Continuation<W> {
     #[inline(always)]
     fn look(&mut self, descent: &Descent, tolerance: f64) {
         let looking = self.lanes.waiting;
-        self.trial.copy_from(&self.path);
-        self.polish.polish(&self.ncp, &mut self.trial, looking, descent.sliding, POLISH_STEPS);
-        let residual = self.certificate.take(&self.ncp, &self.trial);
+        self.trial.copy_from(&self.packed.p);
+        self.polish.polish(&self.packed.ncp, &mut self.trial, looking, descent.sliding, POLISH_STEPS);
+        let residual = self.certificate.take(&self.packed.ncp, &self.trial);
         let lanes = &mut self.lanes;
         lanes.residual = looking.select(residual, lanes.residual);
         lanes.next_look = looking.select(lanes.next_look * LOOK, lanes.next_look);
@@ -196,31 +173,30 @@ impl<const W: usize> Continuation<W> {
     /// Frees the lanes that are solved or have taken all steps.
     #[inline(always)]
     fn end_where_over(&mut self, tolerance: f64, finish: &mut impl FnMut(&End<'_, W>)) {
-        let lanes = &mut self.lanes;
+        let (lanes, packed) = (&self.lanes, &mut self.packed);
         let solved = !lanes.residual.gt(Lanes::splat(tolerance));
-        let over = lanes.busy & !lanes.waiting & (solved | !lanes.steps.lt(Lanes::splat(STEPS)));
+        let over = packed.busy & !lanes.waiting & (solved | !lanes.steps.lt(Lanes::splat(STEPS)));
         if !over.any() {
             return;
         }
         for lane in over.lanes() {
-            if let Some(task) = lanes.task[lane].take() {
-                finish(&End { task, residual: lanes.residual.0[lane], steps: lanes.steps.0[lane] as u32, impulses: &self.trial, lane });
-            }
+            let (task, steps) = (packed.tags[lane], lanes.steps.0[lane] as u32);
+            finish(&End { task, residual: lanes.residual.0[lane], steps, impulses: &self.trial, lane });
         }
-        lanes.busy = lanes.busy & !over;
+        packed.busy = packed.busy & !over;
     }
 
     /// One step in every lane that does not wait; ε falls in those of `near`.
     #[inline(always)]
     fn advance(&mut self, near: Mask<W>, descent: &Descent) {
-        let lanes = &mut self.lanes;
-        let going = lanes.busy & !lanes.waiting;
+        let (lanes, Packed { ncp, p, busy, .. }) = (&mut self.lanes, &mut self.packed);
+        let going = *busy & !lanes.waiting;
         if !going.any() {
             return;
         }
         let target = near.select(lanes.epsilon * descent.reduction, lanes.epsilon);
-        self.linearised.smoothed(&self.ncp, &self.path, &self.map, target);
-        self.linearised.step(&self.ncp, &mut self.path, going);
+        self.linearised.smoothed(ncp, p, &self.map, target);
+        self.linearised.step(ncp, p, going);
         lanes.epsilon = going.select(target, lanes.epsilon);
         lanes.steps += going.keep(Lanes::splat(1.0));
     }
@@ -229,15 +205,15 @@ impl<const W: usize> Continuation<W> {
 impl<const W: usize> LaneStates<W> {
     /// Lanes `near` their ε wait for a look at their modes where it has fallen far enough.
     #[inline(always)]
-    fn note(&mut self, near: Mask<W>) {
+    fn note(&mut self, busy: Mask<W>, near: Mask<W>) {
         let look = near & self.steps.gt(Lanes::ZERO) & !self.epsilon.gt(self.next_look);
-        self.waiting = self.busy & (self.waiting | look);
+        self.waiting = busy & (self.waiting | look);
     }
 
     /// Whether half of the lanes with a problem wait.
     #[inline(always)]
-    fn enough_wait(&self) -> bool {
-        let [waiting, busy] = [self.waiting, self.busy].map(|mask| mask.lanes().count());
+    fn enough_wait(&self, busy: Mask<W>) -> bool {
+        let [waiting, busy] = [self.waiting.count(), busy.count()];
         waiting > 0 && 2 * waiting >= busy
     }
 }

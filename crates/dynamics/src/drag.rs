@@ -32,7 +32,7 @@ impl Drag {
     pub fn under(&mut self, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
         self.ncp.free = load.map(|x| Lanes([x]));
         self.start();
-        let (residual, _) = self.newton.solve(&self.ncp, &mut self.p, GOAL);
+        let residual = self.newton.solve(&self.ncp, &mut self.p, GOAL);
         if residual.0[0] > GOAL.aim {
             self.start();
             self.p.copy_from(self.homotopy.follow(&self.ncp, &self.p, 1.0));

@@ -1,7 +1,7 @@
 //! The unknowns of the mixed NCP, `W` particles side by side: [`Impulses`].
 
 use crate::Twist;
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::{Lanes, Mask, copy_lane};
 use crate::ncp::{Ncp, ROOM, Triple};
 use crate::problem::{StepProblem, StepSolution};
 
@@ -80,45 +80,50 @@ impl<const W: usize> Impulses<W> {
         (self.v, self.feet, self.pusher_yield) = ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
     }
 
-    /// Makes one lane's contact impulses zero.
-    pub fn clear_lane(&mut self, lane: usize) {
-        for p in self.normal.iter_mut().chain(&mut self.tangential) {
-            p.0[lane] = 0.0;
-        }
-    }
-
-    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`.
+    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`; what contacts `to` has beyond
+    /// these carry nothing.
+    #[inline(always)]
     pub fn pack_lane<const V: usize>(&self, ncp: &Ncp<W>, lane: usize, to: &mut Impulses<V>, slot: usize) {
-        let touching = (0..ncp.contacts.len()).filter(|i| ncp.contacts[*i].is_present(lane));
-        for (k, i) in touching.enumerate() {
-            to.normal[k].0[slot] = self.normal[i].0[lane];
-            to.tangential[k].0[slot] = self.tangential[i].0[lane];
-        }
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
+        let mut k = 0;
+        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(self.normal.iter().zip(&self.tangential)) {
+            if row.is_present(lane) {
+                to.normal[k].0[slot] = p_n.0[lane];
+                to.tangential[k].0[slot] = p_t.0[lane];
+                k += 1;
+            }
+        }
+        for (p_n, p_t) in to.normal[k..].iter_mut().zip(&mut to.tangential[k..]) {
+            (p_n.0[slot], p_t.0[slot]) = (0.0, 0.0);
+        }
     }
 
     /// The inverse of [`Impulses::pack_lane`]; contacts that the lane does not have carry nothing.
+    #[inline(always)]
     pub fn unpack_lane<const V: usize>(&mut self, ncp: &Ncp<W>, lane: usize, from: &Impulses<V>, slot: usize) {
+        copy_lane(self.singles_mut(), lane, from.singles(), slot);
         let mut k = 0;
-        for (i, row) in ncp.contacts.iter().enumerate() {
+        for (row, (to_n, to_t)) in ncp.contacts.iter().zip(self.normal.iter_mut().zip(&mut self.tangential)) {
             let (mut p_n, mut p_t) = (0.0, 0.0);
             if row.is_present(lane) {
                 (p_n, p_t) = (from.normal[k].0[slot], from.tangential[k].0[slot]);
                 k += 1;
             }
-            self.normal[i].0[lane] = p_n;
-            self.tangential[i].0[lane] = p_t;
+            (to_n.0[lane], to_t.0[lane]) = (p_n, p_t);
         }
-        copy_lane(self.singles_mut(), lane, from.singles(), slot);
     }
 
     /// What does not belong to a contact.
-    fn singles(&self) -> impl Iterator<Item = &Lanes<W>> {
-        self.v.iter().chain(self.feet.as_flattened()).chain(std::iter::once(&self.pusher_yield))
+    #[inline(always)]
+    fn singles(&self) -> [&Lanes<W>; 10] {
+        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&self.v, &self.feet);
+        [x, y, turn, ax, ay, bx, by, cx, cy, &self.pusher_yield]
     }
 
-    fn singles_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
-        self.v.iter_mut().chain(self.feet.as_flattened_mut()).chain(std::iter::once(&mut self.pusher_yield))
+    #[inline(always)]
+    fn singles_mut(&mut self) -> [&mut Lanes<W>; 10] {
+        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&mut self.v, &mut self.feet);
+        [x, y, turn, ax, ay, bx, by, cx, cy, &mut self.pusher_yield]
     }
 
     /// One lane in SI units, for the problem it solves.
@@ -134,17 +139,5 @@ impl<const W: usize> Impulses<W> {
             feet: self.feet.map(|p| p.map(|x| x.0[lane] * m)),
             pusher_yield: self.pusher_yield.0[lane],
         }
-    }
-}
-
-/// Copies one lane of several numbers.
-pub fn copy_lane<'a, const V: usize, const W: usize>(
-    to: impl Iterator<Item = &'a mut Lanes<V>>,
-    slot: usize,
-    from: impl Iterator<Item = &'a Lanes<W>>,
-    lane: usize,
-) {
-    for (to, from) in to.zip(from) {
-        to.0[slot] = from.0[lane];
     }
 }

@@ -4,7 +4,7 @@
 //! min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row is min(F_stall − F, y).
 
 use crate::impulses::Impulses;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, copy_lane};
 use crate::ncp::{ContactRow, Ncp, ROOM, Triple, Worst};
 
 /// Keeps quotients finite.
@@ -67,19 +67,52 @@ impl<const W: usize> NaturalMap<W> {
         }
         worst.size()
     }
+
+    /// Copies one lane of `ncp` into lane `slot` of `to`, a map of `contacts` contacts, without the rows that pad it.
+    #[inline(always)]
+    pub fn pack_lane(&self, ncp: &Ncp<W>, lane: usize, to: &mut Self, contacts: usize, slot: usize) {
+        copy_lane(to.singles_mut(), slot, self.singles(), lane);
+        to.contacts.resize(contacts, ContactMap::OPEN);
+        let mut k = 0;
+        for (map, _) in self.contacts.iter().zip(&ncp.contacts).filter(|(_, row)| row.is_present(lane)) {
+            to.contacts[k].gap.0[slot] = map.gap.0[lane];
+            to.contacts[k].slip.0[slot] = map.slip.0[lane];
+            k += 1;
+        }
+        for map in &mut to.contacts[k..] {
+            let ContactMap { gap, slip } = ContactMap::<1>::OPEN;
+            (map.gap.0[slot], map.slip.0[slot]) = (gap.0[0], slip.0[0]);
+        }
+    }
+
+    /// What does not belong to a contact.
+    #[inline(always)]
+    fn singles(&self) -> [&Lanes<W>; 10] {
+        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&self.imbalance, &self.slips);
+        [x, y, turn, ax, ay, bx, by, cx, cy, &self.slack]
+    }
+
+    #[inline(always)]
+    fn singles_mut(&mut self) -> [&mut Lanes<W>; 10] {
+        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&mut self.imbalance, &mut self.slips);
+        [x, y, turn, ax, ay, bx, by, cx, cy, &mut self.slack]
+    }
 }
 
 /// Π(p − s) − p of a foot.
 #[inline(always)]
 fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
     let z = [p[0] - slip[0], p[1] - slip[1]];
-    let length = (z[0] * z[0] + z[1] * z[1]).sqrt();
-    let sliding = length.gt(bound);
-    let shrink = bound / length.max(bound).max(Lanes::splat(TINY));
+    let square = z[0] * z[0] + z[1] * z[1];
+    let sliding = square.gt(bound * bound);
+    let shrink = bound * square.inverse_sqrt();
     [sliding.select(shrink * z[0] - p[0], -slip[0]), sliding.select(shrink * z[1] - p[1], -slip[1])]
 }
 
 impl<const W: usize> ContactMap<W> {
+    /// Of a row that only pads.
+    const OPEN: Self = Self { gap: ContactRow::<W>::OPEN.gap, slip: Lanes::ZERO };
+
     #[inline(always)]
     fn new(row: &ContactRow<W>, p_n: Lanes<W>, p: &Impulses<W>, compliance: Lanes<W>) -> Self {
         Self { gap: row.gap_velocity(&p.v, p.pusher_yield) + compliance * p_n, slip: row.slip_velocity(&p.v, p.pusher_yield) }

@@ -4,8 +4,8 @@
 //! and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
 //! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
 
-use crate::impulses::{Impulses, copy_lane};
-use crate::lanes::Lanes;
+use crate::impulses::Impulses;
+use crate::lanes::{Lanes, copy_lane};
 use crate::natural::NaturalMap;
 use crate::problem::{ContactPoint, StepProblem};
 
@@ -110,12 +110,16 @@ impl<const W: usize> ContactRow<W> {
         self.n[0].0[lane] != 0.0 || self.n[1].0[lane] != 0.0
     }
 
-    fn numbers(&self) -> impl Iterator<Item = &Lanes<W>> {
-        self.n.iter().chain(&self.t).chain([&self.gap, &self.slip, &self.nd, &self.td, &self.mu])
+    #[inline(always)]
+    fn numbers(&self) -> [&Lanes<W>; 11] {
+        let ([nx, ny, turn], [tx, ty, twist]) = (&self.n, &self.t);
+        [nx, ny, turn, tx, ty, twist, &self.gap, &self.slip, &self.nd, &self.td, &self.mu]
     }
 
-    fn numbers_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
-        self.n.iter_mut().chain(&mut self.t).chain([&mut self.gap, &mut self.slip, &mut self.nd, &mut self.td, &mut self.mu])
+    #[inline(always)]
+    fn numbers_mut(&mut self) -> [&mut Lanes<W>; 11] {
+        let ([nx, ny, turn], [tx, ty, twist]) = (&mut self.n, &mut self.t);
+        [nx, ny, turn, tx, ty, twist, &mut self.gap, &mut self.slip, &mut self.nd, &mut self.td, &mut self.mu]
     }
 
     /// Gap velocity γ.
@@ -138,33 +142,51 @@ impl<const W: usize> Ncp<W> {
         self.compliance = Lanes::ZERO;
     }
 
-    /// Opens all contacts of one lane.
-    pub fn clear_lane(&mut self, lane: usize) {
-        for row in &mut self.contacts {
-            copy_lane(row.numbers_mut(), lane, ContactRow::<W>::OPEN.numbers(), lane);
-        }
-    }
-
-    /// Copies one lane into lane `slot` of `to`, without the open rows that pad it.
+    /// Copies one lane into lane `slot` of `to`, without the open rows that pad it; what rows `to` has beyond these become open.
+    #[inline(always)]
     pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Ncp<V>, slot: usize) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
-        for (k, row) in self.contacts.iter().filter(|row| row.is_present(lane)).enumerate() {
+        let mut k = 0;
+        for row in self.contacts.iter().filter(|row| row.is_present(lane)) {
             if k == to.contacts.len() {
                 to.contacts.push(ContactRow::OPEN);
             }
             copy_lane(to.contacts[k].numbers_mut(), slot, row.numbers(), lane);
+            k += 1;
+        }
+        for row in &mut to.contacts[k..] {
+            copy_lane(row.numbers_mut(), slot, ContactRow::<1>::OPEN.numbers(), 0);
         }
     }
 
     /// What does not belong to a contact.
-    fn singles(&self) -> impl Iterator<Item = &Lanes<W>> {
-        let feet = self.feet.iter().flat_map(|foot| [&foot.jx, &foot.jy, &foot.bound]);
-        self.free.iter().chain(feet).chain([&self.stall, &self.compliance])
+    #[inline(always)]
+    fn singles(&self) -> [&Lanes<W>; 14] {
+        let ([x, y, turn], [a, b, c]) = (&self.free, &self.feet);
+        let [stall, compliance] = [&self.stall, &self.compliance];
+        [x, y, turn, &a.jx, &a.jy, &a.bound, &b.jx, &b.jy, &b.bound, &c.jx, &c.jy, &c.bound, stall, compliance]
     }
 
-    fn singles_mut(&mut self) -> impl Iterator<Item = &mut Lanes<W>> {
-        let feet = self.feet.iter_mut().flat_map(|foot| [&mut foot.jx, &mut foot.jy, &mut foot.bound]);
-        self.free.iter_mut().chain(feet).chain([&mut self.stall, &mut self.compliance])
+    #[inline(always)]
+    fn singles_mut(&mut self) -> [&mut Lanes<W>; 14] {
+        let ([x, y, turn], [a, b, c]) = (&mut self.free, &mut self.feet);
+        let [stall, compliance] = [&mut self.stall, &mut self.compliance];
+        [
+            x,
+            y,
+            turn,
+            &mut a.jx,
+            &mut a.jy,
+            &mut a.bound,
+            &mut b.jx,
+            &mut b.jy,
+            &mut b.bound,
+            &mut c.jx,
+            &mut c.jy,
+            &mut c.bound,
+            stall,
+            compliance,
+        ]
     }
 
     /// No contact, no friction, at rest; a workspace to fill.

@@ -10,7 +10,7 @@ use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::natural::{ContactMap, NaturalMap, TINY};
-use crate::ncp::{ContactRow, Ncp, dot};
+use crate::ncp::{ContactRow, Ncp};
 
 /// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
 /// a jammed object's creep of 1e-8 m/s.
@@ -43,38 +43,76 @@ impl<const W: usize> Default for Newton<W> {
     }
 }
 
+/// How far each lane is.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<const W: usize> {
+    /// Residual at the present point (m/s).
+    pub residual: Lanes<W>,
+    /// Iterations taken.
+    pub iterations: Lanes<W>,
+    /// Lanes that have neither reached their goal nor taken all iterations.
+    pub open: Mask<W>,
+}
+
+impl<const W: usize> Progress<W> {
+    /// Nothing to do.
+    pub const NONE: Self = Self { residual: Lanes::ZERO, iterations: Lanes::ZERO, open: Mask::splat(false) };
+
+    /// Copies one lane into lane `slot` of `to`.
+    #[inline(always)]
+    pub fn pack_lane(&self, lane: usize, to: &mut Self, slot: usize) {
+        to.residual.0[slot] = self.residual.0[lane];
+        to.iterations.0[slot] = self.iterations.0[lane];
+        to.open.set(slot, self.open.lane(lane));
+    }
+}
+
 impl<const W: usize> Newton<W> {
-    /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations.
+    /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations; returns the residuals.
+    #[inline(always)]
+    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> Lanes<W> {
+        let mut progress = self.start(ncp, p, goal);
+        while progress.open.any() {
+            self.advance(ncp, p, goal, &mut progress);
+        }
+        progress.residual
+    }
+
+    /// Takes up the iteration from `p`.
+    #[inline(always)]
+    pub fn start(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, goal: Goal) -> Progress<W> {
+        let residual = self.map.take(ncp, p);
+        Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.aim)) }
+    }
+
+    /// One iteration of the open lanes of a chunk that was taken up last.
     ///
     /// A lane that is good enough, but not as good as aimed at, takes one more step and keeps the better point: an object that creeps may
     /// hover there and lose its modes again. Lanes that are done keep their result while others go on, so a lane's bits do not depend on
-    /// its neighbours. Returns the residual and the iterations of each lane.
+    /// its neighbours.
     #[inline(always)]
-    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> (Lanes<W>, Lanes<W>) {
-        let [aim, enough] = [goal.aim, goal.enough].map(Lanes::splat);
-        let mut residual = self.map.take(ncp, p);
-        let mut iterations = Lanes::ZERO;
-        let mut open = residual.gt(aim);
-        for _ in 0..goal.iterations {
-            if !open.any() {
-                break;
-            }
-            let near = open & !residual.gt(enough);
-            if near.any() {
-                self.before.copy_from(p);
-            }
-            self.linearised.by_natural_map(ncp, p, &self.map, goal.weight);
-            self.linearised.step(ncp, p, open);
-            let next = self.map.take(ncp, p);
-            let worse = near & !next.lt(residual);
-            if worse.any() {
-                p.copy_where(worse, &self.before);
-            }
-            residual = (open & !worse).select(next, residual);
-            iterations += open.keep(Lanes::splat(1.0));
-            open = open & !near & residual.gt(aim);
+    pub fn advance(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, progress: &mut Progress<W>) {
+        let Progress { residual, iterations, open } = progress;
+        let near = *open & !residual.gt(Lanes::splat(goal.enough));
+        if near.any() {
+            self.before.copy_from(p);
         }
-        (residual, iterations)
+        self.linearised.by_natural_map(ncp, p, &self.map, goal.weight);
+        self.linearised.step(ncp, p, *open);
+        let next = self.map.take(ncp, p);
+        let worse = near & !next.lt(*residual);
+        if worse.any() {
+            p.copy_where(worse, &self.before);
+        }
+        *residual = (*open & !worse).select(next, *residual);
+        *iterations += open.keep(Lanes::splat(1.0));
+        *open = *open & !near & residual.gt(Lanes::splat(goal.aim)) & iterations.lt(Lanes::splat(f64::from(goal.iterations)));
+    }
+
+    /// Copies what one lane of `ncp` has come to into lane `slot` of `to`, whose problems are `packed`.
+    #[inline(always)]
+    pub fn pack_lane(&self, ncp: &Ncp<W>, lane: usize, to: &mut Self, packed: &Ncp<W>, slot: usize) {
+        self.map.pack_lane(ncp, lane, &mut to.map, packed.contacts.len(), slot);
     }
 }
 
@@ -87,8 +125,11 @@ impl<const W: usize> Linearised<W> {
             self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k], weight);
         }
         self.contacts.clear();
-        for ((row, contact), (p_n, p_t)) in ncp.contacts.iter().zip(&map.contacts).zip(p.normal.iter().zip(&p.tangential)) {
-            self.contacts.push(contact.linearised(row, [*p_n, *p_t], ncp.compliance));
+        let points = p.normal.iter().zip(&p.tangential);
+        for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
+            if let Some(step) = contact.linearised(row, [*p_n, *p_t], ncp.compliance) {
+                self.contacts.push((i, step));
+            }
         }
         self.stall = StallStep::decided(p.pusher_yield.gt(map.slack), map.slack, p.pusher_yield);
     }
@@ -98,8 +139,8 @@ impl<const W: usize> Linearised<W> {
 #[derive(Clone, Copy, Debug)]
 pub struct Holding<const W: usize> {
     z: [Lanes<W>; 2],
-    /// |z|.
-    length: Lanes<W>,
+    /// |z|².
+    square: Lanes<W>,
     /// k.
     weight: f64,
 }
@@ -110,7 +151,7 @@ impl<const W: usize> Holding<W> {
     pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
         let k = Lanes::splat(weight);
         let z = [p[0] - k * slip[0], p[1] - k * slip[1]];
-        Self { z, length: (z[0] * z[0] + z[1] * z[1]).sqrt(), weight }
+        Self { z, square: z[0] * z[0] + z[1] * z[1], weight }
     }
 }
 
@@ -119,7 +160,7 @@ impl<const W: usize> FootStep<W> {
     #[inline(always)]
     fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
         let holding = Holding::new(p, slip, weight);
-        Self::in_mode(bound, p, slip, &holding, holding.length.gt(bound), STIFFNESS)
+        Self::in_mode(bound, p, slip, &holding, holding.square.gt(bound * bound), STIFFNESS)
     }
 
     /// A foot that slides where `slides`, with p = bound z / |z|; elsewhere its slip is driven to zero with `stiffness`.
@@ -135,16 +176,16 @@ impl<const W: usize> FootStep<W> {
         slides: Mask<W>,
         stiffness: f64,
     ) -> Self {
-        let Holding { z, length, weight } = *holding;
+        let Holding { z, square, weight } = *holding;
+        let unit = square.inverse_sqrt();
         // k |s|, where it slides
-        let speed = (length - bound).max(bound);
+        let speed = (square * unit - bound).max(bound);
         let rim = bound * bound;
-        let square = (p[0] * p[0] + p[1] * p[1]).max(rim);
-        // one division for 1 / |z|, k / speed and the share of p that is inside the disc
-        let inverse = Lanes::splat(1.0) / (length * speed * square).max(Lanes::splat(TINY));
-        let unit = inverse * (speed * square);
-        let along = inverse * (length * square) * weight;
-        let inside = inverse * (length * speed) * rim;
+        let size = (p[0] * p[0] + p[1] * p[1]).max(rim);
+        // one division for k / speed and the share of p that is inside the disc
+        let inverse = Lanes::splat(1.0) / (speed * size).max(Lanes::splat(TINY));
+        let along = inverse * size * weight;
+        let inside = inverse * speed * rim;
         let u = [z[0] * unit, z[1] * unit];
         let q = [p[0] * inside * along, p[1] * inside * along];
         let full = bound * along;
@@ -160,16 +201,19 @@ impl<const W: usize> FootStep<W> {
 }
 
 impl<const W: usize> ContactMap<W> {
-    /// Open, sticking or sliding either way.
+    /// Open, sticking or sliding either way; `None` where it is open in every lane and carries nothing.
     #[inline(always)]
-    fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> ContactStep<W> {
+    fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> Option<ContactStep<W>> {
         let one = Lanes::splat(1.0);
-        let closed = (p[0] * dot(&row.n, &row.n).max(one)).gt(self.gap);
-        let inertia = dot(&row.t, &row.t).max(one);
+        let closed = (p[0] * (one + row.n[2] * row.n[2])).gt(self.gap);
+        if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
+            return None;
+        }
+        let inertia = one + row.t[2] * row.t[2];
         let z = p[1] * inertia - self.slip;
         let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
         let mode = Mode { closed, sliding, ratio: z.sign() * row.mu };
-        ContactStep::in_mode(p, [self.gap, self.slip], mode, Hold { stiffness: STIFFNESS, compliance })
+        Some(ContactStep::in_mode(p, [self.gap, self.slip], mode, Hold { stiffness: STIFFNESS, compliance }))
     }
 }
 

@@ -205,7 +205,7 @@ impl Polisher {
             return residual;
         }
         self.p.copy_from(guess);
-        self.newton.solve(ncp, &mut self.p, POLISHED).0.0[0]
+        self.newton.solve(ncp, &mut self.p, POLISHED).0[0]
     }
 }
 

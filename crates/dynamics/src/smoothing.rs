@@ -127,8 +127,9 @@ impl<const W: usize> Linearised<W> {
         let aim = Aim { epsilon: map.epsilon, target };
         self.imbalance = ncp.imbalance(p);
         self.contacts.clear();
-        for ((row, contact), (p_n, p_t)) in ncp.contacts.iter().zip(&map.contacts).zip(p.normal.iter().zip(&p.tangential)) {
-            self.contacts.push(aim.contact(row, contact, [*p_n, *p_t], ncp.compliance));
+        let points = p.normal.iter().zip(&p.tangential);
+        for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
+            self.contacts.push((i, aim.contact(row, contact, [*p_n, *p_t], ncp.compliance)));
         }
         for k in 0..3 {
             self.feet[k] = aim.foot(&ncp.feet[k], &map.feet[k], &p.feet[k]);

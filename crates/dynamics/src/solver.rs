@@ -4,12 +4,14 @@
 //! Newton steps, packed together, still side by side; a smoothing homotopy, then an exhaustive search over contact modes take
 //! what is left, one by one. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
 
-use crate::continuation::{Block, Continuation, Descent, End, Place};
+use crate::continuation::{Block, Continuation, Descent, End};
+use crate::fast::{FastSolver, Iterated};
 use crate::impulses::Impulses;
 use crate::lanes::Lanes;
 use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::{Goal, Newton, STIFFNESS};
+use crate::newton::{Goal, STIFFNESS};
+use crate::packed::Place;
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;
 
@@ -92,7 +94,7 @@ pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
 /// Solves mixed NCPs; holds the working memory.
 #[derive(Clone, Debug)]
 pub struct Solver<const W: usize> {
-    newton: Newton<W>,
+    fast: FastSolver<W>,
     map: NaturalMap<W>,
     warm: Vec<Impulses<W>>,
     left: Vec<Place>,
@@ -104,7 +106,7 @@ pub struct Solver<const W: usize> {
 impl<const W: usize> Default for Solver<W> {
     fn default() -> Self {
         Self {
-            newton: Newton::default(),
+            fast: FastSolver::default(),
             map: NaturalMap::default(),
             warm: Vec::new(),
             left: Vec::new(),
@@ -127,18 +129,17 @@ impl<const W: usize> Solver<W> {
             // as many as can be left: how many there are changes from step to step, and no step after the first may allocate
             places.reserve(W * ncps.len());
         }
-        for (chunk, (ncp, p)) in ncps.iter().zip(p.iter_mut()).enumerate() {
+        for ((warm, ncp), p) in self.warm.iter_mut().zip(ncps).zip(p.iter()) {
             assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
-            self.warm[chunk].copy_from(p);
-            let (residual, iterations) = self.newton.solve(ncp, p, FAST);
-            for (lane, report) in reports[chunk].iter_mut().enumerate() {
-                let (residual, iterations) = (residual.0[lane], iterations.0[lane] as u32);
-                *report = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
-                if residual > TOLERANCE {
-                    self.left.push(Place { chunk, lane });
-                }
-            }
+            warm.copy_from(p);
         }
+        let left = &mut self.left;
+        self.fast.solve(ncps, p, FAST, &mut |Iterated { place, residual, iterations }| {
+            reports[place.chunk][place.lane] = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
+            if residual > TOLERANCE {
+                left.push(place);
+            }
+        });
         if !self.left.is_empty() {
             self.solve_left(ncps, p, reports);
         }

@@ -3,7 +3,9 @@
 mod common;
 
 use common::{FRICTION, Rng, bench_input, bench_scene, disc, fixel, pushing, square_scene};
-use stickslip_dynamics::{Dynamics, Friction, Level, Outcome, Particle, Pose, Report, Route, StepInput, StepWork, Twist, Wrench};
+use stickslip_dynamics::{
+    Dynamics, Friction, Level, Outcome, Particle, Particles, Pose, Report, Route, StepInput, StepWork, Twist, Wrench,
+};
 
 const PARTICLES: usize = 16;
 
@@ -46,6 +48,25 @@ fn run<const W: usize>(
     all
 }
 
+/// Steps all particles as one block, whose lanes the solver may pack anew.
+fn run_as_block<const W: usize>(
+    dynamics: &Dynamics,
+    inputs: &[StepInput],
+    friction: &[Friction; PARTICLES],
+    start: &[Particle; PARTICLES],
+) -> Vec<Vec<Said>> {
+    let mut chunks = vec![Particles::<W>::default(); PARTICLES / W];
+    for (i, (particle, friction)) in start.iter().zip(friction).enumerate() {
+        chunks[i / W].set(i % W, particle, friction);
+    }
+    let mut work = StepWork::default();
+    let mut step = |input| {
+        dynamics.step_block(input, &mut chunks, &mut work);
+        (0..PARTICLES).map(|i| said(&chunks[i / W].get(i % W), &work.reports()[i / W][i % W])).collect()
+    };
+    inputs.iter().map(&mut step).collect()
+}
+
 #[track_caller]
 fn assert_same(one: &[Vec<Said>], many: &[Vec<Said>], lanes: usize) {
     for (frame, (one, many)) in one.iter().zip(many).enumerate() {
@@ -72,8 +93,12 @@ fn assert_independent(
 ) -> Vec<Said> {
     let one = run::<1>(dynamics, inputs, friction, start);
     assert_same(&one, &run::<2>(dynamics, inputs, friction, start), 2);
+    assert_same(&one, &run_as_block::<1>(dynamics, inputs, friction, start), 1);
     for level in levels() {
-        assert_same(&one, &run::<8>(&dynamics.clone().with_level(level), inputs, friction, start), 8);
+        let dynamics = dynamics.clone().with_level(level);
+        assert_same(&one, &run::<8>(&dynamics, inputs, friction, start), 8);
+        assert_same(&one, &run_as_block::<4>(&dynamics, inputs, friction, start), 4);
+        assert_same(&one, &run_as_block::<8>(&dynamics, inputs, friction, start), 8);
     }
     one.into_iter().flatten().collect()
 }
@@ -108,6 +133,7 @@ fn step_of_mixed_particles_past_fixels_gives_the_same_bits_for_every_number_of_l
     let inputs: Vec<_> = (0..260).map(bench_input).collect();
     let said = assert_independent(&Dynamics::new(bench_scene()), &inputs, &friction, &start);
     assert!(said.iter().filter(|s| s.iterations > 1).count() > 1000, "most particles were pushed");
+    assert!(said.iter().filter(|s| s.iterations > 4).count() > 50, "some lanes go on when the others of their chunk are done");
 }
 
 #[test]
