@@ -185,7 +185,8 @@ impl<const W: usize> FootStep<W> {
         // one division for k / speed and the share of p that is inside the disc
         let inverse = Lanes::splat(1.0) / (speed * size).max(Lanes::splat(TINY));
         let along = inverse * size * weight;
-        let inside = inverse * speed * rim;
+        // in this order a foot without a bound has 0 here, however fast it slips
+        let inside = inverse * rim * speed;
         let u = [z[0] * unit, z[1] * unit];
         let q = [p[0] * inside * along, p[1] * inside * along];
         let full = bound * along;
@@ -253,6 +254,23 @@ impl<const W: usize> ContactStep<W> {
             nn,
             tn: free.keep(mode.ratio * nn),
             tt: free.select(Lanes::ZERO, stick),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foot_without_friction_lets_go_of_its_impulse_however_fast_it_slips() {
+        let vector = |x: f64| [Lanes([x]), Lanes([-0.5 * x])];
+        for slip in [1e-12, 1e-3, 1.0, 1e6] {
+            for p in [0.0, 1e-6, 3.0] {
+                let step = FootStep::decided(Lanes::ZERO, &vector(p), &vector(slip), STIFFNESS);
+                assert_eq!(step.r, vector(p).map(|p| -p), "slip {slip}, impulse {p}");
+                assert_eq!(step.k, [[Lanes::ZERO; 2]; 2], "slip {slip}, impulse {p}");
+            }
         }
     }
 }
