@@ -46,7 +46,7 @@ impl<const W: usize> FastSolver<W> {
         // a single chunk has nothing to be packed with
         let together = if ncps.len() > 1 { TOGETHER } else { goal.iterations };
         for chunk in 0..ncps.len() {
-            let progress = self.begin(&ncps[chunk], &mut p[chunk], goal, together);
+            let progress = self.together.begin(&ncps[chunk], &mut p[chunk], goal, together);
             for lane in (!progress.open).lanes() {
                 finish(progress.ended(Place { chunk, lane }, lane));
             }
@@ -60,19 +60,6 @@ impl<const W: usize> FastSolver<W> {
         while self.packed.busy.any() {
             self.go_on(ncps, p, goal, finish);
         }
-    }
-
-    /// The first iterations of a chunk, so many at most.
-    #[inline(always)]
-    fn begin(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, together: u32) -> Progress<W> {
-        let mut progress = self.together.start(ncp, p, goal);
-        for _ in 0..together {
-            if !progress.open.any() {
-                break;
-            }
-            self.together.advance(ncp, p, goal, &mut progress);
-        }
-        progress
     }
 
     /// Copies a lane of the chunk that was begun last to the lanes that go on.

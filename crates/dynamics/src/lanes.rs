@@ -1,6 +1,6 @@
 //! `W` particles side by side: [`Lanes`] and [`Mask`].
 //!
-//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and exactly rounded, none is fused,
+//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and made of exactly rounded ones, none is fused,
 //! so a particle's result does not depend on `W` nor on its neighbours; `Lanes<1>` is the scalar reference.
 
 use std::array::from_fn;
@@ -55,8 +55,7 @@ impl<const W: usize> Lanes<W> {
 
     /// 1/√x of positive normal numbers, to two units in the last place; finite where x is 0, infinite where it is.
     ///
-    /// Halving the exponent gives 1/√x to 3.5 % (Lomont 2003); every Newton step squares the error. Multiplications throughout,
-    /// where a root and a division keep the divider busy for three times as long.
+    /// Halving the exponent gives 1/√x to 3.5 % (Lomont 2003); every Newton step squares the error. Nothing waits for the divider.
     #[inline(always)]
     pub fn inverse_sqrt(self) -> Self {
         const FIRST_GUESS: u64 = 0x5fe6_eb50_c7b5_37a9;

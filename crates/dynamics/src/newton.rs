@@ -71,21 +71,24 @@ impl<const W: usize> Newton<W> {
     /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations; returns the residuals.
     #[inline(always)]
     pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> Lanes<W> {
-        let mut progress = self.start(ncp, p, goal);
-        while progress.open.any() {
+        self.begin(ncp, p, goal, goal.iterations).residual
+    }
+
+    /// The same for at most so many iterations.
+    #[inline(always)]
+    pub fn begin(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, iterations: u32) -> Progress<W> {
+        let residual = self.map.take(ncp, p);
+        let mut progress = Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.aim)) };
+        for _ in 0..iterations {
+            if !progress.open.any() {
+                break;
+            }
             self.advance(ncp, p, goal, &mut progress);
         }
-        progress.residual
+        progress
     }
 
-    /// Takes up the iteration from `p`.
-    #[inline(always)]
-    pub fn start(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, goal: Goal) -> Progress<W> {
-        let residual = self.map.take(ncp, p);
-        Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.aim)) }
-    }
-
-    /// One iteration of the open lanes of a chunk that was taken up last.
+    /// One iteration of the open lanes, from the point that they have come to.
     ///
     /// A lane that is good enough, but not as good as aimed at, takes one more step and keeps the better point: an object that creeps may
     /// hover there and lose its modes again. Lanes that are done keep their result while others go on, so a lane's bits do not depend on
