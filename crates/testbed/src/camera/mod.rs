@@ -1,8 +1,8 @@
 //! The overhead camera: frames of a scene as a real camera would deliver them.
 //!
 //! A [`Studio`] looks through a [`Camera`] (perspective, [`Lens`] distortion) at a [`Stage`] (plate, fixels, object, pusher, their
-//! tags, a hand) and renders 8-bit grey frames: every pixel is the mean over many rays spread over its area and over the exposure,
-//! then defocus, uneven light, shot and read noise ([`Optics`]). A [`Grabber`] now and then delivers a frame twice. A [`Board`] of
+//! tags, a hand) and renders 8-bit grey frames: every quarter of a pixel is the mean over rays spread over its area and over the
+//! exposure, then defocus, uneven light, shot and read noise ([`Optics`]). A [`Grabber`] now and then delivers a frame twice. A [`Board`] of
 //! tags, held in many poses, serves calibration.
 //!
 //! Lengths in m, world frame: x and y on the table, z up from it. Pixels: x right, y down, the centre of the first pixel at (0, 0).

@@ -7,7 +7,7 @@ use stickslip_filter::{Draw, Purpose, Streams};
 use super::board::{Board, BoardPose, BoardView};
 use super::body::{Body, Carrier};
 use super::optics::Optics;
-use super::sampler::{RAYS, Sampler};
+use super::sampler::{INSTANTS, SUBPIXELS, Sampler};
 use super::stage::{Placed, Scenery, Stage};
 use super::viewpoint::Camera;
 
@@ -42,7 +42,7 @@ pub struct Studio {
     optics: Optics,
     streams: Streams,
     sampler: Sampler,
-    /// Light of the stage with nothing that moves.
+    /// Light of the stage with nothing that moves, subpixel by subpixel.
     background: Vec<f32>,
 }
 
@@ -69,7 +69,7 @@ impl Studio {
     pub fn new(camera: Camera, stage: Stage, optics: Optics, seed: u64) -> Self {
         let sampler = Sampler::new(&camera);
         let streams = Streams::new(seed).of(Purpose::Measure);
-        let background = vec![0.0; (camera.lens().size[0] * camera.lens().size[1]) as usize];
+        let background = vec![0.0; camera.lens().size.iter().map(|n| *n as usize * SUBPIXELS).product()];
         let mut studio = Self { camera, stage, optics, streams, sampler, background };
         studio.background = studio.light(&Shutter::still(Actors::default()), streams.at(0), |_| true);
         studio
@@ -84,7 +84,7 @@ impl Studio {
     pub fn frame(&self, index: u64, shutter: &Shutter) -> GrayImage {
         let draw = self.streams.at(index);
         let light = self.light(shutter, draw, |bodies| bodies.iter().any(|placed| placed.body.carrier != Carrier::Table));
-        self.optics.develop(light, self.camera.lens().size, draw)
+        self.optics.develop(&light, self.camera.lens().size, draw)
     }
 
     /// Frame number `index` of a tag board over the bare plate.
@@ -93,7 +93,7 @@ impl Studio {
         let view = BoardView { board, pose, around: self.stage.bare() };
         let mut light = self.background.clone();
         self.sampler.tiles().for_each(|tile| self.sampler.paint(&view, &tile, draw, &mut light));
-        self.optics.develop(light, self.camera.lens().size, draw)
+        self.optics.develop(&light, self.camera.lens().size, draw)
     }
 
     /// The light that reaches the sensor: the background's, but for tiles whose bodies say that they are `worth` painting.
@@ -118,8 +118,8 @@ impl Studio {
 /// A body that is there, at its places during an exposure.
 fn placed<'a>(body: &'a Body, shutter: &Shutter) -> Option<Placed<'a>> {
     let [open, close] = shutter.way(body.carrier)?;
-    let at = |instant: usize| body.place(open.interpolate(close, (instant as f64 + 0.5) / RAYS as f64));
-    let places = if open == close { vec![body.place(open)] } else { (0..RAYS).map(at).collect() };
+    let at = |instant: usize| body.place(open.interpolate(close, (instant as f64 + 0.5) / INSTANTS as f64));
+    let places = if open == close { vec![body.place(open)] } else { (0..INSTANTS).map(at).collect() };
     Some(Placed { body, places })
 }
 
