@@ -156,9 +156,8 @@ fn filmed(recordings: &[Recording]) -> Result<(Vec<Recording>, Vec<Recording>, V
         let seen: Vec<Tracked> = own.par_iter().map(|recording| footage.track(recording, &progress)).collect::<Result<_>>()?;
         let noise = seen.iter().fold(Noise::default(), |sum, tracked| sum.with(tracked.noise));
         levels.push(noise.level());
-        let seen: Vec<Recording> = seen.into_iter().map(|tracked| tracked.recording.told(noise.camera())).collect();
-        simulated.extend(seen.par_iter().map(|seen| Recording::with_camera(seen, noise.camera())).collect::<Result<Vec<_>>>()?);
-        tracked.extend(seen);
+        simulated.extend(seen.par_iter().map(|seen| seen.recording.with_noise(&noise)).collect::<Result<Vec<_>>>()?);
+        tracked.extend(seen.into_iter().map(|tracked| tracked.recording.told(noise.told())));
     }
     progress.finish_and_clear();
     Ok((tracked, simulated, levels))

@@ -104,8 +104,8 @@ mod tests {
         assert!(level.object_mm < 0.02 && level.object_deg < 0.05 && level.pusher_mm < 0.05 && level.seen > 0.9, "{level:?}");
 
         // the other arm misses the same frames, and its errors are as large: 2 n numbers tell a deviation within 1 ± 3/√(4 n)
-        let tracked = tracked.told(noise.camera());
-        let simulated = Recording::with_camera(&tracked, noise.camera()).unwrap();
+        let simulated = tracked.with_noise(&noise).unwrap();
+        let tracked = tracked.told(noise.told());
         let seen = |recording: &Recording| recording.experiment.log.object.iter().take(60).map(Option::is_some).collect::<Vec<_>>();
         assert_eq!(seen(&simulated), seen(&tracked));
         let other = Noise::of(&beginning(&simulated, 60).experiment.log, &motion(&short)).level();

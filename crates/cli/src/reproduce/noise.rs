@@ -5,6 +5,10 @@ use stickslip::dynamics::Pose;
 use stickslip::{Camera, Log};
 use stickslip_testbed::camera::Recorded;
 
+/// What no tracked pose is taken to be better than (m, rad): the bias that tracking may have, docs/guide/camera.md. Frames have it in
+/// common, so that a filter must not average it away.
+const BIAS: [f64; 2] = [5e-5, 0.05 * std::f64::consts::PI / 180.0];
+
 /// Sums of squared errors of tracked poses.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Noise {
@@ -88,6 +92,19 @@ impl Noise {
     pub fn camera(&self) -> Camera {
         let ([position_std, orientation_std], [pusher_position_std, pusher_orientation_std]) = (self.object.level(), self.pusher.level());
         Camera { position_std, orientation_std, latency: 0.0, pusher_position_std, pusher_orientation_std }
+    }
+
+    /// What the methods are told of the camera.
+    pub fn told(&self) -> Camera {
+        let camera = self.camera();
+        let [position, angle] = BIAS;
+        Camera {
+            position_std: camera.position_std.max(position),
+            orientation_std: camera.orientation_std.max(angle),
+            pusher_position_std: camera.pusher_position_std.max(position),
+            pusher_orientation_std: camera.pusher_orientation_std.max(angle),
+            ..camera
+        }
     }
 
     /// For tables.

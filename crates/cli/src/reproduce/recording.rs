@@ -4,6 +4,7 @@ use anyhow::Result;
 use stickslip::{Camera, Occlusion, Setup};
 use stickslip_formats::{Experiment, read_scene, read_truth_json};
 
+use super::noise::Noise;
 use crate::args::Physics;
 use crate::paper::{PaperExperiment, PaperScene};
 use crate::simulation::{Options, REPEATS, Simulation};
@@ -30,17 +31,18 @@ impl Recording {
         Self::simulate_with(paper, seed, |setup| (setup, REPEATS))
     }
 
-    /// The same rig with another camera, which misses the object and the pusher wherever `seen` does.
-    pub fn with_camera(seen: &Self, camera: Camera) -> Result<Self> {
-        let mut recording = Self::simulate_with(seen.paper, seen.seed, |setup| (Setup { camera: Some(camera), ..setup }, 0.0))?;
+    /// The same rig, its poses simulated with the noise of tracked ones, missing wherever they are; the methods are told the same.
+    pub fn with_noise(&self, noise: &Noise) -> Result<Self> {
+        let camera = Some(noise.camera());
+        let mut recording = Self::simulate_with(self.paper, self.seed, |setup| (Setup { camera, ..setup }, 0.0))?;
         let log = &mut recording.experiment.log;
-        for (mine, theirs) in [(&mut log.object, &seen.experiment.log.object), (&mut log.pusher, &seen.experiment.log.pusher)] {
+        for (mine, theirs) in [(&mut log.object, &self.experiment.log.object), (&mut log.pusher, &self.experiment.log.pusher)] {
             mine.iter_mut().zip(theirs).for_each(|(mine, theirs)| *mine = mine.filter(|_| theirs.is_some()));
         }
-        Ok(recording)
+        Ok(recording.told(noise.told()))
     }
 
-    /// The same poses, with a camera of this noise told to the methods.
+    /// The same poses, and the methods are told of this camera.
     pub fn told(self, camera: Camera) -> Self {
         let setup = Setup { camera: Some(camera), ..self.experiment.setup };
         Self { experiment: Experiment { setup, ..self.experiment }, ..self }
