@@ -106,15 +106,15 @@ impl<const W: usize> Linearised<W> {
         for ((foot, step), p_k) in ncp.feet.iter().zip(&self.feet).zip(&mut p.feet) {
             let ds = foot.slip(&dv);
             for i in 0..2 {
-                p_k[i] = open.select(p_k[i] + step.r[i] - step.k[i][0] * ds[0] - step.k[i][1] * ds[1], p_k[i]);
+                p_k[i] = open.select((p_k[i] + step.r[i]).less(step.k[i][0], ds[0]).less(step.k[i][1], ds[1]), p_k[i]);
             }
         }
         for (i, step) in &self.contacts {
             let (row, p_n, p_t) = (&ncp.contacts[*i], &mut p.normal[*i], &mut p.tangential[*i]);
-            let dgamma = dot(&row.n, &dv) + row.nd * dy;
-            let ds = dot(&row.t, &dv) + row.td * dy;
-            *p_n = open.select(*p_n + step.n - step.nn * dgamma, *p_n);
-            *p_t = open.select(*p_t + step.t - step.tt * ds - step.tn * dgamma, *p_t);
+            let dgamma = dot(&row.n, &dv).plus(row.nd, dy);
+            let ds = dot(&row.t, &dv).plus(row.td, dy);
+            *p_n = open.select((*p_n + step.n).less(step.nn, dgamma), *p_n);
+            *p_t = open.select((*p_t + step.t).less(step.tt, ds).less(step.tn, dgamma), *p_t);
         }
         p.pusher_yield = open.select(p.pusher_yield + dy, p.pusher_yield);
         for (v, dv) in p.v.iter_mut().zip(dv) {
@@ -171,13 +171,13 @@ impl<const W: usize> Momentum<W> {
     /// A += Jᵀ K J, rhs += Jᵀ r.
     #[inline(always)]
     fn add_foot(&mut self, foot: &FootRow<W>, step: &FootStep<W>) {
-        let row = |k: &[Lanes<W>; 2]| [k[0], k[1], k[0] * foot.jx + k[1] * foot.jy];
+        let row = |k: &[Lanes<W>; 2]| [k[0], k[1], (k[0] * foot.jx).plus(k[1], foot.jy)];
         let k = [row(&step.k[0]), row(&step.k[1])];
         let r = foot.wrench(&step.r);
         for j in 0..3 {
             self.matrix[0][j] += k[0][j];
             self.matrix[1][j] += k[1][j];
-            self.matrix[2][j] += foot.jx * k[0][j] + foot.jy * k[1][j];
+            self.matrix[2][j] = self.matrix[2][j].plus(foot.jx, k[0][j]).plus(foot.jy, k[1][j]);
             self.rhs[j] += r[j];
         }
     }
@@ -186,13 +186,13 @@ impl<const W: usize> Momentum<W> {
     #[inline(always)]
     fn add_contact(&mut self, ContactRow { n, t, .. }: &ContactRow<W>, step: &ContactStep<W>) {
         for j in 0..3 {
-            let (normal, tangential) = (step.nn * n[j], step.tt * t[j] + step.tn * n[j]);
+            let (normal, tangential) = (step.nn * n[j], (step.tt * t[j]).plus(step.tn, n[j]));
             for i in 0..3 {
-                self.matrix[i][j] += n[i] * normal + t[i] * tangential;
+                self.matrix[i][j] = self.matrix[i][j].plus(n[i], normal).plus(t[i], tangential);
             }
         }
         for i in 0..3 {
-            self.rhs[i] += n[i] * step.n + t[i] * step.t;
+            self.rhs[i] = self.rhs[i].plus(n[i], step.n).plus(t[i], step.t);
         }
     }
 }
@@ -210,13 +210,13 @@ impl<const W: usize> Push<W> {
     /// [`Momentum::add_contact`] with n and t extended by their parts along d.
     #[inline(always)]
     fn add_contact(&mut self, ContactRow { n, t, nd, td, .. }: &ContactRow<W>, step: &ContactStep<W>) {
-        let (normal, tangential) = (step.nn * *nd, step.tt * *td + step.tn * *nd);
+        let (normal, tangential) = (step.nn * *nd, (step.tt * *td).plus(step.tn, *nd));
         for j in 0..3 {
-            self.column[j] += n[j] * normal + t[j] * tangential;
-            self.row[j] += *nd * (step.nn * n[j]) + *td * (step.tt * t[j] + step.tn * n[j]);
+            self.column[j] = self.column[j].plus(n[j], normal).plus(t[j], tangential);
+            self.row[j] = self.row[j].plus(*nd, step.nn * n[j]).plus(*td, (step.tt * t[j]).plus(step.tn, n[j]));
         }
-        self.corner += *nd * normal + *td * tangential;
-        self.rhs += *nd * step.n + *td * step.t;
+        self.corner = self.corner.plus(*nd, normal).plus(*td, tangential);
+        self.rhs = self.rhs.plus(*nd, step.n).plus(*td, step.t);
     }
 
     /// The system in (dv, dy) whose fourth row is the stall pair; `pusher_yield` is the present y.

@@ -17,8 +17,8 @@ pub fn solve_three<const W: usize>([a, b, c]: &[[Lanes<W>; 4]; 3]) -> [Lanes<W>;
     let c: [_; 2] = without_first(&c, &b, per_b);
 
     let z = c[1] * (Lanes::splat(1.0) / c[0]);
-    let y = (b[2] - b[1] * z) * per_b;
-    let x = (a[3] - a[1] * y - a[2] * z) * per_a;
+    let y = b[2].less(b[1], z) * per_b;
+    let x = a[3].less(a[1], y).less(a[2], z) * per_a;
     [x, y, z]
 }
 
@@ -33,16 +33,16 @@ pub fn solve_four<const W: usize>([a, b, c, d]: &[[Lanes<W>; 5]; 4]) -> [Lanes<W
     let d: [_; 2] = without_first(&d, &c, per_c);
 
     let w = d[1] * per_d;
-    let z = (c[2] - c[1] * w) * per_c;
-    let y = (b[3] - b[1] * z - b[2] * w) * per_b;
-    let x = (a[4] - a[1] * y - a[2] * z - a[3] * w) * per_a;
+    let z = c[2].less(c[1], w) * per_c;
+    let y = b[3].less(b[1], z).less(b[2], w) * per_b;
+    let x = a[4].less(a[1], y).less(a[2], z).less(a[3], w) * per_a;
     [x, y, z, w]
 }
 
 /// One over the first coefficient of `a`, and over what eliminating with it leaves of the second one of `b`: two divisions at once.
 #[inline(always)]
 fn inverse_pivots<const N: usize, const W: usize>(a: &[Lanes<W>; N], b: &[Lanes<W>; N]) -> [Lanes<W>; 2] {
-    [Lanes::splat(1.0) / a[0], a[0] / (a[0] * b[1] - a[1] * b[0])]
+    [Lanes::splat(1.0) / a[0], a[0] / (a[0] * b[1]).less(a[1], b[0])]
 }
 
 /// An equation less its first unknown, by means of `pivot`, `inverse` one over its first coefficient; M is N − 1.
@@ -55,7 +55,7 @@ fn without_first<const N: usize, const M: usize, const W: usize>(
     let factor = equation[0] * inverse;
     let mut rest = [Lanes::ZERO; M];
     for k in 0..M {
-        rest[k] = equation[k + 1] - factor * pivot[k + 1];
+        rest[k] = equation[k + 1].less(factor, pivot[k + 1]);
     }
     rest
 }

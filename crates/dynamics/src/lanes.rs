@@ -1,7 +1,8 @@
 //! `W` particles side by side: [`Lanes`] and [`Mask`].
 //!
-//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and made of exactly rounded ones, none is fused,
-//! so a particle's result does not depend on `W` nor on its neighbours; `Lanes<1>` is the scalar reference.
+//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and exactly rounded, on any machine; where a
+//! product and a sum are rounded together, [`Lanes::plus`] and [`Lanes::less`] say so. A particle's result does not depend on `W` nor on
+//! its neighbours; `Lanes<1>` is the scalar reference.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
@@ -62,7 +63,7 @@ impl<const W: usize> Lanes<W> {
         let half = self * 0.5;
         let mut y = Self(from_fn(|i| f64::from_bits(FIRST_GUESS.wrapping_sub(self.0[i].to_bits() >> 1))));
         for _ in 0..4 {
-            y = y * (Self::splat(1.5) - half * y * y);
+            y = y * Self::splat(1.5).less(half * y, y);
         }
         y
     }
@@ -73,6 +74,18 @@ impl<const W: usize> Lanes<W> {
         // from here on doubles are whole numbers
         const WHOLE: f64 = 6_755_399_441_055_744.0;
         (self + WHOLE) - WHOLE
+    }
+
+    /// self + a b, rounded once.
+    #[inline(always)]
+    pub fn plus(self, a: Self, b: Self) -> Self {
+        Self(from_fn(|i| a.0[i].mul_add(b.0[i], self.0[i])))
+    }
+
+    /// self − a b, rounded once.
+    #[inline(always)]
+    pub fn less(self, a: Self, b: Self) -> Self {
+        Self(from_fn(|i| (-a.0[i]).mul_add(b.0[i], self.0[i])))
     }
 
     /// Where `self > other`.

@@ -54,7 +54,7 @@ impl<const W: usize> NaturalMap<W> {
         for (slip, (foot, p_k)) in self.slips.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             *slip = foot.slip(&p.v);
             let [x, y] = miss(foot.bound, p_k, slip);
-            squares.note(x * x + y * y);
+            squares.note((x * x).plus(y, y));
         }
         worst.note(squares.root());
         self.contacts.clear();
@@ -103,10 +103,10 @@ impl<const W: usize> NaturalMap<W> {
 #[inline(always)]
 fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
     let z = [p[0] - slip[0], p[1] - slip[1]];
-    let square = z[0] * z[0] + z[1] * z[1];
+    let square = (z[0] * z[0]).plus(z[1], z[1]);
     let sliding = square.gt(bound * bound);
     let shrink = bound * square.inverse_sqrt();
-    [sliding.select(shrink * z[0] - p[0], -slip[0]), sliding.select(shrink * z[1] - p[1], -slip[1])]
+    [sliding.select((-p[0]).plus(shrink, z[0]), -slip[0]), sliding.select((-p[1]).plus(shrink, z[1]), -slip[1])]
 }
 
 impl<const W: usize> ContactMap<W> {
@@ -115,7 +115,7 @@ impl<const W: usize> ContactMap<W> {
 
     #[inline(always)]
     fn new(row: &ContactRow<W>, p_n: Lanes<W>, p: &Impulses<W>, compliance: Lanes<W>) -> Self {
-        Self { gap: row.gap_velocity(&p.v, p.pusher_yield) + compliance * p_n, slip: row.slip_velocity(&p.v, p.pusher_yield) }
+        Self { gap: row.gap_velocity(&p.v, p.pusher_yield).plus(compliance, p_n), slip: row.slip_velocity(&p.v, p.pusher_yield) }
     }
 
     /// The contact's two rows.

@@ -15,14 +15,14 @@ pub type Triple<const W: usize> = [Lanes<W>; 3];
 /// a · b.
 #[inline(always)]
 pub fn dot<const W: usize>(a: &Triple<W>, b: &Triple<W>) -> Lanes<W> {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    (a[0] * b[0]).plus(a[1], b[1]).plus(a[2], b[2])
 }
 
 /// a += b s.
 #[inline(always)]
 pub fn add_scaled<const W: usize>(a: &mut Triple<W>, b: &Triple<W>, s: Lanes<W>) {
     for (a, b) in a.iter_mut().zip(b) {
-        *a += *b * s;
+        *a = a.plus(*b, s);
     }
 }
 
@@ -82,13 +82,13 @@ impl<const W: usize> FootRow<W> {
     /// Slip velocity of the foot.
     #[inline(always)]
     pub fn slip(&self, v: &Triple<W>) -> [Lanes<W>; 2] {
-        [v[0] + self.jx * v[2], v[1] + self.jy * v[2]]
+        [v[0].plus(self.jx, v[2]), v[1].plus(self.jy, v[2])]
     }
 
     /// Jᵀ p.
     #[inline(always)]
     pub fn wrench(&self, p: &[Lanes<W>; 2]) -> Triple<W> {
-        [p[0], p[1], self.jx * p[0] + self.jy * p[1]]
+        [p[0], p[1], (self.jx * p[0]).plus(self.jy, p[1])]
     }
 }
 
@@ -125,13 +125,13 @@ impl<const W: usize> ContactRow<W> {
     /// Gap velocity γ.
     #[inline(always)]
     pub fn gap_velocity(&self, v: &Triple<W>, pusher_yield: Lanes<W>) -> Lanes<W> {
-        dot(&self.n, v) + self.gap + self.nd * pusher_yield
+        (dot(&self.n, v) + self.gap).plus(self.nd, pusher_yield)
     }
 
     /// Slip velocity s.
     #[inline(always)]
     pub fn slip_velocity(&self, v: &Triple<W>, pusher_yield: Lanes<W>) -> Lanes<W> {
-        dot(&self.t, v) + self.slip + self.td * pusher_yield
+        (dot(&self.t, v) + self.slip).plus(self.td, pusher_yield)
     }
 }
 
@@ -226,7 +226,7 @@ impl<const W: usize> Ncp<W> {
     pub fn resistance(&self, p: &Impulses<W>) -> Lanes<W> {
         let mut force = Lanes::ZERO;
         for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            force += *p_n * row.nd + *p_t * row.td;
+            force = force.plus(*p_n, row.nd).plus(*p_t, row.td);
         }
         force
     }

@@ -153,8 +153,8 @@ impl<const W: usize> Holding<W> {
     #[inline(always)]
     pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
         let k = Lanes::splat(weight);
-        let z = [p[0] - k * slip[0], p[1] - k * slip[1]];
-        Self { z, square: z[0] * z[0] + z[1] * z[1], weight }
+        let z = [p[0].less(k, slip[0]), p[1].less(k, slip[1])];
+        Self { z, square: (z[0] * z[0]).plus(z[1], z[1]), weight }
     }
 }
 
@@ -182,9 +182,9 @@ impl<const W: usize> FootStep<W> {
         let Holding { z, square, weight } = *holding;
         let unit = square.inverse_sqrt();
         // k |s|, where it slides
-        let speed = (square * unit - bound).max(bound);
+        let speed = (-bound).plus(square, unit).max(bound);
         let rim = bound * bound;
-        let size = (p[0] * p[0] + p[1] * p[1]).max(rim);
+        let size = (p[0] * p[0]).plus(p[1], p[1]).max(rim);
         // one division for k / speed and the share of p that is inside the disc
         let inverse = Lanes::splat(1.0) / (speed * size).max(Lanes::splat(TINY));
         let along = inverse * size * weight;
@@ -195,10 +195,10 @@ impl<const W: usize> FootStep<W> {
         let full = bound * along;
         let k = Lanes::splat(stiffness);
         Self {
-            r: [slides.select(bound * u[0] - p[0], -slip[0] * k), slides.select(bound * u[1] - p[1], -slip[1] * k)],
+            r: [slides.select((-p[0]).plus(bound, u[0]), -slip[0] * k), slides.select((-p[1]).plus(bound, u[1]), -slip[1] * k)],
             k: [
-                [slides.select(full - q[0] * u[0], k), slides.keep(-q[0] * u[1])],
-                [slides.keep(-q[1] * u[0]), slides.select(full - q[1] * u[1], k)],
+                [slides.select(full.less(q[0], u[0]), k), slides.keep(-q[0] * u[1])],
+                [slides.keep(-q[1] * u[0]), slides.select(full.less(q[1], u[1]), k)],
             ],
         }
     }
@@ -209,12 +209,12 @@ impl<const W: usize> ContactMap<W> {
     #[inline(always)]
     fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> Option<ContactStep<W>> {
         let one = Lanes::splat(1.0);
-        let closed = (p[0] * (one + row.n[2] * row.n[2])).gt(self.gap);
+        let closed = (p[0] * (one.plus(row.n[2], row.n[2]))).gt(self.gap);
         if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
             return None;
         }
-        let inertia = one + row.t[2] * row.t[2];
-        let z = p[1] * inertia - self.slip;
+        let inertia = one.plus(row.t[2], row.t[2]);
+        let z = (-self.slip).plus(p[1], inertia);
         let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
         let mode = Mode { closed, sliding, ratio: z.sign() * row.mu };
         Some(ContactStep::in_mode(p, [self.gap, self.slip], mode, Hold { stiffness: STIFFNESS, compliance }))
@@ -253,7 +253,7 @@ impl<const W: usize> ContactStep<W> {
         let free = mode.sliding | !mode.closed;
         Self {
             n,
-            t: free.select(mode.ratio * (p[0] + n) - p[1], -slip * stick),
+            t: free.select((-p[1]).plus(mode.ratio, p[0] + n), -slip * stick),
             nn,
             tn: free.keep(mode.ratio * nn),
             tt: free.select(Lanes::ZERO, stick),

@@ -66,17 +66,17 @@ impl<const W: usize> SmoothedMap<W> {
             let gap = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             let pair = SmoothedPair::new(*p_n, gap, squared);
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            let inverse = Lanes::splat(1.0) / (slip * slip + squared).sqrt();
+            let inverse = Lanes::splat(1.0) / squared.plus(slip, slip).sqrt();
             worst.note(pair.value);
-            worst.note(row.mu * p_n.max(Lanes::ZERO) * (slip * inverse) + *p_t);
+            worst.note(p_t.plus(row.mu * p_n.max(Lanes::ZERO), slip * inverse));
             self.contacts.push(SmoothedContact { pair, slip, inverse });
         }
         let mut squares = Worst::NONE;
         for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             let slip = foot.slip(&p.v);
-            let inverse = Lanes::splat(1.0) / (slip[0] * slip[0] + slip[1] * slip[1] + squared).sqrt();
-            let off = [foot.bound * (slip[0] * inverse) + p_k[0], foot.bound * (slip[1] * inverse) + p_k[1]];
-            squares.note(off[0] * off[0] + off[1] * off[1]);
+            let inverse = Lanes::splat(1.0) / squared.plus(slip[0], slip[0]).plus(slip[1], slip[1]).sqrt();
+            let off = [p_k[0].plus(foot.bound, slip[0] * inverse), p_k[1].plus(foot.bound, slip[1] * inverse)];
+            squares.note((off[0] * off[0]).plus(off[1], off[1]));
             *map = SmoothedFoot { slip, inverse };
         }
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
@@ -91,7 +91,7 @@ impl<const W: usize> SmoothedPair<W> {
     #[inline(always)]
     fn new(a: Lanes<W>, b: Lanes<W>, epsilon_squared: Lanes<W>) -> Self {
         let difference = a - b;
-        let root = (difference * difference + epsilon_squared * 4.0).sqrt();
+        let root = (epsilon_squared * 4.0).plus(difference, difference).sqrt();
         Self { difference, root, value: a + b - root }
     }
 
@@ -173,7 +173,7 @@ impl<const W: usize> Aim<W> {
         let SmoothedFoot { slip, inverse } = *map;
         let shift = self.shift(inverse);
         let unit = [slip[0] * inverse, slip[1] * inverse];
-        let size = (p[0] * p[0] + p[1] * p[1]).sqrt();
+        let size = (p[0] * p[0]).plus(p[1], p[1]).sqrt();
         let outside = size.gt(foot.bound);
         let one = Lanes::splat(1.0);
         let shrink = outside.select(foot.bound / outside.select(size, one), one) * inverse;

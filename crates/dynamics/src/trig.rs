@@ -62,7 +62,7 @@ fn sin_cos_eighth<const W: usize>(x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
 fn polynomial<const W: usize>(z: Lanes<W>, coefficients: [f64; 6]) -> Lanes<W> {
     let mut sum = Lanes::splat(coefficients[0]);
     for c in &coefficients[1..] {
-        sum = sum * z + *c;
+        sum = Lanes::splat(*c).plus(sum, z);
     }
     sum
 }
