@@ -3,8 +3,11 @@
 //! ε is driven to zero; every reduction begins with a step along the path's tangent, and every step halves until the smoothed
 //! residual falls.
 
+use fearless_simd::Level;
+
 use crate::condensed::Linearised;
 use crate::impulses::Impulses;
+use crate::instructions::on_widest;
 use crate::lanes::{Lanes, Mask};
 use crate::ncp::Ncp;
 use crate::smoothing::SmoothedMap;
@@ -21,13 +24,14 @@ pub struct Homotopy {
     full: Impulses<1>,
     trial: Impulses<1>,
     settled: Impulses<1>,
+    level: Level,
 }
 
 impl Default for Homotopy {
     fn default() -> Self {
         let none = Impulses::zero(0);
         let (map, linearised) = (SmoothedMap::default(), Linearised::default());
-        Self { map, linearised, guess: none.clone(), full: none.clone(), trial: none.clone(), settled: none }
+        Self { map, linearised, guess: none.clone(), full: none.clone(), trial: none.clone(), settled: none, level: Level::new() }
     }
 }
 
@@ -70,7 +74,7 @@ impl Homotopy {
         if from > epsilon && self.newton_step(ncp, from, epsilon) {
             std::mem::swap(&mut self.guess, &mut self.full);
         }
-        let mut merit = self.map.violation(ncp, &self.guess, epsilon);
+        let mut merit = violation(self.level, &mut self.map, ncp, &self.guess, epsilon);
         let mut bold = BOLD_STEPS;
         for _ in 0..10 {
             if merit < 0.1 * epsilon {
@@ -82,7 +86,7 @@ impl Homotopy {
                     // near a kink the residual must rise before it can fall
                     bold -= 1;
                     std::mem::swap(&mut self.guess, &mut self.full);
-                    self.map.violation(ncp, &self.guess, epsilon)
+                    violation(self.level, &mut self.map, ncp, &self.guess, epsilon)
                 }
                 None => return false,
             };
@@ -98,7 +102,7 @@ impl Homotopy {
         let mut share = 1.0;
         for _ in 0..6 {
             self.trial.blend(&self.guess, &self.full, Lanes([share]));
-            let next = self.map.violation(ncp, &self.trial, epsilon);
+            let next = violation(self.level, &mut self.map, ncp, &self.trial, epsilon);
             if next < merit * (1.0 - 0.1 * share) {
                 std::mem::swap(&mut self.guess, &mut self.trial);
                 return Some(next);
@@ -111,15 +115,24 @@ impl Homotopy {
     /// Leaves the full step from the guess in `full`; false where it is not finite.
     fn newton_step(&mut self, ncp: &Ncp<1>, from: f64, target: f64) -> bool {
         self.full.copy_from(&self.guess);
-        self.map.take(ncp, &self.guess, Lanes([from]));
-        self.linearised.smoothed(ncp, &self.guess, &self.map, Lanes([target]));
-        self.linearised.step(ncp, &mut self.full, Mask::splat(true));
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || {
+                self.map.take(ncp, &self.guess, Lanes([from]));
+                self.linearised.smoothed(ncp, &self.guess, &self.map, Lanes([target]));
+                self.linearised.step(ncp, &mut self.full, Mask::splat(true));
+            },
+        );
         self.full.v.iter().all(|v| v.0[0].is_finite()) && self.full.pusher_yield.0[0].is_finite()
     }
 }
 
-impl SmoothedMap<1> {
-    fn violation(&mut self, ncp: &Ncp<1>, p: &Impulses<1>, epsilon: f64) -> f64 {
-        self.take(ncp, p, Lanes([epsilon])).0[0]
-    }
+/// The smoothed residual.
+fn violation(level: Level, map: &mut SmoothedMap<1>, ncp: &Ncp<1>, p: &Impulses<1>, epsilon: f64) -> f64 {
+    on_widest(
+        level,
+        #[inline(always)]
+        || map.take(ncp, p, Lanes([epsilon])).0[0],
+    )
 }

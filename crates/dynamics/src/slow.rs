@@ -1,7 +1,10 @@
 //! The slow, sure part of the chain, one particle at a time: [`SlowSolver`].
 
+use fearless_simd::Level;
+
 use crate::homotopy::Homotopy;
 use crate::impulses::Impulses;
+use crate::instructions::on_widest;
 use crate::lanes::{Lanes, Mask};
 use crate::modes::{Verdict, search};
 use crate::natural::NaturalMap;
@@ -64,7 +67,7 @@ impl Default for SlowSolver {
             start: Impulses::zero(0),
             nearest: Impulses::zero(0),
             homotopy: Homotopy::default(),
-            polisher: Polisher { p: Impulses::zero(0), modes: Polish::default(), newton: Newton::default(), map: NaturalMap::default() },
+            polisher: Polisher::default(),
         }
     }
 }
@@ -181,6 +184,14 @@ struct Polisher {
     modes: Polish<1>,
     newton: Newton<1>,
     map: NaturalMap<1>,
+    level: Level,
+}
+
+impl Default for Polisher {
+    fn default() -> Self {
+        let (modes, newton, map) = (Polish::default(), Newton::default(), NaturalMap::default());
+        Self { p: Impulses::zero(0), modes, newton, map, level: Level::new() }
+    }
 }
 
 impl Polisher {
@@ -189,8 +200,14 @@ impl Polisher {
         let mut residual = f64::INFINITY;
         for &share in sliding {
             self.p.copy_from(guess);
-            self.modes.polish(ncp, &mut self.p, Mask::splat(true), share, limit);
-            residual = self.map.take(ncp, &self.p).0[0];
+            residual = on_widest(
+                self.level,
+                #[inline(always)]
+                || {
+                    self.modes.polish(ncp, &mut self.p, Mask::splat(true), share, limit);
+                    self.map.take(ncp, &self.p).0[0]
+                },
+            );
             if residual <= TOLERANCE {
                 break;
             }
@@ -205,7 +222,11 @@ impl Polisher {
             return residual;
         }
         self.p.copy_from(guess);
-        self.newton.solve(ncp, &mut self.p, POLISHED).0[0]
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.newton.solve(ncp, &mut self.p, POLISHED).0[0],
+        )
     }
 }
 
