@@ -54,18 +54,19 @@ impl<const W: usize> Lanes<W> {
         Self(from_fn(|i| self.0[i].sqrt()))
     }
 
-    /// 1/√x of positive normal numbers, to two units in the last place; finite where x is 0, infinite where it is.
+    /// 1/√x of positive normal numbers, to 3e-12; finite where x is 0, not finite where it is not. Nothing waits for the divider.
     ///
-    /// Halving the exponent gives 1/√x to 3.5 % (Lomont 2003); every Newton step squares the error. Nothing waits for the divider.
+    /// Halving the exponent gives 1/√x to 3.4 % (Lomont 2003). A Newton step leaves 3/2 of the error's square, always on one side: half of
+    /// that is added to the first.
     #[inline(always)]
     pub fn inverse_sqrt(self) -> Self {
         const FIRST_GUESS: u64 = 0x5fe6_eb50_c7b5_37a9;
+        const LONGER: f64 = 1.0 + 8.8e-4;
+        let newton = |y: Self, half: Self, longer: f64| y * Self::splat(1.5 * longer).less(half * y, y);
+        let y = Self(from_fn(|i| f64::from_bits(FIRST_GUESS.wrapping_sub(self.0[i].to_bits() >> 1))));
+        let y = newton(y, self * (0.5 * LONGER), LONGER);
         let half = self * 0.5;
-        let mut y = Self(from_fn(|i| f64::from_bits(FIRST_GUESS.wrapping_sub(self.0[i].to_bits() >> 1))));
-        for _ in 0..4 {
-            y = y * Self::splat(1.5).less(half * y, y);
-        }
-        y
+        newton(newton(y, half, 1.0), half, 1.0)
     }
 
     /// The nearest whole number, of sizes below 2⁵⁰; halves go to the even one.
@@ -78,12 +79,14 @@ impl<const W: usize> Lanes<W> {
 
     /// self + a b, rounded once.
     #[inline(always)]
+    #[expect(clippy::disallowed_methods, reason = "correctly rounded on any machine")]
     pub fn plus(self, a: Self, b: Self) -> Self {
         Self(from_fn(|i| a.0[i].mul_add(b.0[i], self.0[i])))
     }
 
     /// self − a b, rounded once.
     #[inline(always)]
+    #[expect(clippy::disallowed_methods, reason = "correctly rounded on any machine")]
     pub fn less(self, a: Self, b: Self) -> Self {
         Self(from_fn(|i| (-a.0[i]).mul_add(b.0[i], self.0[i])))
     }
@@ -260,15 +263,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn inverse_sqrt_agrees_with_root_and_division_to_two_units_in_the_last_place() {
+    fn inverse_sqrt_agrees_with_root_and_division() {
         let mantissas = (0..4096).map(|i| 1.0 + f64::from(i) / 1024.0);
         for x in mantissas.flat_map(|m| [-1000, -301, -7, 0, 1, 300, 1000].map(|e| m * 2f64.powi(e))) {
             let (found, exact) = (Lanes([x]).inverse_sqrt().0[0], 1.0 / x.sqrt());
-            assert!((found / exact - 1.0).abs() < 5e-16, "{x:e}: {found:e}, not {exact:e}");
+            assert!((found / exact - 1.0).abs() < 3e-12, "{x:e}: {found:e}, not {exact:e}");
         }
         assert!(Lanes([0.0]).inverse_sqrt().0[0].is_finite());
         let [not, infinite] = Lanes([f64::NAN, f64::INFINITY]).inverse_sqrt().0;
-        assert!(not.is_nan() && infinite == f64::INFINITY);
+        assert!(not.is_nan() && !infinite.is_finite());
     }
 
     #[test]
