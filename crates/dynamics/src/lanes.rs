@@ -261,6 +261,8 @@ impl<const W: usize> Not for Mask<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instructions::on_widest;
+    use fearless_simd::Level;
 
     #[test]
     fn inverse_sqrt_agrees_with_root_and_division() {
@@ -272,6 +274,24 @@ mod tests {
         assert!(Lanes([0.0]).inverse_sqrt().0[0].is_finite());
         let [not, infinite] = Lanes([f64::NAN, f64::INFINITY]).inverse_sqrt().0;
         assert!(not.is_nan() && !infinite.is_finite());
+    }
+
+    /// (1 + 2⁻³⁰)² − 1 has the digits 2⁻²⁹ + 2⁻⁶⁰; a product that was rounded first would have lost the last one.
+    #[test]
+    fn products_and_sums_are_rounded_once_on_any_instructions() {
+        let (x, exact) = (1.0 + 2f64.powi(-30), 2f64.powi(-29) + 2f64.powi(-60));
+        let squares = |x: f64| {
+            let (one, x) = (Lanes::<8>::splat(1.0), Lanes::<8>::splat(std::hint::black_box(x)));
+            [(-one).plus(x, x), -one.less(x, x)]
+        };
+        for level in [Level::baseline(), Level::new()] {
+            let found = on_widest(
+                level,
+                #[inline(always)]
+                || squares(x),
+            );
+            assert_eq!(found, [Lanes::splat(exact); 2]);
+        }
     }
 
     #[test]

@@ -125,6 +125,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn methods_are_told_no_less_than_the_bias_of_tracking() {
+        let told = Noise::default().told();
+        assert_eq!([told.position_std, told.pusher_position_std], [5e-5; 2]);
+        assert_eq!([told.orientation_std, told.pusher_orientation_std].map(|std| (std.to_degrees() * 1e6).round()), [5e4; 2]);
+    }
+
+    #[test]
     fn noise_is_the_root_mean_square_of_poses_that_are_there() {
         let truth =
             Recorded { time: vec![0.0, 1.0, 2.0], object: vec![Pose::default(); 3], pusher: vec![Some(Pose::new(1.0, 1.0, 3.1)); 3] };
