@@ -5,7 +5,7 @@
 
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, copy_lane};
-use crate::ncp::{ContactRow, Ncp, ROOM, Triple, Worst};
+use crate::ncp::{ContactRow, Ncp, ROOM, Triple, Worst, square};
 
 /// Keeps quotients finite.
 pub const TINY: f64 = 1e-300;
@@ -53,8 +53,7 @@ impl<const W: usize> NaturalMap<W> {
         let mut squares = Worst::NONE;
         for (slip, (foot, p_k)) in self.slips.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             *slip = foot.slip(&p.v);
-            let [x, y] = miss(foot.bound, p_k, slip);
-            squares.note((x * x).plus(y, y));
+            squares.note(square(&miss(foot.bound, p_k, slip)));
         }
         worst.note(squares.root());
         self.contacts.clear();
@@ -103,9 +102,9 @@ impl<const W: usize> NaturalMap<W> {
 #[inline(always)]
 fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
     let z = [p[0] - slip[0], p[1] - slip[1]];
-    let square = (z[0] * z[0]).plus(z[1], z[1]);
-    let sliding = square.gt(bound * bound);
-    let shrink = bound * square.inverse_sqrt();
+    let size = square(&z);
+    let sliding = size.gt(bound * bound);
+    let shrink = bound * size.inverse_sqrt();
     [sliding.select((-p[0]).plus(shrink, z[0]), -slip[0]), sliding.select((-p[1]).plus(shrink, z[1]), -slip[1])]
 }
 

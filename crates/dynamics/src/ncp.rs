@@ -18,6 +18,12 @@ pub fn dot<const W: usize>(a: &Triple<W>, b: &Triple<W>) -> Lanes<W> {
     (a[0] * b[0]).plus(a[1], b[1]).plus(a[2], b[2])
 }
 
+/// |a|² of a vector of the plane.
+#[inline(always)]
+pub fn square<const W: usize>([x, y]: &[Lanes<W>; 2]) -> Lanes<W> {
+    (*x * *x).plus(*y, *y)
+}
+
 /// a += b s.
 #[inline(always)]
 pub fn add_scaled<const W: usize>(a: &mut Triple<W>, b: &Triple<W>, s: Lanes<W>) {

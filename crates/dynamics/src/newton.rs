@@ -10,7 +10,7 @@ use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
 use crate::natural::{ContactMap, NaturalMap, TINY};
-use crate::ncp::{ContactRow, Ncp};
+use crate::ncp::{self, ContactRow, Ncp};
 
 /// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
 /// a jammed object's creep of 1e-8 m/s.
@@ -154,7 +154,7 @@ impl<const W: usize> Holding<W> {
     pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
         let k = Lanes::splat(weight);
         let z = [p[0].less(k, slip[0]), p[1].less(k, slip[1])];
-        Self { z, square: (z[0] * z[0]).plus(z[1], z[1]), weight }
+        Self { z, square: ncp::square(&z), weight }
     }
 }
 
@@ -184,7 +184,7 @@ impl<const W: usize> FootStep<W> {
         // k |s|, where it slides
         let speed = (-bound).plus(square, unit).max(bound);
         let rim = bound * bound;
-        let size = (p[0] * p[0]).plus(p[1], p[1]).max(rim);
+        let size = ncp::square(p).max(rim);
         // one division for k / speed and the share of p that is inside the disc
         let inverse = Lanes::splat(1.0) / (speed * size).max(Lanes::splat(TINY));
         let along = inverse * size * weight;
@@ -209,7 +209,7 @@ impl<const W: usize> ContactMap<W> {
     #[inline(always)]
     fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> Option<ContactStep<W>> {
         let one = Lanes::splat(1.0);
-        let closed = (p[0] * (one.plus(row.n[2], row.n[2]))).gt(self.gap);
+        let closed = (p[0] * one.plus(row.n[2], row.n[2])).gt(self.gap);
         if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
             return None;
         }

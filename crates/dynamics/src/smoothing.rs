@@ -7,7 +7,7 @@
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
 use crate::lanes::Lanes;
-use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Worst};
+use crate::ncp::{ContactRow, FootRow, Ncp, ROOM, Worst, square};
 
 /// Largest stiffness a smoothed row may reach.
 const STIFFEST: f64 = 1.0e13;
@@ -76,7 +76,7 @@ impl<const W: usize> SmoothedMap<W> {
             let slip = foot.slip(&p.v);
             let inverse = Lanes::splat(1.0) / squared.plus(slip[0], slip[0]).plus(slip[1], slip[1]).sqrt();
             let off = [p_k[0].plus(foot.bound, slip[0] * inverse), p_k[1].plus(foot.bound, slip[1] * inverse)];
-            squares.note((off[0] * off[0]).plus(off[1], off[1]));
+            squares.note(square(&off));
             *map = SmoothedFoot { slip, inverse };
         }
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
@@ -173,7 +173,7 @@ impl<const W: usize> Aim<W> {
         let SmoothedFoot { slip, inverse } = *map;
         let shift = self.shift(inverse);
         let unit = [slip[0] * inverse, slip[1] * inverse];
-        let size = (p[0] * p[0]).plus(p[1], p[1]).sqrt();
+        let size = square(p).sqrt();
         let outside = size.gt(foot.bound);
         let one = Lanes::splat(1.0);
         let shrink = outside.select(foot.bound / outside.select(size, one), one) * inverse;
