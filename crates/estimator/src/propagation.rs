@@ -243,11 +243,18 @@ fn flags(mask: Mask<LANES>) -> Column {
 #[inline(always)]
 pub(crate) fn part(column: &[f64], chunk: usize, past: f64) -> Column {
     let rest = &column[chunk * LANES..];
-    let mut part = Column::splat(past);
     match rest.first_chunk() {
-        Some(lanes) => part.0 = *lanes,
-        None => part.0[..rest.len()].copy_from_slice(rest),
+        Some(lanes) => Lanes(*lanes),
+        None => last_part(rest, past),
     }
+}
+
+/// Out of line: beside it, a whole chunk would be copied by number of bytes.
+#[cold]
+#[inline(never)]
+fn last_part(rest: &[f64], past: f64) -> Column {
+    let mut part = Column::splat(past);
+    part.0[..rest.len()].copy_from_slice(rest);
     part
 }
 
@@ -264,8 +271,17 @@ fn load_columns<const N: usize>(block: &BlockMut<'_>, first_column: usize, chunk
 #[inline(always)]
 fn store_columns<const N: usize>(block: &mut BlockMut<'_>, first_column: usize, chunk: usize, from: &[Column; N]) {
     for (k, from) in from.iter().enumerate() {
-        let column = &mut block.column_mut(first_column + k)[chunk * LANES..];
-        let len = column.len().min(LANES);
-        column[..len].copy_from_slice(&from.0[..len]);
+        let rest = &mut block.column_mut(first_column + k)[chunk * LANES..];
+        match rest.first_chunk_mut() {
+            Some(lanes) => *lanes = from.0,
+            None => store_last_part(rest, from),
+        }
     }
+}
+
+/// See [`last_part`].
+#[cold]
+#[inline(never)]
+fn store_last_part(rest: &mut [f64], from: &Column) {
+    rest.copy_from_slice(&from.0[..rest.len()]);
 }
