@@ -2,9 +2,17 @@
 
 use std::f64::consts::{PI, TAU};
 
+use stickslip_dynamics::Lanes;
+
 /// The angle in [−π, π) that equals `angle` on the circle (rad).
 pub fn wrapped(angle: f64) -> f64 {
     angle - TAU * ((angle + PI) / TAU).floor()
+}
+
+/// Of every angle the one in [−π, π] that equals it on the circle (rad).
+#[inline(always)]
+pub fn nearest_zero<const W: usize>(angles: Lanes<W>) -> Lanes<W> {
+    angles - (angles / TAU).round() * TAU
 }
 
 /// The angle nearest to `near` that equals `angle` on the circle (rad).

@@ -1,9 +1,10 @@
 //! The particle filter's model of a pushed object (eq. 6): Γ' as transition, camera and tactile sensors as observation.
 
-use stickslip_dynamics::{Dynamics, Pose, StepInput};
+use stickslip_dynamics::{Dynamics, Lanes, Level, Mask, Pose, StepInput, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
-use crate::angle::wrapped;
+use crate::angle::{nearest_zero, wrapped};
+use crate::chunk::{Column, LANES, part, store_part};
 use crate::columns::Columns;
 use crate::propagation::Propagation;
 use crate::watch::StepWatch;
@@ -96,51 +97,77 @@ impl<'w> ContactModel<'w> {
         self.columns
     }
 
-    /// The pose of particle `i` that the camera sees.
-    fn seen_pose(&self, observation: &Observation, block: &Block<'_>, i: usize) -> Pose {
-        let at = |column: usize| Pose::new(block.column(column)[i], block.column(column + 1)[i], block.column(column + 2)[i]);
-        match observation.lookback {
-            None => at(Columns::POSE),
-            Some(look) => {
-                let earlier = at(self.columns.past_pose(look.earlier));
-                earlier.interpolate(at(self.columns.past_pose(look.later)), look.fraction)
-            }
+    /// x, y and θ of one chunk's particles where the camera sees them.
+    #[inline(always)]
+    fn seen(&self, lookback: Option<Lookback>, block: &Block<'_>, chunk: usize) -> [Column; 3] {
+        let Some(Lookback { earlier, later, fraction }) = lookback else { return pose(block, Columns::POSE, chunk) };
+        let mut seen = pose(block, self.columns.past_pose(earlier), chunk);
+        for (seen, later) in seen.iter_mut().zip(pose(block, self.columns.past_pose(later), chunk)) {
+            *seen += (later - *seen) * fraction;
         }
+        seen
     }
 
-    /// log of the camera's likelihood of particle `i`; 0 where it saw nothing.
-    fn camera_log_likelihood_of(&self, observation: &Observation, block: &Block<'_>, i: usize) -> f64 {
-        observation.pose.map_or(0.0, |pose| self.camera_log_likelihood(&pose, &self.seen_pose(observation, block, i)))
-    }
-
-    /// log of the camera's likelihood up to a constant: normal, its standard deviations widened by `likelihood_scale`.
-    fn camera_log_likelihood(&self, measured: &Pose, pose: &Pose) -> f64 {
+    /// log of the camera's likelihood up to a constant: normal, its standard deviations widened by `likelihood_scale`; 0 where it saw
+    /// nothing.
+    #[inline(always)]
+    fn camera_log_likelihood(&self, observation: &Observation, block: &Block<'_>, chunk: usize) -> Column {
+        let Some(measured) = observation.pose else { return Column::ZERO };
+        let [x, y, theta] = self.seen(observation.lookback, block, chunk);
         let scale = self.setup.filter.likelihood_scale;
-        let position = scale * self.camera.position_std;
-        let (dx, dy) = ((measured.x - pose.x) / position, (measured.y - pose.y) / position);
-        let turn = wrapped(measured.theta - pose.theta) / (scale * self.camera.orientation_std);
-        -0.5 * (dx * dx + dy * dy + turn * turn)
+        let (position, orientation) = (scale * self.camera.position_std, scale * self.camera.orientation_std);
+        let (dx, dy) = ((x - measured.x) / position, (y - measured.y) / position);
+        let turn = nearest_zero(theta - measured.theta) / orientation;
+        (dx * dx + dy * dy + turn * turn) * -0.5
     }
 
-    /// log-probability of the tactile readings given particle `i`'s contacts.
+    /// log-probability of the tactile readings given one chunk's contacts.
     ///
     /// What a driven particle touches its impulses tell. An idle one stays where it is whether the pusher that stands behind it
     /// presses on it or not, since the support's friction holds it: both are certified solutions of its step, and which of them a
     /// step returns is an accident of the warm start and the tracking noise. The one that explains the readings counts.
-    fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, i: usize) -> f64 {
-        let set = |column: usize| block.column(column)[i] > 0.5;
-        if set(Columns::IDLE) {
-            let pressed = self.readings_log_probability(readings, |j| set(self.columns.against_fixel(j)));
-            pressed.max(self.readings_log_probability(readings, |_| false))
-        } else {
-            self.readings_log_probability(readings, |j| set(self.columns.contact_fixel(j)))
+    #[inline(always)]
+    fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, chunk: usize) -> Column {
+        let set = |column: usize| part(block.column(column), chunk, 0.0).gt(Lanes::splat(0.5));
+        let driven = self.readings_log_probability(readings, |j| set(self.columns.contact_fixel(j)));
+        let idle = set(Columns::IDLE);
+        if !idle.any() {
+            return driven;
         }
+        let pressed = self.readings_log_probability(readings, |j| set(self.columns.against_fixel(j)));
+        idle.select(pressed.max(self.readings_log_probability(readings, |_| Mask::splat(false))), driven)
     }
 
-    fn readings_log_probability(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> bool) -> f64 {
-        let sensors = readings.iter().enumerate().filter_map(|(j, reading)| reading.map(|r| (j, r)));
-        sensors.map(|(j, reading)| self.reading[usize::from(touches(j))][usize::from(reading)]).sum()
+    #[inline(always)]
+    fn readings_log_probability(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> Mask<LANES>) -> Column {
+        let mut sum = Column::ZERO;
+        for (j, reading) in readings.iter().enumerate() {
+            if let Some(reading) = reading {
+                let of = |touching: usize| Lanes::splat(self.reading[touching][usize::from(*reading)]);
+                sum += touches(j).select(of(1), of(0));
+            }
+        }
+        sum
     }
+}
+
+/// Three neighbouring columns of one chunk.
+#[inline(always)]
+fn pose(block: &Block<'_>, first_column: usize, chunk: usize) -> [Column; 3] {
+    std::array::from_fn(|axis| part(block.column(first_column + axis), chunk, 0.0))
+}
+
+/// Writes `value(chunk)` for every chunk of particles, on the widest instructions.
+fn by_chunk(out: &mut [f64], value: impl Fn(usize) -> Column) {
+    on_widest(
+        Level::new(),
+        #[inline(always)]
+        || {
+            for chunk in 0..out.len().div_ceil(LANES) {
+                store_part(out, chunk, &value(chunk));
+            }
+        },
+    );
 }
 
 impl Model for ContactModel<'_> {
@@ -173,16 +200,20 @@ impl Model for ContactModel<'_> {
     }
 
     fn log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = self.camera_log_likelihood_of(observation, block, i) + self.tactile_log_likelihood(&observation.tactile, block, i);
-        }
+        by_chunk(
+            out,
+            #[inline(always)]
+            |chunk| self.camera_log_likelihood(observation, block, chunk) + self.tactile_log_likelihood(&observation.tactile, block, chunk),
+        );
     }
 
     /// The camera's alone: a pose drawn anew makes no touch likelier.
     fn redrawn_log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = self.camera_log_likelihood_of(observation, block, i);
-        }
+        by_chunk(
+            out,
+            #[inline(always)]
+            |chunk| self.camera_log_likelihood(observation, block, chunk),
+        );
     }
 
     fn collapsed(&self, best_log_likelihood: f64) -> bool {
@@ -193,9 +224,9 @@ impl Model for ContactModel<'_> {
     fn redraw(&self, observation: &Observation, draw: Draw, block: &mut BlockMut<'_>) {
         let Some(measured) = observation.pose else { return };
         for (i, particle) in block.particles() {
-            let seen = self.seen_pose(observation, &block.as_block(), i);
+            let seen = self.seen(observation.lookback, &block.as_block(), i / LANES).map(|column| column.0[i % LANES]);
             let [x, y, theta] = self.drawn_around(&measured, draw.normals::<3>(particle, 0));
-            let shift = [x - seen.x, y - seen.y, wrapped(theta - seen.theta)];
+            let shift = [x - seen[0], y - seen[1], wrapped(theta - seen[2])];
             let past = (0..self.columns.history()).map(|slot| self.columns.past_pose(slot));
             for column in std::iter::once(Columns::POSE).chain(past) {
                 for (axis, shift) in shift.iter().enumerate() {

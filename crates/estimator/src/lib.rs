@@ -1,6 +1,7 @@
 //! Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
 
 mod angle;
+mod chunk;
 mod cloud;
 mod columns;
 mod contact_model;

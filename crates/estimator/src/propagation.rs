@@ -4,12 +4,10 @@ use stickslip_dynamics::{Body, Lanes, Level, Mask, Outcome, Particles, StepWork,
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::Limits;
+use crate::chunk::{Column, LANES, part, store_part};
 use crate::columns::Columns;
 use crate::contact_model::{ContactModel, ParameterNoise, StepPlan};
 use crate::watch::{SolvedStep, StepWatch};
-
-/// Particles that are stepped side by side.
-pub(crate) const LANES: usize = 8;
 
 /// Chunks of particles in a block.
 const CHUNKS: usize = BLOCK / LANES;
@@ -22,9 +20,6 @@ const MOVING: f64 = 1e-9;
 
 /// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of which three numbers are used.
 const FORCE_PAIR: u32 = 2;
-
-/// One number of each particle of a chunk.
-pub(crate) type Column = Lanes<LANES>;
 
 /// Working memory for the particles of one block.
 #[derive(Debug)]
@@ -239,25 +234,6 @@ fn flags(mask: Mask<LANES>) -> Column {
     mask.keep(Lanes::splat(1.0))
 }
 
-/// One chunk of a column; `past` beyond its end.
-#[inline(always)]
-pub(crate) fn part(column: &[f64], chunk: usize, past: f64) -> Column {
-    let rest = &column[chunk * LANES..];
-    match rest.first_chunk() {
-        Some(lanes) => Lanes(*lanes),
-        None => last_part(rest, past),
-    }
-}
-
-/// Out of line: beside it, a whole chunk would be copied by number of bytes.
-#[cold]
-#[inline(never)]
-fn last_part(rest: &[f64], past: f64) -> Column {
-    let mut part = Column::splat(past);
-    part.0[..rest.len()].copy_from_slice(rest);
-    part
-}
-
 /// Reads one chunk of neighbouring columns; lanes past the last particle repeat it.
 #[inline(always)]
 fn load_columns<const N: usize>(block: &BlockMut<'_>, first_column: usize, chunk: usize, to: &mut [Column; N]) {
@@ -271,17 +247,6 @@ fn load_columns<const N: usize>(block: &BlockMut<'_>, first_column: usize, chunk
 #[inline(always)]
 fn store_columns<const N: usize>(block: &mut BlockMut<'_>, first_column: usize, chunk: usize, from: &[Column; N]) {
     for (k, from) in from.iter().enumerate() {
-        let rest = &mut block.column_mut(first_column + k)[chunk * LANES..];
-        match rest.first_chunk_mut() {
-            Some(lanes) => *lanes = from.0,
-            None => store_last_part(rest, from),
-        }
+        store_part(block.column_mut(first_column + k), chunk, from);
     }
-}
-
-/// See [`last_part`].
-#[cold]
-#[inline(never)]
-fn store_last_part(rest: &mut [f64], from: &Column) {
-    rest.copy_from_slice(&from.0[..rest.len()]);
 }

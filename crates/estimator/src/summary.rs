@@ -1,14 +1,14 @@
 //! What a particle set amounts to: weighted means and standard deviations of its columns, in one pass over the particles: [`summary`].
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use stickslip_dynamics::{Friction, Level, Pose, Twist, on_widest, sin_cos};
 use stickslip_filter::{Block, ParticleFilter};
 
-use crate::angle::unwrapped;
+use crate::angle::{nearest_zero, unwrapped};
+use crate::chunk::{Column, LANES, part};
 use crate::columns::Columns;
 use crate::contact_model::ContactModel;
-use crate::propagation::{Column, LANES, part};
 use crate::{EstimateRow, Spread};
 
 /// Columns whose spread is told: x, y, μ_s, μ_p, μ_f, d_tri.
@@ -102,8 +102,7 @@ impl Sums {
             for k in 0..4 {
                 others[k] += w * of_column(OTHERS[k]);
             }
-            let d = of_column(ANGLE) - reference.angle;
-            let d = d - (d / TAU).round() * TAU;
+            let d = nearest_zero(of_column(ANGLE) - reference.angle);
             let (sin, cos) = sin_cos(d);
             for (sum, value) in angle.iter_mut().zip([sin, cos, d, d * d]) {
                 *sum += w * value;

@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use stickslip_dynamics::{Particles, Report, StepInput, StepProblem, StepSolution};
 
+use crate::chunk::LANES;
 use crate::cloud::Cloud;
-use crate::propagation::LANES;
 
 /// One particle's time step.
 #[derive(Clone, Copy, Debug)]

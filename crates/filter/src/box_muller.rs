@@ -73,7 +73,7 @@ fn sin_cos_eighth(x: f64) -> (f64, f64) {
 
 /// z (c_0 + z (c_1 + ...)).
 #[inline(always)]
-fn polynomial<const N: usize>(z: f64, coefficients: [f64; N]) -> f64 {
+pub(crate) fn polynomial<const N: usize>(z: f64, coefficients: [f64; N]) -> f64 {
     let mut sum = 0.0;
     for c in coefficients.into_iter().rev() {
         sum = z * (c + sum);

@@ -8,9 +8,10 @@
 //! | update | m + K (z - H m) | (I - K H) P (I - K H)ᵀ + K R Kᵀ (Joseph), K = P Hᵀ S⁻¹, S = H P Hᵀ + R |
 //! | smooth | m + G (m_s' - m') | P + G (P_s' - P') Gᵀ, G = P Fᵀ P'⁻¹; ' is one row later |
 
-use std::f64::consts::TAU;
-
 use nalgebra::{SMatrix, SVector};
+
+/// ln 2π.
+const LN_TAU: f64 = 1.837_877_066_409_345_3;
 
 /// A normal distribution over N numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +66,7 @@ impl<const N: usize> Gaussian<N> {
 
         let log_determinant: f64 = s.l_dirty().diagonal().iter().map(|l| 2.0 * libm::log(*l)).sum();
         let distance = innovation.mean.dot(&s.solve(&innovation.mean));
-        let log_likelihood = -0.5 * (distance + log_determinant + M as f64 * libm::log(TAU));
+        let log_likelihood = -0.5 * (distance + log_determinant + M as f64 * LN_TAU);
         Some(Update { posterior, innovation, log_likelihood })
     }
 

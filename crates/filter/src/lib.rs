@@ -15,6 +15,7 @@
 mod awake;
 mod box_muller;
 mod constant_velocity;
+mod exponential;
 mod filter;
 mod kalman;
 mod model;

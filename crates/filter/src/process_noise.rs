@@ -32,8 +32,8 @@ impl ConstantVelocity {
     /// The process noise of greatest likelihood; this model's own is not used.
     ///
     /// The search is over ln q within nine decades either side of measurement_std²/h³ (h the median step), where a step's
-    /// process noise equals the measurement's: a grid of half-decades, then golden section about its best point. The
-    /// result depends on the arguments alone.
+    /// process noise equals the measurement's: a grid of decades, then Brent's method about its best point. The result
+    /// depends on the arguments alone.
     ///
     /// # Errors
     /// If the model or the series is out of range or has fewer than 3 measurements.
@@ -57,45 +57,75 @@ impl ConstantVelocity {
     }
 }
 
-/// Maximises `objective(ln q)` around `centre`.
-fn search(centre: f64, objective: impl Fn(f64) -> f64 + Sync) -> ProcessNoiseFit {
-    const HALF_DECADE: f64 = std::f64::consts::LN_10 / 2.0;
-    const REACH: i32 = 18;
-    let at = |i: i32| centre + f64::from(i) * HALF_DECADE;
-    let values: Vec<f64> = (-REACH..=REACH).into_par_iter().map(|i| objective(at(i))).collect();
-    let (mut best, mut highest) = (-REACH, f64::NEG_INFINITY);
-    for (i, value) in (-REACH..).zip(values) {
-        if value > highest {
-            (best, highest) = (i, value);
-        }
-    }
-    let optimum = match best {
-        i if i == -REACH => Optimum::LowerEnd,
-        REACH => Optimum::UpperEnd,
-        _ => Optimum::Interior,
-    };
-    let log_q = match optimum {
-        Optimum::Interior => golden_section(at(best - 1), at(best + 1), &objective),
-        _ => at(best),
-    };
-    ProcessNoiseFit { process_noise: libm::exp(log_q), log_likelihood: objective(log_q), optimum }
+/// A value of the objective.
+#[derive(Clone, Copy)]
+struct Point {
+    log_q: f64,
+    value: f64,
 }
 
-/// The maximum of a function with one peak in [low, high], to 1e-6.
-fn golden_section(mut low: f64, mut high: f64, objective: impl Fn(f64) -> f64) -> f64 {
-    const SHARE: f64 = 0.618_033_988_749_894_9;
-    let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
-    let (mut at_a, mut at_b) = (objective(a), objective(b));
-    while high - low > 1e-6 {
-        if at_a > at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - SHARE * (high - low);
-            at_a = objective(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + SHARE * (high - low);
-            at_b = objective(b);
+/// Maximises `objective(ln q)` around `centre`.
+fn search(centre: f64, objective: impl Fn(f64) -> f64 + Sync) -> ProcessNoiseFit {
+    const REACH: i32 = 9;
+    let at = |log_q: f64| Point { log_q, value: objective(log_q) };
+    let grid: Vec<Point> = (-REACH..=REACH).into_par_iter().map(|i| at(centre + f64::from(i) * std::f64::consts::LN_10)).collect();
+    let highest = (1..grid.len()).fold(0, |best, i| if grid[i].value > grid[best].value { i } else { best });
+    let (peak, optimum) = match highest {
+        0 => (grid[0], Optimum::LowerEnd),
+        i if i + 1 == grid.len() => (grid[i], Optimum::UpperEnd),
+        i => (maximum([grid[i - 1], grid[i], grid[i + 1]], at), Optimum::Interior),
+    };
+    ProcessNoiseFit { process_noise: libm::exp(peak.log_q), log_likelihood: peak.value, optimum }
+}
+
+/// The maximum of a function with one peak between the outer two of three points, of which the middle one is highest, to 1e-6:
+/// parabolas through the best three points so far, golden section where they do not help (Brent 1973, chapter 5).
+fn maximum([left, middle, right]: [Point; 3], at: impl Fn(f64) -> Point) -> Point {
+    const TOLERANCE: f64 = 5e-7;
+    const GOLDEN: f64 = 0.381_966_011_250_105_1;
+    let (mut low, mut high) = (left.log_q, right.log_q);
+    let (mut best, mut second, mut third) = if left.value > right.value { (middle, left, right) } else { (middle, right, left) };
+    let (mut step, mut step_before) = (high - low, high - low);
+    while f64::max(best.log_q - low, high - best.log_q) > 2.0 * TOLERANCE {
+        let parabolic = to_vertex(best, second, third);
+        let useful = parabolic.abs() < 0.5 * step_before.abs() && low < best.log_q + parabolic && best.log_q + parabolic < high;
+        let rest = if best.log_q - low > high - best.log_q { low - best.log_q } else { high - best.log_q };
+        (step_before, step) = if useful { (step, parabolic) } else { (rest, GOLDEN * rest) };
+        // points nearer to each other than this tell nothing
+        let apart = step.signum() * step.abs().max(TOLERANCE);
+        let inside = low < best.log_q + apart && best.log_q + apart < high;
+        let new = at(best.log_q + if inside { apart } else { -apart });
+        let (worse, better) = if new.value > best.value { (best, new) } else { (new, best) };
+        *(if worse.log_q < better.log_q { &mut low } else { &mut high }) = worse.log_q;
+        best = better;
+        if worse.value >= second.value {
+            (third, second) = (second, worse);
+        } else if worse.value >= third.value {
+            third = worse;
         }
     }
-    0.5 * (low + high)
+    best
+}
+
+/// From `a` to the vertex of the parabola through three points; not finite where they are on a line.
+fn to_vertex(a: Point, b: Point, c: Point) -> f64 {
+    let (to_b, to_c) = (b.log_q - a.log_q, c.log_q - a.log_q);
+    let (rise_b, rise_c) = ((b.value - a.value) * to_c, (c.value - a.value) * to_b);
+    0.5 * (rise_b * to_c - rise_c * to_b) / (rise_b - rise_c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maximum_is_found_of_smooth_and_of_pointed_functions() {
+        let functions: [&dyn Fn(f64) -> f64; 4] =
+            [&|x| -(x - 0.3) * (x - 0.3), &|x| -(x + 0.7).abs(), &|x| (x + 2.0) * libm::exp(-2.0 * x), &|x| -libm::exp(-3.0 * x) - x];
+        for (f, exact) in functions.into_iter().zip([0.3, -0.7, -1.5, libm::log(3.0) / 3.0]) {
+            let at = |log_q: f64| Point { log_q, value: f(log_q) };
+            let found = maximum([-2.0, exact + 0.2, 1.5].map(at), at);
+            assert!((found.log_q - exact).abs() < 1e-6, "{} instead of {exact}", found.log_q);
+        }
+    }
 }

@@ -4,10 +4,14 @@
 //! weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is positive, none is NaN. Sums run over a
 //! fixed tree, so they do not depend on threads.
 
+use crate::exponential::exponentials;
 use crate::{BLOCK, parallel};
 
 /// Blocks of weights that one thread takes at least.
 const GRAIN: usize = 16;
+
+/// Comparisons that run side by side.
+const PARTIAL: usize = 8;
 
 /// Why weights were refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -102,22 +106,20 @@ impl LogWeights {
     pub fn best(&self, log_likelihood: &[f64]) -> f64 {
         assert_eq!(log_likelihood.len(), self.log.len());
         assert_sound(log_likelihood);
-        let alive = self.log.iter().zip(log_likelihood).filter(|(w, _)| **w > f64::NEG_INFINITY);
-        alive.fold(f64::NEG_INFINITY, |best, (_, &l)| larger(best, l))
+        let alive = |w: f64, l: f64| if w > f64::NEG_INFINITY { l } else { f64::NEG_INFINITY };
+        largest(&self.log, log_likelihood, alive)
     }
 
     /// Makes the linear weights sum to 1; the logarithm of the sum before, or `None` if all weights are zero.
     fn normalise(&mut self) -> Option<f64> {
-        let best = self.log.iter().copied().fold(f64::NEG_INFINITY, larger);
+        let best = largest(&self.log, &self.log, |w, _| w);
         if best == f64::NEG_INFINITY {
             return None;
         }
         // exponentials relative to the best, which cannot overflow
         let log = &self.log;
         parallel::for_each(&mut self.linear, BLOCK, GRAIN, |block, linear| {
-            for (w, l) in linear.iter_mut().zip(&log[block * BLOCK..]) {
-                *w = libm::exp(l - best);
-            }
+            exponentials(&log[block * BLOCK..][..linear.len()], best, linear);
         });
         let (sum, sum_of_squares) = sums(&self.linear);
         self.effective_sample_size = sum * sum / sum_of_squares;
@@ -146,7 +148,9 @@ impl LogWeights {
 }
 
 fn assert_sound(log_likelihood: &[f64]) {
-    if let Some(particle) = log_likelihood.iter().position(|&l| is_broken(l)) {
+    // up to the end: a loop that may stop early does not vectorise
+    let broken = log_likelihood.iter().fold(false, |broken, &l| broken | is_broken(l));
+    if broken && let Some(particle) = log_likelihood.iter().position(|&l| is_broken(l)) {
         let value = log_likelihood[particle];
         panic!("the log-likelihood of particle {particle} is {value}; it must be finite or -inf");
     }
@@ -158,6 +162,19 @@ fn is_broken(log_weight: f64) -> bool {
 
 fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
+}
+
+/// The largest f(x_i, y_i), -inf at least, of [`PARTIAL`] partial ones: one would wait for every comparison.
+fn largest(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut best = [f64::NEG_INFINITY; PARTIAL];
+    let ((x, last_x), (y, last_y)) = (x.as_chunks::<PARTIAL>(), y.as_chunks::<PARTIAL>());
+    for (x, y) in x.iter().zip(y) {
+        for k in 0..PARTIAL {
+            best[k] = larger(best[k], f(x[k], y[k]));
+        }
+    }
+    let last = last_x.iter().zip(last_y).map(|(x, y)| f(*x, *y));
+    best.into_iter().chain(last).fold(f64::NEG_INFINITY, larger)
 }
 
 /// (sum x, sum x^2) over the fixed tree of blocks.

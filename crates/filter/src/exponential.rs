@@ -1,0 +1,77 @@
+//! e^x of many numbers at once: [`exponentials`].
+
+use fearless_simd::{Level, Simd, dispatch};
+
+use crate::box_muller::polynomial;
+
+/// Writes e^(x − most) for every x of `exponents`; none of them may exceed `most` or be NaN.
+pub(crate) fn exponentials(exponents: &[f64], most: f64, out: &mut [f64]) {
+    dispatch!(Level::new(), simd => simd.vectorize(
+        #[inline(always)]
+        || out.iter_mut().zip(exponents).for_each(|(out, x)| *out = exp(x - most)),
+    ));
+}
+
+/// e^x of an x of at most 0: fdlibm's (Sun Microsystems 1993), bit by bit, without its branches.
+///
+/// x = k ln 2 + r with |r| <= ln 2 / 2, and e^r = 1 + 2 r / (R(r²) - r), R a polynomial.
+#[inline(always)]
+fn exp(x: f64) -> f64 {
+    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+    /// e^x is 0 from here down.
+    const LEAST: f64 = -746.0;
+
+    let x = if x > LEAST { x } else { LEAST };
+    let k = whole(x * std::f64::consts::LOG2_E);
+    let (high, low) = (x - k * LN2_HIGH, k * LN2_LOW);
+    let r = high - low;
+    let c = r - polynomial(r * r, EXP);
+    let mantissa = 1.0 + (r * c / (2.0 - c) - low + high);
+    // in two steps, the second of which rounds where the result is subnormal
+    let half = whole(0.5 * k);
+    mantissa * power_of_two(half) * power_of_two(k - half)
+}
+
+/// Adding it rounds to the nearest whole number, and leaves that in the low bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+#[inline(always)]
+fn whole(x: f64) -> f64 {
+    (x + ROUND) - ROUND
+}
+
+/// 2^k of a whole k in -1022..=1023.
+#[inline(always)]
+fn power_of_two(k: f64) -> f64 {
+    f64::from_bits((k + (ROUND + 1023.0)).to_bits() << 52)
+}
+
+const EXP: [f64; 5] = [
+    1.666_666_666_666_660_2e-1,
+    -2.777_777_777_701_559_3e-3,
+    6.613_756_321_437_934e-5,
+    -1.653_390_220_546_525_2e-6,
+    4.138_136_797_057_238_5e-8,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exp_agrees_with_libm_to_the_bit_down_to_zero() {
+        let steps = (0..1_000_000).map(|i| -746.5 * f64::from(i) / 1e6);
+        let small = (0..400).map(|i| -libm::exp2(-f64::from(i)));
+        for x in steps.chain(small).chain([-1e300, f64::NEG_INFINITY]) {
+            assert_eq!(exp(x).to_bits(), libm::exp(x).to_bits(), "e^{x}: {:e}, not {:e}", exp(x), libm::exp(x));
+        }
+    }
+
+    #[test]
+    fn exponentials_are_relative_to_the_most() {
+        let mut out = [0.0; 3];
+        exponentials(&[1000.0, 999.0, f64::NEG_INFINITY], 1000.0, &mut out);
+        assert_eq!(out, [1.0, libm::exp(-1.0), 0.0]);
+    }
+}
