@@ -33,6 +33,11 @@ impl Columns {
         Self { fixels, history }
     }
 
+    /// c_j of every fixel.
+    pub fn contact_fixels(&self) -> std::ops::Range<usize> {
+        self.contact_fixel(0)..self.contact_fixel(self.fixels)
+    }
+
     /// c_j, 1 where fixel j touches.
     pub fn contact_fixel(&self, fixel: usize) -> usize {
         Self::WARM_START + WARM + fixel

@@ -26,8 +26,8 @@ pub(crate) fn track(
     };
     let mut filter = ParticleFilter::new(model, settings)?;
     let mut estimate = prepared.empty_estimate(setup);
-    let (mut collapses, fixels) = (0, setup.scene.fixels.len());
-    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, fixels, prepared.start.theta) };
+    let mut collapses = 0;
+    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, prepared.start.theta) };
     show(prepared, prepared.first, &filter);
     for row in prepared.first + 1..prepared.log.len() {
         let plan = plan(prepared, row, history);
@@ -35,7 +35,7 @@ pub(crate) fn track(
         let report = filter.step(&plan, Some(&observation).filter(|o| !o.is_empty()));
         collapses += u32::from(report.collapsed());
         let near = estimate.rows[row - 1].pose.map_or(0.0, |pose| pose.theta);
-        estimate.rows[row] = reported(summary(&filter, fixels, near), &report, observation.pose.is_some());
+        estimate.rows[row] = reported(summary(&filter, near), &report, observation.pose.is_some());
         show(prepared, row, &filter);
         progress(row);
     }

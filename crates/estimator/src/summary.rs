@@ -1,6 +1,7 @@
 //! What a particle set amounts to: weighted means and standard deviations of its columns, in one pass over the particles: [`summary`].
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 use stickslip_dynamics::{Friction, Level, Pose, Twist, on_widest, sin_cos};
 use stickslip_filter::{Block, ParticleFilter};
@@ -29,7 +30,7 @@ struct Reference {
 }
 
 /// Weighted sums over some particles; d is the deviation from the reference.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Sums {
     /// Σ w d.
     first: [f64; 6],
@@ -43,18 +44,21 @@ struct Sums {
     widest: f64,
     /// Number of particles whose last step was not solved.
     unsolved: f64,
+    /// Σ w c_j of every fixel.
+    contact_fixels: Vec<f64>,
 }
 
 /// The row of weighted means and standard deviations; θ is unwrapped from `near`.
-pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, fixels: usize, near: f64) -> EstimateRow {
+pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, near: f64) -> EstimateRow {
     let level = Level::new();
     let value = |column: usize| filter.particles().value(0, column);
     let reference = Reference { spread: SPREAD.map(value), angle: value(ANGLE) };
+    let contact_fixels = filter.model().layout().contact_fixels();
     let of_block = |block: &Block<'_>, weights: &[f64]| {
         on_widest(
             level,
             #[inline(always)]
-            || Sums::of_block(block, weights, &reference),
+            || Sums::of_block(block, weights, &reference, contact_fixels.clone()),
         )
     };
     let sums = filter.reduce(of_block, Sums::plus);
@@ -68,13 +72,12 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, fixels: usize, 
     } else {
         filter.weighted_circular_std_about(reference.angle + turn, ANGLE)
     };
-    let contact_fixel = |j: usize| filter.weighted_mean(filter.model().layout().contact_fixel(j));
     EstimateRow {
         pose: Some(Pose::new(x, y, unwrapped(reference.angle + turn, near))),
         twist: Some(Twist { vx, vy, omega }),
         friction: Some(Friction { mu_s, mu_p, mu_f, d_tri }),
         contact_pusher: Some(contact_pusher),
-        contact_fixels: Some((0..fixels).map(contact_fixel).collect()),
+        contact_fixels: Some(sums.contact_fixels),
         spread: Some(Spread {
             pose: Pose::new(stds[0], stds[1], theta_std),
             friction: Some(Friction { mu_s: stds[2], mu_p: stds[3], mu_f: stds[4], d_tri: stds[5] }),
@@ -87,7 +90,7 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, fixels: usize, 
 
 impl Sums {
     #[inline(always)]
-    fn of_block(block: &Block<'_>, weights: &[f64], reference: &Reference) -> Self {
+    fn of_block(block: &Block<'_>, weights: &[f64], reference: &Reference, contact_fixels: Range<usize>) -> Self {
         let o = Column::ZERO;
         let (mut first, mut second, mut others, mut angle) = ([o; 6], [o; 6], [o; 4], [o; 4]);
         let (mut widest, mut unsolved) = (o, o);
@@ -111,6 +114,13 @@ impl Sums {
             unsolved += of_column(Columns::UNSOLVED);
         }
         let total = |lanes: Column| lanes.0.iter().sum::<f64>();
+        let mean = |column: usize| {
+            let mut sum = o;
+            for chunk in 0..block.len().div_ceil(LANES) {
+                sum += part(weights, chunk, 0.0) * part(block.column(column), chunk, 0.0);
+            }
+            total(sum)
+        };
         Self {
             first: first.map(total),
             second: second.map(total),
@@ -118,11 +128,15 @@ impl Sums {
             angle: angle.map(total),
             widest: widest.0.into_iter().fold(0.0, f64::max),
             unsolved: total(unsolved),
+            contact_fixels: contact_fixels.map(mean).collect(),
         }
     }
 
     fn plus(self, other: Self) -> Self {
+        let mut contact_fixels = self.contact_fixels;
+        contact_fixels.iter_mut().zip(other.contact_fixels).for_each(|(sum, more)| *sum += more);
         Self {
+            contact_fixels,
             first: added(self.first, other.first),
             second: added(self.second, other.second),
             others: added(self.others, other.others),

@@ -3,7 +3,7 @@
 use std::hint::spin_loop;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Ranges of at most this many leaves are summed by one thread.
 const SERIAL_LEAVES: usize = 16;
@@ -31,7 +31,7 @@ impl<S> PerThread<S> {
     pub fn lend<T>(&self, body: impl FnOnce(&mut S) -> T) -> T {
         let worker = rayon::current_thread_index().unwrap_or(0);
         let piece = &self.pieces[worker % self.pieces.len()];
-        body(&mut piece.lock().unwrap_or_else(PoisonError::into_inner))
+        body(&mut locked(piece))
     }
 }
 
@@ -63,7 +63,7 @@ fn for_all<I>(items: impl DoubleEndedIterator<Item = I> + Send, count: usize, bo
     }
     let (items, left) = (Mutex::new(items), AtomicUsize::new(count));
     let next = |end| {
-        let mut items = items.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut items = locked(&items);
         if end == End::Front { items.next() } else { items.next_back() }
     };
     on_threads(count.min(rayon::current_num_threads()), End::Front, &|end| {
@@ -99,6 +99,22 @@ fn wait_shortly(left: &AtomicUsize) {
         }
         spin_loop();
     }
+}
+
+/// [`tree_reduce`] of leaves that are worth sharing however few they are: dealt out as in [`for_each`], so that a thread mostly finds
+/// them in its cache.
+pub(crate) fn tree_reduce_dealt<A: Send>(leaves: usize, leaf: &(impl Fn(usize) -> A + Sync), combine: &(impl Fn(A, A) -> A + Sync)) -> A {
+    if leaves > SERIAL_LEAVES || !shared(leaves) {
+        return tree_reduce(0..leaves, leaf, combine);
+    }
+    let values = [const { Mutex::new(None) }; SERIAL_LEAVES];
+    for_all(0..leaves, leaves, |i| *locked(&values[i]) = Some(leaf(i)));
+    let dealt = |i: usize| locked(&values[i]).take().unwrap_or_else(|| leaf(i));
+    tree_reduce(0..leaves, &dealt, combine)
+}
+
+fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// `leaf(start)` combined with ... combined with `leaf(end - 1)` over the balanced binary tree of the range.

@@ -103,7 +103,7 @@ impl ParticleSet {
 
     /// `map` of every block, combined over a fixed tree: the same bits on any number of threads.
     pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
-        parallel::tree_reduce(0..self.block_count(), &|index| map(&self.block(index)), &combine)
+        parallel::tree_reduce_dealt(self.block_count(), &|index| map(&self.block(index)), &combine)
     }
 }
 
