@@ -173,13 +173,12 @@ impl<const W: usize> Momentum<W> {
     fn add_foot(&mut self, foot: &FootRow<W>, step: &FootStep<W>) {
         let row = |k: &[Lanes<W>; 2]| [k[0], k[1], (k[0] * foot.jx).plus(k[1], foot.jy)];
         let k = [row(&step.k[0]), row(&step.k[1])];
-        let r = foot.wrench(&step.r);
         for j in 0..3 {
             self.matrix[0][j] += k[0][j];
             self.matrix[1][j] += k[1][j];
             self.matrix[2][j] = self.matrix[2][j].plus(foot.jx, k[0][j]).plus(foot.jy, k[1][j]);
-            self.rhs[j] += r[j];
         }
+        foot.add_wrench(&mut self.rhs, &step.r);
     }
 
     /// A += n ⊗ nn n + t ⊗ (tt t + tn n).

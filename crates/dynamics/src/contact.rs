@@ -140,13 +140,17 @@ impl<const W: usize> Contacts<W> {
         self.list.iter().fold(Mask::splat(false), |all, contact| all | deep(contact))
     }
 
-    /// Drops one lane's contacts that are deeper than `least` (m); whether one as deep is left.
-    pub fn bound(&mut self, lane: usize, least: f64, slack: f64) -> bool {
-        let mut answered = false;
-        for contact in self.list.iter_mut().filter(|contact| contact.present.lane(lane)) {
-            let gap = contact.gap.0[lane];
-            contact.present.set(lane, gap >= least - slack);
-            answered |= gap >= least - slack && gap <= least + slack;
+    /// Drops contacts that are deeper than `least` (m), where that is an overlap, in the lanes of `asked`; those where one as deep is
+    /// left.
+    #[inline(always)]
+    pub fn bound(&mut self, asked: Mask<W>, least: Lanes<W>, slack: f64) -> Mask<W> {
+        let asked = asked & least.lt(Lanes::ZERO);
+        let mut answered = Mask::splat(false);
+        for contact in &mut self.list {
+            let held = contact.present & asked;
+            let deeper = held & contact.gap.lt(least - slack);
+            contact.present = contact.present & !deeper;
+            answered = answered | held & !deeper & !contact.gap.gt(least + slack);
         }
         answered
     }

@@ -5,11 +5,11 @@
 
 use crate::impulses::Impulses;
 use crate::ncp::Ncp;
-use crate::newton::{Goal, Newton, Progress};
+use crate::newton::{Goal, Newton, Progress, Together};
 use crate::packed::{Packed, Place};
 
-/// Iterations that the lanes of a chunk take together.
-const TOGETHER: u32 = 4;
+/// How long the lanes of a chunk iterate together where there are other chunks to be packed with.
+const TOGETHER: Together = Together { iterations: 4, lanes: 4 };
 
 /// How the iteration of one particle ended.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,7 @@ impl<const W: usize> FastSolver<W> {
     pub fn solve(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], goal: Goal, finish: &mut impl FnMut(Iterated)) {
         self.packed.clear();
         // a single chunk has nothing to be packed with
-        let together = if ncps.len() > 1 { TOGETHER } else { goal.iterations };
+        let together = if ncps.len() > 1 { TOGETHER } else { Together { iterations: goal.iterations, lanes: 1 } };
         for chunk in 0..ncps.len() {
             let progress = self.together.begin(&ncps[chunk], &mut p[chunk], goal, together);
             for lane in (!progress.open).lanes() {

@@ -58,11 +58,15 @@ impl<const W: usize> NaturalMap<W> {
         worst.note(squares.root());
         self.contacts.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let map = ContactMap::new(row, *p_n, p, ncp.compliance);
-            for row in map.violations(row, [*p_n, *p_t]) {
-                worst.note(row);
+            let gap = row.gap_velocity(&p.v, p.pusher_yield).plus(ncp.compliance, *p_n);
+            worst.note(p_n.min(gap));
+            let mut slip = Lanes::ZERO;
+            // where a contact carries nothing and stays open in every lane, its slip makes no difference
+            if ((p_n.abs() + p_t.abs()).gt(Lanes::ZERO) | gap.lt(Lanes::ZERO)).any() {
+                slip = row.slip_velocity(&p.v, p.pusher_yield);
+                worst.note(slip_violation(row, slip, [*p_n, *p_t]));
             }
-            self.contacts.push(map);
+            self.contacts.push(ContactMap { gap, slip });
         }
         worst.size()
     }
@@ -111,17 +115,11 @@ fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]
 impl<const W: usize> ContactMap<W> {
     /// Of a row that only pads.
     const OPEN: Self = Self { gap: ContactRow::<W>::OPEN.gap, slip: Lanes::ZERO };
+}
 
-    #[inline(always)]
-    fn new(row: &ContactRow<W>, p_n: Lanes<W>, p: &Impulses<W>, compliance: Lanes<W>) -> Self {
-        Self { gap: row.gap_velocity(&p.v, p.pusher_yield).plus(compliance, p_n), slip: row.slip_velocity(&p.v, p.pusher_yield) }
-    }
-
-    /// The contact's two rows.
-    #[inline(always)]
-    fn violations(&self, row: &ContactRow<W>, [p_n, p_t]: [Lanes<W>; 2]) -> [Lanes<W>; 2] {
-        let bound = row.mu * p_n.max(Lanes::ZERO);
-        let slides_to = (p_t - self.slip).min(bound).max(-bound);
-        [p_n.min(self.gap), p_t - slides_to]
-    }
+/// The friction row of a contact: p_t − clamp(p_t − s, ±μ p_n).
+#[inline(always)]
+fn slip_violation<const W: usize>(row: &ContactRow<W>, slip: Lanes<W>, [p_n, p_t]: [Lanes<W>; 2]) -> Lanes<W> {
+    let bound = row.mu * p_n.max(Lanes::ZERO);
+    p_t - (p_t - slip).min(bound).max(-bound)
 }

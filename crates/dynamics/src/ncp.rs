@@ -91,10 +91,12 @@ impl<const W: usize> FootRow<W> {
         [v[0].plus(self.jx, v[2]), v[1].plus(self.jy, v[2])]
     }
 
-    /// Jᵀ p.
+    /// v += Jᵀ p.
     #[inline(always)]
-    pub fn wrench(&self, p: &[Lanes<W>; 2]) -> Triple<W> {
-        [p[0], p[1], (self.jx * p[0]).plus(self.jy, p[1])]
+    pub fn add_wrench(&self, v: &mut Triple<W>, p: &[Lanes<W>; 2]) {
+        v[0] += p[0];
+        v[1] += p[1];
+        v[2] = v[2].plus(self.jx, p[0]).plus(self.jy, p[1]);
     }
 }
 
@@ -218,7 +220,7 @@ impl<const W: usize> Ncp<W> {
     pub fn velocity(&self, p: &Impulses<W>) -> Triple<W> {
         let mut v = self.free;
         for (foot, p) in self.feet.iter().zip(&p.feet) {
-            add_scaled(&mut v, &foot.wrench(p), Lanes::splat(1.0));
+            foot.add_wrench(&mut v, p);
         }
         for (row, (p_n, p_t)) in self.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
             add_scaled(&mut v, &row.n, *p_n);

@@ -29,6 +29,15 @@ pub struct Goal {
     pub weight: f64,
 }
 
+/// How long all lanes of a chunk iterate, whether open or not.
+#[derive(Clone, Copy, Debug)]
+pub struct Together {
+    /// Most iterations.
+    pub iterations: u32,
+    /// Open lanes for which one is worth it, at least 1.
+    pub lanes: u32,
+}
+
 /// The fast solver's working memory.
 #[derive(Clone, Debug)]
 pub struct Newton<const W: usize> {
@@ -71,16 +80,16 @@ impl<const W: usize> Newton<W> {
     /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations; returns the residuals.
     #[inline(always)]
     pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> Lanes<W> {
-        self.begin(ncp, p, goal, goal.iterations).residual
+        self.begin(ncp, p, goal, Together { iterations: goal.iterations, lanes: 1 }).residual
     }
 
-    /// The same for at most so many iterations.
+    /// The same while it is worth it for all lanes together.
     #[inline(always)]
-    pub fn begin(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, iterations: u32) -> Progress<W> {
+    pub fn begin(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, together: Together) -> Progress<W> {
         let residual = self.map.take(ncp, p);
         let mut progress = Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.aim)) };
-        for _ in 0..iterations {
-            if !progress.open.any() {
+        for _ in 0..together.iterations {
+            if progress.open.count() < together.lanes {
                 break;
             }
             self.advance(ncp, p, goal, &mut progress);
@@ -128,9 +137,10 @@ impl<const W: usize> Linearised<W> {
             self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k], weight);
         }
         self.contacts.clear();
+        let hold = Hold::new(STIFFNESS, ncp.compliance);
         let points = p.normal.iter().zip(&p.tangential);
         for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
-            if let Some(step) = contact.linearised(row, [*p_n, *p_t], ncp.compliance) {
+            if let Some(step) = contact.linearised(row, [*p_n, *p_t], &hold) {
                 self.contacts.push((i, step));
             }
         }
@@ -179,6 +189,8 @@ impl<const W: usize> FootStep<W> {
         slides: Mask<W>,
         stiffness: f64,
     ) -> Self {
+        let k = Lanes::splat(stiffness);
+        let held = [-slip[0] * k, -slip[1] * k];
         let Holding { z, square, weight } = *holding;
         let unit = square.inverse_sqrt();
         // k |s|, where it slides
@@ -187,15 +199,13 @@ impl<const W: usize> FootStep<W> {
         let size = ncp::square(p).max(rim);
         // one division for k / speed and the share of p that is inside the disc
         let inverse = Lanes::splat(1.0) / (speed * size).max(Lanes::splat(TINY));
-        let along = inverse * size * weight;
         // in this order a foot without a bound has 0 here, however fast it slips
-        let inside = inverse * rim * speed;
+        let inside = inverse * rim * weight;
+        let full = inverse * size * weight * bound;
         let u = [z[0] * unit, z[1] * unit];
-        let q = [p[0] * inside * along, p[1] * inside * along];
-        let full = bound * along;
-        let k = Lanes::splat(stiffness);
+        let q = [p[0] * inside, p[1] * inside];
         Self {
-            r: [slides.select((-p[0]).plus(bound, u[0]), -slip[0] * k), slides.select((-p[1]).plus(bound, u[1]), -slip[1] * k)],
+            r: [slides.select((-p[0]).plus(bound, u[0]), held[0]), slides.select((-p[1]).plus(bound, u[1]), held[1])],
             k: [
                 [slides.select(full.less(q[0], u[0]), k), slides.keep(-q[0] * u[1])],
                 [slides.keep(-q[1] * u[0]), slides.select(full.less(q[1], u[1]), k)],
@@ -207,7 +217,7 @@ impl<const W: usize> FootStep<W> {
 impl<const W: usize> ContactMap<W> {
     /// Open, sticking or sliding either way; `None` where it is open in every lane and carries nothing.
     #[inline(always)]
-    fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> Option<ContactStep<W>> {
+    fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], hold: &Hold<W>) -> Option<ContactStep<W>> {
         let one = Lanes::splat(1.0);
         let closed = (p[0] * one.plus(row.n[2], row.n[2])).gt(self.gap);
         if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
@@ -217,7 +227,7 @@ impl<const W: usize> ContactMap<W> {
         let z = (-self.slip).plus(p[1], inertia);
         let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
         let mode = Mode { closed, sliding, ratio: z.sign() * row.mu };
-        Some(ContactStep::in_mode(p, [self.gap, self.slip], mode, Hold { stiffness: STIFFNESS, compliance }))
+        Some(ContactStep::in_mode(p, [self.gap, self.slip], mode, hold))
     }
 }
 
@@ -232,31 +242,34 @@ pub struct Mode<const W: usize> {
     pub ratio: Lanes<W>,
 }
 
-/// How hard a contact's held rows are held.
+/// How hard a contact's held rows are held, in units of the object's mass per step.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold<const W: usize> {
-    /// Stiffness k, in units of the object's mass per step.
-    pub stiffness: f64,
-    /// Compliance κ of the gap row.
-    pub compliance: Lanes<W>,
+    gap: Lanes<W>,
+    slip: Lanes<W>,
+}
+
+impl<const W: usize> Hold<W> {
+    /// With stiffness k, in the gap row in series with its compliance κ.
+    #[inline(always)]
+    pub fn new(stiffness: f64, compliance: Lanes<W>) -> Self {
+        Self { gap: Lanes::splat(1.0) / (compliance + 1.0 / stiffness), slip: Lanes::splat(stiffness) }
+    }
 }
 
 impl<const W: usize> ContactStep<W> {
     /// A contact of impulses `p` and velocities (γ, s) in a given mode.
     #[inline(always)]
-    pub fn in_mode(p: [Lanes<W>; 2], [gamma, slip]: [Lanes<W>; 2], mode: Mode<W>, hold: Hold<W>) -> Self {
-        let one = Lanes::splat(1.0);
-        let stick = Lanes::splat(hold.stiffness);
-        let k = one / (Lanes::splat(1.0 / hold.stiffness) + hold.compliance);
-        let n = mode.closed.select(-gamma * k, -p[0]);
-        let nn = mode.closed.keep(k);
+    pub fn in_mode(p: [Lanes<W>; 2], [gamma, slip]: [Lanes<W>; 2], mode: Mode<W>, hold: &Hold<W>) -> Self {
+        let n = mode.closed.select(-gamma * hold.gap, -p[0]);
+        let nn = mode.closed.keep(hold.gap);
         let free = mode.sliding | !mode.closed;
         Self {
             n,
-            t: free.select((-p[1]).plus(mode.ratio, p[0] + n), -slip * stick),
+            t: free.select((-p[1]).plus(mode.ratio, p[0] + n), -slip * hold.slip),
             nn,
             tn: free.keep(mode.ratio * nn),
-            tt: free.select(Lanes::ZERO, stick),
+            tt: free.select(Lanes::ZERO, hold.slip),
         }
     }
 }

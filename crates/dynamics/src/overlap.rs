@@ -4,7 +4,7 @@
 use crate::frames::{Frames, dot_fixed};
 use crate::lanes::{Lanes, Mask};
 use crate::plane::{Frame, Vec2, add, dot, length, negate, scale, sub};
-use crate::solid::{Polygon, Solid};
+use crate::solid::{Polygon, Side, Solid};
 
 /// A contact in the object's frame.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +68,32 @@ fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f6
     best
 }
 
+/// The gap of [`least_penetration`] of two convex polygons (m), not negative where they do not overlap; `frames` are those of `b` seen
+/// from `a`, and the inverse.
+#[inline(always)]
+pub(crate) fn least_gap<const W: usize>([a, b]: [&Solid; 2], [in_a, in_b]: [&Frames<W>; 2]) -> Lanes<W> {
+    let mut least = Lanes::splat(f64::NEG_INFINITY);
+    for (mine, theirs, frame) in [(a, b, in_a), (b, a, in_b)] {
+        if let (Solid::Polygon(mine), Solid::Polygon(theirs)) = (mine, theirs) {
+            for side in &mine.sides {
+                least = least.max(lowest(side, &theirs.corners, frame));
+            }
+        }
+    }
+    least
+}
+
+/// Height of the lowest corner above the line of a side (m); `frame` is that of the corners seen from the side's body.
+#[inline(always)]
+fn lowest<const W: usize>(side: &Side, corners: &[Vec2], frame: &Frames<W>) -> Lanes<W> {
+    let turned = frame.turn_back_fixed(side.normal);
+    let mut lowest = Lanes::splat(f64::INFINITY);
+    for corner in corners {
+        lowest = lowest.min(dot_fixed(&turned, *corner));
+    }
+    lowest + (dot_fixed(&frame.origin, side.normal) - side.offset)
+}
+
 /// The lanes of `asked` in which every pair of polygons has a side that the other one does not reach deeper than `depth` (m,
 /// negative) behind; `frames` are those of `theirs` seen from `mine`, and the inverse.
 #[inline(always)]
@@ -96,14 +122,7 @@ fn has_clear_side<const W: usize>(a: &Polygon, b: &Polygon, frame: &Frames<W>, a
     let likely = (1..a.sides.len()).fold(0, |best, k| if above(k) > above(best) { k } else { best });
     let mut clear = Mask::splat(false);
     for k in std::iter::once(likely).chain(0..a.sides.len()) {
-        let side = &a.sides[k];
-        let turned = frame.turn_back_fixed(side.normal);
-        let base = dot_fixed(&frame.origin, side.normal) - side.offset;
-        let mut lowest = Lanes::splat(f64::INFINITY);
-        for corner in &b.corners {
-            lowest = lowest.min(dot_fixed(&turned, *corner));
-        }
-        clear = clear | (lowest + base).gt(Lanes::splat(depth));
+        clear = clear | lowest(&a.sides[k], &b.corners, frame).gt(Lanes::splat(depth));
         if !(asked & !clear).any() {
             break;
         }

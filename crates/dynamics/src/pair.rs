@@ -8,7 +8,7 @@ use crate::frames::{Frames, Vec2s, dot, dot_fixed, lane_of, splat};
 use crate::lanes::{Lanes, Mask};
 use crate::narrow::{Gap, NarrowWork, PairFrames};
 use crate::outline::Outline;
-use crate::overlap::{least_penetration, separated};
+use crate::overlap::{least_gap, least_penetration, separated};
 use crate::plane::{Vec2, negate, scale};
 use crate::stand::{Search, Stand};
 
@@ -110,7 +110,11 @@ impl<'a, const W: usize> Pair<'a, W> {
                 continue;
             }
             let at = Over { frame: self.in_object, round };
-            search.stands(|edge| at.faces(edge), &mut self.work.near);
+            search.stands(
+                #[inline(always)]
+                |edge| at.faces(edge),
+                &mut self.work.near,
+            );
             for k in 0..self.work.near.len() {
                 let Stand { edge: index, s, height, present, .. } = self.work.near[k];
                 let edge = &mine.edges[index];
@@ -152,7 +156,11 @@ impl<'a, const W: usize> Pair<'a, W> {
             return;
         }
         let at = Over { frame: self.in_other, round };
-        search.stands(|edge| at.faces(edge), &mut self.work.near);
+        search.stands(
+            #[inline(always)]
+            |edge| at.faces(edge),
+            &mut self.work.near,
+        );
         for k in 0..self.work.near.len() {
             let Stand { edge: index, height, present, .. } = self.work.near[k];
             let edge = &theirs.edges[index];
@@ -251,12 +259,19 @@ impl<'a, const W: usize> Pair<'a, W> {
     /// Polygons that overlap although no feature answered for it; of two convex ones, the least penetration bounds all gaps.
     #[inline(always)]
     fn polygons(&mut self) {
-        let convex = self.object.parts().len() == 1 && self.other.parts().len() == 1;
-        let asked = if convex { self.near } else { self.near & !self.work.found.deeper_than(0.0) };
+        let (mine, theirs) = (self.object.solids(), self.other.solids());
+        let frames = [&self.in_object, &self.in_other];
+        let convex = if let ([a], [b]) = (mine, theirs) { Some([a, b]) } else { None };
+        let asked = if convex.is_some() { self.near } else { self.near & !self.work.found.deeper_than(0.0) };
         let depth = -SHALLOW * self.object.bounding_radius().min(self.other.bounding_radius());
         let shallow = asked & !self.work.found.deeper_than(depth);
-        let apart = separated(self.object.solids(), self.other.solids(), [&self.in_object, &self.in_other], shallow, depth);
-        let suspects = asked & !apart;
+        let mut suspects = asked & !separated(mine, theirs, frames, shallow, depth);
+        if let Some(pair) = convex
+            && suspects.any()
+        {
+            let least = least_gap(pair, frames);
+            suspects = suspects & least.lt(self.reach.min(Lanes::ZERO)) & !self.work.found.bound(suspects, least, self.slack);
+        }
         if suspects.any() {
             self.least_penetrations(suspects);
         }
@@ -267,7 +282,8 @@ impl<'a, const W: usize> Pair<'a, W> {
         for lane in suspects.lanes() {
             let in_object = self.in_object.lane(lane);
             let Some(least) = least_penetration(self.object.solids(), self.other.solids(), &in_object) else { continue };
-            let answered = self.work.found.bound(lane, least.gap, self.slack);
+            let here = Mask::from_fn(|i| i == lane);
+            let answered = self.work.found.bound(here, Lanes::splat(least.gap), self.slack).lane(lane);
             if least.gap < self.reach.0[lane] && !answered {
                 let frame = self.object_frame.lane(lane);
                 let gap = Gap { normal: frame.turn(least.normal), arm: frame.turn(least.touch), gap: least.gap };

@@ -61,12 +61,12 @@ impl<const W: usize> Polish<W> {
         self.linearised.imbalance = ncp.imbalance(p);
         let contacts = &mut self.linearised.contacts;
         contacts.clear();
+        let hold = Hold::new(STIFFNESS, ncp.compliance);
         let points = p.normal.iter().zip(&p.tangential);
         for (i, ((row, mode), (p_n, p_t))) in ncp.contacts.iter().zip(&self.modes).zip(points).enumerate() {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            let hold = Hold { stiffness: STIFFNESS, compliance: ncp.compliance };
-            contacts.push((i, ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, hold)));
+            contacts.push((i, ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, &hold)));
         }
         for k in 0..3 {
             let slip = ncp.feet[k].slip(&p.v);
