@@ -66,7 +66,7 @@ impl<const W: usize> SmoothedMap<W> {
             let gap = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             let pair = SmoothedPair::new(*p_n, gap, squared);
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            let inverse = Lanes::splat(1.0) / squared.plus(slip, slip).sqrt();
+            let inverse = squared.plus(slip, slip).inverse_sqrt();
             worst.note(pair.value);
             worst.note(p_t.plus(row.mu * p_n.max(Lanes::ZERO), slip * inverse));
             self.contacts.push(SmoothedContact { pair, slip, inverse });
@@ -74,7 +74,7 @@ impl<const W: usize> SmoothedMap<W> {
         let mut squares = Worst::NONE;
         for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             let slip = foot.slip(&p.v);
-            let inverse = Lanes::splat(1.0) / squared.plus(slip[0], slip[0]).plus(slip[1], slip[1]).sqrt();
+            let inverse = squared.plus(slip[0], slip[0]).plus(slip[1], slip[1]).inverse_sqrt();
             let off = [p_k[0].plus(foot.bound, slip[0] * inverse), p_k[1].plus(foot.bound, slip[1] * inverse)];
             squares.note(square(&off));
             *map = SmoothedFoot { slip, inverse };

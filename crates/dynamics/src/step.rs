@@ -2,6 +2,8 @@
 //!
 //! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end; q⁺ = q + h v⁺.
 
+use std::ops::Range;
+
 use fearless_simd::Level;
 
 use crate::assembly::Assembly;
@@ -189,12 +191,16 @@ impl Dynamics {
         let moment = &Moment::new(input);
         for (chunk, particles) in particles.iter().enumerate() {
             work.chunks[chunk].seek(self.search_distance(input, particles));
-            self.assemble(moment, particles, chunk, work);
         }
-        let count = particles.len();
-        work.solver.solve(&work.ncps[..count], &mut work.impulses[..count], &mut work.reports);
+        let mut asked = 0..particles.len();
+        while !asked.is_empty() {
+            for chunk in asked.clone() {
+                self.assemble(moment, &particles[chunk], chunk, work);
+            }
+            work.solver.solve(&work.ncps[asked.clone()], &mut work.impulses[asked.clone()], &mut work.reports[asked.clone()]);
+            asked = self.too_narrow(moment.input, asked.start, work);
+        }
         for (chunk, particles) in particles.iter_mut().enumerate() {
-            self.widen(moment, particles, chunk, work);
             self.integrate(input.h, particles, chunk, work);
         }
     }
@@ -207,26 +213,21 @@ impl Dynamics {
         assembly.load_warm_start(&self.stage.scene, particles, &mut work.impulses[chunk]);
     }
 
-    /// Solves a chunk again while some lane's solution moves farther than its search covered.
+    /// The first chunk from `first` on in which some lane's solution moves farther than its search covered, to be solved again with a
+    /// wider one.
     #[inline(always)]
-    fn widen<const W: usize>(&self, moment: &Moment<'_>, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
-        loop {
+    fn too_narrow<const W: usize>(&self, input: &StepInput, first: usize, work: &mut StepWork<W>) -> Range<usize> {
+        let count = work.reports.len();
+        for chunk in first..count {
             let reach = work.chunks[chunk].reach();
-            let needed = (self.point_speed(&work.twist(chunk, &self.stage.scene)) + self.pusher_speed(moment.input)) * moment.input.h;
+            let needed = (self.point_speed(&work.twist(chunk, &self.stage.scene)) + self.pusher_speed(input)) * input.h;
             let wider = needed.gt(reach) & needed.lt(Lanes::splat(f64::INFINITY)) & reach.lt(Lanes::splat(WIDEST));
-            if !wider.any() {
-                return;
+            if wider.any() {
+                work.chunks[chunk].seek(wider.select(needed * 2.0, reach));
+                return chunk..chunk + 1;
             }
-            work.chunks[chunk].seek(wider.select(needed * 2.0, reach));
-            self.solve_again(moment, particles, chunk, work);
         }
-    }
-
-    #[inline(never)]
-    fn solve_again<const W: usize>(&self, moment: &Moment<'_>, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
-        self.assemble(moment, particles, chunk, work);
-        let one = chunk..chunk + 1;
-        work.solver.solve(&work.ncps[one.clone()], &mut work.impulses[one.clone()], &mut work.reports[one]);
+        count..count
     }
 
     #[inline(always)]
