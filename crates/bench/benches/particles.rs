@@ -1,4 +1,4 @@
-//! `cargo bench -p stickslip-bench --bench particles`: the whole filter step from 100 particles to 100,000, on one thread and on two;
+//! `cargo bench -p stickslip-bench --bench particles`: the whole filter step from 100 particles to 250,000, on one thread and on two;
 //! `... -- --million` goes on to 1,000,000. The frames are those of a recorded log around its first contacts.
 
 use std::error::Error;
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cases = recorded_cases(&root.join("mujoco").join(LOG))?;
     let case = cases.iter().find(|case| case.occlusion == Occlusion::None).ok_or("no case without a blackout")?;
     let log = part(&case.log);
-    let mut counts = vec![100, 500, 1_000, 10_000, 100_000];
+    let mut counts = vec![100, 500, 1_000, 10_000, 100_000, 250_000];
     counts.extend(std::env::args().any(|a| a == "--million").then_some(1_000_000));
     let mut results = Results::open()?;
     for threads in [1, 2] {

@@ -95,7 +95,9 @@ impl LogWeights {
         if joint.all(|w| w == f64::NEG_INFINITY) {
             return None;
         }
-        self.log.iter_mut().zip(log_likelihood).for_each(|(w, l)| *w += l);
+        parallel::for_each(&mut self.log, BLOCK, GRAIN, |block, log| {
+            log.iter_mut().zip(&log_likelihood[block * BLOCK..]).for_each(|(w, l)| *w += l);
+        });
         self.normalise()
     }
 
@@ -125,8 +127,8 @@ impl LogWeights {
         self.effective_sample_size = sum * sum / sum_of_squares;
 
         let log_sum = best + libm::log(sum);
-        self.linear.iter_mut().for_each(|w| *w /= sum);
-        self.log.iter_mut().for_each(|w| *w -= log_sum);
+        parallel::for_each(&mut self.linear, BLOCK, GRAIN, |_, linear| linear.iter_mut().for_each(|w| *w /= sum));
+        parallel::for_each(&mut self.log, BLOCK, GRAIN, |_, log| log.iter_mut().for_each(|w| *w -= log_sum));
         Some(log_sum)
     }
 
@@ -164,8 +166,17 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The largest f(x_i, y_i), -inf at least, of [`PARTIAL`] partial ones: one would wait for every comparison.
-fn largest(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+/// The largest f(x_i, y_i), -inf at least.
+fn largest(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+    let of = |block: usize| {
+        let range = block * BLOCK..x.len().min((block + 1) * BLOCK);
+        largest_of_block(&x[range.clone()], &y[range], &f)
+    };
+    parallel::tree_reduce(0..x.len().div_ceil(BLOCK), &of, &larger)
+}
+
+/// In [`PARTIAL`] partial ones: one would wait for every comparison.
+fn largest_of_block(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let mut best = [f64::NEG_INFINITY; PARTIAL];
     let ((x, last_x), (y, last_y)) = (x.as_chunks::<PARTIAL>(), y.as_chunks::<PARTIAL>());
     for (x, y) in x.iter().zip(y) {
