@@ -3,7 +3,22 @@
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 
-/// Layout of a particle: pose, twist, friction, contacts, outcome, warm start, contacts with fixels, past poses.
+/// Flags in a column.
+const BITS: usize = 52;
+
+/// Flags that do not belong to a fixel.
+const SINGLE: usize = 3;
+
+/// A yes or no of every particle: a bit of a column, whose numbers mean nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flag {
+    /// The column.
+    pub column: usize,
+    /// Number of the bit, below 52.
+    pub bit: u32,
+}
+
+/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, past poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
     fixels: usize,
@@ -17,40 +32,46 @@ impl Columns {
     pub const TWIST: usize = 3;
     /// μ_s, μ_p, μ_f, d_tri.
     pub const FRICTION: usize = 6;
-    /// 1 where the pusher touches.
-    pub const CONTACT_PUSHER: usize = 10;
-    /// 1 where the last step of a particle had no certified solution.
-    pub const UNSOLVED: usize = 11;
-    /// 1 where nothing drove the particle in its last step: the pusher stands, or the particle is at rest and out of its way.
-    pub const IDLE: usize = 12;
     /// How far the pusher stands behind its pose (m).
-    pub const PUSHER_LAG: usize = 13;
+    pub const PUSHER_LAG: usize = 10;
     /// First column of the warm start.
-    pub const WARM_START: usize = 14;
+    pub const WARM_START: usize = 11;
+    /// First column of the flags.
+    const FLAGS: usize = Self::WARM_START + WARM;
+    /// Whether the pusher touches.
+    pub const CONTACT_PUSHER: Flag = Self::flag(0);
+    /// Whether the last step of a particle had no certified solution.
+    pub const UNSOLVED: Flag = Self::flag(1);
+    /// Whether nothing drove the particle in its last step: the pusher stands, or the particle is at rest and out of its way.
+    pub const IDLE: Flag = Self::flag(2);
 
     /// For `fixels` fixels and `history` past poses.
     pub fn new(fixels: usize, history: usize) -> Self {
         Self { fixels, history }
     }
 
-    /// c_j of every fixel.
-    pub fn contact_fixels(&self) -> std::ops::Range<usize> {
-        self.contact_fixel(0)..self.contact_fixel(self.fixels)
+    /// Number of fixels.
+    pub fn fixels(&self) -> usize {
+        self.fixels
     }
 
-    /// c_j, 1 where fixel j touches.
-    pub fn contact_fixel(&self, fixel: usize) -> usize {
-        Self::WARM_START + WARM + fixel
+    const fn flag(number: usize) -> Flag {
+        Flag { column: Self::FLAGS + number / BITS, bit: (number % BITS) as u32 }
+    }
+
+    /// c_j: whether fixel j touches.
+    pub fn contact_fixel(&self, fixel: usize) -> Flag {
+        Self::flag(SINGLE + fixel)
     }
 
     /// c_j in the particle's last step under the pusher or in motion: whether fixel j bears it when it is pressed on.
-    pub fn against_fixel(&self, fixel: usize) -> usize {
-        self.contact_fixel(self.fixels) + fixel
+    pub fn against_fixel(&self, fixel: usize) -> Flag {
+        Self::flag(SINGLE + self.fixels + fixel)
     }
 
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
-        self.against_fixel(self.fixels) + 3 * slot
+        Self::FLAGS + (SINGLE + 2 * self.fixels).div_ceil(BITS) + 3 * slot
     }
 
     /// Number of columns.
@@ -61,5 +82,21 @@ impl Columns {
     /// Number of past poses kept.
     pub fn history(&self) -> usize {
         self.history
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn flags_of_many_fixels_lie_apart_and_before_the_past_poses() {
+        let columns = Columns::new(50, 1);
+        let of_fixels = (0..50).flat_map(|j| [columns.contact_fixel(j), columns.against_fixel(j)]);
+        let flags: Vec<Flag> = of_fixels.chain([Columns::CONTACT_PUSHER, Columns::UNSOLVED, Columns::IDLE]).collect();
+        let places: HashSet<(usize, u32)> = flags.iter().map(|flag| (flag.column, flag.bit)).collect();
+        assert_eq!((flags.len(), places.len()), (103, 103));
+        assert!(flags.iter().all(|flag| flag.column < columns.past_pose(0) && flag.bit < 52));
     }
 }

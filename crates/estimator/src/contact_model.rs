@@ -4,8 +4,8 @@ use stickslip_dynamics::{Dynamics, Lanes, Level, Mask, Pose, StepInput, on_wides
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::{nearest_zero, wrapped};
-use crate::chunk::{Column, LANES, part, store_part};
-use crate::columns::Columns;
+use crate::chunk::{Column, LANES, flag, part, store_part};
+use crate::columns::{Columns, Flag};
 use crate::propagation::Propagation;
 use crate::watch::StepWatch;
 use crate::{Camera, Setup};
@@ -128,7 +128,7 @@ impl<'w> ContactModel<'w> {
     /// step returns is an accident of the warm start and the tracking noise. The one that explains the readings counts.
     #[inline(always)]
     fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, chunk: usize) -> Column {
-        let set = |column: usize| part(block.column(column), chunk, 0.0).gt(Lanes::splat(0.5));
+        let set = |which: Flag| flag(block, which, chunk);
         let driven = self.readings_log_probability(readings, |j| set(self.columns.contact_fixel(j)));
         let idle = set(Columns::IDLE);
         if !idle.any() {

@@ -4,7 +4,7 @@ use stickslip_dynamics::{Body, Lanes, Level, Mask, Outcome, Particles, StepWork,
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::Limits;
-use crate::chunk::{Column, LANES, part, store_part};
+use crate::chunk::{Column, LANES, flag, part, store_flag, store_part};
 use crate::columns::Columns;
 use crate::contact_model::{ContactModel, ParameterNoise, StepPlan};
 use crate::watch::{SolvedStep, StepWatch};
@@ -197,17 +197,17 @@ impl Propagation {
                 load_columns(block, Columns::FRICTION + k, chunk, &mut kept);
                 store_columns(block, Columns::FRICTION + k, chunk, &[took_part.select(particles.friction[k], kept[0])]);
             }
-            store_columns(block, Columns::UNSOLVED, chunk, &[flags(touched.unsolved)]);
+            store_flag(block, Columns::UNSOLVED, chunk, touched.unsolved);
             let pusher = self.work.normal_impulses(chunk, Body::Pusher).gt(Lanes::ZERO);
-            store_columns(block, Columns::CONTACT_PUSHER, chunk, &[flags(pusher)]);
+            store_flag(block, Columns::CONTACT_PUSHER, chunk, pusher);
             let pressed = moving(&particles.twist, rho) | pusher;
-            store_columns(block, Columns::IDLE, chunk, &[flags(!(pressed & driven))]);
+            store_flag(block, Columns::IDLE, chunk, !(pressed & driven));
             for j in 0..model.setup.scene.fixels.len() {
-                let touches = flags(self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse));
-                store_columns(block, model.columns.contact_fixel(j), chunk, &[touches]);
-                let mut before = [Lanes::ZERO];
-                load_columns(block, model.columns.against_fixel(j), chunk, &mut before);
-                store_columns(block, model.columns.against_fixel(j), chunk, &[pressed.select(touches, before[0])]);
+                let touches = self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse);
+                store_flag(block, model.columns.contact_fixel(j), chunk, touches);
+                let against = model.columns.against_fixel(j);
+                let before = flag(&block.as_block(), against, chunk);
+                store_flag(block, against, chunk, pressed & touches | !pressed & before);
             }
             if model.columns.history() > 0 {
                 store_columns(block, model.columns.past_pose(plan.slot), chunk, &particles.pose);
@@ -227,11 +227,6 @@ fn moving([vx, vy, omega]: &[Column; 3], rho: f64) -> Mask<LANES> {
 #[inline(always)]
 fn disturbed(value: Column, w: Column, limits: &Limits) -> Column {
     (value + value * w).max(Lanes::splat(limits.min)).min(Lanes::splat(limits.max))
-}
-
-#[inline(always)]
-fn flags(mask: Mask<LANES>) -> Column {
-    mask.keep(Lanes::splat(1.0))
 }
 
 /// Reads one chunk of neighbouring columns; lanes past the last particle repeat it.

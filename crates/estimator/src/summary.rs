@@ -1,14 +1,13 @@
 //! What a particle set amounts to: weighted means and standard deviations of its columns, in one pass over the particles: [`summary`].
 
 use std::f64::consts::FRAC_PI_2;
-use std::ops::Range;
 
-use stickslip_dynamics::{Friction, Level, Pose, Twist, on_widest, sin_cos};
+use stickslip_dynamics::{Friction, Lanes, Level, Pose, Twist, on_widest, sin_cos};
 use stickslip_filter::{Block, ParticleFilter};
 
 use crate::angle::{nearest_zero, unwrapped};
-use crate::chunk::{Column, LANES, part};
-use crate::columns::Columns;
+use crate::chunk::{Column, LANES, flag, part};
+use crate::columns::{Columns, Flag};
 use crate::contact_model::ContactModel;
 use crate::{EstimateRow, Spread};
 
@@ -16,8 +15,8 @@ use crate::{EstimateRow, Spread};
 const SPREAD: [usize; 6] =
     [Columns::POSE, Columns::POSE + 1, Columns::FRICTION, Columns::FRICTION + 1, Columns::FRICTION + 2, Columns::FRICTION + 3];
 
-/// Columns of which the mean is enough: vx, vy, ω, contact with the pusher.
-const OTHERS: [usize; 4] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST + 2, Columns::CONTACT_PUSHER];
+/// Columns of which the mean is enough: vx, vy, ω.
+const TWIST: [usize; 3] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST + 2];
 
 /// θ.
 const ANGLE: usize = Columns::POSE + 2;
@@ -36,8 +35,10 @@ struct Sums {
     first: [f64; 6],
     /// Σ w d².
     second: [f64; 6],
-    /// Σ w x.
-    others: [f64; 4],
+    /// Σ w v.
+    twist: [f64; 3],
+    /// Σ w c_p.
+    contact_pusher: f64,
     /// Σ w sin d, Σ w cos d, Σ w d, Σ w d² of the angles.
     angle: [f64; 4],
     /// Largest |d| of the angles (rad).
@@ -53,19 +54,19 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, near: f64) -> E
     let level = Level::new();
     let value = |column: usize| filter.particles().value(0, column);
     let reference = Reference { spread: SPREAD.map(value), angle: value(ANGLE) };
-    let contact_fixels = filter.model().layout().contact_fixels();
+    let columns = filter.model().layout();
     let of_block = |block: &Block<'_>, weights: &[f64]| {
         on_widest(
             level,
             #[inline(always)]
-            || Sums::of_block(block, weights, &reference, contact_fixels.clone()),
+            || Sums::of_block(block, weights, &reference, columns),
         )
     };
     let sums = filter.reduce(of_block, Sums::plus);
 
     let [x, y, mu_s, mu_p, mu_f, d_tri] = std::array::from_fn(|k| reference.spread[k] + sums.first[k]);
     let stds: [f64; 6] = std::array::from_fn(|k| (sums.second[k] - sums.first[k] * sums.first[k]).max(0.0).sqrt());
-    let [vx, vy, omega, contact_pusher] = sums.others;
+    let [vx, vy, omega] = sums.twist;
     let turn = libm::atan2(sums.angle[0], sums.angle[1]);
     let theta_std = if sums.widest <= FRAC_PI_2 {
         sums.angle_std_about(turn)
@@ -76,7 +77,7 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, near: f64) -> E
         pose: Some(Pose::new(x, y, unwrapped(reference.angle + turn, near))),
         twist: Some(Twist { vx, vy, omega }),
         friction: Some(Friction { mu_s, mu_p, mu_f, d_tri }),
-        contact_pusher: Some(contact_pusher),
+        contact_pusher: Some(sums.contact_pusher),
         contact_fixels: Some(sums.contact_fixels),
         spread: Some(Spread {
             pose: Pose::new(stds[0], stds[1], theta_std),
@@ -90,9 +91,9 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, near: f64) -> E
 
 impl Sums {
     #[inline(always)]
-    fn of_block(block: &Block<'_>, weights: &[f64], reference: &Reference, contact_fixels: Range<usize>) -> Self {
+    fn of_block(block: &Block<'_>, weights: &[f64], reference: &Reference, columns: Columns) -> Self {
         let o = Column::ZERO;
-        let (mut first, mut second, mut others, mut angle) = ([o; 6], [o; 6], [o; 4], [o; 4]);
+        let (mut first, mut second, mut twist, mut angle) = ([o; 6], [o; 6], [o; 3], [o; 4]);
         let (mut widest, mut unsolved) = (o, o);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_column = |column: usize| part(block.column(column), chunk, 0.0);
@@ -102,8 +103,8 @@ impl Sums {
                 first[k] += w * d;
                 second[k] += w * d * d;
             }
-            for k in 0..4 {
-                others[k] += w * of_column(OTHERS[k]);
+            for k in 0..3 {
+                twist[k] += w * of_column(TWIST[k]);
             }
             let d = nearest_zero(of_column(ANGLE) - reference.angle);
             let (sin, cos) = sin_cos(d);
@@ -111,24 +112,25 @@ impl Sums {
                 *sum += w * value;
             }
             widest = widest.max(w.gt(o).keep(d.abs()));
-            unsolved += of_column(Columns::UNSOLVED);
+            unsolved += flag(block, Columns::UNSOLVED, chunk).keep(Lanes::splat(1.0));
         }
         let total = |lanes: Column| lanes.0.iter().sum::<f64>();
-        let mean = |column: usize| {
+        let share = |which: Flag| {
             let mut sum = o;
             for chunk in 0..block.len().div_ceil(LANES) {
-                sum += part(weights, chunk, 0.0) * part(block.column(column), chunk, 0.0);
+                sum += flag(block, which, chunk).keep(part(weights, chunk, 0.0));
             }
             total(sum)
         };
         Self {
             first: first.map(total),
             second: second.map(total),
-            others: others.map(total),
+            twist: twist.map(total),
+            contact_pusher: share(Columns::CONTACT_PUSHER),
             angle: angle.map(total),
             widest: widest.0.into_iter().fold(0.0, f64::max),
             unsolved: total(unsolved),
-            contact_fixels: contact_fixels.map(mean).collect(),
+            contact_fixels: (0..columns.fixels()).map(|j| share(columns.contact_fixel(j))).collect(),
         }
     }
 
@@ -139,7 +141,8 @@ impl Sums {
             contact_fixels,
             first: added(self.first, other.first),
             second: added(self.second, other.second),
-            others: added(self.others, other.others),
+            twist: added(self.twist, other.twist),
+            contact_pusher: self.contact_pusher + other.contact_pusher,
             angle: added(self.angle, other.angle),
             widest: self.widest.max(other.widest),
             unsolved: self.unsolved + other.unsolved,
