@@ -31,7 +31,10 @@ struct Row<const W: usize> {
     body: Body,
     /// Names the contact from one step to the next.
     key: f64,
-    contact: Contact<W>,
+    /// The lanes that have the contact.
+    present: Mask<W>,
+    /// Its gap (m).
+    gap: Lanes<W>,
 }
 
 /// What turns rows back into SI units.
@@ -151,7 +154,7 @@ impl<const W: usize> Assembly<W> {
         narrow.meet([&scene.object.shape, other.shape], &frames, self.reach);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
             let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize) as f64;
-            self.rows.push(Row { body: other.body, key, contact: *contact });
+            self.rows.push(Row { body: other.body, key, present: contact.present, gap: contact.gap });
             ncp.contacts.push(self.row(scene, object, other, contact));
         }
     }
@@ -193,7 +196,7 @@ impl<const W: usize> Assembly<W> {
         for row in &self.rows {
             let (mut p_n, mut p_t) = (Lanes::ZERO, Lanes::ZERO);
             for slot in warm[FIRST_CONTACT..].chunks_exact(3) {
-                let same = row.contact.present & !(slot[0] - row.key).abs().gt(Lanes::ZERO);
+                let same = row.present & !(slot[0] - row.key).abs().gt(Lanes::ZERO);
                 p_n = same.select(slot[1], p_n);
                 p_t = same.select(slot[2], p_t);
             }
@@ -228,7 +231,7 @@ impl<const W: usize> Assembly<W> {
 
     /// The body of each contact of one lane, in the order of its problem.
     pub fn bodies(&self, lane: usize) -> Vec<Body> {
-        self.rows.iter().filter(|row| row.contact.present.lane(lane)).map(|row| row.body).collect()
+        self.rows.iter().filter(|row| row.present.lane(lane)).map(|row| row.body).collect()
     }
 
     /// One lane's problem in SI units; the applied impulse is part of its twist.
@@ -237,15 +240,15 @@ impl<const W: usize> Assembly<W> {
         let rho = (inertia / mass).sqrt();
         let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
         let foot = |row: &FootRow<W>| Foot { arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho], bound: row.bound.0[lane] * mass };
-        let rows = self.rows.iter().zip(&ncp.contacts).filter(|(row, _)| row.contact.present.lane(lane));
+        let rows = self.rows.iter().zip(&ncp.contacts).filter(|(row, _)| row.present.lane(lane));
         let contacts = rows.map(|(row, numbers)| {
-            let gap = row.contact.lane(lane);
-            let [nx, ny] = gap.normal;
-            let (approach, slip) = (gap.gap / h - numbers.gap.0[lane], -numbers.slip.0[lane]);
+            let gap = row.gap.0[lane];
+            let ([nx, ny, normal], [.., tangential]) = (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
+            let (approach, slip) = (gap / h - numbers.gap.0[lane], -numbers.slip.0[lane]);
             ContactPoint {
-                normal: gap.normal,
-                arm: gap.arm,
-                gap: gap.gap,
+                normal: [nx, ny],
+                arm: [(tangential * nx + normal * ny) * rho, (tangential * ny - normal * nx) * rho],
+                gap,
                 mu: numbers.mu.0[lane],
                 surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
                 on_pusher: row.body == Body::Pusher,
