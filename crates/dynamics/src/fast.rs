@@ -44,7 +44,7 @@ impl<const W: usize> FastSolver<W> {
     pub fn solve(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], goal: Goal, finish: &mut impl FnMut(Iterated)) {
         self.packed.clear();
         // a single chunk has nothing to be packed with
-        let together = if ncps.len() > 1 { TOGETHER } else { Together { iterations: goal.iterations, lanes: 1 } };
+        let together = if ncps.len() > 1 { TOGETHER } else { Together::to_the_end(&goal) };
         for chunk in 0..ncps.len() {
             let progress = self.together.begin(&ncps[chunk], &mut p[chunk], goal, together);
             for lane in (!progress.open).lanes() {

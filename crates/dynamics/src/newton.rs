@@ -38,6 +38,14 @@ pub struct Together {
     pub lanes: u32,
 }
 
+impl Together {
+    /// Until no lane is open.
+    #[inline(always)]
+    pub fn to_the_end(goal: &Goal) -> Self {
+        Self { iterations: goal.iterations, lanes: 1 }
+    }
+}
+
 /// The fast solver's working memory.
 #[derive(Clone, Debug)]
 pub struct Newton<const W: usize> {
@@ -80,7 +88,7 @@ impl<const W: usize> Newton<W> {
     /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations; returns the residuals.
     #[inline(always)]
     pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> Lanes<W> {
-        self.begin(ncp, p, goal, Together { iterations: goal.iterations, lanes: 1 }).residual
+        self.begin(ncp, p, goal, Together::to_the_end(&goal)).residual
     }
 
     /// The same while it is worth it for all lanes together.

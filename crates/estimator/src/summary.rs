@@ -15,9 +15,6 @@ use crate::{EstimateRow, Spread};
 const SPREAD: [usize; 6] =
     [Columns::POSE, Columns::POSE + 1, Columns::FRICTION, Columns::FRICTION + 1, Columns::FRICTION + 2, Columns::FRICTION + 3];
 
-/// Columns of which the mean is enough: vx, vy, ω.
-const TWIST: [usize; 3] = [Columns::TWIST, Columns::TWIST + 1, Columns::TWIST + 2];
-
 /// θ.
 const ANGLE: usize = Columns::POSE + 2;
 
@@ -104,7 +101,7 @@ impl Sums {
                 second[k] += w * d * d;
             }
             for k in 0..3 {
-                twist[k] += w * of_column(TWIST[k]);
+                twist[k] += w * of_column(Columns::TWIST + k);
             }
             let d = nearest_zero(of_column(ANGLE) - reference.angle);
             let (sin, cos) = sin_cos(d);

@@ -5,6 +5,14 @@
 //! multiply-add, hence the same bits in scalar code, on SSE2, AVX2, AVX-512 and NEON. Errors are a few units in
 //! the last place.
 
+/// ln 2 as a sum; the first number has so few digits that its multiples by exponents are exact.
+pub(crate) const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
+/// The rest of ln 2.
+pub(crate) const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+
+/// 1.5 2^52: adding it rounds to the nearest integer, and leaves that in the low bits.
+pub(crate) const ROUND: f64 = 6_755_399_441_055_744.0;
+
 /// Two normal numbers from `u` and `v` in (0, 1), multiples of 2^-53.
 #[inline(always)]
 pub(crate) fn box_muller(u: f64, v: f64) -> [f64; 2] {
@@ -24,8 +32,6 @@ fn small_integer(n: u64) -> f64 {
 /// s = f / (2 + f).
 #[inline(always)]
 fn ln(x: f64) -> f64 {
-    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
-    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
     const SQRT_HALF_BITS: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
     const EXPONENT: u64 = 0x7ff << 52;
 
@@ -44,8 +50,6 @@ fn ln(x: f64) -> f64 {
 /// sin and cos of 2 pi v, v in [0, 1]: v less its nearest quarter turn is exact, the rest is in [-pi/4, pi/4].
 #[inline(always)]
 fn sin_cos_turns(v: f64) -> (f64, f64) {
-    /// Adding 1.5 2^52 rounds to the nearest integer, and leaves it in the low bits.
-    const ROUND: f64 = 6_755_399_441_055_744.0;
     let rounded = 4.0 * v + ROUND;
     let quarter = rounded.to_bits();
     let x = std::f64::consts::TAU * (v - 0.25 * (rounded - ROUND));

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use crate::box_muller::polynomial;
+use crate::box_muller::{LN2_HIGH, LN2_LOW, ROUND, polynomial};
 
 /// Writes e^(x − most) for every x of `exponents`; none of them may exceed `most` or be NaN.
 pub(crate) fn exponentials(exponents: &[f64], most: f64, out: &mut [f64]) {
@@ -17,8 +17,6 @@ pub(crate) fn exponentials(exponents: &[f64], most: f64, out: &mut [f64]) {
 /// x = k ln 2 + r with |r| <= ln 2 / 2, and e^r = 1 + 2 r / (R(r²) - r), R a polynomial.
 #[inline(always)]
 fn exp(x: f64) -> f64 {
-    const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
-    const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
     /// e^x is 0 from here down.
     const LEAST: f64 = -746.0;
 
@@ -32,9 +30,6 @@ fn exp(x: f64) -> f64 {
     let half = whole(0.5 * k);
     mantissa * power_of_two(half) * power_of_two(k - half)
 }
-
-/// Adding it rounds to the nearest whole number, and leaves that in the low bits.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
 #[inline(always)]
 fn whole(x: f64) -> f64 {
