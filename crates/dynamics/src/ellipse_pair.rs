@@ -2,6 +2,7 @@
 
 use crate::Shape;
 use crate::feature::{Cone, Edge, Ellipse, Round};
+use crate::frames::splat;
 use crate::narrow::Gap;
 use crate::plane::{Frame, Vec2, add, cross, dot, length, negate, scale, sub};
 use crate::separation::{Peak, Separation};
@@ -59,7 +60,7 @@ impl EllipsePair<'_> {
     fn ellipse_on_object(&self, ellipse: &Ellipse, out: &mut Found) {
         meetings(ellipse, self.object, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
             let contact = self.contact(negate(normal), add(touch, scale(-gap, normal)), gap);
-            out.push((contact, hidden || ellipse.covered && self.other.hides(self.in_other.point(touch))));
+            out.push((contact, hidden || ellipse.covered && hides(self.other, self.in_other.point(touch))));
         });
     }
 
@@ -68,7 +69,7 @@ impl EllipsePair<'_> {
         meetings(&ellipse, self.other, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
             let touch = self.in_object.point(touch);
             let contact = Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap };
-            out.push((contact, hidden || own.covered && self.object.hides(touch)));
+            out.push((contact, hidden || own.covered && hides(self.object, touch)));
         });
     }
 
@@ -81,7 +82,7 @@ impl EllipsePair<'_> {
         let Some(Peak { normal, gap }) = separation.widest(&Cone::full(), 0.0) else { return };
         let touch = own.point(negate(normal));
         let hidden =
-            own.covered && self.object.hides(touch) || theirs.covered && self.other.hides(self.in_other.point(theirs.point(normal)));
+            own.covered && hides(self.object, touch) || theirs.covered && hides(self.other, self.in_other.point(theirs.point(normal)));
         if gap < self.reach {
             out.push((self.contact(normal, touch, gap), hidden));
         }
@@ -149,10 +150,10 @@ fn with_union(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut re
     for round in &shape.outline().rounds {
         let near = length(sub(ellipse.centre, round.centre)) - round.radius - ellipse.radius() < reach;
         let Some(meeting) = near.then(|| about_round(ellipse, round, slack)).flatten() else { continue };
-        let hidden = round.covered && shape.hides(add(round.centre, scale(round.radius, meeting.normal)));
+        let hidden = round.covered && hides(shape, add(round.centre, scale(round.radius, meeting.normal)));
         meet(Meeting { hidden, ..meeting }, round.centre);
     }
-    let way_out = way_out.filter(|_| shape.contains(ellipse.centre));
+    let way_out = way_out.filter(|_| shape.contains(&splat::<1>(ellipse.centre)).lane(0));
     let least = if answered || way_out.is_some() { None } else { least_penetration(ellipse, shape.solids()) };
     way_out.or(least).filter(|way| way.gap < reach).into_iter().for_each(report);
 }
@@ -171,6 +172,11 @@ fn shallowest(ellipse: &Ellipse, solid: &Solid) -> Option<Meeting> {
         let gap = dot(side.normal, ellipse.centre) - side.offset - ellipse.support(side.normal);
         wider(best, Meeting { normal: side.normal, touch: ellipse.point(negate(side.normal)), gap, hidden: false })
     })
+}
+
+/// Whether a boundary point of one part of `shape` is not on the union's boundary.
+fn hides(shape: &Shape, point: Vec2) -> bool {
+    shape.hides(&splat::<1>(point)).lane(0)
 }
 
 /// Whether an ellipse and a polygon overlap: scaled so that the ellipse is the unit circle, by the distance from its centre.

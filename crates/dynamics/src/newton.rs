@@ -1,10 +1,10 @@
 //! The fast solver: a semismooth Newton iteration on the natural map of the mixed NCP, `W` particles side by side.
 //!
 //! Every row is either held (its velocity is driven to zero) or given (its impulse is known up to the other rows), decided by
-//! the natural map of the iterate as in Alart & Curnier (1991), in which a foot's slip has a weight of its own. Held rows enter with a
+//! the natural map of the iterate as in Alart & Curnier (1991), in which slips have weights of their own. Held rows enter with a
 //! finite stiffness k and keep their impulse from one iteration to the next (a method of multipliers), so that redundant contacts do no
 //! harm. The error shrinks by K/(K + k) an iteration once the modes are right, K what else resists; a particle's warm start is its last
-//! step's impulses.
+//! step's impulses. Stiff rows answer sooner, soft ones where modes contradict each other: the iterations take turns.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
@@ -14,7 +14,19 @@ use crate::ncp::{self, ContactRow, Ncp};
 
 /// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
 /// a jammed object's creep of 1e-8 m/s.
-pub const STIFFNESS: f64 = 1.0e8;
+const STIFF: f64 = 5.0e8;
+
+/// The same where stiff iterations have come to nothing: softer by what impulses of rows that contradict each other may grow.
+const SOFT: f64 = 3.0e6;
+
+/// So many iterations are stiff, as many soft, and so on.
+const TURN: f64 = 8.0;
+
+/// Weight of slip against impulse where feet near a solution are told to stick or slide.
+pub const NEAR: f64 = 2.0e8;
+
+/// Weight of impulse against slip where closed contacts are told so, in units of the inertia that resists the slip.
+const CONTACT: f64 = 4.0;
 
 /// When the iteration ends.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +37,7 @@ pub struct Goal {
     pub enough: f64,
     /// Most iterations.
     pub iterations: u32,
-    /// Weight k of slip against impulse where feet are told to stick or slide: [`STIFFNESS`] near a solution, 1 from afar.
+    /// Weight k of slip against impulse where feet are told to stick or slide: [`NEAR`] a solution, 1 from afar.
     pub weight: f64,
 }
 
@@ -117,7 +129,7 @@ impl<const W: usize> Newton<W> {
         if near.any() {
             self.before.copy_from(p);
         }
-        self.linearised.by_natural_map(ncp, p, &self.map, goal.weight);
+        self.linearised.by_natural_map(ncp, p, &self.map, goal.weight, stiffness(*iterations));
         self.linearised.step(ncp, p, *open);
         let next = self.map.take(ncp, p);
         let worse = near & !next.lt(*residual);
@@ -136,16 +148,24 @@ impl<const W: usize> Newton<W> {
     }
 }
 
+/// Stiffness of the next iteration of lanes that have taken `iterations`.
+#[inline(always)]
+fn stiffness<const W: usize>(iterations: Lanes<W>) -> Lanes<W> {
+    let turn = (iterations + 0.5) * (0.5 / TURN);
+    let soft = (turn - (turn - 0.5).round()).gt(Lanes::splat(0.5));
+    soft.select(Lanes::splat(SOFT), Lanes::splat(STIFF))
+}
+
 impl<const W: usize> Linearised<W> {
     /// The natural map's own choice of modes at `p`, where it is `map`.
     #[inline(always)]
-    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>, weight: f64) {
+    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>, weight: f64, stiffness: Lanes<W>) {
         self.imbalance = map.imbalance;
         for k in 0..3 {
-            self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k], weight);
+            self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k], weight, stiffness);
         }
         self.contacts.clear();
-        let hold = Hold::new(STIFFNESS, ncp.compliance);
+        let hold = Hold::new(stiffness, ncp.compliance);
         let points = p.normal.iter().zip(&p.tangential);
         for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
             if let Some(step) = contact.linearised(row, [*p_n, *p_t], &hold) {
@@ -179,9 +199,9 @@ impl<const W: usize> Holding<W> {
 impl<const W: usize> FootStep<W> {
     /// A foot that sticks while what would hold it is within its bound, else slides.
     #[inline(always)]
-    fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
+    fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64, stiffness: Lanes<W>) -> Self {
         let holding = Holding::new(p, slip, weight);
-        Self::in_mode(bound, p, slip, &holding, holding.square.gt(bound * bound), STIFFNESS)
+        Self::in_mode(bound, p, slip, &holding, holding.square.gt(bound * bound), stiffness)
     }
 
     /// A foot that slides where `slides`, with p = bound z / |z|; elsewhere its slip is driven to zero with `stiffness`.
@@ -195,10 +215,9 @@ impl<const W: usize> FootStep<W> {
         slip: &[Lanes<W>; 2],
         holding: &Holding<W>,
         slides: Mask<W>,
-        stiffness: f64,
+        stiffness: Lanes<W>,
     ) -> Self {
-        let k = Lanes::splat(stiffness);
-        let held = [-slip[0] * k, -slip[1] * k];
+        let held = [-slip[0] * stiffness, -slip[1] * stiffness];
         let Holding { z, square, weight } = *holding;
         let unit = square.inverse_sqrt();
         // k |s|, where it slides
@@ -215,8 +234,8 @@ impl<const W: usize> FootStep<W> {
         Self {
             r: [slides.select((-p[0]).plus(bound, u[0]), held[0]), slides.select((-p[1]).plus(bound, u[1]), held[1])],
             k: [
-                [slides.select(full.less(q[0], u[0]), k), slides.keep(-q[0] * u[1])],
-                [slides.keep(-q[1] * u[0]), slides.select(full.less(q[1], u[1]), k)],
+                [slides.select(full.less(q[0], u[0]), stiffness), slides.keep(-q[0] * u[1])],
+                [slides.keep(-q[1] * u[0]), slides.select(full.less(q[1], u[1]), stiffness)],
             ],
         }
     }
@@ -231,7 +250,7 @@ impl<const W: usize> ContactMap<W> {
         if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
             return None;
         }
-        let inertia = one.plus(row.t[2], row.t[2]);
+        let inertia = one.plus(row.t[2], row.t[2]) * CONTACT;
         let z = (-self.slip).plus(p[1], inertia);
         let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
         let mode = Mode { closed, sliding, ratio: z.sign() * row.mu };
@@ -260,8 +279,8 @@ pub struct Hold<const W: usize> {
 impl<const W: usize> Hold<W> {
     /// With stiffness k, in the gap row in series with its compliance κ.
     #[inline(always)]
-    pub fn new(stiffness: f64, compliance: Lanes<W>) -> Self {
-        Self { gap: Lanes::splat(1.0) / (compliance + 1.0 / stiffness), slip: Lanes::splat(stiffness) }
+    pub fn new(stiffness: Lanes<W>, compliance: Lanes<W>) -> Self {
+        Self { gap: stiffness / Lanes::splat(1.0).plus(compliance, stiffness), slip: stiffness }
     }
 }
 
@@ -291,7 +310,7 @@ mod tests {
         let vector = |x: f64| [Lanes([x]), Lanes([-0.5 * x])];
         for slip in [1e-12, 1e-3, 1.0, 1e6] {
             for p in [0.0, 1e-6, 3.0] {
-                let step = FootStep::decided(Lanes::ZERO, &vector(p), &vector(slip), STIFFNESS);
+                let step = FootStep::decided(Lanes::ZERO, &vector(p), &vector(slip), NEAR, Lanes([STIFF]));
                 assert_eq!(step.r, vector(p).map(|p| -p), "slip {slip}, impulse {p}");
                 assert_eq!(step.k, [[Lanes::ZERO; 2]; 2], "slip {slip}, impulse {p}");
             }

@@ -4,7 +4,7 @@ use crate::Shape;
 use crate::contact::Contact;
 use crate::ellipse_pair::EllipsePair;
 use crate::feature::{Edge, Round};
-use crate::frames::{Frames, Vec2s, dot, dot_fixed, lane_of, splat};
+use crate::frames::{Frames, Vec2s, dot, dot_fixed, splat};
 use crate::lanes::{Lanes, Mask};
 use crate::narrow::{Gap, NarrowWork, PairFrames};
 use crate::outline::Outline;
@@ -209,13 +209,13 @@ impl<'a, const W: usize> Pair<'a, W> {
         present = present & own.cone.holds_each(&[-normal[0], -normal[1]], ANGLE) & round.cone.holds_each(&back, ANGLE);
         let touch = [-normal[0] * own.radius + own.centre[0], -normal[1] * own.radius + own.centre[1]];
         let theirs = [back[0] * round.radius + round.centre[0], back[1] * round.radius + round.centre[1]];
-        let hidden_here = |lane: usize| own.covered && self.object.hides(lane_of(&touch, lane));
-        let hidden_there = |lane: usize| round.covered && self.other.hides(lane_of(&theirs, lane));
-        let hidden = if own.covered || round.covered {
-            Mask::from_fn(|lane| present.lane(lane) && (hidden_here(lane) || hidden_there(lane)))
-        } else {
-            Mask::splat(false)
-        };
+        let mut hidden = Mask::splat(false);
+        if own.covered {
+            hidden = hidden | self.object.hides(&touch);
+        }
+        if round.covered {
+            hidden = hidden | self.other.hides(&theirs);
+        }
         let gap = distance - own.radius - round.radius;
         let contact = Contact { place, present, normal: self.object_frame.turn(&normal), arm: self.object_frame.turn(&touch), gap };
         self.work.found.push_unless(hidden, contact);
@@ -225,9 +225,7 @@ impl<'a, const W: usize> Pair<'a, W> {
     #[inline(always)]
     fn push(&mut self, contact: Contact<W>, covered: bool, touch: impl Fn() -> Vec2s<W>, shape: &Shape) {
         if covered {
-            let touch = touch();
-            let hidden = Mask::from_fn(|lane| contact.present.lane(lane) && shape.hides(lane_of(&touch, lane)));
-            self.work.found.push_unless(hidden, contact);
+            self.work.found.push_unless(shape.hides(&touch()), contact);
         } else {
             self.work.found.push(contact);
         }

@@ -61,7 +61,7 @@ impl<const W: usize> Polish<W> {
         self.linearised.imbalance = ncp.imbalance(p);
         let contacts = &mut self.linearised.contacts;
         contacts.clear();
-        let hold = Hold::new(STIFFNESS, ncp.compliance);
+        let hold = Hold::new(Lanes::splat(STIFFNESS), ncp.compliance);
         let points = p.normal.iter().zip(&p.tangential);
         for (i, ((row, mode), (p_n, p_t))) in ncp.contacts.iter().zip(&self.modes).zip(points).enumerate() {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
@@ -70,8 +70,8 @@ impl<const W: usize> Polish<W> {
         }
         for k in 0..3 {
             let slip = ncp.feet[k].slip(&p.v);
-            let holding = Holding::new(&p.feet[k], &slip, newton::STIFFNESS);
-            self.linearised.feet[k] = FootStep::in_mode(ncp.feet[k].bound, &p.feet[k], &slip, &holding, slides[k], STIFFNESS);
+            let holding = Holding::new(&p.feet[k], &slip, newton::NEAR);
+            self.linearised.feet[k] = FootStep::in_mode(ncp.feet[k].bound, &p.feet[k], &slip, &holding, slides[k], Lanes::splat(STIFFNESS));
         }
         self.linearised.stall = StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);
     }

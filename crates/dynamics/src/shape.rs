@@ -1,5 +1,7 @@
 //! Planar shapes: unions of discs, convex polygons and ellipses, checked once at [`Shape::new`].
 
+use crate::frames::Vec2s;
+use crate::lanes::{Lanes, Mask};
 use crate::outline::Outline;
 use crate::plane::Vec2;
 use crate::shape_error::{ShapeError, check};
@@ -97,14 +99,26 @@ impl Shape {
         self.tolerance
     }
 
-    /// Whether a boundary point of one part lies inside another one, and so not on the union's boundary.
-    pub(crate) fn hides(&self, point: Vec2) -> bool {
-        self.solids.iter().any(|solid| solid.depth(point) > HIDDEN * self.bounding_radius)
+    /// Where a boundary point of one part lies inside another one, and so not on the union's boundary.
+    #[inline(always)]
+    pub(crate) fn hides<const W: usize>(&self, points: &Vec2s<W>) -> Mask<W> {
+        self.holds_deeper(points, HIDDEN * self.bounding_radius)
     }
 
-    /// Whether a point lies inside the union, seams included.
-    pub(crate) fn contains(&self, point: Vec2) -> bool {
-        self.solids.iter().any(|solid| solid.depth(point) > 0.0)
+    /// Where a point lies inside the union, seams included.
+    #[inline(always)]
+    pub(crate) fn contains<const W: usize>(&self, points: &Vec2s<W>) -> Mask<W> {
+        self.holds_deeper(points, 0.0)
+    }
+
+    /// Where a point lies deeper than `depth` (m) in some part.
+    #[inline(always)]
+    fn holds_deeper<const W: usize>(&self, points: &Vec2s<W>, depth: f64) -> Mask<W> {
+        let mut held = Mask::splat(false);
+        for solid in &self.solids {
+            held = held | solid.depths(points).gt(Lanes::splat(depth));
+        }
+        held
     }
 }
 

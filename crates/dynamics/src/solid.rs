@@ -2,7 +2,9 @@
 
 use crate::Part;
 use crate::feature::Edge;
-use crate::plane::{Vec2, cross, dot, length, right, sub, unit};
+use crate::frames::{Vec2s, dot as dot_each, dot_fixed, splat};
+use crate::lanes::Lanes;
+use crate::plane::{Vec2, cross, dot, left, length, right, sub, unit};
 
 /// A half plane n·p ≤ offset that bounds a polygon.
 #[derive(Clone, Copy, Debug)]
@@ -69,16 +71,22 @@ impl Solid {
         }
     }
 
-    /// How deep a point lies inside (m; negative outside): exact for polygons and discs inside, in sign for ellipses.
-    pub fn depth(&self, point: Vec2) -> f64 {
+    /// How deep points lie inside (m; negative outside): exact for polygons and discs inside, in sign for ellipses.
+    #[inline(always)]
+    pub fn depths<const W: usize>(&self, points: &Vec2s<W>) -> Lanes<W> {
         match self {
-            Solid::Polygon(polygon) => polygon.depth(point),
+            Solid::Polygon(polygon) => polygon.depths(points),
             Solid::Oval { centre, axis, semi_axes: [a, b] } => {
-                let d = sub(point, *centre);
-                let scaled = [dot(*axis, d) / a, cross(*axis, d) / b];
-                (1.0 - length(scaled)) * if a < b { a } else { b }
+                let d = [points[0] - centre[0], points[1] - centre[1]];
+                let scaled = [dot_fixed(&d, *axis) / *a, dot_fixed(&d, left(*axis)) / *b];
+                (-dot_each(&scaled, &scaled).sqrt() + 1.0) * if a < b { *a } else { *b }
             }
         }
+    }
+
+    /// The same of one point.
+    pub fn depth(&self, point: Vec2) -> f64 {
+        self.depths(&splat::<1>(point)).0[0]
     }
 
     /// The stretch of `edge` that the solid covers, if it is longer than what merely touches.
@@ -117,8 +125,13 @@ impl Polygon {
         Self { corners: vertices.to_vec(), sides: vertices.iter().zip(next).map(side).collect(), centre, radius }
     }
 
-    fn depth(&self, point: Vec2) -> f64 {
-        self.sides.iter().map(|side| side.offset - dot(side.normal, point)).fold(f64::INFINITY, f64::min)
+    #[inline(always)]
+    fn depths<const W: usize>(&self, points: &Vec2s<W>) -> Lanes<W> {
+        let mut depths = Lanes::splat(f64::INFINITY);
+        for side in &self.sides {
+            depths = depths.min(-dot_fixed(points, side.normal) + side.offset);
+        }
+        depths
     }
 
     /// Clips the edge by the half planes, each moved outward by the tolerance; the exact ends lie where it crosses the very lines.

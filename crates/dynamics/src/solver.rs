@@ -10,7 +10,7 @@ use crate::impulses::Impulses;
 use crate::lanes::Lanes;
 use crate::natural::NaturalMap;
 use crate::ncp::Ncp;
-use crate::newton::{Goal, STIFFNESS};
+use crate::newton::{Goal, NEAR};
 use crate::packed::Place;
 use crate::problem::{StepProblem, StepSolution};
 use crate::slow::SlowSolver;
@@ -19,7 +19,7 @@ use crate::slow::SlowSolver;
 pub const TOLERANCE: f64 = 1e-9;
 
 /// What the fast solver tries: an aim below [`TOLERANCE`], since Newton's last step mostly ends far below it.
-const FAST: Goal = Goal { aim: 1e-10, enough: TOLERANCE, iterations: 14, weight: STIFFNESS };
+const FAST: Goal = Goal { aim: 1e-10, enough: TOLERANCE, iterations: 32, weight: NEAR };
 
 /// Ways down from a warm start that the smoothed steps try one after the other: from next to it, from afar, and slowly.
 const DESCENTS: [Descent; 3] = [

@@ -3,7 +3,7 @@
 use crate::Shape;
 use crate::cluster::Cluster;
 use crate::feature::Edge;
-use crate::frames::{Vec2s, dot, lane_of};
+use crate::frames::{Vec2s, dot};
 use crate::lanes::{Lanes, Mask};
 
 /// A point that stands over an edge, in the lanes where it does.
@@ -118,11 +118,7 @@ fn leave_ways_out<const W: usize>(shape: &Shape, centre: &Vec2s<W>, behind: Mask
     }
     // a corner flush with one face may lie behind the next; what rests on a face that it faces is outside
     let asked = behind & !beside;
-    let inside = if shape.parts().len() == 1 {
-        asked & below_all
-    } else {
-        Mask::from_fn(|lane| asked.lane(lane) && shape.contains(lane_of(centre, lane)))
-    };
+    let inside = asked & if shape.parts().len() == 1 { below_all } else { shape.contains(centre) };
     for k in 0..near.len() {
         let mut out = is(way, near[k].edge);
         for other in near.iter().filter(|other| edges[other.edge].reflex.contains(&Some(near[k].edge as u32))) {
