@@ -7,6 +7,7 @@ use crate::angle::{nearest_zero, wrapped};
 use crate::chunk::{Column, LANES, flag, part, store_part};
 use crate::columns::{Columns, Flag};
 use crate::propagation::Propagation;
+use crate::sums::{Reference, Sums};
 use crate::watch::StepWatch;
 use crate::{Camera, Setup};
 
@@ -33,6 +34,15 @@ pub struct StepPlan {
     pub parameter_noise: ParameterNoise,
     /// Ring slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
+    /// Near what the particles' columns will be.
+    pub reference: Reference,
+}
+
+impl StepPlan {
+    /// No step at all.
+    pub(crate) fn none(reference: Reference) -> Self {
+        Self { substeps: Vec::new(), driven: false, parameter_noise: ParameterNoise::Frozen, slot: 0, reference }
+    }
 }
 
 /// Where in a particle's past the camera looks: between two ring slots.
@@ -90,11 +100,6 @@ impl<'w> ContactModel<'w> {
     #[must_use]
     pub fn watched(self, watch: Option<&'w dyn StepWatch>) -> Self {
         Self { watch, ..self }
-    }
-
-    /// Layout of the particles.
-    pub fn layout(&self) -> Columns {
-        self.columns
     }
 
     /// x, y and θ of one chunk's particles where the camera sees them.
@@ -174,6 +179,7 @@ impl Model for ContactModel<'_> {
     type Input = StepPlan;
     type Observation = Observation;
     type Scratch = Propagation;
+    type Sums = Sums;
 
     fn columns(&self) -> usize {
         self.columns.count()
@@ -204,6 +210,14 @@ impl Model for ContactModel<'_> {
             out,
             #[inline(always)]
             |chunk| self.camera_log_likelihood(observation, block, chunk) + self.tactile_log_likelihood(&observation.tactile, block, chunk),
+        );
+    }
+
+    fn sum(&self, plan: &StepPlan, block: &Block<'_>, weights: &[f64], sums: &mut Sums) {
+        on_widest(
+            Level::new(),
+            #[inline(always)]
+            || sums.take(block, weights, &plan.reference, self.columns),
         );
     }
 

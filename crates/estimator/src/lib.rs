@@ -20,12 +20,12 @@ mod score;
 mod setup;
 mod statistics;
 mod summary;
+mod sums;
 mod track;
 mod trajectory;
 mod watch;
 
 pub use cloud::Cloud;
-pub use contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
 pub use log::Log;

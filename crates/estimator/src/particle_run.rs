@@ -6,6 +6,7 @@ use crate::cloud::Cloud;
 use crate::contact_model::{ContactModel, Lookback, Observation, ParameterNoise, StepPlan};
 use crate::run::Prepared;
 use crate::summary::summary;
+use crate::sums::Reference;
 use crate::{Camera, Estimate, EstimateRow, RunError, RunOptions, Setup, TactileUse};
 
 /// Tracks the object of `prepared`; also the number of collapses.
@@ -27,15 +28,17 @@ pub(crate) fn track(
     let mut filter = ParticleFilter::new(model, settings)?;
     let mut estimate = prepared.empty_estimate(setup);
     let mut collapses = 0;
-    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, prepared.start.theta) };
+    let mut reference = Reference::new(prepared.start, setup.scene.nominal);
+    filter.sum_anew(&StepPlan::none(reference));
+    estimate.rows[prepared.first] = EstimateRow { visual: true, ..summary(&filter, &reference) };
     show(prepared, prepared.first, &filter);
     for row in prepared.first + 1..prepared.log.len() {
-        let plan = plan(prepared, row, history);
+        reference = Reference::of(&estimate.rows[row - 1]).unwrap_or(reference);
+        let plan = plan(prepared, row, history, reference);
         let observation = observation(prepared, &camera, options.tactile, row, history);
         let report = filter.step(&plan, Some(&observation).filter(|o| !o.is_empty()));
         collapses += u32::from(report.collapsed());
-        let near = estimate.rows[row - 1].pose.map_or(0.0, |pose| pose.theta);
-        estimate.rows[row] = reported(summary(&filter, near), &report, observation.pose.is_some());
+        estimate.rows[row] = reported(summary(&filter, &reference), &report, observation.pose.is_some());
         show(prepared, row, &filter);
         progress(row);
     }
@@ -50,10 +53,10 @@ fn show(prepared: &Prepared<'_>, row: usize, filter: &ParticleFilter<ContactMode
 }
 
 /// The step that leads to `row`.
-fn plan(prepared: &Prepared<'_>, row: usize, history: usize) -> StepPlan {
+fn plan(prepared: &Prepared<'_>, row: usize, history: usize, reference: Reference) -> StepPlan {
     let parameter_noise = if prepared.visible(row).is_some() { ParameterNoise::Drawn } else { ParameterNoise::Frozen };
     let (substeps, driven) = (prepared.schedule.step(row - 1).to_vec(), prepared.schedule.driven(row - 1));
-    StepPlan { substeps, driven, parameter_noise, slot: slot(row, history) }
+    StepPlan { substeps, driven, parameter_noise, slot: slot(row, history), reference }
 }
 
 fn slot(row: usize, history: usize) -> usize {

@@ -4,11 +4,11 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use crate::box_muller::{LN2_HIGH, LN2_LOW, ROUND, polynomial};
 
-/// Writes e^(x − most) for every x of `exponents`; none of them may exceed `most` or be NaN.
-pub(crate) fn exponentials(exponents: &[f64], most: f64, out: &mut [f64]) {
+/// Turns every x of `exponents` into e^(x − most); none of them may exceed `most` or be NaN.
+pub(crate) fn exponentials(exponents: &mut [f64], most: f64) {
     dispatch!(Level::new(), simd => simd.vectorize(
         #[inline(always)]
-        || out.iter_mut().zip(exponents).for_each(|(out, x)| *out = exp(x - most)),
+        || exponents.iter_mut().for_each(|x| *x = exp(*x - most)),
     ));
 }
 
@@ -65,8 +65,8 @@ mod tests {
 
     #[test]
     fn exponentials_are_relative_to_the_most() {
-        let mut out = [0.0; 3];
-        exponentials(&[1000.0, 999.0, f64::NEG_INFINITY], 1000.0, &mut out);
-        assert_eq!(out, [1.0, libm::exp(-1.0), 0.0]);
+        let mut numbers = [1000.0, 999.0, f64::NEG_INFINITY];
+        exponentials(&mut numbers, 1000.0);
+        assert_eq!(numbers, [1.0, libm::exp(-1.0), 0.0]);
     }
 }

@@ -2,7 +2,8 @@
 //! 2009, algorithm "SMC" with adaptive resampling), over any [`Model`].
 
 use crate::parallel::PerThread;
-use crate::{Block, Draw, LogWeights, Model, ParticleSet, Purpose, Resampling, Streams};
+use crate::update::{BlockUpdate, Update};
+use crate::{BLOCK, Block, Draw, LogWeights, Model, ParticleSet, Purpose, Resampling, Streams, WeightedSums};
 
 /// How a filter runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +105,10 @@ pub struct ParticleFilter<M: Model> {
     log_likelihood: Vec<f64>,
     redrawn_log_likelihood: Vec<f64>,
     ancestors: Vec<u32>,
+    update: Update,
+    /// One of every block, and of all.
+    block_sums: Vec<M::Sums>,
+    sums: M::Sums,
 }
 
 impl<M: Model> ParticleFilter<M> {
@@ -122,6 +127,9 @@ impl<M: Model> ParticleFilter<M> {
             log_likelihood: vec![0.0; settings.particles],
             redrawn_log_likelihood: vec![0.0; settings.particles],
             ancestors: vec![0; settings.particles],
+            update: Update::new(settings.particles),
+            block_sums: (0..particles.block_count()).map(|_| M::Sums::default()).collect(),
+            sums: M::Sums::default(),
             particles,
             model,
             settings,
@@ -139,6 +147,11 @@ impl<M: Model> ParticleFilter<M> {
             Some(observation) => self.weigh(observation),
             None => Weighing::Unobserved,
         };
+        match weighing {
+            Weighing::Unobserved => self.add_up(|_| 1.0),
+            Weighing::Weighed { .. } => self.add_up(BlockUpdate::share),
+            Weighing::Collapsed { .. } => self.sum_anew(input),
+        }
         StepReport { effective_sample_size: self.weights.effective_sample_size(), resampled, weighing }
     }
 
@@ -151,32 +164,37 @@ impl<M: Model> ParticleFilter<M> {
         self.particles.for_each_block(|block| model.initialise(draw, block));
     }
 
-    /// Resamples where asked to, propagates, and takes the log-likelihoods, all of it block by block.
+    /// Resamples where asked to, propagates, weighs and sums, all of it block by block.
     fn advance(&mut self, resample: bool, input: &M::Input, observation: Option<&M::Observation>) {
         if resample {
             self.choose_ancestors(Purpose::Resample);
         }
-        let (model, scratch, draw) = (&self.model, &self.scratch, self.draw(Purpose::Propagate));
+        let (model, scratch, weights, draw) = (&self.model, &self.scratch, &self.weights, self.draw(Purpose::Propagate));
         let ancestors = resample.then_some(&*self.ancestors);
-        self.particles.advance(ancestors, &mut self.log_likelihood, |block, log_likelihood| {
+        let with = self.log_likelihood.chunks_mut(BLOCK).zip(self.update.blocks_mut()).zip(&mut self.block_sums);
+        self.particles.advance(ancestors, with, |block, ((log_likelihood, (products, update)), sums)| {
             scratch.lend(|scratch| model.propagate(input, draw, block, scratch));
-            if let Some(observation) = observation {
-                model.log_likelihood(observation, &block.as_block(), log_likelihood);
-            }
+            let block = &block.as_block();
+            let Some(observation) = observation else {
+                return model.sum(input, block, &weights.weights()[block.range()], sums);
+            };
+            model.log_likelihood(observation, block, log_likelihood);
+            *update = weights.weigh_block(block.range(), log_likelihood, products);
+            model.sum(input, block, products, sums);
         });
     }
 
     /// Multiplies the weights by the likelihoods just taken.
     fn weigh(&mut self, observation: &M::Observation) -> Weighing {
         let model = &self.model;
-        let mut best_log_likelihood = self.weights.best(&self.log_likelihood);
+        let mut best_log_likelihood = self.update.best_log_likelihood();
         if model.collapsed(best_log_likelihood) {
             let part = &mut self.redrawn_log_likelihood;
-            self.particles.map_blocks(part, |block, out| model.redrawn_log_likelihood(observation, block, out));
+            self.particles.show(part.chunks_mut(BLOCK), |block, out| model.redrawn_log_likelihood(observation, block, out));
             best_log_likelihood = self.weights.best(part);
         }
         if !model.collapsed(best_log_likelihood)
-            && let Some(log_evidence) = self.weights.multiply(&self.log_likelihood)
+            && let Some(log_evidence) = self.weights.apply(&mut self.update, &self.log_likelihood)
         {
             return Weighing::Weighed { log_evidence };
         }
@@ -188,7 +206,28 @@ impl<M: Model> ParticleFilter<M> {
     fn recover(&mut self, observation: &M::Observation) {
         self.choose_ancestors(Purpose::Recover);
         let (model, draw) = (&self.model, self.draw(Purpose::Redraw));
-        self.particles.advance(Some(&self.ancestors), &mut self.log_likelihood, |block, _| model.redraw(observation, draw, block));
+        let blocks = 0..self.particles.block_count();
+        self.particles.advance(Some(&self.ancestors), blocks, |block, _| model.redraw(observation, draw, block));
+    }
+
+    /// Takes the sums over the particles as they are now.
+    pub fn sum_anew(&mut self, input: &M::Input) {
+        let (model, weights) = (&self.model, self.weights.weights());
+        self.particles.show(self.block_sums.iter_mut(), |block, sums| model.sum(input, block, &weights[block.range()], sums));
+        self.add_up(|_| 1.0);
+    }
+
+    /// Adds the blocks' sums, each times its share, in order.
+    fn add_up(&mut self, share: impl Fn(&BlockUpdate) -> f64) {
+        self.sums.clear();
+        for (sums, update) in self.block_sums.iter().zip(self.update.blocks()) {
+            self.sums.add(sums, share(update));
+        }
+    }
+
+    /// The sums over the particles after the last step; before one, over none.
+    pub fn sums(&self) -> &M::Sums {
+        &self.sums
     }
 
     /// Draws the ancestors by the weights, which become equal.

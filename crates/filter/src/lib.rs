@@ -26,6 +26,7 @@ mod process_noise;
 mod resample;
 mod series;
 mod streams;
+mod update;
 mod velocity_bank;
 mod weights;
 
@@ -33,7 +34,7 @@ pub use awake::keep_threads_awake;
 pub use constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
 pub use filter::{ParticleFilter, Settings, SettingsError, StepReport, Weighing};
 pub use kalman::{Gaussian, Update};
-pub use model::Model;
+pub use model::{Model, WeightedSums};
 pub use particles::{BLOCK, Block, BlockMut, ParticleSet};
 pub use process_noise::{Optimum, ProcessNoiseFit};
 pub use resample::Resampling;

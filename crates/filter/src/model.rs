@@ -2,6 +2,20 @@
 
 use crate::{Block, BlockMut, Draw};
 
+/// Sums over weighted particles.
+pub trait WeightedSums: Default + Send {
+    /// Back to the sums over no particle; memory is kept.
+    fn clear(&mut self);
+
+    /// Adds the sums over other particles, whose weights are `share` times those that they were taken with.
+    fn add(&mut self, other: &Self, share: f64);
+}
+
+impl WeightedSums for () {
+    fn clear(&mut self) {}
+    fn add(&mut self, (): &(), _: f64) {}
+}
+
 /// A state-space model over blocks of particles.
 ///
 /// Methods work on a block at a time and may run on any thread in any order: what they write may depend only on
@@ -15,6 +29,8 @@ pub trait Model: Sync {
     /// Working memory of one thread, made once. It may remember nothing that a result depends on: a thread takes up
     /// any block. What belongs to a particle is a column.
     type Scratch: Send;
+    /// What the particles amount to after a step; `()` where nobody asks.
+    type Sums: WeightedSums;
 
     /// The number of columns, at least 1.
     fn columns(&self) -> usize;
@@ -33,6 +49,9 @@ pub trait Model: Sync {
     /// A model that proposes from something else than its transition adds the log-ratio of the two here (carried
     /// in a column). A likelihood normalised as a density makes [`Weighing::Weighed`](crate::Weighing) an evidence.
     fn log_likelihood(&self, observation: &Self::Observation, block: &Block<'_>, out: &mut [f64]);
+
+    /// Writes the sums over one block that has made a step, while it is at hand.
+    fn sum(&self, input: &Self::Input, block: &Block<'_>, weights: &[f64], sums: &mut Self::Sums);
 
     /// Whether no particle explains the observation, given the largest log-likelihood among particles of positive
     /// weight. A largest value of -inf is always a collapse.

@@ -1,4 +1,4 @@
-//! Loops over equal chunks and sums over one fixed tree: the same bits on any number of threads.
+//! Loops over many items and sums over one fixed tree: the same bits on any number of threads.
 
 use std::hint::spin_loop;
 use std::ops::Range;
@@ -35,29 +35,10 @@ impl<S> PerThread<S> {
     }
 }
 
-/// Runs `body(index, chunk)` over `chunk`-sized pieces of `data` (the last may be short); a thread takes `grain` of them at a time.
-pub(crate) fn for_each<T: Send>(data: &mut [T], chunk: usize, grain: usize, body: impl Fn(usize, &mut [T]) + Sync) {
-    let count = data.len().div_ceil(chunk * grain);
-    for_all(data.chunks_mut(chunk * grain).enumerate(), count, |(first, several)| {
-        several.chunks_mut(chunk).enumerate().for_each(|(i, c)| body(first * grain + i, c));
-    });
-}
-
-/// Runs `body(index, piece of a, piece of b)` over both arrays cut into pieces of the lengths `pieces` (the last may be short).
-pub(crate) fn for_each_pair<A: Send, B: Send>(
-    a: &mut [A],
-    b: &mut [B],
-    pieces: [usize; 2],
-    body: impl Fn(usize, &mut [A], &mut [B]) + Sync,
-) {
-    let count = a.len().div_ceil(pieces[0]);
-    let both = a.chunks_mut(pieces[0]).zip(b.chunks_mut(pieces[1]));
-    for_all(both.enumerate(), count, |(i, (a, b))| body(i, a, b));
-}
-
-/// Runs `body` on `count` items, which the threads take one after the other, from both ends: in the next loop a thread mostly finds
+/// Runs `body` on all items, which the threads take one after the other, from both ends: in the next loop a thread mostly finds
 /// those again that it has in its cache.
-fn for_all<I>(items: impl DoubleEndedIterator<Item = I> + Send, count: usize, body: impl Fn(I) + Sync) {
+pub(crate) fn for_all<I>(items: impl ExactSizeIterator<Item = I> + DoubleEndedIterator + Send, body: impl Fn(I) + Sync) {
+    let count = items.len();
     if !shared(count) {
         return items.for_each(body);
     }
@@ -99,18 +80,6 @@ fn wait_shortly(left: &AtomicUsize) {
         }
         spin_loop();
     }
-}
-
-/// [`tree_reduce`] of leaves that are worth sharing however few they are: dealt out as in [`for_each`], so that a thread mostly finds
-/// them in its cache.
-pub(crate) fn tree_reduce_dealt<A: Send>(leaves: usize, leaf: &(impl Fn(usize) -> A + Sync), combine: &(impl Fn(A, A) -> A + Sync)) -> A {
-    if leaves > SERIAL_LEAVES || !shared(leaves) {
-        return tree_reduce(0..leaves, leaf, combine);
-    }
-    let values = [const { Mutex::new(None) }; SERIAL_LEAVES];
-    for_all(0..leaves, leaves, |i| *locked(&values[i]) = Some(leaf(i)));
-    let dealt = |i: usize| locked(&values[i]).take().unwrap_or_else(|| leaf(i));
-    tree_reduce(0..leaves, &dealt, combine)
 }
 
 fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {

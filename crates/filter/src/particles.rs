@@ -68,42 +68,46 @@ impl ParticleSet {
 
     /// Runs `body` on every block, in parallel where threads allow.
     pub fn for_each_block(&mut self, body: impl Fn(&mut BlockMut<'_>) + Sync) {
-        let particles = self.particles;
-        parallel::for_each(&mut self.data, self.columns * BLOCK, 1, |index, data| {
+        let (particles, stride) = (self.particles, self.columns * BLOCK);
+        parallel::for_all(self.data.chunks_mut(stride).enumerate(), |(index, data)| {
             body(&mut BlockMut { data, span: Span::of(index, particles) });
         });
     }
 
-    /// Runs `body(block, its part of out)` on every block, in parallel where threads allow; `out` holds N values.
+    /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
     ///
     /// Where there are `ancestors`, particle i becomes a copy of particle `ancestors[i]` first, while its block is at hand.
-    pub fn advance(&mut self, ancestors: Option<&[u32]>, out: &mut [f64], body: impl Fn(&mut BlockMut<'_>, &mut [f64]) + Sync) {
-        assert_eq!(out.len(), self.particles);
+    pub fn advance<T>(
+        &mut self,
+        ancestors: Option<&[u32]>,
+        with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send,
+        body: impl Fn(&mut BlockMut<'_>, T) + Sync,
+    ) {
+        assert_eq!(with.len(), self.block_count(), "an item for every block");
         let (particles, stride) = (self.particles, self.columns * BLOCK);
         let Some(ancestors) = ancestors else {
-            return parallel::for_each_pair(&mut self.data, out, [stride, BLOCK], |index, data, out| {
-                body(&mut BlockMut { data, span: Span::of(index, particles) }, out);
-            });
+            let blocks = self.data.chunks_mut(stride).zip(with).enumerate();
+            return parallel::for_all(blocks, |(index, (data, item))| body(&mut BlockMut { data, span: Span::of(index, particles) }, item));
         };
         assert_eq!(ancestors.len(), particles);
         let source = &self.data;
-        parallel::for_each_pair(&mut self.spare, out, [stride, BLOCK], |index, target, out| {
+        parallel::for_all(self.spare.chunks_mut(stride).zip(with).enumerate(), |(index, (target, item))| {
             let span = Span::of(index, particles);
             gather_block(source, &ancestors[span.range()], target);
-            body(&mut BlockMut { data: target, span }, out);
+            body(&mut BlockMut { data: target, span }, item);
         });
         std::mem::swap(&mut self.data, &mut self.spare);
     }
 
-    /// Fills `out` (N values) with `body(block, its part of out)`, in parallel where threads allow.
-    pub fn map_blocks(&self, out: &mut [f64], body: impl Fn(&Block<'_>, &mut [f64]) + Sync) {
-        assert_eq!(out.len(), self.particles);
-        parallel::for_each(out, BLOCK, 1, |index, out| body(&self.block(index), out));
+    /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
+    pub fn show<T>(&self, with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send, body: impl Fn(&Block<'_>, T) + Sync) {
+        assert_eq!(with.len(), self.block_count(), "an item for every block");
+        parallel::for_all(with.enumerate(), |(index, item)| body(&self.block(index), item));
     }
 
     /// `map` of every block, combined over a fixed tree: the same bits on any number of threads.
     pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
-        parallel::tree_reduce_dealt(self.block_count(), &|index| map(&self.block(index)), &combine)
+        parallel::tree_reduce(0..self.block_count(), &|index| map(&self.block(index)), &combine)
     }
 }
 

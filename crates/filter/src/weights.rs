@@ -4,14 +4,13 @@
 //! weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is positive, none is NaN. Sums run over a
 //! fixed tree, so they do not depend on threads.
 
-use crate::exponential::exponentials;
+use std::ops::Range;
+
+use crate::update::{BlockUpdate, Normaliser, Update, best_alive, is_broken};
 use crate::{BLOCK, parallel};
 
 /// Blocks of weights that one thread takes at least.
 const GRAIN: usize = 16;
-
-/// Comparisons that run side by side.
-const PARTIAL: usize = 8;
 
 /// Why weights were refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -67,9 +66,9 @@ impl LogWeights {
         if let Some(particle) = log.iter().position(|&w| is_broken(w)) {
             return Err(WeightError::NotANumber { particle });
         }
-        let linear = vec![0.0; log.len()];
-        let mut weights = LogWeights { log, linear, effective_sample_size: 0.0 };
-        weights.normalise().ok_or(WeightError::AllZero)?;
+        let certain = vec![0.0; log.len()];
+        let mut weights = LogWeights { linear: certain.clone(), log, effective_sample_size: 0.0 };
+        weights.multiply(&certain).ok_or(WeightError::AllZero)?;
         Ok(weights)
     }
 
@@ -90,15 +89,33 @@ impl LogWeights {
     /// If a likelihood is NaN or +inf: then the model is broken.
     pub fn multiply(&mut self, log_likelihood: &[f64]) -> Option<f64> {
         assert_eq!(log_likelihood.len(), self.log.len());
-        assert_sound(log_likelihood);
-        let mut joint = self.log.iter().zip(log_likelihood).map(|(w, l)| w + l);
-        if joint.all(|w| w == f64::NEG_INFINITY) {
-            return None;
+        let mut update = Update::new(self.log.len());
+        for (block, (products, sums)) in update.blocks_mut().enumerate() {
+            let range = block * BLOCK..block * BLOCK + products.len();
+            *sums = self.weigh_block(range.clone(), &log_likelihood[range], products);
         }
-        parallel::for_each(&mut self.log, BLOCK, GRAIN, |block, log| {
-            log.iter_mut().zip(&log_likelihood[block * BLOCK..]).for_each(|(w, l)| *w += l);
+        self.apply(&mut update, log_likelihood)
+    }
+
+    /// Writes what Bayes' rule makes of one block's weights, up to a factor.
+    pub(crate) fn weigh_block(&self, range: Range<usize>, log_likelihood: &[f64], products: &mut [f64]) -> BlockUpdate {
+        BlockUpdate::of(range.start, &self.log[range], log_likelihood, products)
+    }
+
+    /// [`LogWeights::multiply`] where every block of `update` has been weighed.
+    pub(crate) fn apply(&mut self, update: &mut Update, log_likelihood: &[f64]) -> Option<f64> {
+        let Normaliser { log_sum, effective_sample_size } = update.normalise()?;
+        self.effective_sample_size = effective_sample_size;
+        let log = self.log.chunks_mut(GRAIN * BLOCK).zip(log_likelihood.chunks(GRAIN * BLOCK));
+        parallel::for_all(log, |(log, log_likelihood)| {
+            log.iter_mut().zip(log_likelihood).for_each(|(w, l)| *w = *w + l - log_sum);
         });
-        self.normalise()
+        parallel::for_all(self.linear.chunks_mut(GRAIN * BLOCK).zip(update.grains(GRAIN)), |(linear, (products, blocks))| {
+            for ((linear, products), block) in linear.chunks_mut(BLOCK).zip(products.chunks(BLOCK)).zip(blocks) {
+                linear.iter_mut().zip(products).for_each(|(w, product)| *w = product * block.share());
+            }
+        });
+        Some(log_sum)
     }
 
     /// The largest of `log_likelihood` (N,) among the particles of positive weight.
@@ -107,29 +124,7 @@ impl LogWeights {
     /// If one is NaN or +inf: then the model is broken.
     pub fn best(&self, log_likelihood: &[f64]) -> f64 {
         assert_eq!(log_likelihood.len(), self.log.len());
-        assert_sound(log_likelihood);
-        let alive = |w: f64, l: f64| if w > f64::NEG_INFINITY { l } else { f64::NEG_INFINITY };
-        largest(&self.log, log_likelihood, alive)
-    }
-
-    /// Makes the linear weights sum to 1; the logarithm of the sum before, or `None` if all weights are zero.
-    fn normalise(&mut self) -> Option<f64> {
-        let best = largest(&self.log, &self.log, |w, _| w);
-        if best == f64::NEG_INFINITY {
-            return None;
-        }
-        // exponentials relative to the best, which cannot overflow
-        let log = &self.log;
-        parallel::for_each(&mut self.linear, BLOCK, GRAIN, |block, linear| {
-            exponentials(&log[block * BLOCK..][..linear.len()], best, linear);
-        });
-        let (sum, sum_of_squares) = sums(&self.linear);
-        self.effective_sample_size = sum * sum / sum_of_squares;
-
-        let log_sum = best + libm::log(sum);
-        parallel::for_each(&mut self.linear, BLOCK, GRAIN, |_, linear| linear.iter_mut().for_each(|w| *w /= sum));
-        parallel::for_each(&mut self.log, BLOCK, GRAIN, |_, log| log.iter_mut().for_each(|w| *w -= log_sum));
-        Some(log_sum)
+        best_alive(0, &self.log, log_likelihood)
     }
 
     /// The effective sample size `(sum w)^2 / sum w^2` (Kong, Liu & Wong 1994): N for equal weights, 1 when one
@@ -147,52 +142,4 @@ impl LogWeights {
     pub fn log_weights(&self) -> &[f64] {
         &self.log
     }
-}
-
-fn assert_sound(log_likelihood: &[f64]) {
-    // up to the end: a loop that may stop early does not vectorise
-    let broken = log_likelihood.iter().fold(false, |broken, &l| broken | is_broken(l));
-    if broken && let Some(particle) = log_likelihood.iter().position(|&l| is_broken(l)) {
-        let value = log_likelihood[particle];
-        panic!("the log-likelihood of particle {particle} is {value}; it must be finite or -inf");
-    }
-}
-
-fn is_broken(log_weight: f64) -> bool {
-    log_weight.is_nan() || log_weight == f64::INFINITY
-}
-
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
-}
-
-/// The largest f(x_i, y_i), -inf at least.
-fn largest(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
-    let of = |block: usize| {
-        let range = block * BLOCK..x.len().min((block + 1) * BLOCK);
-        largest_of_block(&x[range.clone()], &y[range], &f)
-    };
-    parallel::tree_reduce(0..x.len().div_ceil(BLOCK), &of, &larger)
-}
-
-/// In [`PARTIAL`] partial ones: one would wait for every comparison.
-fn largest_of_block(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
-    let mut best = [f64::NEG_INFINITY; PARTIAL];
-    let ((x, last_x), (y, last_y)) = (x.as_chunks::<PARTIAL>(), y.as_chunks::<PARTIAL>());
-    for (x, y) in x.iter().zip(y) {
-        for k in 0..PARTIAL {
-            best[k] = larger(best[k], f(x[k], y[k]));
-        }
-    }
-    let last = last_x.iter().zip(last_y).map(|(x, y)| f(*x, *y));
-    best.into_iter().chain(last).fold(f64::NEG_INFINITY, larger)
-}
-
-/// (sum x, sum x^2) over the fixed tree of blocks.
-fn sums(x: &[f64]) -> (f64, f64) {
-    let leaf = |block: usize| {
-        let end = x.len().min((block + 1) * BLOCK);
-        x[block * BLOCK..end].iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w))
-    };
-    parallel::tree_reduce(0..x.len().div_ceil(BLOCK), &leaf, &|a, b| (a.0 + b.0, a.1 + b.1))
 }

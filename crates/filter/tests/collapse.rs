@@ -46,6 +46,7 @@ impl Model for Given {
     type Input = ();
     type Observation = f64;
     type Scratch = ();
+    type Sums = ();
 
     fn columns(&self) -> usize {
         1
@@ -56,6 +57,7 @@ impl Model for Given {
     fn log_likelihood(&self, observation: &f64, _: &Block<'_>, out: &mut [f64]) {
         out.fill(*observation);
     }
+    fn sum(&self, (): &(), _: &Block<'_>, _: &[f64], (): &mut ()) {}
     fn collapsed(&self, best: f64) -> bool {
         best < self.collapse_below
     }

@@ -35,7 +35,7 @@ fn advance_copies_whole_ancestors() {
     let n = 20 * BLOCK + 7;
     let ancestors: Vec<u32> = (0..n).map(|i| ((i * 7919 + 3) % n) as u32).collect();
     let mut set = numbered(n, 3);
-    set.advance(Some(&ancestors), &mut vec![0.0; n], |_, _| ());
+    set.advance(Some(&ancestors), 0..n.div_ceil(BLOCK), |_, _| ());
     for (i, &ancestor) in ancestors.iter().enumerate() {
         for c in 0..3 {
             assert_eq!(set.value(i, c), f64::from(1000 * c as u32 + ancestor));
@@ -70,6 +70,7 @@ fn weighted_circular_mean_crosses_the_seam() {
         type Input = ();
         type Observation = ();
         type Scratch = ();
+        type Sums = ();
         fn columns(&self) -> usize {
             1
         }
@@ -82,6 +83,7 @@ fn weighted_circular_mean_crosses_the_seam() {
         }
         fn propagate(&self, (): &(), _: Draw, _: &mut BlockMut<'_>, (): &mut ()) {}
         fn log_likelihood(&self, (): &(), _: &Block<'_>, _: &mut [f64]) {}
+        fn sum(&self, (): &(), _: &Block<'_>, _: &[f64], (): &mut ()) {}
         fn redraw(&self, (): &(), _: Draw, _: &mut BlockMut<'_>) {}
     }
     let filter = ParticleFilter::new(Angles, common::settings(100, 0)).unwrap();
@@ -104,6 +106,23 @@ fn weighted_moments_are_the_sums_over_all_particles() {
         assert!((filter.weighted_std(column) - std).abs() < 1e-12 && std > 0.0, "{std}");
     }
     assert!(weights.iter().any(|w| *w != weights[0]));
+}
+
+#[test]
+fn sums_are_those_of_the_weighted_particles_however_the_step_ends() {
+    use common::{Axis, POSITION};
+    for particles in [1, BLOCK, 3 * BLOCK + 5] {
+        let mut filter = ParticleFilter::new(Axis::GATED, common::settings(particles, 1)).unwrap();
+        let mut check = |observation: Option<&f64>, collapses: bool| {
+            assert_eq!(filter.step(&0.1, observation).collapsed(), collapses);
+            let (sums, mean) = (filter.sums(), filter.weighted_mean(POSITION));
+            assert!((sums.weight - 1.0).abs() < 1e-12 && (sums.position - mean).abs() < 1e-12, "{sums:?}, mean {mean}");
+        };
+        check(Some(&0.2), false);
+        check(None, false);
+        check(Some(&50.0), true);
+        check(Some(&50.1), false);
+    }
 }
 
 #[test]

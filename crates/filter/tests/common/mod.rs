@@ -1,7 +1,7 @@
 //! A linear-Gaussian model, whose exact answer is a Kalman filter's, for the tests of the particle filter.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use stickslip_filter::{Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams};
+use stickslip_filter::{Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams, WeightedSums};
 
 /// Columns.
 pub const POSITION: usize = 0;
@@ -23,6 +23,24 @@ impl Axis {
     pub const GATED: Axis = Axis { gate: 3.0, ..Axis::OPEN };
 }
 
+/// Sum of the weights, and of weight times position.
+#[derive(Debug, Default)]
+pub struct Sums {
+    pub weight: f64,
+    pub position: f64,
+}
+
+impl WeightedSums for Sums {
+    fn clear(&mut self) {
+        *self = Sums::default();
+    }
+
+    fn add(&mut self, other: &Self, share: f64) {
+        self.weight += share * other.weight;
+        self.position += share * other.position;
+    }
+}
+
 /// Random numbers of one block.
 pub type Noise = [Vec<f64>; 2];
 
@@ -31,6 +49,7 @@ impl Model for Axis {
     type Input = f64;
     type Observation = f64;
     type Scratch = Noise;
+    type Sums = Sums;
 
     fn columns(&self) -> usize {
         2
@@ -69,6 +88,11 @@ impl Model for Axis {
             let z = (measured - x) / std;
             *l = if (measured - x).abs() > self.gate { f64::NEG_INFINITY } else { constant - 0.5 * z * z };
         }
+    }
+
+    fn sum(&self, _: &f64, block: &Block<'_>, weights: &[f64], sums: &mut Sums) {
+        let position = weights.iter().zip(block.column(POSITION)).map(|(w, x)| w * x).sum();
+        *sums = Sums { weight: weights.iter().sum(), position };
     }
 
     fn redraw(&self, measured: &f64, draw: Draw, block: &mut BlockMut<'_>) {
