@@ -7,6 +7,7 @@ use crate::impulses::Impulses;
 use crate::ncp::Ncp;
 use crate::newton::{Goal, Newton, Progress, Together};
 use crate::packed::{Packed, Place};
+use crate::solver::Source;
 
 /// How long the lanes of a chunk iterate together where there are other chunks to be packed with.
 const TOGETHER: Together = Together { iterations: 4, lanes: 4 };
@@ -38,14 +39,23 @@ impl<const W: usize> Default for FastSolver<W> {
 }
 
 impl<const W: usize> FastSolver<W> {
-    /// Iterates every lane of every chunk from `p` until it has reached its goal or taken all iterations, and tells `finish` of it.
-    /// What becomes of a lane does not depend on the others.
+    /// Iterates every lane of every chunk that comes from `source` until it has reached its goal or taken all iterations, and tells
+    /// `finish` of it. What becomes of a lane does not depend on the others.
     #[inline(always)]
-    pub fn solve(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], goal: Goal, finish: &mut impl FnMut(Iterated)) {
+    pub fn solve(
+        &mut self,
+        source: &mut impl Source<W>,
+        ncps: &mut [Ncp<W>],
+        p: &mut [Impulses<W>],
+        goal: Goal,
+        finish: &mut impl FnMut(Iterated),
+    ) {
         self.packed.clear();
         // a single chunk has nothing to be packed with
         let together = if ncps.len() > 1 { TOGETHER } else { Together::to_the_end(&goal) };
         for chunk in 0..ncps.len() {
+            source.load(chunk, &mut ncps[chunk]);
+            source.start(chunk, &ncps[chunk], &mut p[chunk]);
             let progress = self.together.begin(&ncps[chunk], &mut p[chunk], goal, together);
             for lane in (!progress.open).lanes() {
                 finish(progress.ended(Place { chunk, lane }, lane));

@@ -82,13 +82,33 @@ impl Report {
 /// assert_eq!((report.outcome, solution.twist), (Outcome::Solved, twist));
 /// ```
 pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
-    let mut ncp = Ncp::<1>::empty();
-    ncp.assign(std::array::from_ref(problem));
-    let mut p = Impulses { v: ncp.free, ..Impulses::zero(problem.contacts.len()) };
-    let mut reports = [[Report::UNSOLVED]];
-    Solver::default().solve(std::slice::from_ref(&ncp), std::slice::from_mut(&mut p), &mut reports);
-    let [[report]] = reports;
+    let (mut ncps, mut p, mut reports) = ([Ncp::empty()], [Impulses::zero(0)], [[Report::UNSOLVED]]);
+    Solver::default().solve(&mut Cold(problem), &mut ncps, &mut p, &mut reports);
+    let ([p], [[report]]) = (p, reports);
     (p.to_solution(0, problem), report)
+}
+
+/// Where the problems of a block come from, chunk by chunk.
+pub trait Source<const W: usize> {
+    /// Writes the problems of one chunk.
+    fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>);
+
+    /// Writes the impulses from which their solution starts; zero is a cold start.
+    fn start(&self, chunk: usize, ncp: &Ncp<W>, p: &mut Impulses<W>);
+}
+
+/// A single problem without a warm start.
+struct Cold<'a>(&'a StepProblem);
+
+impl Source<1> for Cold<'_> {
+    fn load(&mut self, _: usize, ncp: &mut Ncp<1>) {
+        ncp.assign(std::array::from_ref(self.0));
+    }
+
+    fn start(&self, _: usize, ncp: &Ncp<1>, p: &mut Impulses<1>) {
+        p.clear(ncp.contacts.len());
+        p.v = ncp.free;
+    }
 }
 
 /// Solves mixed NCPs; holds the working memory.
@@ -118,10 +138,9 @@ impl<const W: usize> Default for Solver<W> {
 }
 
 impl<const W: usize> Solver<W> {
-    /// Solves a block of problems, `W` to a chunk, from the impulses in `p` (the warm start; zero is a cold one), and leaves the
-    /// solutions in `p`.
+    /// Solves the block of problems that comes from `source`, `W` to a chunk; leaves the problems in `ncps`, their solutions in `p`.
     #[inline(always)]
-    pub fn solve(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
+    pub fn solve(&mut self, source: &mut impl Source<W>, ncps: &mut [Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
         assert!(ncps.len() == p.len() && p.len() == reports.len(), "as many chunks of impulses and reports as of problems");
         self.warm.resize_with(ncps.len().max(self.warm.len()), || Impulses::zero(0));
         for places in [&mut self.left, &mut self.kept] {
@@ -129,19 +148,15 @@ impl<const W: usize> Solver<W> {
             // as many as can be left: how many there are changes from step to step, and no step after the first may allocate
             places.reserve(W * ncps.len());
         }
-        for ((warm, ncp), p) in self.warm.iter_mut().zip(ncps).zip(p.iter()) {
-            assert_eq!(ncp.contacts.len(), p.normal.len(), "one impulse per contact row");
-            warm.copy_from(p);
-        }
         let left = &mut self.left;
-        self.fast.solve(ncps, p, FAST, &mut |Iterated { place, residual, iterations }| {
+        self.fast.solve(source, ncps, p, FAST, &mut |Iterated { place, residual, iterations }| {
             reports[place.chunk][place.lane] = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
             if residual > TOLERANCE {
                 left.push(place);
             }
         });
         if !self.left.is_empty() {
-            self.solve_left(ncps, p, reports);
+            self.solve_left(source, ncps, p, reports);
         }
         for ((ncp, p), reports) in ncps.iter().zip(p).zip(reports) {
             rest_exactly(ncp, p, &mut self.map, reports);
@@ -150,7 +165,10 @@ impl<const W: usize> Solver<W> {
 
     /// The problems that the fast solver left, packed together; then one by one what is left of them.
     #[inline(always)]
-    fn solve_left(&mut self, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
+    fn solve_left(&mut self, source: &impl Source<W>, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
+        for &Place { chunk, .. } in &self.left {
+            source.start(chunk, &ncps[chunk], &mut self.warm[chunk]);
+        }
         let block = Block { ncps, warm: &self.warm };
         for descent in &DESCENTS {
             self.kept.clear();

@@ -15,7 +15,7 @@ use crate::ncp::Ncp;
 use crate::particles::{Particle, Particles};
 use crate::problem::{StepProblem, StepSolution};
 use crate::scene::{Friction, Scene};
-use crate::solver::{Report, Solver};
+use crate::solver::{Report, Solver, Source};
 use crate::stage::{Moment, Stage};
 use crate::{Pose, Twist};
 
@@ -194,23 +194,15 @@ impl Dynamics {
         }
         let mut asked = 0..particles.len();
         while !asked.is_empty() {
-            for chunk in asked.clone() {
-                self.assemble(moment, &particles[chunk], chunk, work);
-            }
-            work.solver.solve(&work.ncps[asked.clone()], &mut work.impulses[asked.clone()], &mut work.reports[asked.clone()]);
+            let StepWork { narrow, chunks, ncps, impulses, reports, solver } = work;
+            let (particles, chunks) = (&particles[asked.clone()], &mut chunks[asked.clone()]);
+            let mut problems = Problems { stage: &self.stage, moment, particles, chunks, narrow };
+            solver.solve(&mut problems, &mut ncps[asked.clone()], &mut impulses[asked.clone()], &mut reports[asked.clone()]);
             asked = self.too_narrow(moment.input, asked.start, work);
         }
         for (chunk, particles) in particles.iter_mut().enumerate() {
             self.integrate(input.h, particles, chunk, work);
         }
-    }
-
-    /// Writes a chunk's problems and warm starts.
-    #[inline(always)]
-    fn assemble<const W: usize>(&self, moment: &Moment<'_>, particles: &Particles<W>, chunk: usize, work: &mut StepWork<W>) {
-        let assembly = &mut work.chunks[chunk];
-        assembly.collect(&self.stage, moment, particles, &mut work.narrow, &mut work.ncps[chunk]);
-        assembly.load_warm_start(&self.stage.scene, particles, &mut work.impulses[chunk]);
     }
 
     /// The first chunk from `first` on in which some lane's solution moves farther than its search covered, to be solved again with a
@@ -260,6 +252,27 @@ impl Dynamics {
         let pusher = self.pusher_speed(input);
         let object = (self.point_speed(&particles.twist) + kick).max(Lanes::splat(pusher));
         (object * 1.5 + pusher) * input.h + MARGIN
+    }
+}
+
+/// The problems of some chunks of particles.
+struct Problems<'a, const W: usize> {
+    stage: &'a Stage,
+    moment: &'a Moment<'a>,
+    particles: &'a [Particles<W>],
+    chunks: &'a mut [Assembly<W>],
+    narrow: &'a mut NarrowWork<W>,
+}
+
+impl<const W: usize> Source<W> for Problems<'_, W> {
+    #[inline(always)]
+    fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
+        self.chunks[chunk].collect(self.stage, self.moment, &self.particles[chunk], self.narrow, ncp);
+    }
+
+    #[inline(always)]
+    fn start(&self, chunk: usize, _: &Ncp<W>, p: &mut Impulses<W>) {
+        self.chunks[chunk].load_warm_start(&self.stage.scene, &self.particles[chunk], p);
     }
 }
 
