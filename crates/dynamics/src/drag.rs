@@ -8,7 +8,7 @@ use crate::newton::{Goal, Newton};
 use crate::rows::{Foot, Vector};
 
 /// What the fast solver tries.
-const GOAL: Goal = Goal { aim: 1e-11, enough: 1e-11, iterations: 12, weight: 1.0 };
+const GOAL: Goal = Goal { residual: 1e-11, iterations: 12, weight: 1.0 };
 
 /// The problem without contacts, with its working memory: a search over curves solves it many times.
 pub struct Drag {
@@ -33,7 +33,7 @@ impl Drag {
         self.ncp.free = load.map(|x| Lanes([x]));
         self.start();
         let residual = self.newton.solve(&self.ncp, &mut self.p, GOAL);
-        if residual.0[0] > GOAL.aim {
+        if residual.0[0] > GOAL.residual {
             self.start();
             self.p.copy_from(self.homotopy.follow(&self.ncp, &self.p, 1.0));
             self.newton.solve(&self.ncp, &mut self.p, GOAL);

@@ -1,7 +1,7 @@
 //! The unknowns of the mixed NCP, `W` particles side by side: [`Impulses`].
 
 use crate::Twist;
-use crate::lanes::{Lanes, Mask, copy_lane};
+use crate::lanes::{Lanes, copy_lane};
 use crate::ncp::{Ncp, ROOM, Triple};
 use crate::problem::{StepProblem, StepSolution};
 
@@ -44,12 +44,6 @@ impl<const W: usize> Impulses<W> {
         self.tangential.clone_from(&from.tangential);
         self.feet = from.feet;
         self.pusher_yield = from.pusher_yield;
-    }
-
-    /// Takes over `from` in the lanes of `mask`; the two have equally many contacts.
-    #[inline(always)]
-    pub fn copy_where(&mut self, mask: Mask<W>, from: &Self) {
-        self.zip(from, |to, from| mask.select(from, to));
     }
 
     /// from + share (to − from).

@@ -32,9 +32,7 @@ const CONTACT: f64 = 4.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
     /// Residual aimed at (m/s).
-    pub aim: f64,
-    /// Residual that is good enough (m/s), at least `aim`.
-    pub enough: f64,
+    pub residual: f64,
     /// Most iterations.
     pub iterations: u32,
     /// Weight k of slip against impulse where feet are told to stick or slide: [`NEAR`] a solution, 1 from afar.
@@ -63,12 +61,11 @@ impl Together {
 pub struct Newton<const W: usize> {
     map: NaturalMap<W>,
     linearised: Linearised<W>,
-    before: Impulses<W>,
 }
 
 impl<const W: usize> Default for Newton<W> {
     fn default() -> Self {
-        Self { map: NaturalMap::default(), linearised: Linearised::default(), before: Impulses::zero(0) }
+        Self { map: NaturalMap::default(), linearised: Linearised::default() }
     }
 }
 
@@ -107,7 +104,7 @@ impl<const W: usize> Newton<W> {
     #[inline(always)]
     pub fn begin(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, together: Together) -> Progress<W> {
         let residual = self.map.take(ncp, p);
-        let mut progress = Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.aim)) };
+        let mut progress = Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.residual)) };
         for _ in 0..together.iterations {
             if progress.open.count() < together.lanes {
                 break;
@@ -119,26 +116,15 @@ impl<const W: usize> Newton<W> {
 
     /// One iteration of the open lanes, from the point that they have come to.
     ///
-    /// A lane that is good enough, but not as good as aimed at, takes one more step and keeps the better point: an object that creeps may
-    /// hover there and lose its modes again. Lanes that are done keep their result while others go on, so a lane's bits do not depend on
-    /// its neighbours.
+    /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on its neighbours.
     #[inline(always)]
     pub fn advance(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, progress: &mut Progress<W>) {
         let Progress { residual, iterations, open } = progress;
-        let near = *open & !residual.gt(Lanes::splat(goal.enough));
-        if near.any() {
-            self.before.copy_from(p);
-        }
         self.linearised.by_natural_map(ncp, p, &self.map, goal.weight, stiffness(*iterations));
         self.linearised.step(ncp, p, *open);
-        let next = self.map.take(ncp, p);
-        let worse = near & !next.lt(*residual);
-        if worse.any() {
-            p.copy_where(worse, &self.before);
-        }
-        *residual = (*open & !worse).select(next, *residual);
+        *residual = open.select(self.map.take(ncp, p), *residual);
         *iterations += open.keep(Lanes::splat(1.0));
-        *open = *open & !near & residual.gt(Lanes::splat(goal.aim)) & iterations.lt(Lanes::splat(f64::from(goal.iterations)));
+        *open = *open & residual.gt(Lanes::splat(goal.residual)) & iterations.lt(Lanes::splat(f64::from(goal.iterations)));
     }
 
     /// Copies what one lane of `ncp` has come to into lane `slot` of `to`, whose problems are `packed`.

@@ -18,7 +18,7 @@ use crate::solver::{Outcome, Report, Route, TOLERANCE};
 const POLISH_ITERATIONS: u32 = 30;
 
 /// The same by the fast solver.
-const POLISHED: Goal = Goal { aim: TOLERANCE, enough: TOLERANCE, iterations: POLISH_ITERATIONS, weight: 1.0 };
+const POLISHED: Goal = Goal { residual: TOLERANCE, iterations: POLISH_ITERATIONS, weight: 1.0 };
 
 /// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a fold, and most folds lie on
 /// few paths. What none of these solves costs the search over modes less than ten more of them.

@@ -18,8 +18,8 @@ use crate::slow::SlowSolver;
 /// Largest natural-map residual of a solved step (m/s).
 pub const TOLERANCE: f64 = 1e-9;
 
-/// What the fast solver tries: an aim below [`TOLERANCE`], since Newton's last step mostly ends far below it.
-const FAST: Goal = Goal { aim: 1e-10, enough: TOLERANCE, iterations: 32, weight: NEAR };
+/// What the fast solver tries: a residual below [`TOLERANCE`], which counts in the end, for the impulses of feet that slip slowly.
+const FAST: Goal = Goal { residual: 1e-10, iterations: 32, weight: NEAR };
 
 /// Ways down from a warm start that the smoothed steps try one after the other: from next to it, from afar, and slowly.
 const DESCENTS: [Descent; 3] = [
