@@ -190,7 +190,7 @@ impl<M: Model> ParticleFilter<M> {
         let mut best_log_likelihood = self.update.best_log_likelihood();
         if model.collapsed(best_log_likelihood) {
             let part = &mut self.redrawn_log_likelihood;
-            self.particles.show(part.chunks_mut(BLOCK), |block, out| model.redrawn_log_likelihood(observation, block, out));
+            self.particles.visit(part.chunks_mut(BLOCK), |block, out| model.redrawn_log_likelihood(observation, block, out));
             best_log_likelihood = self.weights.best(part);
         }
         if !model.collapsed(best_log_likelihood)
@@ -213,7 +213,7 @@ impl<M: Model> ParticleFilter<M> {
     /// Takes the sums over the particles as they are now.
     pub fn sum_anew(&mut self, input: &M::Input) {
         let (model, weights) = (&self.model, self.weights.weights());
-        self.particles.show(self.block_sums.iter_mut(), |block, sums| model.sum(input, block, &weights[block.range()], sums));
+        self.particles.visit(self.block_sums.iter_mut(), |block, sums| model.sum(input, block, &weights[block.range()], sums));
         self.add_up(|_| 1.0);
     }
 

@@ -5,7 +5,7 @@
 //!
 //! Invariants:
 //! - every result is a function of (model, inputs, seed, number of particles): random numbers are a pure function
-//!   of (seed, purpose, step, particle, draw), and every sum runs over one fixed tree, whatever the threads;
+//!   of (seed, purpose, step, particle, draw), and every sum runs in one fixed order, whatever the threads;
 //! - a weight is never NaN; a set that no longer explains its observation is a counted outcome, [`Weighing::Collapsed`];
 //! - after the first steps, a step on one thread allocates nothing.
 //!

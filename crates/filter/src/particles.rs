@@ -100,7 +100,7 @@ impl ParticleSet {
     }
 
     /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
-    pub fn show<T>(&self, with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send, body: impl Fn(&Block<'_>, T) + Sync) {
+    pub fn visit<T>(&self, with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send, body: impl Fn(&Block<'_>, T) + Sync) {
         assert_eq!(with.len(), self.block_count(), "an item for every block");
         parallel::for_all(with.enumerate(), |(index, item)| body(&self.block(index), item));
     }

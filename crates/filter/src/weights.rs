@@ -1,8 +1,8 @@
 //! Importance weights of a particle set, as natural logarithms.
 //!
 //! Logarithms, because a product of many sensors' likelihoods underflows. Weights are kept normalised: the linear
-//! weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is positive, none is NaN. Sums run over a
-//! fixed tree, so they do not depend on threads.
+//! weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is positive, none is NaN. Sums run in a
+//! fixed order, so they do not depend on threads.
 
 use std::ops::Range;
 
