@@ -31,19 +31,13 @@ impl Drag {
     /// It is the minimiser of ½|v − load|² + Σ bound_k |J_k v|, unique, and moves no farther than the load does.
     pub fn under(&mut self, load: &Vector<3>) -> (Vector<3>, [[f64; 2]; 3]) {
         self.ncp.free = load.map(|x| Lanes([x]));
-        self.start();
+        self.p.cold_start(&self.ncp);
         let residual = self.newton.solve(&self.ncp, &mut self.p, GOAL);
         if residual.0[0] > GOAL.residual {
-            self.start();
+            self.p.cold_start(&self.ncp);
             self.p.copy_from(self.homotopy.follow(&self.ncp, &self.p, 1.0));
             self.newton.solve(&self.ncp, &mut self.p, GOAL);
         }
         (self.p.v.map(|x| x.0[0]), self.p.feet.map(|f| f.map(|x| x.0[0])))
-    }
-
-    /// The free motion.
-    fn start(&mut self) {
-        self.p.clear(0);
-        self.p.v = self.ncp.free;
     }
 }

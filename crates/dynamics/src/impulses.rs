@@ -74,6 +74,12 @@ impl<const W: usize> Impulses<W> {
         (self.v, self.feet, self.pusher_yield) = ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
     }
 
+    /// The start without any impulse: the free motion.
+    pub fn cold_start(&mut self, ncp: &Ncp<W>) {
+        self.clear(ncp.contacts.len());
+        self.v = ncp.free;
+    }
+
     /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`; what contacts `to` has beyond
     /// these carry nothing.
     #[inline(always)]

@@ -231,12 +231,6 @@ impl Polisher {
 }
 
 impl Impulses<1> {
-    /// The state without any impulse.
-    fn cold_start(&mut self, ncp: &Ncp<1>) {
-        self.clear(ncp.contacts.len());
-        self.v = ncp.free;
-    }
-
     /// Makes the pusher of a cold start yield: its contacts carry the stall force and it gives up the whole approach.
     fn yield_start(&mut self, ncp: &Ncp<1>) {
         let stall = ncp.stall.0[0];

@@ -106,8 +106,7 @@ impl Source<1> for Cold<'_> {
     }
 
     fn start(&self, _: usize, ncp: &Ncp<1>, p: &mut Impulses<1>) {
-        p.clear(ncp.contacts.len());
-        p.v = ncp.free;
+        p.cold_start(ncp);
     }
 }
 

@@ -5,12 +5,11 @@ use std::f64::consts::FRAC_PI_2;
 use stickslip_dynamics::{Friction, Pose, Twist};
 use stickslip_filter::ParticleFilter;
 
-use crate::angle::unwrapped;
 use crate::contact_model::ContactModel;
-use crate::sums::{ANGLE, Reference, Sums};
+use crate::sums::{ANGLE, Reference};
 use crate::{EstimateRow, Spread};
 
-/// The row of weighted means and standard deviations from sums about `reference`; θ is unwrapped from there.
+/// The row of weighted means and standard deviations from sums about `reference`; θ is the nearest to that of the reference.
 pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, reference: &Reference) -> EstimateRow {
     let sums = filter.sums();
     let [x, y, mu_s, mu_p, mu_f, d_tri] = std::array::from_fn(|k| reference.spread[k] + sums.first[k]);
@@ -23,7 +22,7 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, reference: &Ref
         filter.weighted_circular_std_about(reference.angle + turn, ANGLE)
     };
     EstimateRow {
-        pose: Some(Pose::new(x, y, unwrapped(reference.angle + turn, reference.angle))),
+        pose: Some(Pose::new(x, y, reference.angle + turn)),
         twist: Some(Twist { vx, vy, omega }),
         friction: Some(Friction { mu_s, mu_p, mu_f, d_tri }),
         contact_pusher: Some(sums.contact_pusher),
@@ -35,25 +34,5 @@ pub(crate) fn summary(filter: &ParticleFilter<ContactModel<'_>>, reference: &Ref
         unsolved: Some(sums.unsolved as u32),
         ess: Some(filter.weights().effective_sample_size()),
         ..EstimateRow::default()
-    }
-}
-
-impl Reference {
-    /// The means of a row.
-    pub fn of(row: &EstimateRow) -> Option<Self> {
-        row.pose.zip(row.friction).map(|(pose, friction)| Self::new(pose, friction))
-    }
-
-    pub fn new(Pose { x, y, theta }: Pose, Friction { mu_s, mu_p, mu_f, d_tri }: Friction) -> Self {
-        Self { spread: [x, y, mu_s, mu_p, mu_f, d_tri], angle: theta }
-    }
-}
-
-impl Sums {
-    /// Standard deviation of the angles about their mean direction, `turn` from the reference, if none is on the other side of the
-    /// circle.
-    fn angle_std_about(&self, turn: f64) -> f64 {
-        let [_, _, d, square] = self.angle;
-        (square - 2.0 * turn * d + turn * turn).max(0.0).sqrt()
     }
 }

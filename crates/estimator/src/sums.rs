@@ -1,8 +1,9 @@
 //! Sums over weighted particles, block by block: [`Sums`].
 
-use stickslip_dynamics::{Lanes, sin_cos};
+use stickslip_dynamics::{Friction, Lanes, Pose, sin_cos};
 use stickslip_filter::{Block, WeightedSums};
 
+use crate::EstimateRow;
 use crate::angle::nearest_zero;
 use crate::chunk::{Column, LANES, flag, part};
 use crate::columns::{Columns, Flag};
@@ -21,6 +22,18 @@ pub struct Reference {
     pub spread: [f64; 6],
     /// θ.
     pub angle: f64,
+}
+
+impl Reference {
+    /// The means of a row.
+    pub fn of(row: &EstimateRow) -> Option<Self> {
+        row.pose.zip(row.friction).map(|(pose, friction)| Self::new(pose, friction))
+    }
+
+    /// A pose and friction values.
+    pub fn new(Pose { x, y, theta }: Pose, Friction { mu_s, mu_p, mu_f, d_tri }: Friction) -> Self {
+        Self { spread: [x, y, mu_s, mu_p, mu_f, d_tri], angle: theta }
+    }
 }
 
 /// Weighted sums over some particles; d is the deviation from the reference.
@@ -82,6 +95,13 @@ impl Sums {
             #[inline(always)]
             |j| share(block, weights, columns.contact_fixel(j)),
         ));
+    }
+
+    /// Standard deviation of the angles about their mean direction, `turn` from the reference, if none is on the other side of the
+    /// circle.
+    pub fn angle_std_about(&self, turn: f64) -> f64 {
+        let [_, _, d, square] = self.angle;
+        (square - 2.0 * turn * d + turn * turn).max(0.0).sqrt()
     }
 }
 

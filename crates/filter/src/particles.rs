@@ -68,10 +68,7 @@ impl ParticleSet {
 
     /// Runs `body` on every block, in parallel where threads allow.
     pub fn for_each_block(&mut self, body: impl Fn(&mut BlockMut<'_>) + Sync) {
-        let (particles, stride) = (self.particles, self.columns * BLOCK);
-        parallel::for_all(self.data.chunks_mut(stride).enumerate(), |(index, data)| {
-            body(&mut BlockMut { data, span: Span::of(index, particles) });
-        });
+        self.advance(None, 0..self.block_count(), |block, _| body(block));
     }
 
     /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
