@@ -47,11 +47,11 @@ pub struct Filtered {
 
 /// One row of the forward pass: the state before its measurement and after.
 #[derive(Clone, Copy)]
-pub(crate) struct Step {
+struct Step {
     predicted: Gaussian<2>,
     filtered: Gaussian<2>,
     /// ln p(measurement | rows before), 0 where there is none.
-    pub(crate) log_likelihood: f64,
+    log_likelihood: f64,
 }
 
 impl ConstantVelocity {
@@ -139,7 +139,7 @@ impl ConstantVelocity {
     }
 
     /// Calls `visit(row, step)` on every row from the first measurement on.
-    pub(crate) fn forward(&self, series: &Series<'_>, mut visit: impl FnMut(usize, Step)) {
+    fn forward(&self, series: &Series<'_>, mut visit: impl FnMut(usize, Step)) {
         let mut before: Option<(f64, Gaussian<2>)> = None;
         for (row, time, measurement) in series.rows() {
             let step = match (before, measurement) {

@@ -11,7 +11,7 @@
 use nalgebra::{SMatrix, SVector};
 
 /// ln 2π.
-const LN_TAU: f64 = 1.837_877_066_409_345_3;
+pub(crate) const LN_TAU: f64 = 1.837_877_066_409_345_3;
 
 /// A normal distribution over N numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]

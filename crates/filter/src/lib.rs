@@ -17,6 +17,7 @@ mod box_muller;
 mod constant_velocity;
 mod exponential;
 mod filter;
+mod innovations;
 mod kalman;
 mod model;
 mod moments;

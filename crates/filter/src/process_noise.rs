@@ -1,8 +1,7 @@
 //! The process noise of a constant-velocity axis by maximum likelihood.
 
-use rayon::prelude::*;
-
 use crate::ConstantVelocity;
+use crate::innovations::log_likelihoods;
 use crate::series::{Series, SeriesError};
 
 /// The process noise that makes a series of measurements most probable.
@@ -45,15 +44,7 @@ impl ConstantVelocity {
             return Err(SeriesError::TooFew { measurements: found });
         }
         let centre = libm::log(self.measurement_std * self.measurement_std) - 3.0 * libm::log(series.median_step());
-        let objective = |log_q: f64| self.log_likelihood_at(libm::exp(log_q), &series);
-        Ok(search(centre, objective))
-    }
-
-    fn log_likelihood_at(&self, process_noise: f64, series: &Series<'_>) -> f64 {
-        let mut sum = 0.0;
-        let model = ConstantVelocity { process_noise, ..*self };
-        model.forward(series, |_, step| sum += step.log_likelihood);
-        sum
+        Ok(Search { axis: self, series }.around(centre))
     }
 }
 
@@ -64,18 +55,32 @@ struct Point {
     value: f64,
 }
 
-/// Maximises `objective(ln q)` around `centre`.
-fn search(centre: f64, objective: impl Fn(f64) -> f64 + Sync) -> ProcessNoiseFit {
-    const REACH: i32 = 9;
-    let at = |log_q: f64| Point { log_q, value: objective(log_q) };
-    let grid: Vec<Point> = (-REACH..=REACH).into_par_iter().map(|i| at(centre + f64::from(i) * std::f64::consts::LN_10)).collect();
-    let highest = (1..grid.len()).fold(0, |best, i| if grid[i].value > grid[best].value { i } else { best });
-    let (peak, optimum) = match highest {
-        0 => (grid[0], Optimum::LowerEnd),
-        i if i + 1 == grid.len() => (grid[i], Optimum::UpperEnd),
-        i => (maximum([grid[i - 1], grid[i], grid[i + 1]], at), Optimum::Interior),
-    };
-    ProcessNoiseFit { process_noise: libm::exp(peak.log_q), log_likelihood: peak.value, optimum }
+/// Powers of ten that are tried either side of the centre.
+const REACH: usize = 9;
+
+/// The search for the best process noise of a series.
+struct Search<'a> {
+    axis: &'a ConstantVelocity,
+    series: Series<'a>,
+}
+
+impl Search<'_> {
+    fn around(&self, centre: f64) -> ProcessNoiseFit {
+        let decade = |i: usize| centre + (i as f64 - REACH as f64) * std::f64::consts::LN_10;
+        let grid: [Point; 2 * REACH + 1] = self.at(std::array::from_fn(decade));
+        let highest = (1..grid.len()).fold(0, |best, i| if grid[i].value > grid[best].value { i } else { best });
+        let (peak, optimum) = match highest {
+            0 => (grid[0], Optimum::LowerEnd),
+            i if i + 1 == grid.len() => (grid[i], Optimum::UpperEnd),
+            i => (maximum([grid[i - 1], grid[i], grid[i + 1]], |log_q| self.at([log_q])[0]), Optimum::Interior),
+        };
+        ProcessNoiseFit { process_noise: libm::exp(peak.log_q), log_likelihood: peak.value, optimum }
+    }
+
+    fn at<const W: usize>(&self, log_q: [f64; W]) -> [Point; W] {
+        let values = log_likelihoods(self.axis, log_q.map(libm::exp), &self.series);
+        std::array::from_fn(|k| Point { log_q: log_q[k], value: values[k] })
+    }
 }
 
 /// The maximum of a function with one peak between the outer two of three points, of which the middle one is highest, to 1e-6:
