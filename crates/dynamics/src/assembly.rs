@@ -110,14 +110,14 @@ impl<const W: usize> Assembly<W> {
         let scene = &stage.scene;
         if let Some((motion, frame)) = moment.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
-            let (mu, catch_up) = (particles.friction[1], particles.pusher_lag / moment.input.h);
+            let (mu, catch_up) = (particles.friction[1], particles.pusher_lag * moment.rate);
             let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction, catch_up };
-            self.meet(scene, &object, &pusher, narrow, ncp);
+            self.meet(stage, moment, &object, &pusher, narrow, ncp);
         }
         let mu = particles.friction[2];
         for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate() {
             let fixel = Other { body: Body::Fixel(j), shape, frame: *frame, mu, motion: None, direction: [0.0; 2], catch_up: Lanes::ZERO };
-            self.meet(scene, &object, &fixel, narrow, ncp);
+            self.meet(stage, moment, &object, &fixel, narrow, ncp);
         }
     }
 
@@ -125,69 +125,52 @@ impl<const W: usize> Assembly<W> {
     #[inline(always)]
     fn set_body(
         &mut self,
-        Stage { scene, stance, .. }: &Stage,
+        Stage { scene, rho, per_rho, per_mass, per_inertia, stance, .. }: &Stage,
         input: &StepInput,
         (particles, object): (&Particles<W>, &Frames<W>),
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
-        let rho = scene.object.gyration_radius();
         let limit = input.pusher.and_then(|pusher| scene.pusher.stall_force.map(|force| (force, pusher.direction)));
         let stall = limit.map(|(force, direction)| Stall { impulse: force * input.h, direction });
         self.setting = Setting { mass, inertia, h: input.h, stall };
         ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |stall| stall.impulse / mass));
         let [vx, vy, omega] = particles.twist;
         let [fx, fy, torque] = particles.applied;
-        ncp.free = [vx + fx / mass, vy + fy / mass, (omega + torque / inertia) * rho];
+        ncp.free = [vx + fx * *per_mass, vy + fy * *per_mass, (omega + torque * *per_inertia) * *rho];
         let [mu_s, _, _, d_tri] = particles.friction;
         let arms = scene.foot_arms(stance, object, d_tri);
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
-            *row = FootRow { jx: -y / rho, jy: x / rho, bound: mu_s * (scene.gravity * input.h * load) };
+            *row = FootRow { jx: -y * *per_rho, jy: x * *per_rho, bound: mu_s * (scene.gravity * input.h * load) };
         }
     }
 
     /// Adds the contacts of the object with one body.
     #[inline(always)]
-    fn meet(&mut self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
+    fn meet(
+        &mut self,
+        stage: &Stage,
+        moment: &Moment<'_>,
+        object: &Frames<W>,
+        other: &Other<'_, W>,
+        narrow: &mut NarrowWork<W>,
+        ncp: &mut Ncp<W>,
+    ) {
         let frames = PairFrames { object: *object, other: other.frame.splat() };
-        narrow.meet([&scene.object.shape, other.shape], &frames, self.reach);
+        narrow.meet([&stage.scene.object.shape, other.shape], &frames, self.reach);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
             let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize) as f64;
             self.rows.push(Row { body: other.body, key, present: contact.present, gap: contact.gap });
-            ncp.contacts.push(self.row(scene, object, other, contact));
-        }
-    }
-
-    #[inline(always)]
-    fn row(&self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, contact: &Contact<W>) -> ContactRow<W> {
-        let rho = scene.object.gyration_radius();
-        let Contact { present, normal: [nx, ny], arm: [x, y], gap, .. } = *contact;
-        let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
-            let arm = [object.origin[0] + x - motion.pose.x, object.origin[1] + y - motion.pose.y];
-            let Twist { vx, vy, omega } = motion.twist;
-            [arm[1] * -omega + vx, arm[0] * omega + vy]
-        });
-        let d = other.direction;
-        let (nd, td) = (nx * d[0] + ny * d[1], nx * d[1] - ny * d[0]);
-        let keep = |value: Lanes<W>| present.keep(value);
-        ContactRow {
-            n: [keep(nx), keep(ny), keep((x * ny - y * nx) / rho)],
-            t: [keep(-ny), keep(nx), keep((x * nx + y * ny) / rho)],
-            gap: present.select(gap / self.setting.h - (nx * u[0] + ny * u[1]), ContactRow::<W>::OPEN.gap),
-            // the way back to the pose lies in the gap already
-            slip: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
-            nd: keep(nd),
-            td: keep(td),
-            mu: keep(other.mu),
+            ncp.contacts.push(row([stage.per_rho, moment.rate], object, other, contact));
         }
     }
 
     /// The impulses and twists that the particles remember, as a start.
     #[inline(always)]
-    pub fn load_warm_start(&self, scene: &Scene, particles: &Particles<W>, p: &mut Impulses<W>) {
+    pub fn load_warm_start(&self, rho: f64, particles: &Particles<W>, p: &mut Impulses<W>) {
         let [vx, vy, omega] = particles.twist;
-        p.v = [vx, vy, omega * scene.object.gyration_radius()];
+        p.v = [vx, vy, omega * rho];
         let warm = &particles.warm;
         p.feet = [[warm[0], warm[1]], [warm[2], warm[3]], [warm[4], warm[5]]];
         p.pusher_yield = warm[6];
@@ -264,6 +247,30 @@ impl<const W: usize> Assembly<W> {
             feet: ncp.feet.each_ref().map(foot),
             stall,
         }
+    }
+}
+
+/// The row of one contact; `per_rho` is 1/ρ, `rate` 1/h.
+#[inline(always)]
+fn row<const W: usize>([per_rho, rate]: [f64; 2], object: &Frames<W>, other: &Other<'_, W>, contact: &Contact<W>) -> ContactRow<W> {
+    let Contact { present, normal: [nx, ny], arm: [x, y], gap, .. } = *contact;
+    let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
+        let arm = [object.origin[0] + x - motion.pose.x, object.origin[1] + y - motion.pose.y];
+        let Twist { vx, vy, omega } = motion.twist;
+        [arm[1] * -omega + vx, arm[0] * omega + vy]
+    });
+    let d = other.direction;
+    let (nd, td) = (nx * d[0] + ny * d[1], nx * d[1] - ny * d[0]);
+    let keep = |value: Lanes<W>| present.keep(value);
+    ContactRow {
+        n: [keep(nx), keep(ny), keep((x * ny - y * nx) * per_rho)],
+        t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * per_rho)],
+        gap: present.select(gap * rate - (nx * u[0] + ny * u[1]), ContactRow::<W>::OPEN.gap),
+        // the way back to the pose lies in the gap already
+        slip: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
+        nd: keep(nd),
+        td: keep(td),
+        mu: keep(other.mu),
     }
 }
 

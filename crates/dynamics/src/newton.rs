@@ -266,7 +266,10 @@ impl<const W: usize> Hold<W> {
     /// With stiffness k, in the gap row in series with its compliance κ.
     #[inline(always)]
     pub fn new(stiffness: Lanes<W>, compliance: Lanes<W>) -> Self {
-        Self { gap: stiffness / Lanes::splat(1.0).plus(compliance, stiffness), slip: stiffness }
+        // bodies are rigid but where no solution exists: no division then
+        let yields = compliance.gt(Lanes::ZERO).any();
+        let gap = if yields { stiffness / Lanes::splat(1.0).plus(compliance, stiffness) } else { stiffness };
+        Self { gap, slip: stiffness }
     }
 }
 

@@ -8,6 +8,12 @@ use crate::step::{PusherMotion, StepInput};
 #[derive(Clone, Debug)]
 pub(crate) struct Stage {
     pub scene: Scene,
+    /// The object's radius of gyration ρ (m).
+    pub rho: f64,
+    /// Reciprocals of ρ, of the object's mass and of its moment of inertia: the divider is the slowest part of a vector unit.
+    pub per_rho: f64,
+    pub per_mass: f64,
+    pub per_inertia: f64,
     /// Where the feet stand, see [`Scene::stance`].
     pub stance: [[f64; 2]; 3],
     /// Where the fixels stand.
@@ -16,7 +22,9 @@ pub(crate) struct Stage {
 
 impl Stage {
     pub fn new(scene: Scene) -> Self {
-        Self { stance: scene.stance(), fixels: scene.fixels.iter().map(|fixel| Frame::new(fixel.pose)).collect(), scene }
+        let (rho, per_mass, per_inertia) = (scene.object.gyration_radius(), 1.0 / scene.object.mass, 1.0 / scene.object.inertia);
+        let fixels = scene.fixels.iter().map(|fixel| Frame::new(fixel.pose)).collect();
+        Self { rho, per_rho: 1.0 / rho, per_mass, per_inertia, stance: scene.stance(), fixels, scene }
     }
 }
 
@@ -24,12 +32,14 @@ impl Stage {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment<'a> {
     pub input: &'a StepInput,
+    /// 1/h (1/s).
+    pub rate: f64,
     /// The pusher's motion and where it stands.
     pub pusher: Option<(&'a PusherMotion, Frame)>,
 }
 
 impl<'a> Moment<'a> {
     pub fn new(input: &'a StepInput) -> Self {
-        Self { input, pusher: input.pusher.as_ref().map(|motion| (motion, Frame::new(motion.pose))) }
+        Self { input, rate: 1.0 / input.h, pusher: input.pusher.as_ref().map(|motion| (motion, Frame::new(motion.pose))) }
     }
 }

@@ -12,7 +12,7 @@ pub fn wrapped(angle: f64) -> f64 {
 /// Of every angle the one in [−π, π] that equals it on the circle (rad).
 #[inline(always)]
 pub fn nearest_zero<const W: usize>(angles: Lanes<W>) -> Lanes<W> {
-    angles - (angles / TAU).round() * TAU
+    angles - (angles * (1.0 / TAU)).round() * TAU
 }
 
 /// The angle nearest to `near` that equals `angle` on the circle (rad).

@@ -3,7 +3,7 @@
 use stickslip_dynamics::{Lanes, Mask};
 use stickslip_filter::{Block, BlockMut};
 
-use crate::columns::Flag;
+use crate::columns::{Columns, Flag};
 
 /// Particles of a chunk.
 pub(crate) const LANES: usize = 8;
@@ -33,23 +33,67 @@ pub(crate) fn store_part(column: &mut [f64], chunk: usize, from: &Column) {
 
 /// Where a flag is set in chunk `chunk`.
 #[inline(always)]
-pub(crate) fn flag(block: &Block<'_>, Flag { column, bit }: Flag, chunk: usize) -> Mask<LANES> {
-    let bits = part(block.column(column), chunk, 0.0);
+pub(crate) fn flag(block: &Block<'_>, which: Flag, chunk: usize) -> Mask<LANES> {
+    set_in(&part(block.column(which.column), chunk, 0.0), which)
+}
+
+/// Where a flag is set in the numbers of its column.
+#[inline(always)]
+fn set_in(bits: &Column, Flag { bit, .. }: Flag) -> Mask<LANES> {
     Mask::from_fn(
         #[inline(always)]
         |lane| bits.0[lane].to_bits() >> bit & 1 == 1,
     )
 }
 
-/// Sets a flag in the lanes of `yes` of chunk `chunk`, and clears it in the others.
-#[inline(always)]
-pub(crate) fn store_flag(block: &mut BlockMut<'_>, Flag { column, bit }: Flag, chunk: usize, yes: Mask<LANES>) {
-    let column = block.column_mut(column);
-    let mut bits = part(column, chunk, 0.0);
-    for (lane, bits) in bits.0.iter_mut().enumerate() {
-        *bits = f64::from_bits(bits.to_bits() & !(1 << bit) | u64::from(yes.lane(lane)) << bit);
+/// The flags of one chunk while they change: written to the block a column at a time.
+pub(crate) struct FlagsMut<'a, 'b> {
+    block: &'a mut BlockMut<'b>,
+    chunk: usize,
+    /// The column at hand, and its numbers.
+    column: usize,
+    bits: Column,
+}
+
+impl<'a, 'b> FlagsMut<'a, 'b> {
+    /// Those of chunk `chunk`.
+    #[inline(always)]
+    pub fn new(block: &'a mut BlockMut<'b>, chunk: usize) -> Self {
+        let column = Columns::UNSOLVED.column;
+        let bits = part(block.column(column), chunk, 0.0);
+        Self { block, chunk, column, bits }
     }
-    store_part(column, chunk, &bits);
+
+    /// Where a flag is set.
+    #[inline(always)]
+    pub fn get(&mut self, flag: Flag) -> Mask<LANES> {
+        self.go_to(flag.column);
+        set_in(&self.bits, flag)
+    }
+
+    /// Sets a flag in the lanes of `yes`, and clears it in the others.
+    #[inline(always)]
+    pub fn set(&mut self, flag: Flag, yes: Mask<LANES>) {
+        self.go_to(flag.column);
+        for (lane, bits) in self.bits.0.iter_mut().enumerate() {
+            *bits = f64::from_bits(bits.to_bits() & !(1 << flag.bit) | u64::from(yes.lane(lane)) << flag.bit);
+        }
+    }
+
+    #[inline(always)]
+    fn go_to(&mut self, column: usize) {
+        if column != self.column {
+            self.write();
+            self.bits = part(self.block.column(column), self.chunk, 0.0);
+            self.column = column;
+        }
+    }
+
+    /// Writes the column at hand: the last thing to be done.
+    #[inline(always)]
+    pub fn write(&mut self) {
+        store_part(self.block.column_mut(self.column), self.chunk, &self.bits);
+    }
 }
 
 /// Out of line: beside it, a whole chunk would be copied by a call with a number of bytes.

@@ -5,7 +5,7 @@ use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::{nearest_zero, wrapped};
 use crate::chunk::{Column, LANES, flag, part, store_part};
-use crate::columns::{Columns, Flag};
+use crate::columns::Columns;
 use crate::propagation::Propagation;
 use crate::sums::{Reference, Sums};
 use crate::watch::StepWatch;
@@ -120,9 +120,9 @@ impl<'w> ContactModel<'w> {
         let Some(measured) = observation.pose else { return Column::ZERO };
         let [x, y, theta] = self.seen(observation.lookback, block, chunk);
         let scale = self.setup.filter.likelihood_scale;
-        let (position, orientation) = (scale * self.camera.position_std, scale * self.camera.orientation_std);
-        let (dx, dy) = ((x - measured.x) / position, (y - measured.y) / position);
-        let turn = nearest_zero(theta - measured.theta) / orientation;
+        let [per_metre, per_radian] = [1.0 / (scale * self.camera.position_std), 1.0 / (scale * self.camera.orientation_std)];
+        let (dx, dy) = ((x - measured.x) * per_metre, (y - measured.y) * per_metre);
+        let turn = nearest_zero(theta - measured.theta) * per_radian;
         (dx * dx + dy * dy + turn * turn) * -0.5
     }
 
@@ -133,14 +133,26 @@ impl<'w> ContactModel<'w> {
     /// step returns is an accident of the warm start and the tracking noise. The one that explains the readings counts.
     #[inline(always)]
     fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, chunk: usize) -> Column {
-        let set = |which: Flag| flag(block, which, chunk);
-        let driven = self.readings_log_probability(readings, |j| set(self.columns.contact_fixel(j)));
-        let idle = set(Columns::IDLE);
+        let driven = self.readings_log_probability(
+            readings,
+            #[inline(always)]
+            |j| flag(block, self.columns.contact_fixel(j), chunk),
+        );
+        let idle = flag(block, Columns::IDLE, chunk);
         if !idle.any() {
             return driven;
         }
-        let pressed = self.readings_log_probability(readings, |j| set(self.columns.against_fixel(j)));
-        idle.select(pressed.max(self.readings_log_probability(readings, |_| Mask::splat(false))), driven)
+        let pressed = self.readings_log_probability(
+            readings,
+            #[inline(always)]
+            |j| flag(block, self.columns.against_fixel(j), chunk),
+        );
+        let untouched = self.readings_log_probability(
+            readings,
+            #[inline(always)]
+            |_| Mask::splat(false),
+        );
+        idle.select(pressed.max(untouched), driven)
     }
 
     #[inline(always)]
@@ -148,8 +160,8 @@ impl<'w> ContactModel<'w> {
         let mut sum = Column::ZERO;
         for (j, reading) in readings.iter().enumerate() {
             if let Some(reading) = reading {
-                let of = |touching: usize| Lanes::splat(self.reading[touching][usize::from(*reading)]);
-                sum += touches(j).select(of(1), of(0));
+                let [free, touching] = [0, 1].map(|touches| self.reading[touches][usize::from(*reading)]);
+                sum += touches(j).select(Lanes::splat(touching), Lanes::splat(free));
             }
         }
         sum
@@ -159,7 +171,9 @@ impl<'w> ContactModel<'w> {
 /// Three neighbouring columns of one chunk.
 #[inline(always)]
 fn pose(block: &Block<'_>, first_column: usize, chunk: usize) -> [Column; 3] {
-    std::array::from_fn(|axis| part(block.column(first_column + axis), chunk, 0.0))
+    // an array made by a closure would be made by baseline code, and copied
+    let [x, y, theta] = [first_column, first_column + 1, first_column + 2];
+    [part(block.column(x), chunk, 0.0), part(block.column(y), chunk, 0.0), part(block.column(theta), chunk, 0.0)]
 }
 
 /// Writes `value(chunk)` for every chunk of particles, on the widest instructions.

@@ -4,7 +4,7 @@ use stickslip_dynamics::{Body, Lanes, Level, Mask, Outcome, Particles, StepWork,
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::Limits;
-use crate::chunk::{Column, LANES, flag, part, store_flag, store_part};
+use crate::chunk::{Column, FlagsMut, LANES, part, store_part};
 use crate::columns::Columns;
 use crate::contact_model::{ContactModel, ParameterNoise, StepPlan};
 use crate::watch::{SolvedStep, StepWatch};
@@ -197,18 +197,20 @@ impl Propagation {
                 load_columns(block, Columns::FRICTION + k, chunk, &mut kept);
                 store_columns(block, Columns::FRICTION + k, chunk, &[took_part.select(particles.friction[k], kept[0])]);
             }
-            store_flag(block, Columns::UNSOLVED, chunk, touched.unsolved);
+            let mut flags = FlagsMut::new(block, chunk);
+            flags.set(Columns::UNSOLVED, touched.unsolved);
             let pusher = self.work.normal_impulses(chunk, Body::Pusher).gt(Lanes::ZERO);
-            store_flag(block, Columns::CONTACT_PUSHER, chunk, pusher);
+            flags.set(Columns::CONTACT_PUSHER, pusher);
             let pressed = moving(&particles.twist, rho) | pusher;
-            store_flag(block, Columns::IDLE, chunk, !(pressed & driven));
+            flags.set(Columns::IDLE, !(pressed & driven));
             for j in 0..model.setup.scene.fixels.len() {
                 let touches = self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse);
-                store_flag(block, model.columns.contact_fixel(j), chunk, touches);
+                flags.set(model.columns.contact_fixel(j), touches);
                 let against = model.columns.against_fixel(j);
-                let before = flag(&block.as_block(), against, chunk);
-                store_flag(block, against, chunk, pressed & touches | !pressed & before);
+                let before = flags.get(against);
+                flags.set(against, pressed & touches | !pressed & before);
             }
+            flags.write();
             if model.columns.history() > 0 {
                 store_columns(block, model.columns.past_pose(plan.slot), chunk, &particles.pose);
             }
@@ -220,7 +222,7 @@ impl Propagation {
 #[inline(always)]
 fn moving([vx, vy, omega]: &[Column; 3], rho: f64) -> Mask<LANES> {
     let turn = *omega * rho;
-    (*vx * *vx + *vy * *vy + turn * turn).sqrt().gt(Lanes::splat(MOVING))
+    (*vx * *vx + *vy * *vy + turn * turn).gt(Lanes::splat(MOVING * MOVING))
 }
 
 /// β + β w within the limits.

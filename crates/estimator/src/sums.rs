@@ -91,10 +91,9 @@ impl Sums {
         self.unsolved = total(unsolved);
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
         self.contact_fixels.clear();
-        self.contact_fixels.extend((0..columns.fixels()).map(
-            #[inline(always)]
-            |j| share(block, weights, columns.contact_fixel(j)),
-        ));
+        for j in 0..columns.fixels() {
+            self.contact_fixels.push(share(block, weights, columns.contact_fixel(j)));
+        }
     }
 
     /// Standard deviation of the angles about their mean direction, `turn` from the reference, if none is on the other side of the
