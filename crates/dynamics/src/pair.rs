@@ -125,7 +125,10 @@ impl<'a, const W: usize> Pair<'a, W> {
                     Contact { place: (i * mine.edges.len() + index) as u32, present, normal, arm: self.object_frame.turn(&foot), gap };
                 self.push(contact, round.covered, || at.touch(edge), self.other);
             }
-            for cluster in mine.clusters.iter().filter(|cluster| search.meets(cluster)) {
+            for cluster in &mine.clusters {
+                if !search.meets(cluster) {
+                    continue;
+                }
                 for j in cluster.among(mine.rounds.len()) {
                     let place = self.places.round_on_round + (i * mine.rounds.len() + j) as u32;
                     self.round_on_round(place, &mine.rounds[j], round, &centre);
