@@ -32,6 +32,17 @@ pub struct FootStep<const W: usize> {
     pub k: [[Lanes<W>; 2]; 2],
 }
 
+impl<const W: usize> FootStep<W> {
+    /// Moves the impulse `p` of `foot` by its step under a change `dv` of the twist.
+    #[inline(always)]
+    fn take(&self, foot: &FootRow<W>, dv: &Triple<W>, open: Mask<W>, p: &mut [Lanes<W>; 2]) {
+        let ds = foot.slip(dv);
+        for (p, (r, k)) in p.iter_mut().zip(self.r.iter().zip(&self.k)) {
+            *p = open.select((*p + *r).less(k[0], ds[0]).less(k[1], ds[1]), *p);
+        }
+    }
+}
+
 /// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs, both coefficients at least 0.
 #[derive(Clone, Copy, Debug)]
 pub struct StallStep<const W: usize> {
@@ -103,12 +114,11 @@ impl<const W: usize> Linearised<W> {
     /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
     #[inline(always)]
     fn take_step(&self, dv: Triple<W>, dy: Lanes<W>, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
-        for ((foot, step), p_k) in ncp.feet.iter().zip(&self.feet).zip(&mut p.feet) {
-            let ds = foot.slip(&dv);
-            for i in 0..2 {
-                p_k[i] = open.select((p_k[i] + step.r[i]).less(step.k[i][0], ds[0]).less(step.k[i][1], ds[1]), p_k[i]);
-            }
-        }
+        // no loop: across the feet instead of the lanes, the compiler would gather lane by lane
+        let ([a, b, c], [foot_a, foot_b, foot_c]) = (&mut p.feet, &ncp.feet);
+        self.feet[0].take(foot_a, &dv, open, a);
+        self.feet[1].take(foot_b, &dv, open, b);
+        self.feet[2].take(foot_c, &dv, open, c);
         for (i, step) in &self.contacts {
             let (row, p_n, p_t) = (&ncp.contacts[*i], &mut p.normal[*i], &mut p.tangential[*i]);
             let dgamma = dot(&row.n, &dv).plus(row.nd, dy);

@@ -131,9 +131,9 @@ impl<const W: usize> Linearised<W> {
         for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
             self.contacts.push((i, aim.contact(row, contact, [*p_n, *p_t], ncp.compliance)));
         }
-        for k in 0..3 {
-            self.feet[k] = aim.foot(&ncp.feet[k], &map.feet[k], &p.feet[k]);
-        }
+        let ([a, b, c], [map_a, map_b, map_c]) = (&ncp.feet, &map.feet);
+        // no loop, as in `Linearised::take_step`
+        self.feet = [aim.foot(a, map_a, &p.feet[0]), aim.foot(b, map_b, &p.feet[1]), aim.foot(c, map_c, &p.feet[2])];
         self.stall = aim.stall(ncp, &map.stall, p.pusher_yield);
     }
 }
