@@ -145,8 +145,8 @@ impl Draw {
         let mut first = first_particle;
         for (even, odd) in even.chunks_mut(LANES).zip(odd.chunks_mut(LANES)) {
             let [u, v] = self.uniform_lanes::<LANES>(Kind::Normal, first, pair);
-            even.copy_from_slice(&u[..even.len()]);
-            odd.copy_from_slice(&v[..odd.len()]);
+            store(even, &u);
+            store(odd, &v);
             first = first.wrapping_add(LANES as u32);
         }
         // a loop of its own, over memory: fused with the one above it does not vectorise
@@ -171,6 +171,22 @@ impl Draw {
         let [a, b, c, d] = philox4x32_10(counter, [seed as u32, (seed >> 32) as u32]);
         [open_unit(a, b), open_unit(c, d)]
     }
+}
+
+/// Writes as many numbers as `to` has room for.
+#[inline(always)]
+fn store<const L: usize>(to: &mut [f64], from: &[f64; L]) {
+    match to.first_chunk_mut() {
+        Some(lanes) => *lanes = *from,
+        None => store_last(to, from),
+    }
+}
+
+/// Out of line: beside it, whole chunks would be copied by a call with a number of bytes.
+#[cold]
+#[inline(never)]
+fn store_last(to: &mut [f64], from: &[f64]) {
+    to.copy_from_slice(&from[..to.len()]);
 }
 
 /// The middle of one of 2^52 equal cells of (0, 1): never 0, never 1, and exact in f64.
