@@ -11,7 +11,7 @@ use crate::plane::Frame;
 use crate::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::scene::{Feet, Fixel, Friction, Scene};
 use crate::stage::{Moment, Stage};
-use crate::step::{Body, PusherMotion, StepInput};
+use crate::step::{Body, PusherMotion};
 use crate::{Shape, Twist, Wrench};
 
 /// Place of the first remembered contact among the numbers of a warm start.
@@ -37,12 +37,16 @@ struct Row<const W: usize> {
     gap: Lanes<W>,
 }
 
-/// What turns rows back into SI units.
+/// What turns SI units into those of rows, and back.
 #[derive(Clone, Copy, Debug, Default)]
 struct Setting {
     mass: f64,
     inertia: f64,
     h: f64,
+    /// 1/ρ.
+    per_rho: f64,
+    /// 1/h.
+    rate: f64,
     stall: Option<Stall>,
 }
 
@@ -106,18 +110,18 @@ impl<const W: usize> Assembly<W> {
         self.rows.clear();
         ncp.clear();
         let object = Frames::new(&particles.pose);
-        self.set_body(stage, moment.input, (particles, &object), ncp);
+        self.set_body(stage, moment, (particles, &object), ncp);
         let scene = &stage.scene;
         if let Some((motion, frame)) = moment.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
             let (mu, catch_up) = (particles.friction[1], particles.pusher_lag * moment.rate);
             let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction, catch_up };
-            self.meet(stage, moment, &object, &pusher, narrow, ncp);
+            self.meet(scene, &object, &pusher, narrow, ncp);
         }
         let mu = particles.friction[2];
         for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate() {
             let fixel = Other { body: Body::Fixel(j), shape, frame: *frame, mu, motion: None, direction: [0.0; 2], catch_up: Lanes::ZERO };
-            self.meet(stage, moment, &object, &fixel, narrow, ncp);
+            self.meet(scene, &object, &fixel, narrow, ncp);
         }
     }
 
@@ -125,44 +129,36 @@ impl<const W: usize> Assembly<W> {
     #[inline(always)]
     fn set_body(
         &mut self,
-        Stage { scene, rho, per_rho, per_mass, per_inertia, stance, .. }: &Stage,
-        input: &StepInput,
+        &Stage { ref scene, rho, per_rho, per_mass, per_inertia, ref stance, .. }: &Stage,
+        &Moment { input, rate, .. }: &Moment<'_>,
         (particles, object): (&Particles<W>, &Frames<W>),
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
         let limit = input.pusher.and_then(|pusher| scene.pusher.stall_force.map(|force| (force, pusher.direction)));
         let stall = limit.map(|(force, direction)| Stall { impulse: force * input.h, direction });
-        self.setting = Setting { mass, inertia, h: input.h, stall };
+        self.setting = Setting { mass, inertia, h: input.h, per_rho, rate, stall };
         ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |stall| stall.impulse / mass));
         let [vx, vy, omega] = particles.twist;
         let [fx, fy, torque] = particles.applied;
-        ncp.free = [vx + fx * *per_mass, vy + fy * *per_mass, (omega + torque * *per_inertia) * *rho];
+        ncp.free = [vx + fx * per_mass, vy + fy * per_mass, (omega + torque * per_inertia) * rho];
         let [mu_s, _, _, d_tri] = particles.friction;
         let arms = scene.foot_arms(stance, object, d_tri);
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
-            *row = FootRow { jx: -y * *per_rho, jy: x * *per_rho, bound: mu_s * (scene.gravity * input.h * load) };
+            *row = FootRow { jx: -y * per_rho, jy: x * per_rho, bound: mu_s * (scene.gravity * input.h * load) };
         }
     }
 
     /// Adds the contacts of the object with one body.
     #[inline(always)]
-    fn meet(
-        &mut self,
-        stage: &Stage,
-        moment: &Moment<'_>,
-        object: &Frames<W>,
-        other: &Other<'_, W>,
-        narrow: &mut NarrowWork<W>,
-        ncp: &mut Ncp<W>,
-    ) {
+    fn meet(&mut self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
         let frames = PairFrames { object: *object, other: other.frame.splat() };
-        narrow.meet([&stage.scene.object.shape, other.shape], &frames, self.reach);
+        narrow.meet([&scene.object.shape, other.shape], &frames, self.reach);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
             let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize) as f64;
             self.rows.push(Row { body: other.body, key, present: contact.present, gap: contact.gap });
-            ncp.contacts.push(row([stage.per_rho, moment.rate], object, other, contact));
+            ncp.contacts.push(row(&self.setting, object, other, contact));
         }
     }
 
@@ -219,7 +215,7 @@ impl<const W: usize> Assembly<W> {
 
     /// One lane's problem in SI units; the applied impulse is part of its twist.
     pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
-        let Setting { mass, inertia, h, stall } = self.setting;
+        let Setting { mass, inertia, h, stall, .. } = self.setting;
         let rho = (inertia / mass).sqrt();
         let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
         let foot = |row: &FootRow<W>| Foot { arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho], bound: row.bound.0[lane] * mass };
@@ -250,9 +246,10 @@ impl<const W: usize> Assembly<W> {
     }
 }
 
-/// The row of one contact; `per_rho` is 1/ρ, `rate` 1/h.
+/// The row of one contact.
 #[inline(always)]
-fn row<const W: usize>([per_rho, rate]: [f64; 2], object: &Frames<W>, other: &Other<'_, W>, contact: &Contact<W>) -> ContactRow<W> {
+fn row<const W: usize>(setting: &Setting, object: &Frames<W>, other: &Other<'_, W>, contact: &Contact<W>) -> ContactRow<W> {
+    let Setting { per_rho, rate, .. } = *setting;
     let Contact { present, normal: [nx, ny], arm: [x, y], gap, .. } = *contact;
     let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
         let arm = [object.origin[0] + x - motion.pose.x, object.origin[1] + y - motion.pose.y];

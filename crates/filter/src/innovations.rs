@@ -111,7 +111,7 @@ mod tests {
         let axis = ConstantVelocity { process_noise: 0.0, measurement_std: 1e-3, initial_velocity_std: 0.3 };
         let draw = Streams::new(5).of(Purpose::Measure).at(0);
         let times: Vec<f64> = (0..400).map(|row| 0.03 * f64::from(row) + if row > 200 { 2.0 } else { 0.0 }).collect();
-        let position = |row: usize| 3.0 + (2.0 * times[row]).sin() * 0.05 + 1e-3 * draw.normals::<1>(row as u32, 0)[0];
+        let position = |row: usize| 3.0 + libm::sin(2.0 * times[row]) * 0.05 + 1e-3 * draw.normals::<1>(row as u32, 0)[0];
         let measurements: Vec<Option<f64>> = (0..400).map(|row| (row % 7 != 0).then(|| position(row))).collect();
         let series = Series::new(&times, &measurements).expect("a series");
         let levels = [1e-14, 1e-8, 1e-5, 1e-2, 10.0, 1e4];
