@@ -292,3 +292,18 @@ impl<const W: usize> StepWork<W> {
         [vx, vy, scaled * per_rho]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_at_most_is_a_bound_and_a_close_one() {
+        for i in 0..1000 {
+            let (sin, cos) = libm::sincos(0.01 * f64::from(i));
+            let length = 1e-3 * f64::from(i + 1);
+            let bound = length_at_most(&Lanes([length * cos]), &Lanes([length * sin])).0[0];
+            assert!(bound >= length * (1.0 - 1e-15) && bound <= length * 13.0 / 12.0, "{bound} of {length}, direction {i}");
+        }
+    }
+}

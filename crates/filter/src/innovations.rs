@@ -8,7 +8,7 @@ use crate::ConstantVelocity;
 use crate::kalman::LN_TAU;
 use crate::series::Series;
 
-/// Variances whose product is taken before its logarithm: none of them is below 1, and a product of so many stays finite.
+/// Variances whose product is taken before its logarithm: none of them is below 1, and a product of so many below 1e77 is finite.
 const FACTORS: usize = 4;
 
 /// ln p(measurements after the first | the first) for each process noise.
