@@ -4,7 +4,7 @@ use crate::contact::Contact;
 use crate::frames::Frames;
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, Mask};
-use crate::narrow::{NarrowWork, PairFrames};
+use crate::narrow::{NarrowWork, PairFrames, near};
 use crate::ncp::{ContactRow, FootRow, Ncp};
 use crate::particles::{Particles, REMEMBERED};
 use crate::plane::Frame;
@@ -153,8 +153,13 @@ impl<const W: usize> Assembly<W> {
     /// Adds the contacts of the object with one body.
     #[inline(always)]
     fn meet(&mut self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
+        let shapes = [&scene.object.shape, other.shape];
+        let near = near(shapes, &object.origin, other.frame.origin, self.reach);
+        if !near.any() {
+            return;
+        }
         let frames = PairFrames { object: *object, other: other.frame.splat() };
-        narrow.meet([&scene.object.shape, other.shape], &frames, self.reach);
+        narrow.meet(shapes, &frames, self.reach, near);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
             let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize) as f64;
             self.rows.push(Row { body: other.body, key, present: contact.present, gap: contact.gap });

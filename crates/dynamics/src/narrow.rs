@@ -14,10 +14,10 @@
 //!   two convex polygons no gap is deeper than that, and one is as deep.
 
 use crate::contact::{Contact, Contacts};
-use crate::frames::{Frames, dot, sub};
-use crate::lanes::Lanes;
+use crate::frames::{Frames, Vec2s, dot};
+use crate::lanes::{Lanes, Mask};
 use crate::pair::Pair;
-use crate::plane::Frame;
+use crate::plane::{Frame, Vec2};
 use crate::stand::Stand;
 use crate::{Pose, Shape};
 
@@ -64,7 +64,9 @@ impl<'a> Placed<'a> {
 pub fn narrow_phase(object: &Placed<'_>, other: &Placed<'_>, reach: f64, out: &mut Vec<Gap>) {
     let mut work = NarrowWork::<1>::default();
     let frames = Frames1 { object: object.frame.splat(), other: other.frame.splat() };
-    work.meet([object.shape, other.shape], &frames, Lanes([reach]));
+    let (shapes, reach) = ([object.shape, other.shape], Lanes([reach]));
+    let near = near(shapes, &frames.object.origin, other.frame.origin, reach);
+    work.meet(shapes, &frames, reach, near);
     out.extend(work.contacts().filter(|contact| contact.present.lane(0)).map(|contact| contact.lane(0)));
 }
 
@@ -74,6 +76,14 @@ type Frames1 = PairFrames<1>;
 pub(crate) struct PairFrames<const W: usize> {
     pub object: Frames<W>,
     pub other: Frames<W>,
+}
+
+/// Where two bodies come so near to each other, by their bounding discs, that a gap may be below `reach` (m).
+#[inline(always)]
+pub(crate) fn near<const W: usize>([object, other]: [&Shape; 2], at: &Vec2s<W>, other_at: Vec2, reach: Lanes<W>) -> Mask<W> {
+    let apart = [at[0] - other_at[0], at[1] - other_at[1]];
+    let limit = reach + (object.bounding_radius() + other.bounding_radius());
+    limit.gt(Lanes::ZERO) & dot(&apart, &apart).lt(limit * limit)
 }
 
 /// Working memory of the narrow phase, and the contacts that it found.
@@ -91,13 +101,10 @@ impl<const W: usize> Default for NarrowWork<W> {
 }
 
 impl<const W: usize> NarrowWork<W> {
-    /// Finds the contacts of two shapes whose gap is below `reach` (m).
+    /// Finds the contacts of two shapes whose gap is below `reach` (m), in the lanes of `near`, where they can touch.
     #[inline(always)]
-    pub fn meet(&mut self, [object, other]: [&Shape; 2], frames: &PairFrames<W>, reach: Lanes<W>) {
+    pub fn meet(&mut self, [object, other]: [&Shape; 2], frames: &PairFrames<W>, reach: Lanes<W>, near: Mask<W>) {
         self.found.clear(object.bounding_radius());
-        let apart = sub(&frames.other.origin, &frames.object.origin);
-        let limit = reach + (object.bounding_radius() + other.bounding_radius());
-        let near = limit.gt(Lanes::ZERO) & dot(&apart, &apart).lt(limit * limit);
         if near.any() {
             Pair::new([object, other], frames, reach, near, self).meet();
             self.found.sort();
