@@ -66,6 +66,9 @@ pub fn narrow_phase(object: &Placed<'_>, other: &Placed<'_>, reach: f64, out: &m
     let frames = Frames1 { object: object.frame.splat(), other: other.frame.splat() };
     let (shapes, reach) = ([object.shape, other.shape], Lanes([reach]));
     let near = near(shapes, &frames.object.origin, other.frame.origin, reach);
+    if !near.any() {
+        return;
+    }
     work.meet(shapes, &frames, reach, near);
     out.extend(work.contacts().filter(|contact| contact.present.lane(0)).map(|contact| contact.lane(0)));
 }
@@ -101,14 +104,12 @@ impl<const W: usize> Default for NarrowWork<W> {
 }
 
 impl<const W: usize> NarrowWork<W> {
-    /// Finds the contacts of two shapes whose gap is below `reach` (m), in the lanes of `near`, where they can touch.
+    /// Finds the contacts of two shapes whose gap is below `reach` (m), in the lanes of [`near`], of which there is one.
     #[inline(always)]
     pub fn meet(&mut self, [object, other]: [&Shape; 2], frames: &PairFrames<W>, reach: Lanes<W>, near: Mask<W>) {
         self.found.clear(object.bounding_radius());
-        if near.any() {
-            Pair::new([object, other], frames, reach, near, self).meet();
-            self.found.sort();
-        }
+        Pair::new([object, other], frames, reach, near, self).meet();
+        self.found.sort();
     }
 
     /// The contacts found last; those without a lane are none.

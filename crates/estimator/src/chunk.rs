@@ -96,20 +96,18 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     }
 }
 
-/// Out of line, and lane by lane: else a whole chunk would be copied by a call with a number of bytes.
+/// Out of line: beside it, a whole chunk would be copied by a call with a number of bytes.
 #[cold]
 #[inline(never)]
 fn last_part(rest: &[f64], past: f64) -> Column {
-    Lanes(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(past)))
+    let mut part = Column::splat(past);
+    part.0[..rest.len()].copy_from_slice(rest);
+    part
 }
 
 /// See [`last_part`].
 #[cold]
 #[inline(never)]
 fn store_last_part(rest: &mut [f64], from: &Column) {
-    for (lane, from) in from.0.iter().enumerate() {
-        if let Some(to) = rest.get_mut(lane) {
-            *to = *from;
-        }
-    }
+    rest.copy_from_slice(&from.0[..rest.len()]);
 }
