@@ -26,7 +26,13 @@ pub fn check(root: &Path) -> Result<String, String> {
 fn compare(root: &Path, experiment: &Path, out: &Path) -> Result<String, String> {
     let mut reference: Option<Vec<u8>> = None;
     for (profile, threads) in RUNS {
-        let estimate = filter(root, experiment, profile, threads, &out.join(format!("{profile}-{threads}")))?;
+        let estimate = filter(
+            root,
+            experiment,
+            profile,
+            threads,
+            &out.join(format!("{profile}-{threads}")),
+        )?;
         match &reference {
             None => reference = Some(estimate),
             Some(expected) => same(expected, &estimate).map_err(|line| {
@@ -40,21 +46,39 @@ fn compare(root: &Path, experiment: &Path, out: &Path) -> Result<String, String>
         }
     }
     let digest = fnv1a(&reference.unwrap_or_default());
-    let runs = RUNS.map(|(profile, threads)| format!("{profile}/{threads}")).join(", ");
+    let runs = RUNS
+        .map(|(profile, threads)| format!("{profile}/{threads}"))
+        .join(", ");
     Ok(format!("determinism: {digest:016x} from {runs} threads"))
 }
 
 /// The first folder, by name, that holds an experiment.
 fn first_experiment(folder: &Path) -> Result<PathBuf, String> {
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}; the demo's experiments must lie there", folder.display()))?;
-    let mut experiments: Vec<PathBuf> =
-        entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|p| p.join("log.csv").is_file()).collect();
+    let entries = fs::read_dir(folder).map_err(|error| {
+        format!(
+            "{}: {error}; the demo's experiments must lie there",
+            folder.display()
+        )
+    })?;
+    let mut experiments: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|p| p.join("log.csv").is_file())
+        .collect();
     experiments.sort();
-    experiments.into_iter().next().ok_or_else(|| format!("{}: no folder with a log.csv", folder.display()))
+    experiments
+        .into_iter()
+        .next()
+        .ok_or_else(|| format!("{}: no folder with a log.csv", folder.display()))
 }
 
 /// The bytes of `estimate.csv` from one run of the program.
-fn filter(root: &Path, experiment: &Path, profile: &str, threads: u32, out: &Path) -> Result<Vec<u8>, String> {
+fn filter(
+    root: &Path,
+    experiment: &Path,
+    profile: &str,
+    threads: u32,
+    out: &Path,
+) -> Result<Vec<u8>, String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.current_dir(root).args([
@@ -69,14 +93,26 @@ fn filter(root: &Path, experiment: &Path, profile: &str, threads: u32, out: &Pat
         "--",
         "filter",
     ]);
-    command.arg(experiment.join("log.csv")).arg("--scene").arg(experiment.join("scene.toml"));
-    command.args(["--threads", &threads.to_string()]).arg("--out").arg(out);
-    let output = command.output().map_err(|error| format!("cargo did not start: {error}"))?;
+    command
+        .arg(experiment.join("log.csv"))
+        .arg("--scene")
+        .arg(experiment.join("scene.toml"));
+    command
+        .args(["--threads", &threads.to_string()])
+        .arg("--out")
+        .arg(out);
+    let output = command
+        .output()
+        .map_err(|error| format!("cargo did not start: {error}"))?;
     if !output.status.success() {
-        return Err(format!("determinism: {command:?} failed:\n{}", String::from_utf8_lossy(&output.stderr)));
+        return Err(format!(
+            "determinism: {command:?} failed:\n{}",
+            String::from_utf8_lossy(&output.stderr)
+        ));
     }
     let path = out.join("estimate.csv");
-    fs::read(&path).map_err(|error| format!("{}: {error}; `filter --out` must write it", path.display()))
+    fs::read(&path)
+        .map_err(|error| format!("{}: {error}; `filter --out` must write it", path.display()))
 }
 
 /// Whether two files are the same; otherwise the first line, from 1, where they are not.
@@ -84,13 +120,23 @@ fn same(expected: &[u8], found: &[u8]) -> Result<(), usize> {
     if expected == found {
         return Ok(());
     }
-    let agree = expected.iter().zip(found).take_while(|(a, b)| a == b).count();
-    Err(expected[..agree].iter().filter(|byte| **byte == b'\n').count() + 1)
+    let agree = expected
+        .iter()
+        .zip(found)
+        .take_while(|(a, b)| a == b)
+        .count();
+    Err(expected[..agree]
+        .iter()
+        .filter(|byte| **byte == b'\n')
+        .count()
+        + 1)
 }
 
 /// 64-bit FNV-1a, to show at a glance whether two machines agree.
 fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
-//! The documents: paths that they name exist, every crate has its section and invariant, the README is short.
+//! The documents: paths that they name exist, every crate has its section and invariant, the README
+//! is short.
 //!
-//! A path is what stands in backticks or is linked to, and either begins with a name at the root (`crates/...`), ends in `/`, or
-//! has an ending; in fenced blocks only the first counts. A lone `name.rs` belongs to the folder in the heading above it.
+//! A path is what stands in backticks or is linked to, and either begins with a name at the root
+//! (`crates/...`), ends in `/`, or has an ending; in fenced blocks only the first counts. A lone
+//! `name.rs` belongs to the folder in the heading above it.
 
 use crate::arrows::CRATES;
 use crate::finding::Finding;
@@ -22,34 +24,64 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     for file in [README, ARCHITECTURE] {
         match tree.text(file) {
             Some(text) => findings.extend(missing_paths(tree, file, text)),
-            None => findings.push(finding(file, 1, "there is no such file".to_string(), "write it")),
+            None => findings.push(finding(
+                file,
+                1,
+                "there is no such file".to_string(),
+                "write it",
+            )),
         }
     }
     let lines = tree.text(README).map_or(0, |text| text.lines().count());
     if lines >= README_LINES {
         let rule = format!("{lines} lines; the README has fewer than {README_LINES}");
-        findings.push(finding(README, README_LINES, rule, "move detail to docs/ or ARCHITECTURE.md"));
+        findings.push(finding(
+            README,
+            README_LINES,
+            rule,
+            "move detail to docs/ or ARCHITECTURE.md",
+        ));
     }
     findings.extend(missing_crates(tree.text(ARCHITECTURE).unwrap_or_default()));
     findings
 }
 
 fn finding(file: &str, line: usize, rule: String, next: &str) -> Finding {
-    Finding { file: file.to_string(), line, rule, next: next.to_string() }
+    Finding {
+        file: file.to_string(),
+        line,
+        rule,
+        next: next.to_string(),
+    }
 }
 
 /// Crates without a heading or without an invariant below it.
 fn missing_crates(text: &str) -> Vec<Finding> {
     let mut findings = Vec::new();
     for folder in CRATES.map(|c| c.folder) {
-        let heading = text.lines().position(|line| heading_folder(line) == Some(folder));
+        let heading = text
+            .lines()
+            .position(|line| heading_folder(line) == Some(folder));
         let Some(at) = heading else {
-            findings.push(finding(ARCHITECTURE, 1, format!("no heading names `{folder}`"), "describe the crate there"));
+            findings.push(finding(
+                ARCHITECTURE,
+                1,
+                format!("no heading names `{folder}`"),
+                "describe the crate there",
+            ));
             continue;
         };
-        let mut section = text.lines().skip(at + 1).take_while(|line| !line.starts_with('#'));
+        let mut section = text
+            .lines()
+            .skip(at + 1)
+            .take_while(|line| !line.starts_with('#'));
         if folder.starts_with("crates/") && !section.any(|line| line.contains("**Invariant:**")) {
-            findings.push(finding(ARCHITECTURE, at + 1, format!("`{folder}` has no **Invariant:**"), "say what it must never do"));
+            findings.push(finding(
+                ARCHITECTURE,
+                at + 1,
+                format!("`{folder}` has no **Invariant:**"),
+                "say what it must never do",
+            ));
         }
     }
     findings
@@ -57,7 +89,9 @@ fn missing_crates(text: &str) -> Vec<Finding> {
 
 /// The folder that a heading names in backticks.
 fn heading_folder(line: &str) -> Option<&str> {
-    line.starts_with('#').then(|| line.split('`').nth(1)).flatten()
+    line.starts_with('#')
+        .then(|| line.split('`').nth(1))
+        .flatten()
 }
 
 fn missing_paths(tree: &Tree, file: &str, text: &str) -> Vec<Finding> {
@@ -72,12 +106,23 @@ fn missing_paths(tree: &Tree, file: &str, text: &str) -> Vec<Finding> {
         if !fenced && line.starts_with('#') {
             folder = heading_folder(line);
         }
-        let words = if fenced { line.split_whitespace().collect() } else { marked(line) };
+        let words = if fenced {
+            line.split_whitespace().collect()
+        } else {
+            marked(line)
+        };
         for word in words {
-            let Some(path) = path_of(tree, word, fenced, folder) else { continue };
+            let Some(path) = path_of(tree, word, fenced, folder) else {
+                continue;
+            };
             if !tree.exists(&path) {
                 let next = "name what is there now, or put it there";
-                findings.push(finding(file, index + 1, format!("`{path}` does not exist"), next));
+                findings.push(finding(
+                    file,
+                    index + 1,
+                    format!("`{path}` does not exist"),
+                    next,
+                ));
             }
         }
     }
@@ -87,7 +132,11 @@ fn missing_paths(tree: &Tree, file: &str, text: &str) -> Vec<Finding> {
 /// What stands in backticks, and what is linked to.
 fn marked(line: &str) -> Vec<&str> {
     let mut words: Vec<&str> = line.split('`').skip(1).step_by(2).collect();
-    words.extend(line.split("](").skip(1).filter_map(|rest| rest.split(')').next()));
+    words.extend(
+        line.split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next()),
+    );
     words
 }
 
@@ -95,7 +144,11 @@ fn marked(line: &str) -> Vec<&str> {
 fn path_of(tree: &Tree, word: &str, fenced: bool, folder: Option<&str>) -> Option<String> {
     let word = word.split('#').next()?.trim_start_matches("./");
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/".contains(c);
-    if word.is_empty() || !word.chars().all(plain) || word.starts_with('/') || word.starts_with("..") {
+    if word.is_empty()
+        || !word.chars().all(plain)
+        || word.starts_with('/')
+        || word.starts_with("..")
+    {
         return None;
     }
     let ending = word.rsplit_once('.').map(|(_, ending)| ending);
@@ -108,7 +161,8 @@ fn path_of(tree: &Tree, word: &str, fenced: bool, folder: Option<&str>) -> Optio
         };
     };
     let at_root = first != "target" && tree.exists(first);
-    let looks_like_one = word.ends_with('/') || ending.is_some_and(|ending| ENDINGS.contains(&ending));
+    let looks_like_one =
+        word.ends_with('/') || ending.is_some_and(|ending| ENDINGS.contains(&ending));
     (at_root || (!fenced && looks_like_one)).then(|| word.to_string())
 }
 
@@ -117,8 +171,16 @@ mod tests {
     use super::*;
 
     fn missing(text: &str) -> Vec<String> {
-        let tree = Tree::from([("crates/a/src/lib.rs", ""), ("crates/a/src/x/mod.rs", ""), ("docs/p.svg", ""), ("README.md", "")]);
-        missing_paths(&tree, "README.md", text).iter().map(Finding::to_string).collect()
+        let tree = Tree::from([
+            ("crates/a/src/lib.rs", ""),
+            ("crates/a/src/x/mod.rs", ""),
+            ("docs/p.svg", ""),
+            ("README.md", ""),
+        ]);
+        missing_paths(&tree, "README.md", text)
+            .iter()
+            .map(Finding::to_string)
+            .collect()
     }
 
     #[test]
@@ -147,7 +209,9 @@ mod tests {
         ] {
             let found = missing(text);
             assert!(
-                found.len() == 1 && found[0].starts_with("README.md:2: ") && found[0].to_lowercase().contains("does not exist"),
+                found.len() == 1
+                    && found[0].starts_with("README.md:2: ")
+                    && found[0].to_lowercase().contains("does not exist"),
                 "{text}: {found:?}"
             );
         }
@@ -157,17 +221,42 @@ mod tests {
     fn check_finds_a_long_readme_and_missing_documents() {
         let long = "\n".repeat(README_LINES);
         let found = check(&Tree::from([("README.md", long.as_str())]));
-        assert!(found.iter().any(|f| f.file == README && f.rule.starts_with("150 lines")), "{found:?}");
-        assert!(found.iter().any(|f| f.file == ARCHITECTURE && f.rule == "there is no such file"), "{found:?}");
+        assert!(
+            found
+                .iter()
+                .any(|f| f.file == README && f.rule.starts_with("150 lines")),
+            "{found:?}"
+        );
+        assert!(
+            found
+                .iter()
+                .any(|f| f.file == ARCHITECTURE && f.rule == "there is no such file"),
+            "{found:?}"
+        );
     }
 
     #[test]
     fn missing_crates_wants_a_heading_and_an_invariant_each() {
-        let all: String = CRATES.iter().map(|c| format!("### `{}`\n**Invariant:** x\n", c.folder)).collect();
+        let all: String = CRATES
+            .iter()
+            .map(|c| format!("### `{}`\n**Invariant:** x\n", c.folder))
+            .collect();
         assert!(missing_crates(&all).is_empty());
-        let found = missing_crates(&all.replace("### `crates/filter`\n**Invariant:**", "### `crates/filter`\n"));
-        assert!(found.len() == 1 && found[0].rule.contains("`crates/filter` has no **Invariant:**"), "{found:?}");
+        let found = missing_crates(&all.replace(
+            "### `crates/filter`\n**Invariant:**",
+            "### `crates/filter`\n",
+        ));
+        assert!(
+            found.len() == 1
+                && found[0]
+                    .rule
+                    .contains("`crates/filter` has no **Invariant:**"),
+            "{found:?}"
+        );
         let found = missing_crates(&all.replace("`crates/cli`", "cli"));
-        assert!(found.len() == 1 && found[0].rule.contains("`crates/cli`"), "{found:?}");
+        assert!(
+            found.len() == 1 && found[0].rule.contains("`crates/cli`"),
+            "{found:?}"
+        );
     }
 }

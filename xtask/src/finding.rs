@@ -17,6 +17,10 @@ pub struct Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}; {}", self.file, self.line, self.rule, self.next)
+        write!(
+            f,
+            "{}:{}: {}; {}",
+            self.file, self.line, self.rule, self.next
+        )
     }
 }

@@ -57,5 +57,9 @@ fn tidy(root: &Path) -> Result<String, String> {
     }
     findings.sort();
     let lines: Vec<String> = findings.iter().map(Finding::to_string).collect();
-    Err(format!("{}\ntidy: {} found", lines.join("\n"), findings.len()))
+    Err(format!(
+        "{}\ntidy: {} found",
+        lines.join("\n"),
+        findings.len()
+    ))
 }

@@ -1,14 +1,22 @@
-//! Rust source as text: without comments and literals ([`code_only`]), without its tests ([`without_tests`]), and its names ([`names`]).
+//! Rust source as text: without comments and literals ([`code_only`]), without its tests
+//! ([`without_tests`]), and its names ([`names`]).
 
-/// The source with every comment, string and character literal blanked out; lines stay where they are.
+/// The source with every comment, string and character literal blanked out; lines stay where they
+/// are.
 pub fn code_only(source: &str) -> String {
     let mut code = String::with_capacity(source.len());
     let mut rest = source;
     let mut after_name = false;
     while let Some(first) = rest.chars().next() {
-        let length = if after_name { 0 } else { literal(rest) }.max(comment(rest)).max(quoted(rest));
+        let length = if after_name { 0 } else { literal(rest) }
+            .max(comment(rest))
+            .max(quoted(rest));
         if length > 0 {
-            code.extend(rest[..length].chars().map(|c| if c == '\n' { '\n' } else { ' ' }));
+            code.extend(
+                rest[..length]
+                    .chars()
+                    .map(|c| if c == '\n' { '\n' } else { ' ' }),
+            );
         } else {
             code.push(first);
         }
@@ -43,12 +51,15 @@ fn comment(text: &str) -> usize {
     at
 }
 
-/// Bytes of the string or character that the text begins with, `"..."` or `'.'`; 0 for none, as for a lifetime.
+/// Bytes of the string or character that the text begins with, `"..."` or `'.'`; 0 for none, as for
+/// a lifetime.
 fn quoted(text: &str) -> usize {
     if let Some(after) = text.strip_prefix('"') {
         return 1 + closing(after, '"');
     }
-    let Some(after) = text.strip_prefix('\'') else { return 0 };
+    let Some(after) = text.strip_prefix('\'') else {
+        return 0;
+    };
     let mut next = after.chars();
     match (next.next(), next.next()) {
         (Some('\\'), _) => 1 + closing(after, '\''),
@@ -57,7 +68,8 @@ fn quoted(text: &str) -> usize {
     }
 }
 
-/// Bytes of the prefixed literal that the text begins with, `r"..."`, `r#"..."#`, `b"..."`, `br"..."`, `c"..."`, `b'.'`; 0 for none.
+/// Bytes of the prefixed literal that the text begins with, `r"..."`, `r#"..."#`, `b"..."`,
+/// `br"..."`, `c"..."`, `b'.'`; 0 for none.
 fn literal(text: &str) -> usize {
     let prefix = text.len() - text.trim_start_matches(['b', 'c', 'r']).len();
     let after = &text[prefix..];
@@ -69,9 +81,16 @@ fn literal(text: &str) -> usize {
         return if length == 0 { 0 } else { prefix + length };
     }
     let hashes = after.len() - after.trim_start_matches('#').len();
-    let Some(content) = after[hashes..].strip_prefix('"') else { return 0 };
+    let Some(content) = after[hashes..].strip_prefix('"') else {
+        return 0;
+    };
     let end = format!("\"{}", "#".repeat(hashes));
-    prefix + hashes + 1 + content.find(&end).map_or(content.len(), |at| at + end.len())
+    prefix
+        + hashes
+        + 1
+        + content
+            .find(&end)
+            .map_or(content.len(), |at| at + end.len())
 }
 
 /// Bytes up to and with the closing quote, which is not one behind a backslash.
@@ -108,7 +127,9 @@ pub fn without_tests(source: &str) -> &str {
 pub fn names(code: &str) -> impl Iterator<Item = (usize, &str)> {
     code.lines().enumerate().flat_map(|(index, line)| {
         let words = line.split(|c: char| !(c.is_alphanumeric() || c == '_'));
-        words.filter(|word| !word.is_empty()).map(move |word| (index + 1, word))
+        words
+            .filter(|word| !word.is_empty())
+            .map(move |word| (index + 1, word))
     })
 }
 
@@ -129,29 +150,51 @@ mod tests {
 
     #[test]
     fn code_only_blanks_literals() {
-        for literal in
-            [r#""fs \" fs""#, r##"r#"fs " fs"#"##, r#"b"fs""#, "br\"fs\"", "'f'", r"'\''", "'\\u{66}'", r"b'\\'", "\"\\\\\"", "'\"'"]
-        {
-            assert_eq!(kept(&code_only(&format!("a {literal} b"))), ["a", "b"], "{literal}");
+        for literal in [
+            r#""fs \" fs""#,
+            r##"r#"fs " fs"#"##,
+            r#"b"fs""#,
+            "br\"fs\"",
+            "'f'",
+            r"'\''",
+            "'\\u{66}'",
+            r"b'\\'",
+            "\"\\\\\"",
+            "'\"'",
+        ] {
+            assert_eq!(
+                kept(&code_only(&format!("a {literal} b"))),
+                ["a", "b"],
+                "{literal}"
+            );
         }
     }
 
     #[test]
     fn code_only_keeps_lifetimes_and_raw_names() {
-        assert_eq!(code_only("fn f<'a>(x: &'a str, y: &'static T)"), "fn f<'a>(x: &'a str, y: &'static T)");
+        assert_eq!(
+            code_only("fn f<'a>(x: &'a str, y: &'static T)"),
+            "fn f<'a>(x: &'a str, y: &'static T)"
+        );
         assert_eq!(code_only("r#type + br + cr"), "r#type + br + cr");
         assert_eq!(kept(&code_only("number\"fs\"")), ["number"]);
     }
 
     #[test]
     fn without_tests_ends_at_the_module_of_tests_only() {
-        assert_eq!(without_tests("a\n#[cfg(test)]\n#[allow(x)]\nmod tests {\n b\n}\n"), "a\n");
+        assert_eq!(
+            without_tests("a\n#[cfg(test)]\n#[allow(x)]\nmod tests {\n b\n}\n"),
+            "a\n"
+        );
         let helper = "a\n#[cfg(test)]\nfn f() {}\nb\n";
         assert_eq!(without_tests(helper), helper);
     }
 
     #[test]
     fn names_come_with_their_lines() {
-        assert_eq!(names("a::b\nc_1(d)").collect::<Vec<_>>(), [(1, "a"), (1, "b"), (2, "c_1"), (2, "d")]);
+        assert_eq!(
+            names("a::b\nc_1(d)").collect::<Vec<_>>(),
+            [(1, "a"), (1, "b"), (2, "c_1"), (2, "d")]
+        );
     }
 }

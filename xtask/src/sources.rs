@@ -11,8 +11,15 @@ const LONGEST_FILE: usize = 400;
 const UNSAFE_ALLOWED: [(&str, &str); 0] = [];
 
 /// Libraries: pure functions of their input.
-const LIBRARIES: [&str; 7] =
-    ["crates/dynamics/", "crates/filter/", "crates/estimator/", "crates/formats/", "crates/report/", "crates/testbed/", "crates/vision/"];
+const LIBRARIES: [&str; 7] = [
+    "crates/dynamics/",
+    "crates/filter/",
+    "crates/estimator/",
+    "crates/formats/",
+    "crates/report/",
+    "crates/testbed/",
+    "crates/vision/",
+];
 
 /// Names that a crate's `src` must not contain outside tests and comments.
 struct Ban {
@@ -55,7 +62,15 @@ const BANS: [Ban; 6] = [
     },
     Ban {
         folders: &["crates/testbed/src/rig/"],
-        names: &["Dynamics", "StepInput", "StepProblem", "StepWork", "Solver", "solve", "Ncp"],
+        names: &[
+            "Dynamics",
+            "StepInput",
+            "StepProblem",
+            "StepWork",
+            "Solver",
+            "solve",
+            "Ncp",
+        ],
         rule: "the rig shares no stepping code with the filter that it judges",
         next: "write the physics anew in the rig, or run the model in crates/testbed/src/model.rs",
     },
@@ -63,13 +78,20 @@ const BANS: [Ban; 6] = [
 
 /// Every Rust file against the rules.
 pub fn check(tree: &Tree) -> Vec<Finding> {
-    tree.texts(".rs").flat_map(|(path, text)| check_file(path, text)).collect()
+    tree.texts(".rs")
+        .flat_map(|(path, text)| check_file(path, text))
+        .collect()
 }
 
 fn check_file(path: &str, text: &str) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut found = |line, rule: String, next: &str| {
-        findings.push(Finding { file: path.to_string(), line, rule, next: next.to_string() });
+        findings.push(Finding {
+            file: path.to_string(),
+            line,
+            rule,
+            next: next.to_string(),
+        });
     };
 
     if !UNSAFE_ALLOWED.iter().any(|(allowed, _)| *allowed == path) {
@@ -89,10 +111,17 @@ fn check_file(path: &str, text: &str) -> Vec<Finding> {
     let lines = body.lines().count();
     if lines > LONGEST_FILE {
         let rule = format!("{lines} lines without tests; a file has at most {LONGEST_FILE}");
-        found(LONGEST_FILE + 1, rule, "split it: one noun per file, named after it");
+        found(
+            LONGEST_FILE + 1,
+            rule,
+            "split it: one noun per file, named after it",
+        );
     }
     let code = code_only(body);
-    for ban in BANS.iter().filter(|ban| ban.folders.iter().any(|folder| path.starts_with(folder))) {
+    for ban in BANS
+        .iter()
+        .filter(|ban| ban.folders.iter().any(|folder| path.starts_with(folder)))
+    {
         for (line, name) in names(&code).filter(|(_, name)| ban.names.contains(name)) {
             found(line, format!("`{name}`: {}", ban.rule), ban.next);
         }
@@ -105,7 +134,10 @@ mod tests {
     use super::*;
 
     fn found(path: &str, text: &str) -> Vec<String> {
-        check_file(path, text).iter().map(Finding::to_string).collect()
+        check_file(path, text)
+            .iter()
+            .map(Finding::to_string)
+            .collect()
     }
 
     #[track_caller]
@@ -124,7 +156,12 @@ mod tests {
         ] {
             for folder in LIBRARIES {
                 let found = found(&format!("{folder}src/a.rs"), &format!("\n{line}\n"));
-                assert!(found.iter().any(|f| f.starts_with(&format!("{folder}src/a.rs:2: `{name}`"))), "{line}: {found:?}");
+                assert!(
+                    found
+                        .iter()
+                        .any(|f| f.starts_with(&format!("{folder}src/a.rs:2: `{name}`"))),
+                    "{line}: {found:?}"
+                );
             }
             assert!(found("crates/cli/src/main.rs", line).is_empty(), "{line}");
         }
@@ -133,7 +170,10 @@ mod tests {
     #[test]
     fn check_file_finds_randomness_and_threads_in_dynamics_only() {
         for line in ["use rand::Rng;", "rayon::join(a, b);"] {
-            assert_one(&found("crates/dynamics/src/a.rs", line), "crates/dynamics/src/a.rs:1: ");
+            assert_one(
+                &found("crates/dynamics/src/a.rs", line),
+                "crates/dynamics/src/a.rs:1: ",
+            );
             assert!(found("crates/filter/src/a.rs", line).is_empty());
         }
     }
@@ -141,7 +181,10 @@ mod tests {
     #[test]
     fn check_file_finds_the_filter_s_stepping_in_the_rig_only() {
         let line = "let mut work = StepWork::<1>::default();";
-        assert_one(&found("crates/testbed/src/rig/machine.rs", line), "crates/testbed/src/rig/machine.rs:1: `StepWork`");
+        assert_one(
+            &found("crates/testbed/src/rig/machine.rs", line),
+            "crates/testbed/src/rig/machine.rs:1: `StepWork`",
+        );
         assert!(found("crates/testbed/src/model.rs", line).is_empty());
     }
 
@@ -156,14 +199,27 @@ mod tests {
     fn check_file_finds_long_files_but_not_long_tests() {
         let tests = format!("#[cfg(test)]\nmod tests {{\n{}}}\n", "\n".repeat(500));
         assert!(found("crates/cli/src/a.rs", &("\n".repeat(LONGEST_FILE) + &tests)).is_empty());
-        assert_one(&found("crates/cli/src/a.rs", &("\n".repeat(LONGEST_FILE + 1) + &tests)), "crates/cli/src/a.rs:401: 401 lines");
+        assert_one(
+            &found(
+                "crates/cli/src/a.rs",
+                &("\n".repeat(LONGEST_FILE + 1) + &tests),
+            ),
+            "crates/cli/src/a.rs:401: 401 lines",
+        );
         assert!(found("crates/cli/tests/a.rs", &"\n".repeat(500)).is_empty());
     }
 
     #[test]
     fn check_file_finds_unsafe_anywhere_in_code() {
-        for path in ["crates/cli/src/a.rs", "crates/filter/tests/a.rs", "xtask/src/a.rs"] {
-            assert_one(&found(path, "// unsafe\nunsafe { f() }\n"), &format!("{path}:2: `unsafe`"));
+        for path in [
+            "crates/cli/src/a.rs",
+            "crates/filter/tests/a.rs",
+            "xtask/src/a.rs",
+        ] {
+            assert_one(
+                &found(path, "// unsafe\nunsafe { f() }\n"),
+                &format!("{path}:2: `unsafe`"),
+            );
         }
         assert!(found("crates/cli/src/a.rs", "#![forbid(unsafe_code)]").is_empty());
     }

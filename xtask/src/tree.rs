@@ -39,8 +39,14 @@ impl Tree {
                 }
                 continue;
             }
-            let looked_at = path.rsplit_once('.').is_some_and(|(_, ending)| TEXT.contains(&ending));
-            let text = looked_at.then(|| fs::read_to_string(entry.path()).map_err(|error| format!("{path}: {error}"))).transpose()?;
+            let looked_at = path
+                .rsplit_once('.')
+                .is_some_and(|(_, ending)| TEXT.contains(&ending));
+            let text = looked_at
+                .then(|| {
+                    fs::read_to_string(entry.path()).map_err(|error| format!("{path}: {error}"))
+                })
+                .transpose()?;
             self.files.insert(path, text);
         }
         Ok(())
@@ -58,21 +64,32 @@ impl Tree {
 
     /// Paths and texts of the files with this ending, sorted.
     pub fn texts<'a>(&'a self, ending: &'a str) -> impl Iterator<Item = (&'a str, &'a str)> {
-        self.files.iter().filter_map(move |(path, text)| Some((path.as_str(), text.as_deref()?)).filter(|_| path.ends_with(ending)))
+        self.files.iter().filter_map(move |(path, text)| {
+            Some((path.as_str(), text.as_deref()?)).filter(|_| path.ends_with(ending))
+        })
     }
 
     /// Whether a file or folder of this path exists; a `/` at its end does not matter.
     pub fn exists(&self, path: &str) -> bool {
         let path = path.trim_end_matches('/');
         let folder = format!("{path}/");
-        self.files.contains_key(path) || self.files.range(folder.clone()..).next().is_some_and(|(p, _)| p.starts_with(&folder))
+        self.files.contains_key(path)
+            || self
+                .files
+                .range(folder.clone()..)
+                .next()
+                .is_some_and(|(p, _)| p.starts_with(&folder))
     }
 }
 
 #[cfg(test)]
 impl<const N: usize> From<[(&str, &str); N]> for Tree {
     fn from(files: [(&str, &str); N]) -> Self {
-        Self { files: files.map(|(path, text)| (path.to_string(), Some(text.to_string()))).into() }
+        Self {
+            files: files
+                .map(|(path, text)| (path.to_string(), Some(text.to_string())))
+                .into(),
+        }
     }
 }
 

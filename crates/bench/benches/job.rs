@@ -1,5 +1,6 @@
-//! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log of 600 frames, camera and touch
-//! sensors weighing all the way: wall time and the latency of a frame, on one thread and on two. `... -- NAME` runs that log only.
+//! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log
+//! of 600 frames, camera and touch sensors weighing all the way: wall time and the latency of a
+//! frame, on one thread and on two. `... -- NAME` runs that log only.
 
 use std::error::Error;
 use std::time::Instant;
@@ -12,15 +13,26 @@ use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 const ROUNDS: usize = 21;
 
 /// The logs.
-const LOGS: [&str; 3] = ["slide-pent-disc-104", "slide-ell-bar-117", "slide-trapezoid-disc-109"];
+const LOGS: [&str; 3] = [
+    "slide-pent-disc-104",
+    "slide-ell-bar-117",
+    "slide-trapezoid-disc-109",
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = data_root().ok_or("no recorded experiments: point STICKSLIP_DATA at them")?;
     let mut results = Results::open()?;
-    let named = |log: &str| std::env::args().skip(1).all(|arg| arg.starts_with('-') || arg == log);
+    let named = |log: &str| {
+        std::env::args()
+            .skip(1)
+            .all(|arg| arg.starts_with('-') || arg == log)
+    };
     for log in LOGS.into_iter().filter(|log| named(log)) {
         let cases = recorded_cases(&root.join("mujoco").join(log))?;
-        let case = cases.iter().find(|case| case.occlusion == Occlusion::None).ok_or("no case without a blackout")?;
+        let case = cases
+            .iter()
+            .find(|case| case.occlusion == Occlusion::None)
+            .ok_or("no case without a blackout")?;
         write(log, case, &mut results)?;
     }
     Ok(())
@@ -44,11 +56,27 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
     for (k, threads) in ["1 thread", "2 threads"].into_iter().enumerate() {
         let name = format!("job / {log} / {threads}");
         results.write(&format!("{name} / wall"), median(&walls[k]), "ms")?;
-        results.write(&format!("{name} / frame; median"), median(&latencies[k]), "ms")?;
-        results.write(&format!("{name} / frame; 99.9th percentile"), quantile(&latencies[k], 0.999), "ms")?;
-        results.write(&format!("{name} / frame; slowest"), quantile(&latencies[k], 1.0), "ms")?;
+        results.write(
+            &format!("{name} / frame; median"),
+            median(&latencies[k]),
+            "ms",
+        )?;
+        results.write(
+            &format!("{name} / frame; 99.9th percentile"),
+            quantile(&latencies[k], 0.999),
+            "ms",
+        )?;
+        results.write(
+            &format!("{name} / frame; slowest"),
+            quantile(&latencies[k], 1.0),
+            "ms",
+        )?;
     }
-    results.write(&format!("job / {log} / 1 thread over 2"), median(&walls[0]) / median(&walls[1]), "1")?;
+    results.write(
+        &format!("job / {log} / 1 thread over 2"),
+        median(&walls[0]) / median(&walls[1]),
+        "1",
+    )?;
     Ok(())
 }
 
@@ -56,9 +84,13 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
 fn timed(case: &RecordedCase) -> Result<(f64, Vec<f64>), stickslip::RunError> {
     let start = Instant::now();
     let mut rows = Vec::with_capacity(case.log.len());
-    let run = run(&case.setup, &case.log, &RunOptions::default(), &mut |_| rows.push(start.elapsed()));
+    let run = run(&case.setup, &case.log, &RunOptions::default(), &mut |_| {
+        rows.push(start.elapsed())
+    });
     let wall = start.elapsed();
     run?;
-    let frames = rows.windows(2).map(|pair| (pair[1] - pair[0]).as_secs_f64() * 1e3);
+    let frames = rows
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).as_secs_f64() * 1e3);
     Ok((wall.as_secs_f64() * 1e3, frames.collect()))
 }

@@ -1,8 +1,9 @@
-//! `cargo bench -p stickslip-bench --bench replay`: the steps of the particle filter on every `slide-*` log, captured, then solved again.
+//! `cargo bench -p stickslip-bench --bench replay`: the steps of the particle filter on every
+//! `slide-*` log, captured, then solved again.
 //!
-//! `... -- NAME` takes the logs with NAME in their names. 500 particles, camera hidden where the log's `truth.json` says so. Only the
-//! solver's step is timed, one block of 64 particles at a time, on one thread; every step starts from what the filter had, noise and
-//! warm start included.
+//! `... -- NAME` takes the logs with NAME in their names. 500 particles, camera hidden where the
+//! log's `truth.json` says so. Only the solver's step is timed, one block of 64 particles at a
+//! time, on one thread; every step starts from what the filter had, noise and warm start included.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
@@ -32,9 +33,16 @@ impl StepWatch for Capture {
     fn see(&self, _step: &SolvedStep<'_>) {}
 
     fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
-        let mut kept = Captured { input: *input, chunks: particles.len(), particles: BlockOf64::default() };
+        let mut kept = Captured {
+            input: *input,
+            chunks: particles.len(),
+            particles: BlockOf64::default(),
+        };
         kept.particles[..particles.len()].copy_from_slice(particles);
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(kept);
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(kept);
     }
 }
 
@@ -53,14 +61,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sets = instruction_sets();
     let mut costs: Vec<Cost> = sets.iter().map(|_| Cost::default()).collect();
     let mut results = Results::open()?;
-    for case in recorded_cases(&root.join("mujoco"))?.iter().filter(|case| is_wanted(case)) {
+    for case in recorded_cases(&root.join("mujoco"))?
+        .iter()
+        .filter(|case| is_wanted(case))
+    {
         let steps = capture(case)?;
         let mut medians = Vec::new();
         for ((_, level), cost) in sets.iter().zip(&mut costs) {
             medians.push(replay(case, &steps, *level, cost));
         }
-        let name = case.folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        results.write(&format!("replay / {} / {name}", sets[0].0), medians[0], "ns/particle-step")?;
+        let name = case
+            .folder
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        results.write(
+            &format!("replay / {} / {name}", sets[0].0),
+            medians[0],
+            "ns/particle-step",
+        )?;
     }
     for ((name, _), cost) in sets.iter().zip(&costs) {
         write(name, cost, &mut results)?;
@@ -69,18 +89,32 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn is_wanted(case: &RecordedCase) -> bool {
-    let slides = case.folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("slide-"));
+    let slides = case
+        .folder
+        .file_name()
+        .is_some_and(|name| name.to_string_lossy().starts_with("slide-"));
     let has = |part: &String| case.folder.to_string_lossy().contains(part.as_str());
-    let asked_for: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
-    slides && case.occlusion != Occlusion::None && (asked_for.is_empty() || asked_for.iter().any(has))
+    let asked_for: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|argument| !argument.starts_with('-'))
+        .collect();
+    slides
+        && case.occlusion != Occlusion::None
+        && (asked_for.is_empty() || asked_for.iter().any(has))
 }
 
 fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
     let capture = Capture::default();
-    let options = RunOptions { occlusion: case.occlusion, ..RunOptions::default() };
+    let options = RunOptions {
+        occlusion: case.occlusion,
+        ..RunOptions::default()
+    };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     pool.install(|| run_watched(&case.setup, &case.log, &options, &capture, &mut |_| ()))?;
-    Ok(capture.0.into_inner().unwrap_or_else(PoisonError::into_inner))
+    Ok(capture
+        .0
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner))
 }
 
 /// Adds to `cost`; returns the mean time per particle-step of the median round (ns).
@@ -99,7 +133,10 @@ fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost
             count += lanes;
             if round > 0 {
                 cost.blocks.push(taken / lanes);
-                work.reports().as_flattened().iter().for_each(|report| cost.tally.count(report));
+                work.reports()
+                    .as_flattened()
+                    .iter()
+                    .for_each(|report| cost.tally.count(report));
             }
         }
         if round > 0 {
@@ -112,14 +149,46 @@ fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost
 
 fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> {
     let name = format!("replay / {name} / all logs");
-    results.write(&format!("{name} / mean"), cost.total[0] / cost.total[1], "ns/particle-step")?;
-    results.write(&format!("{name} / median of blocks"), median(&cost.blocks), "ns/particle-step")?;
-    results.write(&format!("{name} / p99 of blocks"), quantile(&cost.blocks, 0.99), "ns/particle-step")?;
-    results.write(&format!("{name} / iterations"), cost.tally.mean_iterations(), "1")?;
-    results.write(&format!("{name} / p99 of iterations"), cost.tally.iterations_quantile(0.99) as f64, "1")?;
-    results.write(&format!("{name} / worst residual"), cost.tally.worst_residual(), "m/s")?;
-    results.write(&format!("{name} / fallback"), cost.tally.fallback_share(), "1")?;
-    results.write(&format!("{name} / unsolved"), cost.tally.unsolved() as f64 / cost.tally.steps() as f64, "1")?;
+    results.write(
+        &format!("{name} / mean"),
+        cost.total[0] / cost.total[1],
+        "ns/particle-step",
+    )?;
+    results.write(
+        &format!("{name} / median of blocks"),
+        median(&cost.blocks),
+        "ns/particle-step",
+    )?;
+    results.write(
+        &format!("{name} / p99 of blocks"),
+        quantile(&cost.blocks, 0.99),
+        "ns/particle-step",
+    )?;
+    results.write(
+        &format!("{name} / iterations"),
+        cost.tally.mean_iterations(),
+        "1",
+    )?;
+    results.write(
+        &format!("{name} / p99 of iterations"),
+        cost.tally.iterations_quantile(0.99) as f64,
+        "1",
+    )?;
+    results.write(
+        &format!("{name} / worst residual"),
+        cost.tally.worst_residual(),
+        "m/s",
+    )?;
+    results.write(
+        &format!("{name} / fallback"),
+        cost.tally.fallback_share(),
+        "1",
+    )?;
+    results.write(
+        &format!("{name} / unsolved"),
+        cost.tally.unsolved() as f64 / cost.tally.steps() as f64,
+        "1",
+    )?;
     for (route, share) in cost.tally.route_shares() {
         results.write(&format!("{name} / by {route}"), share, "1")?;
     }

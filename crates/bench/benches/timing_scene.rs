@@ -1,8 +1,11 @@
-//! `cargo bench -p stickslip-bench --bench timing_scene`: the timing scene, phase by phase, on each instruction set.
+//! `cargo bench -p stickslip-bench --bench timing_scene`: the timing scene, phase by phase, on each
+//! instruction set.
 
 use std::error::Error;
 
-use stickslip_bench::{Case, FRAMES, MOVING, PHASES, Results, instruction_sets, measure, timing_input, timing_scene};
+use stickslip_bench::{
+    Case, FRAMES, MOVING, PHASES, Results, instruction_sets, measure, timing_input, timing_scene,
+};
 use stickslip_dynamics::Dynamics;
 
 /// Rounds that are counted.

@@ -1,12 +1,16 @@
-//! `cargo bench -p stickslip-bench --bench variants`: the timing scene with other objects, a bar as its pusher, and up to 50 fixels.
+//! `cargo bench -p stickslip-bench --bench variants`: the timing scene with other objects, a bar as
+//! its pusher, and up to 50 fixels.
 //!
-//! The concave object is that of `slide-ell-disc-110`, where the recorded experiments are at hand (`STICKSLIP_DATA`).
+//! The concave object is that of `slide-ell-disc-110`, where the recorded experiments are at hand
+//! (`STICKSLIP_DATA`).
 
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::fs::read_to_string;
 
-use stickslip_bench::{Case, FRAMES, MOVING, PHASES, Results, measure, pushed_object, timing_input, timing_scene};
+use stickslip_bench::{
+    Case, FRAMES, MOVING, PHASES, Results, measure, pushed_object, timing_input, timing_scene,
+};
 use stickslip_dynamics::{Dynamics, Fixel, Part, Pose, Scene, Shape, ShapeError};
 use stickslip_formats::read_scene;
 use stickslip_testkit::data_root;
@@ -21,15 +25,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     let base = timing_scene()?;
     let mut scenes = vec![("square".to_owned(), base.clone())];
     for corners in [8, 64] {
-        scenes.push((format!("{corners}-gon"), with_object(&base, regular(corners, 0.025)?)));
+        scenes.push((
+            format!("{corners}-gon"),
+            with_object(&base, regular(corners, 0.025)?),
+        ));
     }
     scenes.push(("ellipse".to_owned(), with_object(&base, ellipse()?)));
     if let Some(concave) = concave()? {
         scenes.push(("concave".to_owned(), with_object(&base, concave)));
     }
-    scenes.push(("bar pusher".to_owned(), pushed_object(base.object.shape.clone(), bar()?, base.fixels.clone())));
+    scenes.push((
+        "bar pusher".to_owned(),
+        pushed_object(base.object.shape.clone(), bar()?, base.fixels.clone()),
+    ));
     for fixels in [10, 50] {
-        scenes.push((format!("{fixels} fixels; 3 near"), with_far_fixels(&base, fixels)));
+        scenes.push((
+            format!("{fixels} fixels; 3 near"),
+            with_far_fixels(&base, fixels),
+        ));
     }
     write(scenes)
 }
@@ -48,7 +61,11 @@ fn write(scenes: Vec<(String, Scene)>) -> Result<(), Box<dyn Error>> {
         course.write("moving", MOVING, &mut results)?;
         course.write(pushed, pushed_frames.clone(), &mut results)?;
         let ratio = course.over(MOVING).nanoseconds / courses[0].over(MOVING).nanoseconds;
-        results.write(&format!("{} / moving / of the square with 3 fixels", case.name), ratio, "1")?;
+        results.write(
+            &format!("{} / moving / of the square with 3 fixels", case.name),
+            ratio,
+            "1",
+        )?;
     }
     Ok(())
 }
@@ -60,24 +77,40 @@ fn with_object(base: &Scene, shape: Shape) -> Scene {
 /// The regular polygon whose first corner is at `radius` (m) in direction +x.
 fn regular(corners: u32, radius: f64) -> Result<Shape, ShapeError> {
     let corner = |k: u32| libm::sincos(TAU * f64::from(k) / f64::from(corners));
-    let vertices = (0..corners).map(corner).map(|(sin, cos)| [radius * cos, radius * sin]).collect();
+    let vertices = (0..corners)
+        .map(corner)
+        .map(|(sin, cos)| [radius * cos, radius * sin])
+        .collect();
     Shape::new(vec![Part::Polygon { vertices }])
 }
 
 fn ellipse() -> Result<Shape, ShapeError> {
-    Shape::new(vec![Part::Ellipse { semi_axes: [0.025, 0.018], centre: [0.0; 2], angle: 0.0 }])
+    Shape::new(vec![Part::Ellipse {
+        semi_axes: [0.025, 0.018],
+        centre: [0.0; 2],
+        angle: 0.0,
+    }])
 }
 
 /// A bar whose face is where the disc's foremost point is.
 fn bar() -> Result<Shape, ShapeError> {
     let [x, y] = [0.005, 0.015];
-    Shape::new(vec![Part::Polygon { vertices: vec![[-x, -y], [x, -y], [x, y], [-x, y]] }])
+    Shape::new(vec![Part::Polygon {
+        vertices: vec![[-x, -y], [x, -y], [x, y], [-x, y]],
+    }])
 }
 
 fn concave() -> Result<Option<Shape>, Box<dyn Error>> {
-    let Some(root) = data_root() else { return Ok(None) };
+    let Some(root) = data_root() else {
+        return Ok(None);
+    };
     let name = "mujoco/slide-ell-disc-110/scene.toml";
-    Ok(Some(read_scene(&read_to_string(root.join(name))?, name)?.scene.object.shape))
+    Ok(Some(
+        read_scene(&read_to_string(root.join(name))?, name)?
+            .scene
+            .object
+            .shape,
+    ))
 }
 
 /// The scene with more fixels, all out of reach, `count` in all.
@@ -85,7 +118,10 @@ fn with_far_fixels(base: &Scene, count: usize) -> Scene {
     let mut scene = base.clone();
     for k in scene.fixels.len()..count {
         let (sin, cos) = libm::sincos(TAU * k as f64 / count as f64);
-        scene.fixels.push(Fixel { pose: Pose::new(FAR * cos, FAR * sin, 0.0), shape: base.fixels[0].shape.clone() });
+        scene.fixels.push(Fixel {
+            pose: Pose::new(FAR * cos, FAR * sin, 0.0),
+            shape: base.fixels[0].shape.clone(),
+        });
     }
     scene
 }

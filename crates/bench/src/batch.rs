@@ -26,11 +26,17 @@ impl Batch {
         let block = |b: u32| {
             let mut chunks = BlockOf64::default();
             for i in 0..BLOCK {
-                chunks[i / LANES].set(i % LANES, &scattered(b * BLOCK as u32 + i as u32), &dynamics.scene().nominal);
+                chunks[i / LANES].set(
+                    i % LANES,
+                    &scattered(b * BLOCK as u32 + i as u32),
+                    &dynamics.scene().nominal,
+                );
             }
             (chunks, StepWork::default())
         };
-        Self { blocks: (0..blocks).map(block).collect() }
+        Self {
+            blocks: (0..blocks).map(block).collect(),
+        }
     }
 
     /// Advances all particles by one step; returns the time per particle (ns).
@@ -56,7 +62,9 @@ impl Batch {
 
     /// How the last step of each particle ended.
     pub fn reports(&self) -> impl Iterator<Item = &Report> {
-        self.blocks.iter().flat_map(|(_, work)| work.reports().as_flattened())
+        self.blocks
+            .iter()
+            .flat_map(|(_, work)| work.reports().as_flattened())
     }
 
     /// The first particle.

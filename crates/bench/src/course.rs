@@ -41,8 +41,8 @@ pub struct Summary {
     pub tally: Tally,
 }
 
-/// Runs every case from start to end `rounds` times, case after case in every round, after one round that is not counted;
-/// 512 scattered particles, one thread.
+/// Runs every case from start to end `rounds` times, case after case in every round, after one
+/// round that is not counted; 512 scattered particles, one thread.
 #[must_use]
 pub fn measure(cases: &[Case], rounds: usize) -> Vec<Course> {
     let mut courses: Vec<Course> = cases.iter().map(Course::new).collect();
@@ -57,7 +57,11 @@ pub fn measure(cases: &[Case], rounds: usize) -> Vec<Course> {
 impl Course {
     fn new(case: &Case) -> Self {
         let frames = case.inputs.len();
-        Self { name: case.name.clone(), times: vec![Vec::new(); frames], tallies: vec![Tally::default(); frames] }
+        Self {
+            name: case.name.clone(),
+            times: vec![Vec::new(); frames],
+            tallies: vec![Tally::default(); frames],
+        }
     }
 
     fn run(&mut self, case: &Case, counted: bool) {
@@ -66,7 +70,9 @@ impl Course {
             let time = batch.step(&case.dynamics, input);
             if counted {
                 self.times[frame].push(time);
-                batch.reports().for_each(|report| self.tallies[frame].count(report));
+                batch
+                    .reports()
+                    .for_each(|report| self.tallies[frame].count(report));
             }
         }
     }
@@ -74,23 +80,48 @@ impl Course {
     /// What some frames cost.
     #[must_use]
     pub fn over(&self, frames: Range<usize>) -> Summary {
-        let times: Vec<f64> = self.times[frames.clone()].iter().map(|rounds| median(rounds)).collect();
+        let times: Vec<f64> = self.times[frames.clone()]
+            .iter()
+            .map(|rounds| median(rounds))
+            .collect();
         let mut tally = Tally::default();
-        self.tallies[frames].iter().for_each(|of_frame| tally.add(of_frame));
-        Summary { nanoseconds: median(&times), tally }
+        self.tallies[frames]
+            .iter()
+            .for_each(|of_frame| tally.add(of_frame));
+        Summary {
+            nanoseconds: median(&times),
+            tally,
+        }
     }
 
     /// Writes time, iterations, residual and routes of some frames.
     ///
     /// # Errors
     /// The results cannot be written.
-    pub fn write(&self, phase: &str, frames: Range<usize>, results: &mut Results) -> io::Result<()> {
+    pub fn write(
+        &self,
+        phase: &str,
+        frames: Range<usize>,
+        results: &mut Results,
+    ) -> io::Result<()> {
         let Summary { nanoseconds, tally } = self.over(frames);
         let name = format!("{} / {phase}", self.name);
         results.write(&name, nanoseconds, "ns/particle-step")?;
-        results.write(&format!("{name} / iterations"), tally.mean_iterations(), "1")?;
-        results.write(&format!("{name} / worst residual"), tally.worst_residual(), "m/s")?;
-        results.write(&format!("{name} / unsolved"), tally.unsolved() as f64 / tally.steps() as f64, "1")?;
+        results.write(
+            &format!("{name} / iterations"),
+            tally.mean_iterations(),
+            "1",
+        )?;
+        results.write(
+            &format!("{name} / worst residual"),
+            tally.worst_residual(),
+            "m/s",
+        )?;
+        results.write(
+            &format!("{name} / unsolved"),
+            tally.unsolved() as f64 / tally.steps() as f64,
+            "1",
+        )?;
         for (route, share) in tally.route_shares() {
             results.write(&format!("{name} / by {route}"), share, "1")?;
         }

@@ -2,7 +2,8 @@
 
 use stickslip_dynamics::Level;
 
-/// The widest instructions of this machine and, where these are AVX-512, AVX2 too; each with its name.
+/// The widest instructions of this machine and, where these are AVX-512, AVX2 too; each with its
+/// name.
 #[must_use]
 pub fn instruction_sets() -> Vec<(&'static str, Level)> {
     let widest = Level::new();

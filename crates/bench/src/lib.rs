@@ -1,7 +1,8 @@
 //! What the benchmarks share: scenes, batches of particles, clocks and the file of results.
 //!
-//! `cargo bench -p stickslip-bench --bench timing_scene` and its neighbours print what they measure and append it to
-//! `bench/results/<machine>-<date>.csv`. They measure one thread unless they say otherwise, after a warm-up, medians of several rounds.
+//! `cargo bench -p stickslip-bench --bench timing_scene` and its neighbours print what they measure
+//! and append it to `bench/results/<machine>-<date>.csv`. They measure one thread unless they say
+//! otherwise, after a warm-up, medians of several rounds.
 
 mod batch;
 mod course;
@@ -18,5 +19,7 @@ pub use instruction_sets::instruction_sets;
 pub use machine::{date, processor};
 pub use quantile::{median, quantile};
 pub use results::Results;
-pub use scenes::{FRAME, FRAMES, MOVING, PHASES, pushed_object, scattered, timing_input, timing_scene};
+pub use scenes::{
+    FRAME, FRAMES, MOVING, PHASES, pushed_object, scattered, timing_input, timing_scene,
+};
 pub use tally::Tally;

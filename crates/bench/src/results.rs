@@ -9,7 +9,8 @@ use crate::machine::{date, processor};
 /// Where the files of results lie, from this crate.
 const FOLDER: &str = "../../bench/results";
 
-/// Prints what is measured and appends it to `bench/results/<machine>-<date>.csv`: columns `name,value,unit`.
+/// Prints what is measured and appends it to `bench/results/<machine>-<date>.csv`: columns
+/// `name,value,unit`.
 #[derive(Debug)]
 pub struct Results {
     file: File,
@@ -24,7 +25,10 @@ impl Results {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER);
         create_dir_all(&folder)?;
         let (machine, date) = (processor(), date());
-        let mut file = OpenOptions::new().create(true).append(true).open(folder.join(format!("{machine}-{date}.csv")))?;
+        let mut file = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(folder.join(format!("{machine}-{date}.csv")))?;
         if file.metadata()?.len() == 0 {
             writeln!(file, "# machine: {machine}; date: {date}\nname,value,unit")?;
         }
@@ -36,7 +40,11 @@ impl Results {
     /// # Errors
     /// The file or standard output cannot be written.
     pub fn write(&mut self, name: &str, value: f64, unit: &str) -> io::Result<()> {
-        let value = if value != 0.0 && value.abs() < 1e-3 { format!("{value:.3e}") } else { format!("{value:.4}") };
+        let value = if value != 0.0 && value.abs() < 1e-3 {
+            format!("{value:.3e}")
+        } else {
+            format!("{value:.4}")
+        };
         writeln!(io::stdout(), "{name:<58} {value:>14} {unit}")?;
         writeln!(self.file, "{name},{value},{unit}")
     }

@@ -6,8 +6,12 @@ use stickslip_dynamics::{Outcome, Report, Route};
 const MOST_ITERATIONS: usize = 255;
 
 /// Routes in the order in which the solver tries them, with their names.
-const ROUTES: [(Route, &str); 4] =
-    [(Route::Newton, "newton"), (Route::Continuation, "continuation"), (Route::Homotopy, "homotopy"), (Route::Modes, "modes")];
+const ROUTES: [(Route, &str); 4] = [
+    (Route::Newton, "newton"),
+    (Route::Continuation, "continuation"),
+    (Route::Homotopy, "homotopy"),
+    (Route::Modes, "modes"),
+];
 
 /// Counts over particle-steps.
 #[derive(Clone, Debug)]
@@ -21,7 +25,13 @@ pub struct Tally {
 
 impl Default for Tally {
     fn default() -> Self {
-        Self { steps: 0, unsolved: 0, routes: [0; 4], by_iterations: vec![0; MOST_ITERATIONS + 1], worst_residual: 0.0 }
+        Self {
+            steps: 0,
+            unsolved: 0,
+            routes: [0; 4],
+            by_iterations: vec![0; MOST_ITERATIONS + 1],
+            worst_residual: 0.0,
+        }
     }
 }
 
@@ -43,8 +53,14 @@ impl Tally {
     pub fn add(&mut self, other: &Self) {
         self.steps += other.steps;
         self.unsolved += other.unsolved;
-        self.routes.iter_mut().zip(other.routes).for_each(|(a, b)| *a += b);
-        self.by_iterations.iter_mut().zip(&other.by_iterations).for_each(|(a, b)| *a += b);
+        self.routes
+            .iter_mut()
+            .zip(other.routes)
+            .for_each(|(a, b)| *a += b);
+        self.by_iterations
+            .iter_mut()
+            .zip(&other.by_iterations)
+            .for_each(|(a, b)| *a += b);
         self.worst_residual = self.worst_residual.max(other.worst_residual);
     }
 
@@ -69,7 +85,12 @@ impl Tally {
     /// Mean number of iterations; NaN without a step.
     #[must_use]
     pub fn mean_iterations(&self) -> f64 {
-        let sum: u64 = self.by_iterations.iter().zip(0..).map(|(count, iterations)| count * iterations).sum();
+        let sum: u64 = self
+            .by_iterations
+            .iter()
+            .zip(0..)
+            .map(|(count, iterations)| count * iterations)
+            .sum();
         sum as f64 / self.steps as f64
     }
 
@@ -87,7 +108,10 @@ impl Tally {
 
     /// The share of steps that each solver answered, with its name, cheapest first.
     pub fn route_shares(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
-        ROUTES.iter().zip(self.routes).map(|((_, name), count)| (*name, count as f64 / self.steps as f64))
+        ROUTES
+            .iter()
+            .zip(self.routes)
+            .map(|((_, name), count)| (*name, count as f64 / self.steps as f64))
     }
 
     /// The share of steps that another solver than the first one answered.

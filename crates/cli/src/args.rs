@@ -11,7 +11,8 @@ use crate::contest::Rival;
 use crate::paper::PaperExperiment;
 use crate::topic_args::TopicArgs;
 
-/// Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
+/// Tracks a pushed object through contact and visual occlusion and learns the friction that governs
+/// it.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version, max_term_width = 120)]
 pub struct Program {
@@ -33,7 +34,8 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers
     Reproduce(ReproduceArgs),
-    /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps, swapped sensors
+    /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps,
+    /// swapped sensors
     Check(CheckArgs),
     /// Calibrate a camera from frames of a tag board
     Calibrate(CalibrateArgs),
@@ -103,7 +105,8 @@ pub struct FilterArgs {
 /// Arguments of `stickslip compare`.
 #[derive(Debug, Args)]
 pub struct CompareArgs {
-    /// Experiment folders (scene.toml, log.csv or log.mcap, and what is known of the truth), or folders of such folders
+    /// Experiment folders (scene.toml, log.csv or log.mcap, and what is known of the truth), or
+    /// folders of such folders
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
     /// Run the particle filter with the seeds 0 to K - 1 and take the median of each score
@@ -141,7 +144,8 @@ pub struct SimulateArgs {
     /// Camera frames per second
     #[arg(long, value_name = "HZ", default_value_t = 30.0, value_parser = positive)]
     pub rate: f64,
-    /// Take mu_s, mu_p, mu_f and occlude_from from this file (truth.json) [default: the scene's friction]
+    /// Take mu_s, mu_p, mu_f and occlude_from from this file (truth.json) [default: the scene's
+    /// friction]
     #[arg(long, value_name = "JSON")]
     pub truth: Option<PathBuf>,
     /// Draw the true friction within this share of the scene's, as 0.4
@@ -193,7 +197,8 @@ pub struct SharedArgs {
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,
-    /// Hide the camera's object poses of the rows FROM to TO (excluded; to the end without TO) and still score on them
+    /// Hide the camera's object poses of the rows FROM to TO (excluded; to the end without TO) and
+    /// still score on them
     #[arg(long, value_name = "FROM[:TO]", conflicts_with = "occlude_middle")]
     pub occlude: Option<Rows>,
     /// Hide the camera's object poses for SECONDS about the middle of the log
@@ -262,13 +267,20 @@ impl FromStr for Rows {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let row = |part: &str| part.parse::<usize>().map_err(|_| format!("`{part}` is not a row number from 0 up"));
+        let row = |part: &str| {
+            part.parse::<usize>()
+                .map_err(|_| format!("`{part}` is not a row number from 0 up"))
+        };
         let (from, to) = match text.split_once(':') {
             Some((from, "")) => (row(from)?, None),
             Some((from, to)) => (row(from)?, Some(row(to)?)),
             None => (row(text)?, None),
         };
-        if to.is_some_and(|to| to <= from) { Err("TO must come after FROM".to_owned()) } else { Ok(Self { from, to }) }
+        if to.is_some_and(|to| to <= from) {
+            Err("TO must come after FROM".to_owned())
+        } else {
+            Ok(Self { from, to })
+        }
     }
 }
 
@@ -276,7 +288,10 @@ impl SharedArgs {
     /// What the options hide.
     pub fn occlusion(&self) -> Occlusion {
         match (self.occlude, self.occlude_middle) {
-            (Some(rows), _) => Occlusion::Rows { from: rows.from, to: rows.to },
+            (Some(rows), _) => Occlusion::Rows {
+                from: rows.from,
+                to: rows.to,
+            },
             (None, Some(seconds)) => Occlusion::Middle { seconds },
             (None, None) => Occlusion::None,
         }
@@ -284,13 +299,19 @@ impl SharedArgs {
 
     /// How the pusher is tracked.
     pub fn tracking(&self) -> Tracking {
-        if self.causal { Tracking::Causal } else { Tracking::Smoothed }
+        if self.causal {
+            Tracking::Causal
+        } else {
+            Tracking::Smoothed
+        }
     }
 
     /// Threads with the requested number of workers.
     pub fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
         let threads = self.threads.map_or(0, usize::from);
-        Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?)
+        Ok(rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()?)
     }
 }
 
@@ -301,7 +322,11 @@ impl FilterArgs {
             method: self.method.into(),
             particles: self.shared.particles,
             seed: self.seed,
-            tactile: if self.no_tactile { TactileUse::Ignored } else { TactileUse::Used },
+            tactile: if self.no_tactile {
+                TactileUse::Ignored
+            } else {
+                TactileUse::Used
+            },
             tracking: self.shared.tracking(),
             substeps: self.substeps,
             occlusion: self.shared.occlusion(),
@@ -345,12 +370,20 @@ impl From<MethodName> for Method {
 /// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("must be positive".to_owned()) }
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err("must be positive".to_owned())
+    }
 }
 
 fn share(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("must be from 0 to 1".to_owned()) }
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err("must be from 0 to 1".to_owned())
+    }
 }
 
 fn particles(text: &str) -> Result<usize, String> {
@@ -368,7 +401,13 @@ mod tests {
     fn rows_parse_from_and_to() {
         assert_eq!("3".parse(), Ok(Rows { from: 3, to: None }));
         assert_eq!("3:".parse(), Ok(Rows { from: 3, to: None }));
-        assert_eq!("3:7".parse(), Ok(Rows { from: 3, to: Some(7) }));
+        assert_eq!(
+            "3:7".parse(),
+            Ok(Rows {
+                from: 3,
+                to: Some(7)
+            })
+        );
         for bad in ["", "x", "7:3", "3:3", ":3", "-1"] {
             assert!(bad.parse::<Rows>().is_err(), "{bad}");
         }

@@ -16,7 +16,9 @@ use crate::verdict::Verdict;
 use stickslip_report::Table;
 
 /// Names of a lens's numbers, in the order of their standard deviations.
-const LENS: [&str; 8] = ["fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2"];
+const LENS: [&str; 8] = [
+    "fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2",
+];
 
 /// What is told of a calibration.
 #[derive(Debug, Serialize)]
@@ -32,33 +34,53 @@ struct Summary {
 
 /// Runs the command.
 pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
-    let board = read_board(&text_of(&args.board, "board")?, &args.board.display().to_string())?;
+    let board = read_board(
+        &text_of(&args.board, "board")?,
+        &args.board.display().to_string(),
+    )?;
     let folder = FrameFolder::list(&args.frames)?;
     let flat = match &args.flat {
         None => 0,
-        Some(name) => folder.names.iter().position(|other| other == name).ok_or_else(|| no_such_frame(name, &folder))?,
+        Some(name) => folder
+            .names
+            .iter()
+            .position(|other| other == name)
+            .ok_or_else(|| no_such_frame(name, &folder))?,
     };
     let progress = bar(folder.names.len(), "frames", Work::Long);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.map_or(0, usize::from))
+        .build()?;
     let load = |index: usize| {
         progress.inc(1);
         folder.load(index)
     };
     let recording = pool.install(|| search_board(folder.names.len(), load));
     progress.finish_and_clear();
-    let calibration = stickslip_vision::calibrate(&recording?, &board, flat).with_context(|| args.frames.display().to_string())?;
+    let calibration = stickslip_vision::calibrate(&recording?, &board, flat)
+        .with_context(|| args.frames.display().to_string())?;
     fs::write(&args.out, write_camera(&calibration.camera)).map_err(|error| {
-        hinted(format!("{}: cannot be written: {error}", args.out.display()), "give a file that can be written with --out")
+        hinted(
+            format!("{}: cannot be written: {error}", args.out.display()),
+            "give a file that can be written with --out",
+        )
     })?;
     let summary = Summary::new(&calibration);
-    show(if args.json { serde_json::to_string_pretty(&summary)? } else { summary.text() })?;
+    show(if args.json {
+        serde_json::to_string_pretty(&summary)?
+    } else {
+        summary.text()
+    })?;
     talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
 }
 
 fn no_such_frame(name: &str, folder: &FrameFolder) -> anyhow::Error {
     let (first, last) = (&folder.names[0], &folder.names[folder.names.len() - 1]);
-    hinted(format!("--flat {name}: there is no such frame; they go from {first} to {last}"), "give the name of one without its folder")
+    hinted(
+        format!("--flat {name}: there is no such frame; they go from {first} to {last}"),
+        "give the name of one without its folder",
+    )
 }
 
 impl Summary {
@@ -77,10 +99,21 @@ impl Summary {
     }
 
     fn text(&self) -> String {
-        let Self { frames, tags, tags_left_out, misfit_px, camera_height_m, .. } = self;
+        let Self {
+            frames,
+            tags,
+            tags_left_out,
+            misfit_px,
+            camera_height_m,
+            ..
+        } = self;
         let mut table = Table::new(["lens", "value", "std"]);
         for (name, (value, std)) in LENS.iter().zip(self.lens.iter().zip(self.lens_std)) {
-            table.push([(*name).to_owned(), format!("{value:.5}"), format!("{std:.5}")]);
+            table.push([
+                (*name).to_owned(),
+                format!("{value:.5}"),
+                format!("{std:.5}"),
+            ]);
         }
         format!(
             "{frames} frames, {tags} tags, {tags_left_out} tags left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the \

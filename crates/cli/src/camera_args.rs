@@ -9,7 +9,8 @@ use crate::args::{Rows, positive};
 /// Arguments of `stickslip calibrate`.
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
-    /// Folder with images of the board: lying on the table in one, held and tilted to all sides in the others
+    /// Folder with images of the board: lying on the table in one, held and tilted to all sides in
+    /// the others
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
     /// The board (board.toml): rows, columns, tag_size, gap, and how it lies on the table
@@ -44,7 +45,8 @@ pub struct TrackArgs {
     /// Frames per second of images without frames.csv, in the order of their names
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub rate: Option<f64>,
-    /// Take tactile and force readings from this log (CSV or MCAP), whose rows have the frames' times
+    /// Take tactile and force readings from this log (CSV or MCAP), whose rows have the frames'
+    /// times
     #[arg(long, value_name = "LOG")]
     pub sensors: Option<PathBuf>,
     /// Write log.csv, log.mcap and poses.csv (with covariances) into this folder
@@ -67,7 +69,8 @@ pub struct RenderArgs {
     /// Write frames/, board/, board.toml, tags.toml and copies of scene and truth into this folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The hand covers the object's tag in the frames FROM to TO (excluded; to the end without TO) [default: truth.json's occlude_from]
+    /// The hand covers the object's tag in the frames FROM to TO (excluded; to the end without TO)
+    /// [default: truth.json's occlude_from]
     #[arg(long, value_name = "FROM[:TO]")]
     pub cover: Option<Rows>,
     /// Probability that the frame grabber delivers a frame twice
@@ -92,5 +95,9 @@ pub struct RenderArgs {
 
 fn probability(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..1.0).contains(&value) { Ok(value) } else { Err("must be from 0 to below 1".to_owned()) }
+    if (0.0..1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err("must be from 0 to below 1".to_owned())
+    }
 }

@@ -39,26 +39,47 @@ pub fn check(args: &CheckArgs) -> Result<Verdict> {
     } else {
         show(&report)?
     };
-    Ok(if report.problems == 0 { verdict } else { Verdict::Failed })
+    Ok(if report.problems == 0 {
+        verdict
+    } else {
+        Verdict::Failed
+    })
 }
 
 impl Report {
     fn new(findings: &[Finding]) -> Self {
-        let count = |severity: Severity| findings.iter().filter(|finding| finding.severity == severity).count();
+        let count = |severity: Severity| {
+            findings
+                .iter()
+                .filter(|finding| finding.severity == severity)
+                .count()
+        };
         let (problems, warnings) = (count(Severity::Problem), count(Severity::Warning));
-        Self { problems, warnings, findings: findings.iter().map(JsonFinding::new).collect() }
+        Self {
+            problems,
+            warnings,
+            findings: findings.iter().map(JsonFinding::new).collect(),
+        }
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for finding in &self.findings {
-            writeln!(f, "{:<8} {:<16} {}", finding.severity, finding.subject, finding.found)?;
+            writeln!(
+                f,
+                "{:<8} {:<16} {}",
+                finding.severity, finding.subject, finding.found
+            )?;
             if let Some(advice) = &finding.advice {
                 writeln!(f, "{:<8} {:<16} help: {advice}", "", "")?;
             }
         }
-        writeln!(f, "\n{} problems, {} warnings", self.problems, self.warnings)
+        writeln!(
+            f,
+            "\n{} problems, {} warnings",
+            self.problems, self.warnings
+        )
     }
 }
 

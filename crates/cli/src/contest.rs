@@ -1,7 +1,10 @@
 //! The methods that are compared on one experiment: [`Rival`], and one [`Attempt`] of one of them.
 
 use anyhow::Result;
-use stickslip::{Method, Occlusion, Run, RunOptions, Scores, StepWatch, TactileUse, Tracking, run, run_watched, score};
+use stickslip::{
+    Method, Occlusion, Run, RunOptions, Scores, StepWatch, TactileUse, Tracking, run, run_watched,
+    score,
+};
 use stickslip_formats::Experiment;
 use stickslip_report::Colour;
 
@@ -40,7 +43,13 @@ pub struct Attempt {
 
 impl Rival {
     /// All, in the order of tables.
-    pub const ALL: [Self; 5] = [Self::Nominal, Self::Kalman, Self::ParticleNoTactile, Self::Particle, Self::ParticleAlwaysOn];
+    pub const ALL: [Self; 5] = [
+        Self::Nominal,
+        Self::Kalman,
+        Self::ParticleNoTactile,
+        Self::Particle,
+        Self::ParticleAlwaysOn,
+    ];
 
     /// Name in tables and figures.
     pub fn name(self) -> &'static str {
@@ -102,7 +111,8 @@ impl Rival {
         Self::ALL.into_iter().filter(differs).collect()
     }
 
-    /// Runs and scores it; `occlusion` is what is hidden, and scored even where this rival sees it. A `watch` changes no result.
+    /// Runs and scores it; `occlusion` is what is hidden, and scored even where this rival sees it.
+    /// A `watch` changes no result.
     pub fn attempt(
         self,
         experiment: &Experiment,
@@ -113,7 +123,12 @@ impl Rival {
     ) -> Result<Attempt> {
         let run = self.run(experiment, occlusion, rules, seed, watch)?;
         let hidden = occlusion.hidden(&experiment.log);
-        let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
+        let scores = score(
+            &run.estimate,
+            &experiment.reference(),
+            &hidden,
+            experiment.setup.virtual_radius(),
+        );
         Ok(Attempt { run, scores })
     }
 
@@ -136,13 +151,31 @@ impl Rival {
 
     fn options(self, occlusion: Occlusion, rules: &Rules, seed: u64) -> RunOptions {
         let (particles, tracking) = (rules.particles, rules.tracking);
-        let options = RunOptions { particles, tracking, seed, occlusion, ..RunOptions::default() };
+        let options = RunOptions {
+            particles,
+            tracking,
+            seed,
+            occlusion,
+            ..RunOptions::default()
+        };
         match self {
-            Self::Nominal => RunOptions { method: Method::Nominal, ..options },
-            Self::Kalman => RunOptions { method: Method::Kalman, ..options },
-            Self::ParticleNoTactile => RunOptions { tactile: TactileUse::Ignored, ..options },
+            Self::Nominal => RunOptions {
+                method: Method::Nominal,
+                ..options
+            },
+            Self::Kalman => RunOptions {
+                method: Method::Kalman,
+                ..options
+            },
+            Self::ParticleNoTactile => RunOptions {
+                tactile: TactileUse::Ignored,
+                ..options
+            },
             Self::Particle => options,
-            Self::ParticleAlwaysOn => RunOptions { occlusion: Occlusion::None, ..options },
+            Self::ParticleAlwaysOn => RunOptions {
+                occlusion: Occlusion::None,
+                ..options
+            },
         }
     }
 }

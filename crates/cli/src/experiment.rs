@@ -1,4 +1,5 @@
-//! Experiments from files: [`read_experiment`], [`read_folder`], and from [`Texts`] inside the program.
+//! Experiments from files: [`read_experiment`], [`read_folder`], and from [`Texts`] inside the
+//! program.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use stickslip::{Log, Setup};
 use stickslip_formats::{
-    Experiment, McapError, McapProblem, Topics, Truth, TruthFacts, read_log, read_log_mcap, read_scene, read_truth_csv, read_truth_json,
+    Experiment, McapError, McapProblem, Topics, Truth, TruthFacts, read_log, read_log_mcap,
+    read_scene, read_truth_csv, read_truth_json,
 };
 
 use crate::failure::hinted;
@@ -40,75 +42,131 @@ impl Texts<'_> {
     }
 }
 
-/// Reads a scene, a log and the truth: `truth`, else truth.csv beside the log, and truth.json beside it. The verdict says whether all
-/// of the log could be read.
-pub fn read_experiment(scene: &Path, log: &Path, topics: &Topics, truth: Option<&Path>) -> Result<(Experiment, Verdict)> {
+/// Reads a scene, a log and the truth: `truth`, else truth.csv beside the log, and truth.json
+/// beside it. The verdict says whether all of the log could be read.
+pub fn read_experiment(
+    scene: &Path,
+    log: &Path,
+    topics: &Topics,
+    truth: Option<&Path>,
+) -> Result<(Experiment, Verdict)> {
     let setup = read_scene_file(scene)?;
     let (log_data, verdict) = read_log_file(log, topics)?;
     let folder = log.parent().unwrap_or(Path::new(""));
     let beside = |name: &str| Some(folder.join(name)).filter(|path| path.is_file());
-    let truth = truth.map(Path::to_path_buf).or(beside("truth.csv")).map(|path| read_truth_file(&path)).transpose()?;
-    let facts = beside("truth.json").map(|path| read_facts_file(&path)).transpose()?.unwrap_or_default();
-    let experiment =
-        Experiment::new(setup, log_data, truth, facts).with_context(|| format!("{} and {}", log.display(), scene.display()))?;
+    let truth = truth
+        .map(Path::to_path_buf)
+        .or(beside("truth.csv"))
+        .map(|path| read_truth_file(&path))
+        .transpose()?;
+    let facts = beside("truth.json")
+        .map(|path| read_facts_file(&path))
+        .transpose()?
+        .unwrap_or_default();
+    let experiment = Experiment::new(setup, log_data, truth, facts)
+        .with_context(|| format!("{} and {}", log.display(), scene.display()))?;
     Ok((experiment, verdict))
 }
 
 /// Reads an experiment folder.
 pub fn read_folder(folder: &Path, scene_name: &str) -> Result<(Experiment, Verdict)> {
-    read_experiment(&folder.join(scene_name), &log_path(folder), &Topics::default(), None)
+    read_experiment(
+        &folder.join(scene_name),
+        &log_path(folder),
+        &Topics::default(),
+        None,
+    )
 }
 
 /// The log of a folder: log.csv, else log.mcap.
 pub fn log_path(folder: &Path) -> PathBuf {
     let [csv, mcap] = ["log.csv", "log.mcap"].map(|name| folder.join(name));
-    if !csv.is_file() && mcap.is_file() { mcap } else { csv }
+    if !csv.is_file() && mcap.is_file() {
+        mcap
+    } else {
+        csv
+    }
 }
 
 /// What an experiment's reference is, in words.
 pub fn reference_name(experiment: &Experiment) -> &'static str {
-    if experiment.truth.is_some() { "the truth" } else { "the log's own poses" }
+    if experiment.truth.is_some() {
+        "the truth"
+    } else {
+        "the log's own poses"
+    }
 }
 
 /// Reads a scene file.
 pub fn read_scene_file(path: &Path) -> Result<Setup> {
-    Ok(read_scene(&text_of(path, "scene")?, &path.display().to_string())?)
+    Ok(read_scene(
+        &text_of(path, "scene")?,
+        &path.display().to_string(),
+    )?)
 }
 
-/// Reads a log, CSV or MCAP by the file's ending; its warnings go to standard error. The verdict says whether all of it could be read.
+/// Reads a log, CSV or MCAP by the file's ending; its warnings go to standard error. The verdict
+/// says whether all of it could be read.
 pub fn read_log_file(path: &Path, topics: &Topics) -> Result<(Log, Verdict)> {
     let (bytes, name) = (bytes_of(path, "log")?, path.display().to_string());
-    let (log, warnings) = if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+    let (log, warnings) = if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
+    {
         read_log_mcap(&bytes, &name, topics).map_err(topic_hint)?
     } else if topics.is_default() {
         read_log(bytes.as_slice(), &name)?
     } else {
-        return Err(hinted(format!("{name}: --topic is for MCAP logs, whose names end in .mcap"), "leave --topic out"));
+        return Err(hinted(
+            format!("{name}: --topic is for MCAP logs, whose names end in .mcap"),
+            "leave --topic out",
+        ));
     };
     for warning in &warnings {
         talk(format_args!("warning: {warning}"));
     }
     let lost = warnings.iter().any(|warning| warning.is_loss());
-    Ok((log, if lost { Verdict::InputLost } else { Verdict::Done }))
+    Ok((
+        log,
+        if lost {
+            Verdict::InputLost
+        } else {
+            Verdict::Done
+        },
+    ))
 }
 
 /// How to say on the command line which topic is meant.
 fn topic_hint(error: McapError) -> anyhow::Error {
     match *error.problem {
-        McapProblem::MissingTopic { topic, .. } => hinted(error.to_string(), format!("name it with --topic {topic}=TOPIC")),
-        McapProblem::SensorNumber { missing } => hinted(error.to_string(), format!("name it with --topic fixel_{missing}=TOPIC")),
-        McapProblem::Frame { wrench: true, .. } => hinted(error.to_string(), "leave forces out with --topic wrench="),
+        McapProblem::MissingTopic { topic, .. } => hinted(
+            error.to_string(),
+            format!("name it with --topic {topic}=TOPIC"),
+        ),
+        McapProblem::SensorNumber { missing } => hinted(
+            error.to_string(),
+            format!("name it with --topic fixel_{missing}=TOPIC"),
+        ),
+        McapProblem::Frame { wrench: true, .. } => {
+            hinted(error.to_string(), "leave forces out with --topic wrench=")
+        }
         _ => error.into(),
     }
 }
 
 fn read_truth_file(path: &Path) -> Result<Truth> {
-    Ok(read_truth_csv(bytes_of(path, "truth")?.as_slice(), &path.display().to_string())?)
+    Ok(read_truth_csv(
+        bytes_of(path, "truth")?.as_slice(),
+        &path.display().to_string(),
+    )?)
 }
 
 /// Reads a truth.json.
 pub fn read_facts_file(path: &Path) -> Result<TruthFacts> {
-    Ok(read_truth_json(&text_of(path, "truth")?, &path.display().to_string())?)
+    Ok(read_truth_json(
+        &text_of(path, "truth")?,
+        &path.display().to_string(),
+    )?)
 }
 
 /// The text of a file that is called `what` in errors.
@@ -126,5 +184,8 @@ fn unreadable(path: &Path, what: &str, error: &std::io::Error) -> anyhow::Error 
     } else {
         format!("give the path of the {what} file")
     };
-    hinted(format!("{}: the {what} cannot be read: {error}", path.display()), help)
+    hinted(
+        format!("{}: the {what} cannot be read: {error}", path.display()),
+        help,
+    )
 }

@@ -1,4 +1,5 @@
-//! What the program says when something fails: one line `error: ...` and, where there is one, the next step as `help: ...`.
+//! What the program says when something fails: one line `error: ...` and, where there is one, the
+//! next step as `help: ...`.
 
 use std::fmt;
 
@@ -22,7 +23,10 @@ impl std::error::Error for Hinted {}
 
 /// An error that says what to do next.
 pub fn hinted(message: impl Into<String>, help: impl Into<String>) -> anyhow::Error {
-    anyhow::Error::new(Hinted { message: message.into(), help: help.into() })
+    anyhow::Error::new(Hinted {
+        message: message.into(),
+        help: help.into(),
+    })
 }
 
 /// Tells standard error what failed, and ends with that error's exit code.
@@ -41,5 +45,8 @@ pub fn tell(error: &anyhow::Error) -> Verdict {
 
 /// An error and its causes in one line.
 pub fn one_line(error: &anyhow::Error) -> String {
-    format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" ")
+    format!("{error:#}")
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }

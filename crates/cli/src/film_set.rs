@@ -4,7 +4,10 @@ use anyhow::Result;
 use image::GrayImage;
 use rayon::prelude::*;
 use stickslip::dynamics::{Pose, Scene};
-use stickslip_testbed::camera::{self, BoardPose, Camera, Lens, Optics, Props, Recorded, Stage, Studio, TagMount, calibration_poses};
+use stickslip_testbed::camera::{
+    self, BoardPose, Camera, Lens, Optics, Props, Recorded, Stage, Studio, TagMount,
+    calibration_poses,
+};
 use stickslip_vision::{Board, BoardOnTable, BodyTag, TagPlace, Tags, tag_cells};
 
 const OBJECT_TAG: u16 = 0;
@@ -14,7 +17,13 @@ const PLATE_ROOM: f64 = 0.06;
 /// Frames of the board are numbered from here, away from those of the experiment.
 const BOARD_FRAMES: u64 = 1 << 40;
 /// A board of 7 x 5 tags.
-const BOARD: Board = Board { rows: 5, columns: 7, tag_size: 0.026, gap: 0.008, first_tag: 100 };
+const BOARD: Board = Board {
+    rows: 5,
+    columns: 7,
+    tag_size: 0.026,
+    gap: 0.008,
+    first_tag: 100,
+};
 /// Its thickness (m).
 const THICKNESS: f64 = 0.003;
 
@@ -43,10 +52,18 @@ impl FilmSet {
     pub fn new(scene: &Scene, recordings: &[Recorded], optics: Optics, seed: u64) -> Result<Self> {
         let push = recordings.first().map_or(0.0, Recorded::push_direction);
         let mut props = Props::of(scene, cells(OBJECT_TAG), cells(PUSHER_TAG), push);
-        let seen = recordings.iter().map(|recorded| recorded.bounds(scene, &props));
-        let [low, high] = seen.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], [l, h]| {
-            [std::array::from_fn(|k| low[k].min(l[k])), std::array::from_fn(|k| high[k].max(h[k]))]
-        });
+        let seen = recordings
+            .iter()
+            .map(|recorded| recorded.bounds(scene, &props));
+        let [low, high] = seen.fold(
+            [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+            |[low, high], [l, h]| {
+                [
+                    std::array::from_fn(|k| low[k].min(l[k])),
+                    std::array::from_fn(|k| high[k].max(h[k])),
+                ]
+            },
+        );
         props.plate = [low.map(|x| x - PLATE_ROOM), high.map(|x| x + PLATE_ROOM)];
         let camera = Camera::over(Lens::industrial(), [low, high])?;
         Ok(Self {
@@ -59,18 +76,40 @@ impl FilmSet {
     /// The calibration board in `count` poses.
     pub fn board(&self, count: usize) -> Result<BoardFilm> {
         let tags = BOARD.tags().map(cells).collect();
-        let print = camera::Board { columns: usize::from(BOARD.columns), tag_size: BOARD.tag_size, gap: BOARD.gap, tags };
+        let print = camera::Board {
+            columns: usize::from(BOARD.columns),
+            tag_size: BOARD.tag_size,
+            gap: BOARD.gap,
+            tags,
+        };
         let poses = calibration_poses(self.studio.camera(), &print, THICKNESS, count)?;
         let [x, y, _] = poses[0].origin;
-        Ok(BoardFilm { print, poses, on_table: BoardOnTable { board: BOARD, thickness: THICKNESS, pose: Pose::new(x, y, 0.0) } })
+        Ok(BoardFilm {
+            print,
+            poses,
+            on_table: BoardOnTable {
+                board: BOARD,
+                thickness: THICKNESS,
+                pose: Pose::new(x, y, 0.0),
+            },
+        })
     }
 }
 
 impl BoardFilm {
     /// Every frame, made into something on any thread.
-    pub fn frames<T: Send>(&self, set: &FilmSet, make: impl Fn(usize, GrayImage) -> Result<T> + Sync) -> Result<Vec<T>> {
-        let frame =
-            |(index, pose): (usize, &BoardPose)| make(index, set.studio.board_frame(BOARD_FRAMES + index as u64, &self.print, pose));
+    pub fn frames<T: Send>(
+        &self,
+        set: &FilmSet,
+        make: impl Fn(usize, GrayImage) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let frame = |(index, pose): (usize, &BoardPose)| {
+            make(
+                index,
+                set.studio
+                    .board_frame(BOARD_FRAMES + index as u64, &self.print, pose),
+            )
+        };
         self.poses.par_iter().enumerate().map(frame).collect()
     }
 }
@@ -82,7 +121,17 @@ fn cells(id: u16) -> camera::TagCells {
 fn tags(props: &Props) -> Tags {
     let of = |id: u16, mount: &Option<TagMount>| {
         let TagMount { tag, pose, height } = mount.expect("the standard props have both tags");
-        BodyTag { id, place: TagPlace { size: tag.size, height, pose } }
+        BodyTag {
+            id,
+            place: TagPlace {
+                size: tag.size,
+                height,
+                pose,
+            },
+        }
     };
-    Tags { object: of(OBJECT_TAG, &props.object_tag), pusher: of(PUSHER_TAG, &props.pusher_tag) }
+    Tags {
+        object: of(OBJECT_TAG, &props.object_tag),
+        pusher: of(PUSHER_TAG, &props.pusher_tag),
+    }
 }

@@ -45,18 +45,38 @@ struct Summary {
 pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     if args.mode == Mode::Contact {
         let text = "--mode contact does not exist yet; --mode paper is the only one";
-        return Err(Program::command().error(clap::error::ErrorKind::InvalidValue, text).into());
+        return Err(Program::command()
+            .error(clap::error::ErrorKind::InvalidValue, text)
+            .into());
     }
-    let (experiment, verdict) = read_experiment(&args.scene, &args.log, &args.topics.topics()?, args.truth.as_deref())?;
+    let (experiment, verdict) = read_experiment(
+        &args.scene,
+        &args.log,
+        &args.topics.topics()?,
+        args.truth.as_deref(),
+    )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
     let sample = CloudSample::new(DRAWN);
-    let (run, seconds) = timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
+    let (run, seconds) =
+        timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
     let scores = scores(args, &experiment, &run.estimate);
-    let written = args.out.as_deref().map(|folder| write(folder, &run.estimate)).transpose()?;
-    let reported = args.report.as_deref().map(|path| report(args, &experiment, &run, &scores, sample, path)).transpose()?;
+    let written = args
+        .out
+        .as_deref()
+        .map(|folder| write(folder, &run.estimate))
+        .transpose()?;
+    let reported = args
+        .report
+        .as_deref()
+        .map(|path| report(args, &experiment, &run, &scores, sample, path))
+        .transpose()?;
     let summary = Summary::new(&experiment, &run, &scores, seconds);
     let tables = || tables(args, &experiment, &run.estimate, &summary);
-    show(if args.shared.json { serde_json::to_string_pretty(&summary)? } else { tables() })?;
+    show(if args.shared.json {
+        serde_json::to_string_pretty(&summary)?
+    } else {
+        tables()
+    })?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
     }
@@ -65,7 +85,11 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
 
 /// An occlusion that hides no pose is a slip of the pen.
 fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
-    let hides = occlusion.hidden(&experiment.log).iter().zip(&experiment.log.object).any(|(hidden, pose)| *hidden && pose.is_some());
+    let hides = occlusion
+        .hidden(&experiment.log)
+        .iter()
+        .zip(&experiment.log.object)
+        .any(|(hidden, pose)| *hidden && pose.is_some());
     if occlusion == Occlusion::None || hides {
         return Ok(());
     }
@@ -76,11 +100,21 @@ fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> 
     ))
 }
 
-/// The run and the wall time of its loop (s); `sample` is shown the particles where a report wants them.
-fn timed_run(args: &FilterArgs, experiment: &Experiment, sample: &CloudSample) -> Result<(Run, f64)> {
+/// The run and the wall time of its loop (s); `sample` is shown the particles where a report wants
+/// them.
+fn timed_run(
+    args: &FilterArgs,
+    experiment: &Experiment,
+    sample: &CloudSample,
+) -> Result<(Run, f64)> {
     let options = args.run_options();
-    let long = args.method == MethodName::Particle && experiment.log.len() * options.particles > LONG;
-    let progress = bar(experiment.log.len(), "frames", if long { Work::Long } else { Work::Short });
+    let long =
+        args.method == MethodName::Particle && experiment.log.len() * options.particles > LONG;
+    let progress = bar(
+        experiment.log.len(),
+        "frames",
+        if long { Work::Long } else { Work::Short },
+    );
     let pool = args.shared.pool()?;
     let start = Instant::now();
     let Experiment { setup, log, .. } = experiment;
@@ -96,7 +130,14 @@ fn timed_run(args: &FilterArgs, experiment: &Experiment, sample: &CloudSample) -
 }
 
 /// Writes a report about the run.
-fn report(args: &FilterArgs, experiment: &Experiment, run: &Run, scores: &Scores, sample: CloudSample, path: &Path) -> Result<PathBuf> {
+fn report(
+    args: &FilterArgs,
+    experiment: &Experiment,
+    run: &Run,
+    scores: &Scores,
+    sample: CloudSample,
+    path: &Path,
+) -> Result<PathBuf> {
     let contender = Contender {
         name: args.method.name().to_owned(),
         colour: args.method.colour(),
@@ -107,15 +148,31 @@ fn report(args: &FilterArgs, experiment: &Experiment, run: &Run, scores: &Scores
         saw_all: false,
     };
     let name = args.log.display().to_string();
-    let episode = episode(&name, "", experiment, args.shared.occlusion(), vec![contender]);
+    let episode = episode(
+        &name,
+        "",
+        experiment,
+        args.shared.occlusion(),
+        vec![contender],
+    );
     let summary = episode.summary().to_vec();
-    let report = Report { title: format!("{}: {name}", args.method.name()), summary, sections: vec![episode.section()] };
+    let report = Report {
+        title: format!("{}: {name}", args.method.name()),
+        summary,
+        sections: vec![episode.section()],
+    };
     write_report(path.to_owned(), &report)
 }
 
 fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {
     let hidden = args.shared.occlusion().hidden(&experiment.log);
-    score(estimate, &experiment.reference(), &hidden, args.virtual_radius.unwrap_or(experiment.setup.virtual_radius()))
+    score(
+        estimate,
+        &experiment.reference(),
+        &hidden,
+        args.virtual_radius
+            .unwrap_or(experiment.setup.virtual_radius()),
+    )
 }
 
 /// Writes estimate.csv into `folder`; other files there stay as they are.
@@ -128,7 +185,10 @@ fn write(folder: &Path, estimate: &Estimate) -> Result<PathBuf> {
         file.flush()
     };
     write().map_err(|error| {
-        hinted(format!("{}: cannot be written: {error}", path.display()), "give a folder that can be written to with --out")
+        hinted(
+            format!("{}: cannot be written: {error}", path.display()),
+            "give a folder that can be written to with --out",
+        )
     })?;
     Ok(path)
 }
@@ -145,31 +205,66 @@ impl Summary {
             unsolved: run.unsolved,
             collapses: run.collapses,
             real_time_factor: experiment.log.duration() / seconds,
-            friction: Parameter::at_end(&run.estimate).into_iter().map(|parameter| (parameter.name, parameter)).collect(),
+            friction: Parameter::at_end(&run.estimate)
+                .into_iter()
+                .map(|parameter| (parameter.name, parameter))
+                .collect(),
         }
     }
 }
 
-fn tables(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate, summary: &Summary) -> String {
-    let title = format!("{}, {} against {}\n", args.log.display(), args.method.name(), reference_name(experiment));
+fn tables(
+    args: &FilterArgs,
+    experiment: &Experiment,
+    estimate: &Estimate,
+    summary: &Summary,
+) -> String {
+    let title = format!(
+        "{}, {} against {}\n",
+        args.log.display(),
+        args.method.name(),
+        reference_name(experiment)
+    );
     let parameters = Parameter::at_end(estimate);
-    let friction = (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
-    let parts = [title, score_table(summary).to_string()].into_iter().chain(friction).chain(final_pose_line(experiment, estimate));
+    let friction =
+        (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
+    let parts = [title, score_table(summary).to_string()]
+        .into_iter()
+        .chain(friction)
+        .chain(final_pose_line(experiment, estimate));
     parts.collect::<Vec<_>>().join("\n")
 }
 
 fn score_table(summary: &Summary) -> Table {
     let mut table = Table::new(["score", "value", "unit"]);
-    let mut row = |name: &str, value: String, unit: &str| table.push([name.to_owned(), value, unit.to_owned()]);
+    let mut row = |name: &str, value: String, unit: &str| {
+        table.push([name.to_owned(), value, unit.to_owned()])
+    };
     row("WMSE", number(summary.wmse_mm, 3), "mm");
-    row("WMSE, hidden rows", number(summary.wmse_occluded_mm, 3), "mm");
+    row(
+        "WMSE, hidden rows",
+        number(summary.wmse_occluded_mm, 3),
+        "mm",
+    );
     row("WMSE, moving", number(summary.wmse_moving_mm, 3), "mm");
-    row("final position error", number(summary.final_error_mm, 3), "mm");
-    row("final angle error", number(summary.final_error_deg, 3), "deg");
+    row(
+        "final position error",
+        number(summary.final_error_mm, 3),
+        "mm",
+    );
+    row(
+        "final angle error",
+        number(summary.final_error_deg, 3),
+        "deg",
+    );
     row("frames", summary.frames.to_string(), "");
     row("unsolved particle steps", summary.unsolved.to_string(), "");
     row("collapses", summary.collapses.to_string(), "");
-    row("real-time factor", format!("{:.1}", summary.real_time_factor), "");
+    row(
+        "real-time factor",
+        format!("{:.1}", summary.real_time_factor),
+        "",
+    );
     table
 }
 
@@ -184,8 +279,22 @@ fn friction_table(experiment: &Experiment, parameters: &[Parameter]) -> Table {
 
 /// The last estimate beside the measured final pose, where only that is known of the truth.
 fn final_pose_line(experiment: &Experiment, estimate: &Estimate) -> Option<String> {
-    let measured = experiment.facts.final_pose.filter(|_| experiment.truth.is_none())?;
+    let measured = experiment
+        .facts
+        .final_pose
+        .filter(|_| experiment.truth.is_none())?;
     let predicted = estimate.rows.iter().rev().find_map(|row| row.pose)?;
-    let shown = |pose: &Pose| format!("({:.1} mm, {:.1} mm, {:.2} deg)", 1e3 * pose.x, 1e3 * pose.y, pose.theta.to_degrees());
-    Some(format!("final pose: estimated {}, measured {}", shown(&predicted), shown(&measured)))
+    let shown = |pose: &Pose| {
+        format!(
+            "({:.1} mm, {:.1} mm, {:.2} deg)",
+            1e3 * pose.x,
+            1e3 * pose.y,
+            pose.theta.to_degrees()
+        )
+    };
+    Some(format!(
+        "final pose: estimated {}, measured {}",
+        shown(&predicted),
+        shown(&measured)
+    ))
 }

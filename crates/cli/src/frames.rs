@@ -26,26 +26,46 @@ pub struct FrameFolder {
 }
 
 impl FrameFolder {
-    /// Lists a folder: as frames.csv says where it is there, else all images by name, numbers in names by value.
+    /// Lists a folder: as frames.csv says where it is there, else all images by name, numbers in
+    /// names by value.
     pub fn list(folder: &Path) -> Result<Self> {
         let list = folder.join("frames.csv");
         if list.is_file() {
             let bytes = fs::read(&list).map_err(|error| unreadable(&list, &error))?;
             let frames = read_frames(bytes.as_slice(), &list.display().to_string())?;
-            return Ok(Self { folder: folder.to_owned(), names: frames.file, time: Some(frames.time) });
+            return Ok(Self {
+                folder: folder.to_owned(),
+                names: frames.file,
+                time: Some(frames.time),
+            });
         }
         let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, &error))?;
         let mut names = Vec::new();
         for entry in entries {
             let path = entry.map_err(|error| unreadable(folder, &error))?.path();
-            names.extend(path.file_name().and_then(|name| name.to_str()).filter(|_| is_image(&path)).map(str::to_owned));
+            names.extend(
+                path.file_name()
+                    .and_then(|name| name.to_str())
+                    .filter(|_| is_image(&path))
+                    .map(str::to_owned),
+            );
         }
         if names.is_empty() {
-            let text = format!("{}: there is no image in it, and no frames.csv", folder.display());
-            return Err(hinted(text, format!("give a folder with {} files", ENDINGS.join(", "))));
+            let text = format!(
+                "{}: there is no image in it, and no frames.csv",
+                folder.display()
+            );
+            return Err(hinted(
+                text,
+                format!("give a folder with {} files", ENDINGS.join(", ")),
+            ));
         }
         names.sort_by(|a, b| by_number(a, b).then_with(|| a.cmp(b)));
-        Ok(Self { folder: folder.to_owned(), names, time: None })
+        Ok(Self {
+            folder: folder.to_owned(),
+            names,
+            time: None,
+        })
     }
 
     /// An image and its name for errors.
@@ -59,11 +79,18 @@ impl FrameFolder {
 }
 
 fn is_image(path: &Path) -> bool {
-    path.is_file() && path.extension().and_then(|e| e.to_str()).is_some_and(|e| ENDINGS.contains(&e.to_ascii_lowercase().as_str()))
+    path.is_file()
+        && path
+            .extension()
+            .and_then(|e| e.to_str())
+            .is_some_and(|e| ENDINGS.contains(&e.to_ascii_lowercase().as_str()))
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> anyhow::Error {
-    hinted(format!("{}: cannot be read: {error}", path.display()), "give a folder of images, all of which can be read")
+    hinted(
+        format!("{}: cannot be read: {error}", path.display()),
+        "give a folder of images, all of which can be read",
+    )
 }
 
 /// Order of names in which runs of digits count by value.
@@ -74,7 +101,8 @@ fn by_number(a: &str, b: &str) -> Ordering {
         // words come after numbers
         runs.map(|run| {
             let run = String::from_utf8_lossy(run).into_owned();
-            run.parse().map_or((u64::MAX, run), |number| (number, String::new()))
+            run.parse()
+                .map_or((u64::MAX, run), |number| (number, String::new()))
         })
         .collect()
     };
@@ -87,8 +115,25 @@ mod tests {
 
     #[test]
     fn by_number_counts_digits_by_value() {
-        let mut names = ["b1.png", "a10.png", "a9.png", "a009b2.png", "10.png", "9.png"];
+        let mut names = [
+            "b1.png",
+            "a10.png",
+            "a9.png",
+            "a009b2.png",
+            "10.png",
+            "9.png",
+        ];
         names.sort_by(|a, b| by_number(a, b));
-        assert_eq!(names, ["9.png", "10.png", "a9.png", "a009b2.png", "a10.png", "b1.png"]);
+        assert_eq!(
+            names,
+            [
+                "9.png",
+                "10.png",
+                "a9.png",
+                "a009b2.png",
+                "a10.png",
+                "b1.png"
+            ]
+        );
     }
 }

@@ -1,6 +1,11 @@
-//! The program `stickslip`: arguments, files, progress and exit codes around the library of the same name.
+//! The program `stickslip`: arguments, files, progress and exit codes around the library of the
+//! same name.
 
-#![warn(clippy::print_stdout, clippy::print_stderr, reason = "they panic where the reader has left; `output` does not")]
+#![warn(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "they panic where the reader has left; `output` does not"
+)]
 
 mod args;
 mod calibrate;
@@ -45,5 +50,7 @@ fn main() -> ExitCode {
         Command::Track(args) => track::track(&args),
         Command::Render(args) => render::render(&args),
     };
-    result.unwrap_or_else(|error| failure::tell(&error)).exit_code()
+    result
+        .unwrap_or_else(|error| failure::tell(&error))
+        .exit_code()
 }

@@ -1,7 +1,8 @@
-//! The one place where the program speaks: results by [`show`] on standard output, all else by [`talk`] on standard error.
+//! The one place where the program speaks: results by [`show`] on standard output, all else by
+//! [`talk`] on standard error.
 //!
-//! A reader may leave early, as `head` does. That is no failure: what is left to tell is dropped, files are still written, and the
-//! exit code is that of the work.
+//! A reader may leave early, as `head` does. That is no failure: what is left to tell is dropped,
+//! files are still written, and the exit code is that of the work.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -10,17 +11,20 @@ use anyhow::Result;
 
 use crate::failure::hinted;
 
-/// Writes results to standard output, with one newline at their end; to nobody where the reader has left.
+/// Writes results to standard output, with one newline at their end; to nobody where the reader has
+/// left.
 pub fn show(text: impl Display) -> Result<()> {
     match write(&mut io::stdout().lock(), text) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(hinted(format!("standard output cannot be written: {error}"), "send it to a terminal, a pipe or a file with room for it"))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(hinted(
+            format!("standard output cannot be written: {error}"),
+            "send it to a terminal, a pipe or a file with room for it",
+        )),
         _ => Ok(()),
     }
 }
 
-/// Writes a line to standard error; lost where nobody can read it, since there is no other place to say so.
+/// Writes a line to standard error; lost where nobody can read it, since there is no other place to
+/// say so.
 pub fn talk(text: impl Display) {
     let _ = write(&mut io::stderr().lock(), text);
 }

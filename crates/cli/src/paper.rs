@@ -51,7 +51,14 @@ pub struct PaperScene {
 
 impl PaperExperiment {
     /// All, in the paper's order.
-    pub const ALL: [Self; 6] = [Self::A, Self::B, Self::First, Self::Second, Self::Third, Self::Fourth];
+    pub const ALL: [Self; 6] = [
+        Self::A,
+        Self::B,
+        Self::First,
+        Self::Second,
+        Self::Third,
+        Self::Fourth,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -72,8 +79,14 @@ impl PaperExperiment {
             Self::B => embedded!("b", "the object slides along one fixel and ends on three"),
             Self::First => embedded!("1", "the object slides along a fixel"),
             Self::Second => embedded!("2", "the object slides along a fixel and turns"),
-            Self::Third => embedded!("3", "the object meets a fixel as it comes to lie on the thumb, and stops"),
-            Self::Fourth => embedded!("4", "the object is squeezed between thumb and fixel, and stops"),
+            Self::Third => embedded!(
+                "3",
+                "the object meets a fixel as it comes to lie on the thumb, and stops"
+            ),
+            Self::Fourth => embedded!(
+                "4",
+                "the object is squeezed between thumb and fixel, and stops"
+            ),
         }
     }
 }

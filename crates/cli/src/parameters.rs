@@ -19,10 +19,21 @@ pub struct Parameter {
 impl Parameter {
     /// The parameters in the last row that has them; none for methods that do not estimate them.
     pub fn at_end(estimate: &Estimate) -> Vec<Self> {
-        let last = estimate.rows.iter().rev().find_map(|row| Some((row.friction?, row.spread?.friction?)));
-        let Some((mean, std)) = last else { return Vec::new() };
-        let parameters = values(&mean).into_iter().zip(values(&std)).map(|((name, mean), (_, std))| Self { name, mean, std });
-        parameters.filter(|parameter| parameter.name != "d_tri" || estimate.has_tripod).collect()
+        let last = estimate
+            .rows
+            .iter()
+            .rev()
+            .find_map(|row| Some((row.friction?, row.spread?.friction?)));
+        let Some((mean, std)) = last else {
+            return Vec::new();
+        };
+        let parameters = values(&mean)
+            .into_iter()
+            .zip(values(&std))
+            .map(|((name, mean), (_, std))| Self { name, mean, std });
+        parameters
+            .filter(|parameter| parameter.name != "d_tri" || estimate.has_tripod)
+            .collect()
     }
 
     /// "0.283 ± 0.021"; lengths in mm.
@@ -44,10 +55,18 @@ impl Parameter {
 
     /// Its nominal value.
     pub fn nominal(&self, friction: &Friction) -> Option<f64> {
-        values(friction).into_iter().find(|(name, _)| *name == self.name).map(|(_, value)| value)
+        values(friction)
+            .into_iter()
+            .find(|(name, _)| *name == self.name)
+            .map(|(_, value)| value)
     }
 }
 
 fn values(friction: &Friction) -> [(&'static str, f64); 4] {
-    [("mu_s", friction.mu_s), ("mu_p", friction.mu_p), ("mu_f", friction.mu_f), ("d_tri", friction.d_tri)]
+    [
+        ("mu_s", friction.mu_s),
+        ("mu_p", friction.mu_p),
+        ("mu_f", friction.mu_f),
+        ("d_tri", friction.d_tri),
+    ]
 }

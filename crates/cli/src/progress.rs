@@ -8,7 +8,8 @@ pub fn bar(length: usize, unit: &str, work: Work) -> ProgressBar {
         Work::Short => ProgressDrawTarget::hidden(),
         Work::Long => ProgressDrawTarget::stderr(),
     };
-    let style = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} left"));
+    let style =
+        ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} left"));
     let bar = ProgressBar::with_draw_target(Some(length as u64), target);
     match style {
         Ok(style) => bar.with_style(style),

@@ -24,17 +24,29 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
     let (experiment, verdict) = read_folder(&args.folder, "scene.toml")?;
     let recorded = recorded(args, &experiment)?;
     let scene = &experiment.setup.scene;
-    let optics = Optics { blur: args.blur, ..Optics::default() };
+    let optics = Optics {
+        blur: args.blur,
+        ..Optics::default()
+    };
     let set = FilmSet::new(scene, std::slice::from_ref(&recorded), optics, args.seed)?;
     let take = Take {
         exposure: args.exposure,
-        grabber: Grabber { repeat: args.repeat, seed: args.seed },
+        grabber: Grabber {
+            repeat: args.repeat,
+            seed: args.seed,
+        },
         covered: covered(args, &experiment),
         hand_height: set.hand_height,
     };
-    let film = Film { studio: &set.studio, recorded: &recorded, take };
+    let film = Film {
+        studio: &set.studio,
+        recorded: &recorded,
+        take,
+    };
 
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.map_or(0, usize::from))
+        .build()?;
     let out = Out(&args.out);
     let frames = pool.install(|| out.frames(&film))?;
     let board = pool.install(|| out.board(&set, args.board_frames))?;
@@ -45,7 +57,11 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
             write(&args.out.join(name), &bytes)?;
         }
     }
-    talk(format_args!("wrote {frames} frames and {} of the board to {}", args.board_frames, args.out.display()));
+    talk(format_args!(
+        "wrote {frames} frames and {} of the board to {}",
+        args.board_frames,
+        args.out.display()
+    ));
     show(format_args!(
         "stickslip calibrate {0}/board --board {0}/board.toml --out {0}/calibration.toml\n\
          stickslip track {0}/frames --calibration {0}/calibration.toml --tags {0}/tags.toml --sensors {1} --out {0}",
@@ -60,8 +76,15 @@ fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<Recorded> {
     let reference = experiment.reference().pose;
     let unknown = reference.iter().position(Option::is_none);
     if let Some(row) = unknown {
-        let text = format!("{}: {} has no object pose at row {row}", args.folder.display(), reference_name(experiment));
-        return Err(hinted(text, "give an experiment with truth.csv over all rows of its log"));
+        let text = format!(
+            "{}: {} has no object pose at row {row}",
+            args.folder.display(),
+            reference_name(experiment)
+        );
+        return Err(hinted(
+            text,
+            "give an experiment with truth.csv over all rows of its log",
+        ));
     }
     Ok(Recorded {
         time: experiment.log.time.clone(),
@@ -89,7 +112,9 @@ impl Out<'_> {
         let folder = self.folder("frames")?;
         let time = &film.recorded.time;
         let progress = bar(time.len(), "frames", Work::Long);
-        let file: Vec<String> = (0..time.len()).map(|index| format!("{index:06}.png")).collect();
+        let file: Vec<String> = (0..time.len())
+            .map(|index| format!("{index:06}.png"))
+            .collect();
         file.par_iter().enumerate().try_for_each(|(index, name)| {
             let written = write(&folder.join(name), &encode_png(&film.frame(index)));
             progress.inc(1);
@@ -98,7 +123,14 @@ impl Out<'_> {
         progress.finish_and_clear();
         let list = folder.join("frames.csv");
         let created = File::create(&list).with_context(|| list.display().to_string())?;
-        write_frames(created, &FrameList { time: time.clone(), file }).with_context(|| list.display().to_string())?;
+        write_frames(
+            created,
+            &FrameList {
+                time: time.clone(),
+                file,
+            },
+        )
+        .with_context(|| list.display().to_string())?;
         Ok(time.len())
     }
 
@@ -106,7 +138,9 @@ impl Out<'_> {
     fn board(&self, set: &FilmSet, count: u16) -> Result<BoardOnTable> {
         let folder = self.folder("board")?;
         let board = set.board(usize::from(count))?;
-        board.frames(set, |index, frame| write(&folder.join(format!("{index:03}.png")), &encode_png(&frame)))?;
+        board.frames(set, |index, frame| {
+            write(&folder.join(format!("{index:03}.png")), &encode_png(&frame))
+        })?;
         Ok(board.on_table)
     }
 
@@ -117,7 +151,10 @@ impl Out<'_> {
     fn folder(&self, name: &str) -> Result<PathBuf> {
         let folder = self.0.join(name);
         fs::create_dir_all(&folder).map_err(|error| {
-            hinted(format!("{}: cannot be made: {error}", folder.display()), "give a folder that can be written to with --out")
+            hinted(
+                format!("{}: cannot be made: {error}", folder.display()),
+                "give a folder that can be written to with --out",
+            )
         })?;
         Ok(folder)
     }
@@ -125,6 +162,9 @@ impl Out<'_> {
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).map_err(|error| {
-        hinted(format!("{}: cannot be written: {error}", path.display()), "give a folder that can be written to with --out")
+        hinted(
+            format!("{}: cannot be written: {error}", path.display()),
+            "give a folder that can be written to with --out",
+        )
     })
 }

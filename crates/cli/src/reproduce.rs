@@ -70,10 +70,19 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
         make(folder)?;
     }
     let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let rules = Rules { particles: args.particles, tracking: Tracking::Smoothed };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
+    let rules = Rules {
+        particles: args.particles,
+        tracking: Tracking::Smoothed,
+    };
     let report = pool.install(|| report(args, &rules))?;
-    show(if args.json { serde_json::to_string_pretty(&report)? } else { report.text() })?;
+    show(if args.json {
+        serde_json::to_string_pretty(&report)?
+    } else {
+        report.text()
+    })?;
     Ok(Verdict::Done)
 }
 
@@ -85,11 +94,23 @@ fn report(args: &ReproduceArgs, rules: &Rules) -> Result<Report> {
         let (tracked, simulated) = (heats(tracked, rules)?, heats(simulated, rules)?);
         let from_poses = Reproduction::new(&simulated);
         let ratios = Ratio::all(&Reproduction::new(&tracked), &from_poses);
-        (tracked, Some(Equal { noise, from_poses, ratios }))
+        (
+            tracked,
+            Some(Equal {
+                noise,
+                from_poses,
+                ratios,
+            }),
+        )
     } else {
         (heats(recordings, rules)?, None)
     };
-    let report = Report { particles: args.particles, seeds, tables: Reproduction::new(&heats), equal };
+    let report = Report {
+        particles: args.particles,
+        seeds,
+        tables: Reproduction::new(&heats),
+        equal,
+    };
     if let Some(folder) = &args.out {
         write(folder, &report, &heats, rules)?;
     }
@@ -101,7 +122,11 @@ impl Report {
         let tables = text::text(&self.tables);
         match &self.equal {
             None => tables,
-            Some(Equal { noise, from_poses, ratios }) => {
+            Some(Equal {
+                noise,
+                from_poses,
+                ratios,
+            }) => {
                 format!(
                     "From frames\n\n{tables}\nFrom simulated poses of equal noise\n\n{}\n{}\n{}",
                     text::text(from_poses),
@@ -116,24 +141,41 @@ impl Report {
 /// Makes the folder for results before minutes are spent on them.
 fn make(folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).map_err(|error| {
-        hinted(format!("{}: cannot be made: {error}", folder.display()), "give a folder that can be written to with --out")
+        hinted(
+            format!("{}: cannot be made: {error}", folder.display()),
+            "give a folder that can be written to with --out",
+        )
     })
 }
 
 /// Writes reproduce.json, the figures and report.html.
 fn write(folder: &Path, report: &Report, heats: &[Heat], rules: &Rules) -> Result<()> {
     let figures = figures(heats)?;
-    figures.par_iter().try_for_each(|figure| write_figure(folder, figure.name, &figure.drawing))?;
-    write_file(&folder.join("reproduce.json"), serde_json::to_string_pretty(report)?.as_bytes())?;
-    let page = write_report(folder.join("report.html"), &page(&report.tables, heats, &figures, rules)?)?;
-    talk(format_args!("wrote {} figures as SVG and PNG, reproduce.json and {}", figures.len(), page.display()));
+    figures
+        .par_iter()
+        .try_for_each(|figure| write_figure(folder, figure.name, &figure.drawing))?;
+    write_file(
+        &folder.join("reproduce.json"),
+        serde_json::to_string_pretty(report)?.as_bytes(),
+    )?;
+    let page = write_report(
+        folder.join("report.html"),
+        &page(&report.tables, heats, &figures, rules)?,
+    )?;
+    talk(format_args!(
+        "wrote {} figures as SVG and PNG, reproduce.json and {}",
+        figures.len(),
+        page.display()
+    ));
     Ok(())
 }
 
 /// Every experiment with every seed, simulated.
 fn recordings(seeds: u64) -> Result<Vec<Recording>> {
-    let all: Vec<(PaperExperiment, u64)> =
-        PaperExperiment::ALL.into_iter().flat_map(|paper| (0..seeds).map(move |seed| (paper, seed))).collect();
+    let all: Vec<(PaperExperiment, u64)> = PaperExperiment::ALL
+        .into_iter()
+        .flat_map(|paper| (0..seeds).map(move |seed| (paper, seed)))
+        .collect();
     let progress = bar(all.len(), "experiments simulated", Work::Long);
     let simulated = |(paper, seed): (PaperExperiment, u64)| {
         let recording = Recording::simulate(paper, seed);
@@ -145,19 +187,38 @@ fn recordings(seeds: u64) -> Result<Vec<Recording>> {
     recordings
 }
 
-/// The recordings from frames, the same from simulated poses of equal noise, and that noise by experiment.
+/// The recordings from frames, the same from simulated poses of equal noise, and that noise by
+/// experiment.
 fn filmed(recordings: &[Recording]) -> Result<(Vec<Recording>, Vec<Recording>, Vec<NoiseLevel>)> {
-    let frames: usize = recordings.iter().map(|recording| recording.experiment.log.len()).sum();
+    let frames: usize = recordings
+        .iter()
+        .map(|recording| recording.experiment.log.len())
+        .sum();
     let progress = bar(frames, "frames", Work::Long);
     let (mut tracked, mut simulated, mut levels) = (Vec::new(), Vec::new(), Vec::new());
     for paper in PaperExperiment::ALL {
-        let own: Vec<&Recording> = recordings.iter().filter(|recording| recording.paper == paper).collect();
+        let own: Vec<&Recording> = recordings
+            .iter()
+            .filter(|recording| recording.paper == paper)
+            .collect();
         let footage = Footage::new(&own, Optics::default())?;
-        let seen: Vec<Tracked> = own.par_iter().map(|recording| footage.track(recording, &progress)).collect::<Result<_>>()?;
-        let noise = seen.iter().fold(Noise::default(), |sum, tracked| sum.with(tracked.noise));
+        let seen: Vec<Tracked> = own
+            .par_iter()
+            .map(|recording| footage.track(recording, &progress))
+            .collect::<Result<_>>()?;
+        let noise = seen
+            .iter()
+            .fold(Noise::default(), |sum, tracked| sum.with(tracked.noise));
         levels.push(noise.level());
-        simulated.extend(seen.par_iter().map(|seen| seen.recording.with_noise(&noise)).collect::<Result<Vec<_>>>()?);
-        tracked.extend(seen.into_iter().map(|tracked| tracked.recording.told(noise.told())));
+        simulated.extend(
+            seen.par_iter()
+                .map(|seen| seen.recording.with_noise(&noise))
+                .collect::<Result<Vec<_>>>()?,
+        );
+        tracked.extend(
+            seen.into_iter()
+                .map(|tracked| tracked.recording.told(noise.told())),
+        );
     }
     progress.finish_and_clear();
     Ok((tracked, simulated, levels))
@@ -167,7 +228,11 @@ fn filmed(recordings: &[Recording]) -> Result<(Vec<Recording>, Vec<Recording>, V
 fn heats(recordings: Vec<Recording>, rules: &Rules) -> Result<Vec<Heat>> {
     let jobs: Vec<(&Recording, Participant)> = recordings
         .iter()
-        .flat_map(|recording| participants(recording.paper).into_iter().map(move |participant| (recording, participant)))
+        .flat_map(|recording| {
+            participants(recording.paper)
+                .into_iter()
+                .map(move |participant| (recording, participant))
+        })
         .collect();
     let progress = bar(jobs.len(), "runs", Work::Long);
     let run = |(recording, participant): &(&Recording, Participant)| {
@@ -179,7 +244,10 @@ fn heats(recordings: Vec<Recording>, rules: &Rules) -> Result<Vec<Heat>> {
     progress.finish_and_clear();
     let mut courses = courses.into_iter();
     let heat = |recording: Recording| {
-        let courses = courses.by_ref().take(participants(recording.paper).len()).collect();
+        let courses = courses
+            .by_ref()
+            .take(participants(recording.paper).len())
+            .collect();
         Heat { recording, courses }
     };
     Ok(recordings.into_iter().map(heat).collect())

@@ -42,24 +42,50 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Simulates the experiment of `setup`, whose file is called `name`; `known` has the true friction and the blackout, where they are
-    /// not the scene's friction and just before the first contact with a fixel.
+    /// Simulates the experiment of `setup`, whose file is called `name`; `known` has the true
+    /// friction and the blackout, where they are not the scene's friction and just before the first
+    /// contact with a fixel.
     pub fn run(setup: &Setup, name: &str, known: &TruthFacts, options: &Options) -> Result<Self> {
         let start = start(setup, name)?;
-        let trial = Trial { scene: &setup.scene, start, rate: options.rate, seed: options.seed };
+        let trial = Trial {
+            scene: &setup.scene,
+            start,
+            rate: options.rate,
+            seed: options.seed,
+        };
         let friction = friction(setup, known);
-        let touch = TouchSensors { threshold: setup.tactile.touch_force, ..TouchSensors::default() };
+        let touch = TouchSensors {
+            threshold: setup.tactile.touch_force,
+            ..TouchSensors::default()
+        };
         let run = match options.physics {
             Physics::Testbed => {
-                let Friction { mu_s, mu_p, mu_f, .. } = friction;
-                Rig { mu_s, mu_p, mu_f, touch, ..Rig::of(&setup.scene) }.run(&trial)
+                let Friction {
+                    mu_s, mu_p, mu_f, ..
+                } = friction;
+                Rig {
+                    mu_s,
+                    mu_p,
+                    mu_f,
+                    touch,
+                    ..Rig::of(&setup.scene)
+                }
+                .run(&trial)
             }
             Physics::Model => Model { friction, touch }.run(&trial),
         };
         let trace = run.with_context(|| name.to_owned())?;
-        let log = log(&trace, &tracker(setup, options.repeats).sight(&trace, options.seed));
+        let log = log(
+            &trace,
+            &tracker(setup, options.repeats).sight(&trace, options.seed),
+        );
         let facts = facts(&trace, known, options);
-        Ok(Self { truth: truth(&trace), log, facts, trace })
+        Ok(Self {
+            truth: truth(&trace),
+            log,
+            facts,
+            trace,
+        })
     }
 }
 
@@ -97,9 +123,23 @@ fn log(trace: &Trace, sightings: &[Sighting]) -> Log {
     let sensors = trace.frames.first().map_or(0, |frame| frame.tactile.len());
     Log {
         time: trace.frames.iter().map(|frame| frame.time).collect(),
-        object: sightings.iter().map(|sighting| Some(sighting.object)).collect(),
-        pusher: sightings.iter().map(|sighting| Some(sighting.pusher)).collect(),
-        tactile: (0..sensors).map(|k| trace.frames.iter().map(|frame| Some(frame.tactile[k])).collect()).collect(),
+        object: sightings
+            .iter()
+            .map(|sighting| Some(sighting.object))
+            .collect(),
+        pusher: sightings
+            .iter()
+            .map(|sighting| Some(sighting.pusher))
+            .collect(),
+        tactile: (0..sensors)
+            .map(|k| {
+                trace
+                    .frames
+                    .iter()
+                    .map(|frame| Some(frame.tactile[k]))
+                    .collect()
+            })
+            .collect(),
         force: Vec::new(),
     }
 }
@@ -112,8 +152,13 @@ fn truth(trace: &Trace) -> Truth {
         pose: frames.iter().map(|frame| frame.object).collect(),
         twist: frames.iter().map(|frame| frame.twist).collect(),
         pusher: frames.iter().map(|frame| frame.pusher).collect(),
-        pusher_force: frames.iter().map(|frame| length(frame.pusher_force)).collect(),
-        fixel_forces: (0..fixels).map(|j| frames.iter().map(|frame| frame.fixel_forces[j]).collect()).collect(),
+        pusher_force: frames
+            .iter()
+            .map(|frame| length(frame.pusher_force))
+            .collect(),
+        fixel_forces: (0..fixels)
+            .map(|j| frames.iter().map(|frame| frame.fixel_forces[j]).collect())
+            .collect(),
     }
 }
 
@@ -122,19 +167,38 @@ fn length([x, y]: [f64; 2]) -> f64 {
 }
 
 fn facts(trace: &Trace, known: &TruthFacts, options: &Options) -> TruthFacts {
-    let Friction { mu_s, mu_p, mu_f, d_tri } = trace.friction;
-    let fixels = trace.frames.first().map_or(0, |frame| frame.fixel_forces.len());
+    let Friction {
+        mu_s,
+        mu_p,
+        mu_f,
+        d_tri,
+    } = trace.friction;
+    let fixels = trace
+        .frames
+        .first()
+        .map_or(0, |frame| frame.fixel_forces.len());
     let lead = (BLACKOUT_LEAD * options.rate).round() as usize;
-    let before_contact = trace.first_fixel_contact().map(|row| row.saturating_sub(lead));
+    let before_contact = trace
+        .first_fixel_contact()
+        .map(|row| row.saturating_sub(lead));
     TruthFacts {
-        source: Some(format!("stickslip simulate, {}, seed {}", options.physics.name(), options.seed)),
+        source: Some(format!(
+            "stickslip simulate, {}, seed {}",
+            options.physics.name(),
+            options.seed
+        )),
         mu_s: Some(mu_s),
         mu_p: Some(mu_p),
         mu_f: Some(mu_f),
         d_tri: Some(d_tri),
         first_pusher_contact: trace.first_contact(Body::Pusher),
-        first_fixel_contacts: (0..fixels).map(|j| trace.first_contact(Body::Fixel(j))).collect(),
-        occlude_from: known.occlude_from.filter(|row| *row < trace.frames.len()).or(before_contact),
+        first_fixel_contacts: (0..fixels)
+            .map(|j| trace.first_contact(Body::Fixel(j)))
+            .collect(),
+        occlude_from: known
+            .occlude_from
+            .filter(|row| *row < trace.frames.len())
+            .or(before_contact),
         final_pose: None,
     }
 }

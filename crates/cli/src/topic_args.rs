@@ -9,8 +9,8 @@ use crate::args::Program;
 /// Which topic of an MCAP log is which.
 #[derive(Debug, Args)]
 pub struct TopicArgs {
-    /// Read KEY from TOPIC of an MCAP log, as object=/vicon/box/pose; keys are object, pusher, wrench (without TOPIC: no forces) and
-    /// fixel_1, fixel_2, ...; may be repeated
+    /// Read KEY from TOPIC of an MCAP log, as object=/vicon/box/pose; keys are object, pusher,
+    /// wrench (without TOPIC: no forces) and fixel_1, fixel_2, ...; may be repeated
     #[arg(long = "topic", value_name = "KEY=TOPIC")]
     mappings: Vec<TopicMapping>,
 }
@@ -18,7 +18,9 @@ pub struct TopicArgs {
 impl TopicArgs {
     /// All topics; mappings that contradict each other are bad arguments.
     pub fn topics(&self) -> anyhow::Result<Topics> {
-        let contradicting = |error| Program::command().error(ErrorKind::ArgumentConflict, format!("--topic: {error}"));
+        let contradicting = |error| {
+            Program::command().error(ErrorKind::ArgumentConflict, format!("--topic: {error}"))
+        };
         Ok(Topics::new(self.mappings.iter().cloned()).map_err(contradicting)?)
     }
 }

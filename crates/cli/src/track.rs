@@ -10,7 +10,8 @@ use stickslip::{Log, quantile};
 use stickslip_formats::{McapWriteError, Topics, write_log, write_log_mcap};
 use stickslip_report::{Table, number};
 use stickslip_vision::{
-    BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera, read_tags, write_poses,
+    BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera,
+    read_tags, write_poses,
 };
 
 use crate::camera_args::TrackArgs;
@@ -49,19 +50,43 @@ struct Summary {
 
 /// Runs the command.
 pub fn track(args: &TrackArgs) -> Result<Verdict> {
-    let camera = read_camera(&text_of(&args.calibration, "calibration")?, &args.calibration.display().to_string())?;
-    let tags = read_tags(&text_of(&args.tags, "tags file")?, &args.tags.display().to_string())?;
+    let camera = read_camera(
+        &text_of(&args.calibration, "calibration")?,
+        &args.calibration.display().to_string(),
+    )?;
+    let tags = read_tags(
+        &text_of(&args.tags, "tags file")?,
+        &args.tags.display().to_string(),
+    )?;
     let folder = FrameFolder::list(&args.frames)?;
     let time = times(args, &folder)?;
     let found = found(args, &folder, &camera, &tags)?;
-    let (log, verdict) = with_sensors(args, Log { object: found.object(), pusher: found.pusher(), time, ..Log::default() })?;
+    let (log, verdict) = with_sensors(
+        args,
+        Log {
+            object: found.object(),
+            pusher: found.pusher(),
+            time,
+            ..Log::default()
+        },
+    )?;
     write(&args.out, &log, &found)?;
     let summary = Summary::new(&found);
-    show(if args.json { serde_json::to_string_pretty(&summary)? } else { summary.text() })?;
-    for (body, seen, given) in [("object", &summary.object, tags.object), ("pusher", &summary.pusher, tags.pusher)] {
+    show(if args.json {
+        serde_json::to_string_pretty(&summary)?
+    } else {
+        summary.text()
+    })?;
+    for (body, seen, given) in [
+        ("object", &summary.object, tags.object),
+        ("pusher", &summary.pusher, tags.pusher),
+    ] {
         warn_of_size(body, seen, given);
     }
-    talk(format_args!("wrote {}, log.mcap and poses.csv", args.out.join("log.csv").display()));
+    talk(format_args!(
+        "wrote {}, log.mcap and poses.csv",
+        args.out.join("log.csv").display()
+    ));
     Ok(verdict)
 }
 
@@ -69,13 +94,21 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
 fn times(args: &TrackArgs, folder: &FrameFolder) -> Result<Vec<f64>> {
     match (&folder.time, args.rate) {
         (Some(_), Some(rate)) => Err(hinted(
-            format!("{}: frames.csv gives times, and --rate {rate} others", args.frames.display()),
+            format!(
+                "{}: frames.csv gives times, and --rate {rate} others",
+                args.frames.display()
+            ),
             "leave --rate out, or move frames.csv away",
         )),
         (Some(time), None) => Ok(time.clone()),
-        (None, Some(rate)) => Ok((0..folder.names.len()).map(|index| index as f64 / rate).collect()),
+        (None, Some(rate)) => Ok((0..folder.names.len())
+            .map(|index| index as f64 / rate)
+            .collect()),
         (None, None) => Err(hinted(
-            format!("{}: there is no frames.csv, so the frames have no times", args.frames.display()),
+            format!(
+                "{}: there is no frames.csv, so the frames have no times",
+                args.frames.display()
+            ),
             "write frames.csv (time,file), or give the frames per second with --rate",
         )),
     }
@@ -84,29 +117,56 @@ fn times(args: &TrackArgs, folder: &FrameFolder) -> Result<Vec<f64>> {
 /// What the frames show, on as many threads as asked for.
 fn found(args: &TrackArgs, folder: &FrameFolder, camera: &Camera, tags: &Tags) -> Result<Track> {
     let progress = bar(folder.names.len(), "frames", Work::Long);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.map_or(0, usize::from))
+        .build()?;
     let load = |index: usize| {
         progress.inc(1);
         folder.load(index)
     };
     let track = pool.install(|| stickslip_vision::track(folder.names.len(), load, camera, tags));
     progress.finish_and_clear();
-    track.map_err(|error| if error.is::<TrackError>() { error.context(args.frames.display().to_string()) } else { error })
+    track.map_err(|error| {
+        if error.is::<TrackError>() {
+            error.context(args.frames.display().to_string())
+        } else {
+            error
+        }
+    })
 }
 
-/// The log with the readings of another one at the same times, and whether all of that could be read.
+/// The log with the readings of another one at the same times, and whether all of that could be
+/// read.
 fn with_sensors(args: &TrackArgs, log: Log) -> Result<(Log, Verdict)> {
-    let Some(path) = &args.sensors else { return Ok((log, Verdict::Done)) };
+    let Some(path) = &args.sensors else {
+        return Ok((log, Verdict::Done));
+    };
     let (sensors, verdict) = read_log_file(path, &Topics::default())?;
-    let differ = || (0..log.len().max(sensors.len())).find(|row| differs(log.time.get(*row), sensors.time.get(*row)));
+    let differ = || {
+        (0..log.len().max(sensors.len()))
+            .find(|row| differs(log.time.get(*row), sensors.time.get(*row)))
+    };
     if let Some(row) = differ() {
-        let shown = |time: Option<&f64>| time.map_or("nothing".to_owned(), |time| format!("{time} s"));
+        let shown =
+            |time: Option<&f64>| time.map_or("nothing".to_owned(), |time| format!("{time} s"));
         return Err(hinted(
-            format!("{}: row {row} is at {}, frame {row} at {}", path.display(), shown(sensors.time.get(row)), shown(log.time.get(row))),
+            format!(
+                "{}: row {row} is at {}, frame {row} at {}",
+                path.display(),
+                shown(sensors.time.get(row)),
+                shown(log.time.get(row))
+            ),
             "give a log with one row for each frame, at its time",
         ));
     }
-    Ok((Log { tactile: sensors.tactile, force: sensors.force, ..log }, verdict))
+    Ok((
+        Log {
+            tactile: sensors.tactile,
+            force: sensors.force,
+            ..log
+        },
+        verdict,
+    ))
 }
 
 fn differs(a: Option<&f64>, b: Option<&f64>) -> bool {
@@ -128,9 +188,10 @@ fn write(folder: &Path, log: &Log, track: &Track) -> Result<()> {
         Ok(fs::write(folder.join("log.mcap"), bytes.into_inner())?)
     };
     write().map_err(|error| match error {
-        McapWriteError::Output(error) => {
-            hinted(format!("{}: cannot be written: {error}", folder.display()), "give a folder that can be written to with --out")
-        }
+        McapWriteError::Output(error) => hinted(
+            format!("{}: cannot be written: {error}", folder.display()),
+            "give a folder that can be written to with --out",
+        ),
         error => hinted(
             format!("{}: {error}", folder.join("log.mcap").display()),
             "log.csv and poses.csv are written; log.mcap needs other times in frames.csv",
@@ -139,7 +200,12 @@ fn write(folder: &Path, log: &Log, track: &Track) -> Result<()> {
 }
 
 fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {
-    let Some(size) = seen.median_tag_size_m.filter(|size| (size / given.place.size - 1.0).abs() > SIZE_OFF) else { return };
+    let Some(size) = seen
+        .median_tag_size_m
+        .filter(|size| (size / given.place.size - 1.0).abs() > SIZE_OFF)
+    else {
+        return;
+    };
     talk(format_args!(
         "warning: the {body}'s tag is seen {:.1} mm large at the height {} m, {body}.size says {:.1} mm; measure the edge of its black square, and the height",
         1e3 * size,
@@ -150,8 +216,22 @@ fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {
 
 impl BodySummary {
     fn new(track: &Track, body: impl Fn(&FrameSighting) -> Sighting) -> Self {
-        let seen: Vec<Sighting> = track.frames.iter().filter(|frame| !frame.repeated).map(body).collect();
-        let measured: Vec<&Measurement> = seen.iter().filter_map(|s| if let Sighting::Measured(m) = s { Some(m) } else { None }).collect();
+        let seen: Vec<Sighting> = track
+            .frames
+            .iter()
+            .filter(|frame| !frame.repeated)
+            .map(body)
+            .collect();
+        let measured: Vec<&Measurement> = seen
+            .iter()
+            .filter_map(|s| {
+                if let Sighting::Measured(m) = s {
+                    Some(m)
+                } else {
+                    None
+                }
+            })
+            .collect();
         let median = |of: &dyn Fn(&Measurement) -> f64| {
             let numbers: Vec<f64> = measured.iter().map(|m| of(m)).collect();
             quantile(&numbers, 0.5)
@@ -162,7 +242,9 @@ impl BodySummary {
             missing: count(Sighting::Missing),
             distorted: count(Sighting::Distorted),
             twice: count(Sighting::Twice),
-            median_position_std_mm: median(&|m| 1e3 * ((m.covariance[(0, 0)] + m.covariance[(1, 1)]) / 2.0).sqrt()),
+            median_position_std_mm: median(&|m| {
+                1e3 * ((m.covariance[(0, 0)] + m.covariance[(1, 1)]) / 2.0).sqrt()
+            }),
             median_orientation_std_deg: median(&|m| m.std()[2].to_degrees()),
             median_tag_size_m: median(&|m| m.size),
         }
@@ -180,12 +262,27 @@ impl Summary {
     }
 
     fn text(&self) -> String {
-        let mut table = Table::new(["body", "measured", "missing", "distorted", "twice", "std mm", "std deg"]);
+        let mut table = Table::new([
+            "body",
+            "measured",
+            "missing",
+            "distorted",
+            "twice",
+            "std mm",
+            "std deg",
+        ]);
         for (name, body) in [("object", &self.object), ("pusher", &self.pusher)] {
-            let counts = [body.measured, body.missing, body.distorted, body.twice].map(|count| count.to_string());
-            let stds = [number(body.median_position_std_mm, 4), number(body.median_orientation_std_deg, 4)];
+            let counts = [body.measured, body.missing, body.distorted, body.twice]
+                .map(|count| count.to_string());
+            let stds = [
+                number(body.median_position_std_mm, 4),
+                number(body.median_orientation_std_deg, 4),
+            ];
             table.push([name.to_owned()].into_iter().chain(counts).chain(stds));
         }
-        format!("{} frames, {} of them repeated\n\n{table}", self.frames, self.repeated)
+        format!(
+            "{} frames, {} of them repeated\n\n{table}",
+            self.frames, self.repeated
+        )
     }
 }

@@ -1,4 +1,5 @@
-//! The six scenes of the paper's evaluation tell the stories that docs/decisions/002-paper-scenes.md asks for.
+//! The six scenes of the paper's evaluation tell the stories that
+//! docs/decisions/002-paper-scenes.md asks for.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -23,8 +24,24 @@ struct Course {
 impl Course {
     fn of(name: &str, seed: u64) -> Self {
         let out = empty_folder(&format!("paper_scenes/{name}-{seed}"));
-        let run = stickslip().args(["simulate", "--paper", name, "--seed", &seed.to_string(), "--out"]).arg(&out).output().unwrap();
-        assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+        let run = stickslip()
+            .args([
+                "simulate",
+                "--paper",
+                name,
+                "--seed",
+                &seed.to_string(),
+                "--out",
+            ])
+            .arg(&out)
+            .output()
+            .unwrap();
+        assert_eq!(
+            run.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
         Self::read(&out)
     }
 
@@ -32,15 +49,31 @@ impl Course {
         let text = fs::read_to_string(folder.join("truth.csv")).unwrap();
         let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
         let place = |name: &str| names.iter().position(|n| *n == name).unwrap();
-        let row = |line: &str| line.split(',').map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<f64>>();
+        let row = |line: &str| {
+            line.split(',')
+                .map(|cell| cell.parse::<f64>().unwrap())
+                .collect::<Vec<f64>>()
+        };
         let rows: Vec<Vec<f64>> = text.lines().skip(1).map(row).collect();
-        let facts: serde_json::Value = serde_json::from_str(&fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap();
+        let facts: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap();
         let index = |value: &serde_json::Value| value.as_u64().map(|row| row as usize);
         Self {
-            pose: rows.iter().map(|r| [1e3 * r[place("x")], 1e3 * r[place("y")], r[place("theta")]]).collect(),
-            force: rows.iter().map(|r| (1..=3).map(|k| r[place(&format!("force_{k}"))]).collect()).collect(),
+            pose: rows
+                .iter()
+                .map(|r| [1e3 * r[place("x")], 1e3 * r[place("y")], r[place("theta")]])
+                .collect(),
+            force: rows
+                .iter()
+                .map(|r| (1..=3).map(|k| r[place(&format!("force_{k}"))]).collect())
+                .collect(),
             thumb: index(&facts["first_pusher_contact"]).unwrap(),
-            fixels: facts["first_fixel_contacts"].as_array().unwrap().iter().map(index).collect(),
+            fixels: facts["first_fixel_contacts"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(index)
+                .collect(),
             dark: index(&facts["occlude_from"]).unwrap(),
         }
     }
@@ -52,15 +85,23 @@ impl Course {
 
     /// Only the first fixel is met, and the object stops there.
     fn stops(&self) {
-        let [Some(first), None, None] = self.fixels[..] else { panic!("one fixel: {:?}", self.fixels) };
-        assert!((first + 15..300).all(|row| self.way(row, row + 1) < 0.1) && self.way(first + 15, 300) < 0.5);
+        let [Some(first), None, None] = self.fixels[..] else {
+            panic!("one fixel: {:?}", self.fixels)
+        };
+        assert!(
+            (first + 15..300).all(|row| self.way(row, row + 1) < 0.1)
+                && self.way(first + 15, 300) < 0.5
+        );
         assert!((first + 1..=300).all(|row| self.force[row][0] > 1.0));
     }
 
     /// Only the first fixel is met, and the object moves while it touches.
     fn slides(&self) {
-        let [Some(first), None, None] = self.fixels[..] else { panic!("one fixel: {:?}", self.fixels) };
-        let touching = (first..300).filter(|row| self.force[*row][0] > 0.0 && self.force[row + 1][0] > 0.0);
+        let [Some(first), None, None] = self.fixels[..] else {
+            panic!("one fixel: {:?}", self.fixels)
+        };
+        let touching =
+            (first..300).filter(|row| self.force[*row][0] > 0.0 && self.force[row + 1][0] > 0.0);
         let way: f64 = touching.map(|row| self.way(row, row + 1)).sum();
         assert!(way > 5.0, "{way}");
         assert_eq!(self.dark, first - 5);
@@ -69,7 +110,10 @@ impl Course {
 
 #[track_caller]
 fn assert_near(row: usize, expected: usize, within: usize) {
-    assert!(row.abs_diff(expected) <= within, "row {row} is not {expected}");
+    assert!(
+        row.abs_diff(expected) <= within,
+        "row {row} is not {expected}"
+    );
 }
 
 /// Seed 0 to the row; other seeds are other rigs.
@@ -85,7 +129,9 @@ fn check(name: &str, seed: u64) {
         }
         "B" => {
             assert_near(course.thumb, 130, within);
-            let [Some(first), Some(second), Some(third)] = course.fixels[..] else { panic!("three fixels: {:?}", course.fixels) };
+            let [Some(first), Some(second), Some(third)] = course.fixels[..] else {
+                panic!("three fixels: {:?}", course.fixels)
+            };
             assert_near(first, 257, within);
             assert_near(second.max(third), 270, within);
             assert!(course.way(first, second.max(third)) > 5.0 && course.way(285, 300) < 0.5);

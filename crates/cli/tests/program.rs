@@ -19,40 +19,116 @@ fn filter_prints_scores_and_writes_only_the_estimate() {
     fs::create_dir(&out).unwrap();
     fs::write(out.join("notes.txt"), "mine").unwrap();
     let run = stickslip()
-        .args(["filter", &case.log(), "--scene", &case.scene(), "--occlude", "153", "--out"])
+        .args([
+            "filter",
+            &case.log(),
+            "--scene",
+            &case.scene(),
+            "--occlude",
+            "153",
+            "--out",
+        ])
         .arg(&out)
         .args(FEW)
         .output()
         .unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
-    let (told, talk) = (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
-    for line in ["against the truth", "WMSE, hidden rows", "real-time factor", "mu_s", "d_tri"] {
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
+    let (told, talk) = (
+        String::from_utf8(run.stdout).unwrap(),
+        String::from_utf8(run.stderr).unwrap(),
+    );
+    for line in [
+        "against the truth",
+        "WMSE, hidden rows",
+        "real-time factor",
+        "mu_s",
+        "d_tri",
+    ] {
         assert!(told.contains(line), "{line} is missing in\n{told}");
     }
-    assert!(talk.contains("wrote") && talk.contains("estimate.csv"), "{talk}");
+    assert!(
+        talk.contains("wrote") && talk.contains("estimate.csv"),
+        "{talk}"
+    );
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
     let estimate = fs::read_to_string(out.join("estimate.csv")).unwrap();
-    assert_eq!(estimate.lines().count(), fs::read_to_string(case.log()).unwrap().lines().count());
+    assert_eq!(
+        estimate.lines().count(),
+        fs::read_to_string(case.log()).unwrap().lines().count()
+    );
 }
 
 #[test]
 fn filter_json_has_the_contract_s_keys() {
     let case = Experiment::copy(STOP, "filter_json");
-    let report = json(stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--method", "nominal", "--json"]));
-    for key in ["wmse_mm", "wmse_moving_mm", "final_error_mm", "final_error_deg", "frames", "unsolved", "real_time_factor"] {
+    let report = json(stickslip().args([
+        "filter",
+        &case.log(),
+        "--scene",
+        &case.scene(),
+        "--method",
+        "nominal",
+        "--json",
+    ]));
+    for key in [
+        "wmse_mm",
+        "wmse_moving_mm",
+        "final_error_mm",
+        "final_error_deg",
+        "frames",
+        "unsolved",
+        "real_time_factor",
+    ] {
         assert!(report[key].is_number(), "{key}: {report}");
     }
-    assert!(report["wmse_occluded_mm"].is_null(), "nothing is hidden: {report}");
-    let hidden = json(stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--occlude", "100:200", "--json"]).args(FEW));
-    assert!(hidden["wmse_occluded_mm"].is_number() && hidden["friction"]["mu_s"]["mean"].is_number(), "{hidden}");
+    assert!(
+        report["wmse_occluded_mm"].is_null(),
+        "nothing is hidden: {report}"
+    );
+    let hidden = json(
+        stickslip()
+            .args([
+                "filter",
+                &case.log(),
+                "--scene",
+                &case.scene(),
+                "--occlude",
+                "100:200",
+                "--json",
+            ])
+            .args(FEW),
+    );
+    assert!(
+        hidden["wmse_occluded_mm"].is_number() && hidden["friction"]["mu_s"]["mean"].is_number(),
+        "{hidden}"
+    );
 }
 
 #[test]
 fn filter_scores_against_the_log_where_there_is_no_truth() {
     let case = Experiment::copy(STOP, "filter_log_reference");
     fs::remove_file(case.folder.join("truth.csv")).unwrap();
-    let run = stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--method", "kalman"]).output().unwrap();
-    assert!(String::from_utf8(run.stdout).unwrap().contains("against the log's own poses"));
+    let run = stickslip()
+        .args([
+            "filter",
+            &case.log(),
+            "--scene",
+            &case.scene(),
+            "--method",
+            "kalman",
+        ])
+        .output()
+        .unwrap();
+    assert!(
+        String::from_utf8(run.stdout)
+            .unwrap()
+            .contains("against the log's own poses")
+    );
 }
 
 #[test]
@@ -61,7 +137,17 @@ fn filter_gives_the_same_estimate_on_any_number_of_threads() {
     let estimate = |threads: &str| {
         let out = case.folder.join(threads);
         let run = stickslip()
-            .args(["filter", &case.log(), "--scene", &case.scene(), "--threads", threads, "--particles", "300", "--out"])
+            .args([
+                "filter",
+                &case.log(),
+                "--scene",
+                &case.scene(),
+                "--threads",
+                threads,
+                "--particles",
+                "300",
+                "--out",
+            ])
             .arg(&out)
             .output();
         assert_eq!(run.unwrap().status.code(), Some(0));
@@ -80,40 +166,92 @@ fn bad_arguments_exit_with_2() {
         &["filter", &log, "--scene", &scene, "--method", "magic"],
         &["filter", &log, "--scene", &scene, "--occlude", "9:3"],
         &["filter", &log, "--scene", &scene, "--particles", "0"],
-        &["filter", &log, "--scene", &scene, "--occlude", "3", "--occlude-middle", "1"],
+        &[
+            "filter",
+            &log,
+            "--scene",
+            &scene,
+            "--occlude",
+            "3",
+            "--occlude-middle",
+            "1",
+        ],
         &["compare"],
     ];
     for arguments in bad {
-        assert_eq!(stickslip().args(arguments).output().unwrap().status.code(), Some(2), "{arguments:?}");
+        assert_eq!(
+            stickslip().args(arguments).output().unwrap().status.code(),
+            Some(2),
+            "{arguments:?}"
+        );
     }
-    let contact = stickslip().args(["filter", &log, "--scene", &scene, "--mode", "contact"]).output().unwrap();
+    let contact = stickslip()
+        .args(["filter", &log, "--scene", &scene, "--mode", "contact"])
+        .output()
+        .unwrap();
     assert_eq!(contact.status.code(), Some(2));
-    assert!(String::from_utf8(contact.stderr).unwrap().contains("does not exist yet"));
+    assert!(
+        String::from_utf8(contact.stderr)
+            .unwrap()
+            .contains("does not exist yet")
+    );
 }
 
 #[test]
 fn broken_files_are_named_with_line_and_column() {
     let case = Experiment::copy(STOP, "broken_files");
-    let filter = || stickslip().args(["filter", &case.log(), "--scene", &case.scene(), "--method", "nominal"]).output().unwrap();
+    let filter = || {
+        stickslip()
+            .args([
+                "filter",
+                &case.log(),
+                "--scene",
+                &case.scene(),
+                "--method",
+                "nominal",
+            ])
+            .output()
+            .unwrap()
+    };
     case.edit("scene.toml", |text| text.replace("mass = ", "mas = "));
     let run = filter();
     let talk = String::from_utf8(run.stderr).unwrap();
-    assert_eq!((run.status.code(), talk.lines().count()), (Some(1), 1), "{talk}");
-    assert!(talk.starts_with("error: ") && talk.contains("scene.toml:5:1: `object.mas` is not a known key"), "{talk}");
+    assert_eq!(
+        (run.status.code(), talk.lines().count()),
+        (Some(1), 1),
+        "{talk}"
+    );
+    assert!(
+        talk.starts_with("error: ")
+            && talk.contains("scene.toml:5:1: `object.mas` is not a known key"),
+        "{talk}"
+    );
     case.edit("scene.toml", |text| text.replace("mas = ", "mass = "));
-    case.edit("log.csv", |text| text.replacen("0.033333,", "0.033333,x", 1));
+    case.edit("log.csv", |text| {
+        text.replacen("0.033333,", "0.033333,x", 1)
+    });
     let talk = String::from_utf8(filter().stderr).unwrap();
-    assert!(talk.contains("log.csv:3: column 2 (object_x): `x"), "{talk}");
+    assert!(
+        talk.contains("log.csv:3: column 2 (object_x): `x"),
+        "{talk}"
+    );
 }
 
-/// What the command does where nobody reads its results; `Silent` also where nobody reads its errors.
+/// What the command does where nobody reads its results; `Silent` also where nobody reads its
+/// errors.
 fn unread(command: &mut Command, errors: Errors) -> Output {
     let closed = || {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         Stdio::from(writer)
     };
-    command.stdout(closed()).stderr(if errors == Errors::Unread { closed() } else { Stdio::piped() });
+    command
+        .stdout(closed())
+        .stderr(if errors == Errors::Unread {
+            closed()
+        } else {
+            Stdio::piped()
+        });
     command.spawn().unwrap().wait_with_output().unwrap()
 }
 
@@ -133,11 +271,28 @@ fn readers_that_leave_early_do_not_bring_a_command_down() {
     let parent = good.folder.parent().unwrap().display().to_string();
     let figures = good.folder.join("figures");
     let commands: [(&[&str], i32); 8] = [
-        (&["demo", "--particles", "16", "--out", figures.to_str().unwrap()], 0),
+        (
+            &[
+                "demo",
+                "--particles",
+                "16",
+                "--out",
+                figures.to_str().unwrap(),
+            ],
+            0,
+        ),
         (&["check", &scene, &log], 0),
         (&["check", &scene, &log, "--json"], 0),
-        (&["filter", &log, "--scene", &scene, "--method", "nominal"], 0),
-        (&["filter", &log, "--scene", &scene, "--method", "nominal", "--json"], 0),
+        (
+            &["filter", &log, "--scene", &scene, "--method", "nominal"],
+            0,
+        ),
+        (
+            &[
+                "filter", &log, "--scene", &scene, "--method", "nominal", "--json",
+            ],
+            0,
+        ),
         (&["compare", &parent, "--particles", "16"], 3),
         (&["--help"], 0),
         (&["filter", "no-such-log.csv", "--scene", &scene], 1),
@@ -145,10 +300,23 @@ fn readers_that_leave_early_do_not_bring_a_command_down() {
     for (arguments, code) in commands {
         let run = unread(stickslip().args(arguments), Errors::Read);
         let talk = String::from_utf8(run.stderr).unwrap();
-        assert_eq!((run.status.code(), talk.contains("panicked")), (Some(code), false), "{arguments:?}: {talk}");
-        assert_eq!(unread(stickslip().args(arguments), Errors::Unread).status.code(), Some(code), "{arguments:?}");
+        assert_eq!(
+            (run.status.code(), talk.contains("panicked")),
+            (Some(code), false),
+            "{arguments:?}: {talk}"
+        );
+        assert_eq!(
+            unread(stickslip().args(arguments), Errors::Unread)
+                .status
+                .code(),
+            Some(code),
+            "{arguments:?}"
+        );
     }
-    assert!(figures.join("report.html").exists(), "files are written all the same");
+    assert!(
+        figures.join("report.html").exists(),
+        "files are written all the same"
+    );
 }
 
 /// A full disk is a failure, other than a reader that has left.
@@ -156,19 +324,35 @@ fn readers_that_leave_early_do_not_bring_a_command_down() {
 #[cfg(target_os = "linux")]
 fn results_that_cannot_be_written_are_an_error() {
     let case = Experiment::copy(STOP, "full_disk");
-    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let run = stickslip().args(["check", &case.scene(), &case.log()]).stdout(full).output().unwrap();
+    let full = fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let run = stickslip()
+        .args(["check", &case.scene(), &case.log()])
+        .stdout(full)
+        .output()
+        .unwrap();
     let talk = String::from_utf8(run.stderr).unwrap();
     assert_eq!(run.status.code(), Some(1), "{talk}");
-    assert!(talk.starts_with("error: standard output cannot be written: ") && talk.contains("\nhelp: "), "{talk}");
+    assert!(
+        talk.starts_with("error: standard output cannot be written: ") && talk.contains("\nhelp: "),
+        "{talk}"
+    );
 }
 
 #[test]
 fn missing_files_come_with_the_next_step() {
-    let run = stickslip().args(["filter", "no-such-log.csv", "--scene", "no-such-scene.toml"]).output().unwrap();
+    let run = stickslip()
+        .args(["filter", "no-such-log.csv", "--scene", "no-such-scene.toml"])
+        .output()
+        .unwrap();
     let talk = String::from_utf8(run.stderr).unwrap();
     assert_eq!((run.status.code(), run.stdout.len()), (Some(1), 0));
-    assert!(talk.contains("no-such-scene.toml") && talk.contains("\nhelp: "), "{talk}");
+    assert!(
+        talk.contains("no-such-scene.toml") && talk.contains("\nhelp: "),
+        "{talk}"
+    );
 }
 
 #[test]
@@ -178,22 +362,56 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
     broken.edit("log.csv", |_| "time\n".to_owned());
     // the parent folder stands for both
     let parent = good.folder.parent().unwrap();
-    let run = stickslip().arg("compare").arg(parent).args(["--json", "--seeds", "2"]).args(FEW).output().unwrap();
+    let run = stickslip()
+        .arg("compare")
+        .arg(parent)
+        .args(["--json", "--seeds", "2"])
+        .args(FEW)
+        .output()
+        .unwrap();
     assert_eq!(run.status.code(), Some(3));
-    assert!(String::from_utf8(run.stderr).unwrap().contains("broken/log.csv:1"));
+    assert!(
+        String::from_utf8(run.stderr)
+            .unwrap()
+            .contains("broken/log.csv:1")
+    );
     let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
-    let methods: Vec<&str> = report["folders"][0]["methods"].as_array().unwrap().iter().map(|m| m["method"].as_str().unwrap()).collect();
-    assert_eq!(methods, ["nominal", "kalman", "particle_no_tactile", "particle", "particle_always_on"]);
+    let methods: Vec<&str> = report["folders"][0]["methods"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| m["method"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        methods,
+        [
+            "nominal",
+            "kalman",
+            "particle_no_tactile",
+            "particle",
+            "particle_always_on"
+        ]
+    );
     assert_eq!(report["errors"].as_array().unwrap().len(), 1);
     let overall = &report["overall"][0];
-    assert_eq!(overall["median"]["wmse_mm"], report["folders"][0]["methods"][0]["wmse_mm"]);
+    assert_eq!(
+        overall["median"]["wmse_mm"],
+        report["folders"][0]["methods"][0]["wmse_mm"]
+    );
 }
 
 #[test]
 fn compare_does_not_depend_on_threads() {
     let case = Experiment::copy(STOP, "compare_threads");
     let run = |threads: &str| {
-        stickslip().arg("compare").arg(&case.folder).args(["--threads", threads, "--json"]).args(FEW).output().unwrap().stdout
+        stickslip()
+            .arg("compare")
+            .arg(&case.folder)
+            .args(["--threads", threads, "--json"])
+            .args(FEW)
+            .output()
+            .unwrap()
+            .stdout
     };
     let one = run("1");
     assert!(!one.is_empty() && one == run("3"));
@@ -201,22 +419,48 @@ fn compare_does_not_depend_on_threads() {
 
 #[test]
 fn compare_of_nothing_but_broken_folders_fails() {
-    let run = stickslip().args(["compare", "no-such-folder"]).output().unwrap();
+    let run = stickslip()
+        .args(["compare", "no-such-folder"])
+        .output()
+        .unwrap();
     assert_eq!(run.status.code(), Some(1));
-    assert!(String::from_utf8(run.stderr).unwrap().contains("no-such-folder"));
+    assert!(
+        String::from_utf8(run.stderr)
+            .unwrap()
+            .contains("no-such-folder")
+    );
 }
 
 #[test]
 fn demo_prints_tables_and_writes_a_report_and_figures() {
     let folder = common::empty_folder("demo");
-    let run = stickslip().arg("demo").args(FEW).current_dir(&folder).output().unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let run = stickslip()
+        .arg("demo")
+        .args(FEW)
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
     let told = String::from_utf8(run.stdout).unwrap();
-    let lines = ["particle filter without touch", "particle filter, camera on", "Kalman filter", "truth", "stickslip-demo/report.html"];
+    let lines = [
+        "particle filter without touch",
+        "particle filter, camera on",
+        "Kalman filter",
+        "truth",
+        "stickslip-demo/report.html",
+    ];
     for line in lines {
         assert!(told.contains(line), "{line} is missing in\n{told}");
     }
-    let file = |name: &str| fs::read(folder.join("stickslip-demo").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let file = |name: &str| {
+        fs::read(folder.join("stickslip-demo").join(name))
+            .unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
     for experiment in ["stop-square50-bar-000", "slide-ell-disc-110"] {
         for figure in ["errors", "poses", "contacts", "friction", "cloud"] {
             assert!(file(&format!("{experiment}-{figure}.svg")).starts_with(b"<svg"));
@@ -224,28 +468,69 @@ fn demo_prints_tables_and_writes_a_report_and_figures() {
         }
     }
     let errors = String::from_utf8(file("stop-square50-bar-000-errors.svg")).unwrap();
-    assert!(errors.contains("position error (mm)") && errors.contains("fixel 1") && errors.contains("camera dark"));
+    assert!(
+        errors.contains("position error (mm)")
+            && errors.contains("fixel 1")
+            && errors.contains("camera dark")
+    );
     let report = String::from_utf8(file("report.html")).unwrap();
-    assert_eq!(report.matches("<section class=\"player\" tabindex").count(), 2);
+    assert_eq!(
+        report.matches("<section class=\"player\" tabindex").count(),
+        2
+    );
 }
 
 #[test]
 fn filter_writes_a_report_and_the_same_estimate() {
     let case = Experiment::copy(STOP, "filter_report");
-    let (page, plain, watched) = (case.folder.join("new/report.html"), case.folder.join("plain"), case.folder.join("watched"));
+    let (page, plain, watched) = (
+        case.folder.join("new/report.html"),
+        case.folder.join("plain"),
+        case.folder.join("watched"),
+    );
     let filter = |out: &std::path::Path| {
         let mut command = stickslip();
-        command.args(["filter", &case.log(), "--scene", &case.scene(), "--occlude", "153", "--out"]).arg(out).args(FEW);
+        command
+            .args([
+                "filter",
+                &case.log(),
+                "--scene",
+                &case.scene(),
+                "--occlude",
+                "153",
+                "--out",
+            ])
+            .arg(out)
+            .args(FEW);
         command
     };
     assert_eq!(filter(&plain).output().unwrap().status.code(), Some(0));
-    let run = filter(&watched).arg("--report").arg(&page).output().unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let run = filter(&watched)
+        .arg("--report")
+        .arg(&page)
+        .output()
+        .unwrap();
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
     let estimate = |folder: &std::path::Path| fs::read(folder.join("estimate.csv")).unwrap();
-    assert!(estimate(&plain) == estimate(&watched), "a report changes no estimate");
+    assert!(
+        estimate(&plain) == estimate(&watched),
+        "a report changes no estimate"
+    );
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("class=\"player\"") && page.contains("At 5.1 s, 0.2 s before the object first touches a fixel"));
-    let unwritable = filter(&plain).arg("--report").arg(case.folder.join("log.csv/report.html")).output().unwrap();
+    assert!(
+        page.contains("class=\"player\"")
+            && page.contains("At 5.1 s, 0.2 s before the object first touches a fixel")
+    );
+    let unwritable = filter(&plain)
+        .arg("--report")
+        .arg(case.folder.join("log.csv/report.html"))
+        .output()
+        .unwrap();
     assert_eq!(unwritable.status.code(), Some(1));
 }
 
@@ -253,10 +538,27 @@ fn filter_writes_a_report_and_the_same_estimate() {
 fn compare_writes_a_report_of_all_folders() {
     let case = Experiment::copy(STOP, "compare_report");
     let page = case.folder.join("report.html");
-    let run = stickslip().arg("compare").arg(&case.folder).arg("--report").arg(&page).args(FEW).output().unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    let run = stickslip()
+        .arg("compare")
+        .arg(&case.folder)
+        .arg("--report")
+        .arg(&page)
+        .args(FEW)
+        .output()
+        .unwrap();
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
     let page = fs::read_to_string(page).unwrap();
-    for text in ["1 experiments", "All experiments", "compare_report", "particle, no tactile"] {
+    for text in [
+        "1 experiments",
+        "All experiments",
+        "compare_report",
+        "particle, no tactile",
+    ] {
         assert!(page.contains(text), "{text}");
     }
 }

@@ -1,4 +1,5 @@
-//! `stickslip reproduce`: the same bytes on any number of threads, its files, and arguments that it refuses.
+//! `stickslip reproduce`: the same bytes on any number of threads, its files, and arguments that it
+//! refuses.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -17,23 +18,50 @@ fn small(seeds: &str) -> std::process::Command {
 }
 
 fn names(rows: &Value, of: &str) -> Vec<String> {
-    rows.as_array().unwrap().iter().map(|row| row[of].as_str().unwrap().to_owned()).collect()
+    rows.as_array()
+        .unwrap()
+        .iter()
+        .map(|row| row[of].as_str().unwrap().to_owned())
+        .collect()
 }
 
 #[test]
 fn reproduce_gives_the_same_bytes_on_one_and_two_threads() {
-    let run = |threads: &str| small("2").args(["--json", "--threads", threads]).output().unwrap();
+    let run = |threads: &str| {
+        small("2")
+            .args(["--json", "--threads", threads])
+            .output()
+            .unwrap()
+    };
     let (one, two) = (run("1"), run("2"));
-    assert_eq!(one.status.code(), Some(0), "{}", String::from_utf8_lossy(&one.stderr));
+    assert_eq!(
+        one.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&one.stderr)
+    );
     assert!(one.stdout == two.stdout);
     let report: Value = serde_json::from_slice(&one.stdout).unwrap();
-    assert_eq!(names(&report["tables"], "name"), ["Table II", "Table III", "Table IV"]);
-    assert_eq!(names(&report["blackouts"], "experiment"), ["A", "B", "1", "2", "3", "4"]);
+    assert_eq!(
+        names(&report["tables"], "name"),
+        ["Table II", "Table III", "Table IV"]
+    );
+    assert_eq!(
+        names(&report["blackouts"], "experiment"),
+        ["A", "B", "1", "2", "3", "4"]
+    );
     // a row of five methods has ten pairs, and every band holds its median
     let row = &report["tables"][2]["rows"][0];
-    assert_eq!((row["cells"].as_array().unwrap().len(), row["orderings"].as_array().unwrap().len()), (5, 10));
+    assert_eq!(
+        (
+            row["cells"].as_array().unwrap().len(),
+            row["orderings"].as_array().unwrap().len()
+        ),
+        (5, 10)
+    );
     for cell in row["cells"].as_array().unwrap() {
-        let [low, median, high] = ["low", "median", "high"].map(|of| cell["wmse_mm"][of].as_f64().unwrap());
+        let [low, median, high] =
+            ["low", "median", "high"].map(|of| cell["wmse_mm"][of].as_f64().unwrap());
         assert!(0.0 < low && low <= median && median <= high, "{cell}");
     }
 }
@@ -42,27 +70,61 @@ fn reproduce_gives_the_same_bytes_on_one_and_two_threads() {
 fn reproduce_writes_figures_tables_and_report() {
     let out = empty_folder("reproduce/files");
     let report = json(small("1").arg("--json").arg("--out").arg(&out));
-    let written: Value = serde_json::from_str(&fs::read_to_string(out.join("reproduce.json")).unwrap()).unwrap();
+    let written: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("reproduce.json")).unwrap()).unwrap();
     assert_eq!(report, written);
     for number in 2..=7 {
-        assert!(fs::read_to_string(out.join(format!("fig{number}.svg"))).unwrap().starts_with("<svg"));
-        assert!(fs::read(out.join(format!("fig{number}.png"))).unwrap().starts_with(b"\x89PNG"));
+        assert!(
+            fs::read_to_string(out.join(format!("fig{number}.svg")))
+                .unwrap()
+                .starts_with("<svg")
+        );
+        assert!(
+            fs::read(out.join(format!("fig{number}.png")))
+                .unwrap()
+                .starts_with(b"\x89PNG")
+        );
     }
     let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(["Table II", "Table III", "Table IV", "Figure 7", "Experiment B"].iter().all(|title| page.contains(title)));
+    assert!(
+        [
+            "Table II",
+            "Table III",
+            "Table IV",
+            "Figure 7",
+            "Experiment B"
+        ]
+        .iter()
+        .all(|title| page.contains(title))
+    );
 }
 
 #[test]
 fn reproduce_refuses_arguments_out_of_range_before_it_runs() {
-    for bad in [["--seeds", "0"], ["--particles", "0"], ["--threads", "0"], ["--seeds", "many"]] {
+    for bad in [
+        ["--seeds", "0"],
+        ["--particles", "0"],
+        ["--threads", "0"],
+        ["--seeds", "many"],
+    ] {
         let run = stickslip().arg("reproduce").args(bad).output().unwrap();
         assert_eq!(run.status.code(), Some(2), "{bad:?}");
-        assert!(run.stdout.is_empty() && String::from_utf8_lossy(&run.stderr).contains(bad[0]), "{bad:?}");
+        assert!(
+            run.stdout.is_empty() && String::from_utf8_lossy(&run.stderr).contains(bad[0]),
+            "{bad:?}"
+        );
     }
     let file = empty_folder("reproduce/file").join("file");
     fs::write(&file, "").unwrap();
-    let run = stickslip().args(["reproduce", "--out"]).arg(&file).output().unwrap();
+    let run = stickslip()
+        .args(["reproduce", "--out"])
+        .arg(&file)
+        .output()
+        .unwrap();
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
     assert_eq!(run.status.code(), Some(1));
-    assert!(said.contains("file: cannot be made") && said.contains("help: give a folder"), "{said}");
+    assert!(
+        said.contains("file: cannot be made") && said.contains("help: give a folder"),
+        "{said}"
+    );
 }

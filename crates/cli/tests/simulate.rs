@@ -1,4 +1,5 @@
-//! `stickslip simulate`: files that the other commands read, the same bytes twice, truth from elsewhere, refusals.
+//! `stickslip simulate`: files that the other commands read, the same bytes twice, truth from
+//! elsewhere, refusals.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -33,7 +34,12 @@ fn folder(name: &str, scene: &str) -> PathBuf {
 
 fn simulate(folder: &Path, out: &str, options: &[&str]) -> Output {
     let mut command = stickslip();
-    command.arg("simulate").arg(folder.join("scene.toml")).arg("--out").arg(folder.join(out)).args(options);
+    command
+        .arg("simulate")
+        .arg(folder.join("scene.toml"))
+        .arg("--out")
+        .arg(folder.join(out))
+        .args(options);
     command.output().unwrap()
 }
 
@@ -43,7 +49,12 @@ fn facts(folder: &Path, out: &str) -> serde_json::Value {
 
 #[track_caller]
 fn assert_done(run: &Output) {
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
 }
 
 #[test]
@@ -53,20 +64,38 @@ fn simulated_experiments_are_read_by_filter_and_by_check() {
         let run = simulate(&folder, physics, &["--physics", physics]);
         assert_done(&run);
         let told = String::from_utf8(run.stdout).unwrap();
-        assert!(told.contains("121 rows, 4.0 s") && told.contains("fixel 1 touches") && told.contains("d_tri"), "{told}");
+        assert!(
+            told.contains("121 rows, 4.0 s")
+                && told.contains("fixel 1 touches")
+                && told.contains("d_tri"),
+            "{told}"
+        );
 
         let out = folder.join(physics);
         assert_eq!(fs::read_to_string(out.join("scene.toml")).unwrap(), SCENE);
         let (log, scene) = (out.join("log.csv"), out.join("scene.toml"));
-        let report = json(stickslip().arg("filter").arg(&log).arg("--scene").arg(&scene).args(["--method", "kalman", "--json"]));
+        let report = json(
+            stickslip()
+                .arg("filter")
+                .arg(&log)
+                .arg("--scene")
+                .arg(&scene)
+                .args(["--method", "kalman", "--json"]),
+        );
         assert_eq!(report["frames"], 121);
         let checked = json(stickslip().arg("check").arg(&scene).arg(&log).arg("--json"));
         assert_eq!(checked["problems"], 0, "{checked}");
 
         // it touches the pusher at once, and after 30 mm the first fixel
         let facts = facts(&folder, physics);
-        let (pusher, fixel) = (facts["first_pusher_contact"].as_u64().unwrap(), facts["first_fixel_contacts"][0].as_u64().unwrap());
-        assert!((8..=12).contains(&pusher) && (50..=65).contains(&fixel), "{facts}");
+        let (pusher, fixel) = (
+            facts["first_pusher_contact"].as_u64().unwrap(),
+            facts["first_fixel_contacts"][0].as_u64().unwrap(),
+        );
+        assert!(
+            (8..=12).contains(&pusher) && (50..=65).contains(&fixel),
+            "{facts}"
+        );
         assert!(facts["first_fixel_contacts"][1].is_null());
         assert_eq!(facts["occlude_from"].as_u64().unwrap(), fixel - 5);
     }
@@ -78,7 +107,10 @@ fn simulation_gives_the_same_bytes_for_the_same_seed_only() {
     for (out, seed) in [("a", "7"), ("b", "7"), ("c", "8")] {
         assert_done(&simulate(&folder, out, &["--seed", seed]));
     }
-    let bytes = |out: &str| ["log.csv", "truth.csv", "truth.json"].map(|file| fs::read(folder.join(out).join(file)).unwrap());
+    let bytes = |out: &str| {
+        ["log.csv", "truth.csv", "truth.json"]
+            .map(|file| fs::read(folder.join(out).join(file)).unwrap())
+    };
     assert!(bytes("a") == bytes("b"));
     assert!(bytes("a") != bytes("c"));
 }
@@ -86,18 +118,42 @@ fn simulation_gives_the_same_bytes_for_the_same_seed_only() {
 #[test]
 fn rate_and_truth_are_taken_where_they_are_given() {
     let folder = folder("simulate_truth", SCENE);
-    fs::write(folder.join("known.json"), r#"{ "mu_s": 0.2, "mu_f": 0.4, "d_tri": 0.015, "occlude_from": 17 }"#).unwrap();
+    fs::write(
+        folder.join("known.json"),
+        r#"{ "mu_s": 0.2, "mu_f": 0.4, "d_tri": 0.015, "occlude_from": 17 }"#,
+    )
+    .unwrap();
     let known = folder.join("known.json").display().to_string();
-    assert_done(&simulate(&folder, "given", &["--truth", &known, "--rate", "60", "--physics", "model"]));
+    assert_done(&simulate(
+        &folder,
+        "given",
+        &["--truth", &known, "--rate", "60", "--physics", "model"],
+    ));
     let given = facts(&folder, "given");
-    assert_eq!((given["mu_s"].as_f64(), given["mu_p"].as_f64(), given["d_tri"].as_f64()), (Some(0.2), Some(0.3), Some(0.015)));
+    assert_eq!(
+        (
+            given["mu_s"].as_f64(),
+            given["mu_p"].as_f64(),
+            given["d_tri"].as_f64()
+        ),
+        (Some(0.2), Some(0.3), Some(0.015))
+    );
     assert_eq!(given["occlude_from"], 17);
-    assert_eq!(fs::read_to_string(folder.join("given/log.csv")).unwrap().lines().count(), 1 + 241);
+    assert_eq!(
+        fs::read_to_string(folder.join("given/log.csv"))
+            .unwrap()
+            .lines()
+            .count(),
+        1 + 241
+    );
 
     assert_done(&simulate(&folder, "drawn", &["--friction-error", "0.4"]));
     let drawn = facts(&folder, "drawn");
     let miss = |key: &str, nominal: f64| (drawn[key].as_f64().unwrap() / nominal - 1.0).abs();
-    assert!(miss("mu_p", 0.3) < 0.4 && miss("mu_f", 0.25) < 0.4 && miss("mu_p", 0.3) > 1e-3, "{drawn}");
+    assert!(
+        miss("mu_p", 0.3) < 0.4 && miss("mu_f", 0.25) < 0.4 && miss("mu_p", 0.3) > 1e-3,
+        "{drawn}"
+    );
 }
 
 #[test]
@@ -106,7 +162,10 @@ fn camera_that_the_scene_has_not_measures_exactly() {
     assert_done(&simulate(&folder, "out", &[]));
     let column = |file: &str, k: usize| -> Vec<String> {
         let text = fs::read_to_string(folder.join("out").join(file)).unwrap();
-        text.lines().skip(1).map(|line| line.split(',').nth(k).unwrap().to_owned()).collect()
+        text.lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(k).unwrap().to_owned())
+            .collect()
     };
     assert_eq!(column("log.csv", 1), column("truth.csv", 1));
     assert_eq!(column("log.csv", 4), column("truth.csv", 7));
@@ -121,25 +180,72 @@ fn what_cannot_be_simulated_is_refused_with_the_next_step() {
         assert!(words.iter().all(|word| talk.contains(word)), "{talk}");
     };
     let (head, _) = SCENE.split_once("[start]").unwrap();
-    refused("simulate_no_start", head, &[], 1, &["scene.toml", "no table [start]", "help: ", "duration"]);
-    refused("simulate_overlap", &SCENE.replace("-0.035", "-0.028"), &[], 1, &["scene.toml", "overlaps the pusher by 2.000 mm", "[start]"]);
-    refused("simulate_rate", SCENE, &["--rate", "0"], 2, &["--rate", "positive"]);
-    refused("simulate_fast", SCENE, &["--rate", "100000"], 1, &["camera rate", "1000 Hz"]);
-    refused("simulate_share", SCENE, &["--friction-error", "40"], 2, &["--friction-error", "from 0 to 1"]);
+    refused(
+        "simulate_no_start",
+        head,
+        &[],
+        1,
+        &["scene.toml", "no table [start]", "help: ", "duration"],
+    );
+    refused(
+        "simulate_overlap",
+        &SCENE.replace("-0.035", "-0.028"),
+        &[],
+        1,
+        &["scene.toml", "overlaps the pusher by 2.000 mm", "[start]"],
+    );
+    refused(
+        "simulate_rate",
+        SCENE,
+        &["--rate", "0"],
+        2,
+        &["--rate", "positive"],
+    );
+    refused(
+        "simulate_fast",
+        SCENE,
+        &["--rate", "100000"],
+        1,
+        &["camera rate", "1000 Hz"],
+    );
+    refused(
+        "simulate_share",
+        SCENE,
+        &["--friction-error", "40"],
+        2,
+        &["--friction-error", "from 0 to 1"],
+    );
 }
 
 #[test]
 fn scene_or_paper_experiment_is_needed_and_not_both() {
     let folder = folder("simulate_paper", SCENE);
-    let run = |arguments: &[&str]| stickslip().arg("simulate").args(arguments).arg("--out").arg(folder.join("out")).output().unwrap();
+    let run = |arguments: &[&str]| {
+        stickslip()
+            .arg("simulate")
+            .args(arguments)
+            .arg("--out")
+            .arg(folder.join("out"))
+            .output()
+            .unwrap()
+    };
     let scene = folder.join("scene.toml").display().to_string();
-    let bad: [&[&str]; 4] = [&[], &[&scene, "--paper", "A"], &["--paper", "C"], &["--paper", "A", "--friction-error", "0.1"]];
+    let bad: [&[&str]; 4] = [
+        &[],
+        &[&scene, "--paper", "A"],
+        &["--paper", "C"],
+        &["--paper", "A", "--friction-error", "0.1"],
+    ];
     for arguments in bad {
         assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
     }
     let paper = run(&["--paper", "b"]);
     assert_done(&paper);
-    assert!(String::from_utf8(paper.stdout).unwrap().contains("ends on three"));
+    assert!(
+        String::from_utf8(paper.stdout)
+            .unwrap()
+            .contains("ends on three")
+    );
 }
 
 #[test]
@@ -149,7 +255,10 @@ fn log_that_is_there_is_not_written_over() {
         fs::write(folder.join(name), "recorded\n").unwrap();
         let run = simulate(&folder, ".", &[]);
         let talk = String::from_utf8(run.stderr).unwrap();
-        assert!(run.status.code() == Some(1) && talk.contains(name) && talk.contains("--out"), "{talk}");
+        assert!(
+            run.status.code() == Some(1) && talk.contains(name) && talk.contains("--out"),
+            "{talk}"
+        );
         assert_eq!(fs::read_to_string(folder.join(name)).unwrap(), "recorded\n");
         assert!(name == "log.csv" || !folder.join("log.csv").exists());
     }

@@ -52,7 +52,11 @@ struct Setting {
 
 impl<const W: usize> Default for Assembly<W> {
     fn default() -> Self {
-        Self { rows: Vec::new(), reach: Lanes::ZERO, setting: Setting::default() }
+        Self {
+            rows: Vec::new(),
+            reach: Lanes::ZERO,
+            setting: Setting::default(),
+        }
     }
 }
 
@@ -106,7 +110,14 @@ impl<const W: usize> Assembly<W> {
 
     /// Writes the step's problems.
     #[inline(always)]
-    pub fn collect(&mut self, stage: &Stage, moment: &Moment<'_>, particles: &Particles<W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
+    pub fn collect(
+        &mut self,
+        stage: &Stage,
+        moment: &Moment<'_>,
+        particles: &Particles<W>,
+        narrow: &mut NarrowWork<W>,
+        ncp: &mut Ncp<W>,
+    ) {
         self.rows.clear();
         ncp.clear();
         let object = Frames::new(&particles.pose);
@@ -115,12 +126,29 @@ impl<const W: usize> Assembly<W> {
         if let Some((motion, frame)) = moment.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
             let (mu, catch_up) = (particles.friction[1], particles.pusher_lag * moment.rate);
-            let pusher = Other { body: Body::Pusher, shape: &scene.pusher.shape, frame, mu, motion: Some(motion), direction, catch_up };
+            let pusher = Other {
+                body: Body::Pusher,
+                shape: &scene.pusher.shape,
+                frame,
+                mu,
+                motion: Some(motion),
+                direction,
+                catch_up,
+            };
             self.meet(scene, &object, &pusher, narrow, ncp);
         }
         let mu = particles.friction[2];
-        for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate() {
-            let fixel = Other { body: Body::Fixel(j), shape, frame: *frame, mu, motion: None, direction: [0.0; 2], catch_up: Lanes::ZERO };
+        for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate()
+        {
+            let fixel = Other {
+                body: Body::Fixel(j),
+                shape,
+                frame: *frame,
+                mu,
+                motion: None,
+                direction: [0.0; 2],
+                catch_up: Lanes::ZERO,
+            };
             self.meet(scene, &object, &fixel, narrow, ncp);
         }
     }
@@ -129,41 +157,89 @@ impl<const W: usize> Assembly<W> {
     #[inline(always)]
     fn set_body(
         &mut self,
-        &Stage { ref scene, rho, per_rho, per_mass, per_inertia, ref stance, .. }: &Stage,
+        &Stage {
+            ref scene,
+            rho,
+            per_rho,
+            per_mass,
+            per_inertia,
+            ref stance,
+            ..
+        }: &Stage,
         &Moment { input, rate, .. }: &Moment<'_>,
         (particles, object): (&Particles<W>, &Frames<W>),
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
-        let limit = input.pusher.and_then(|pusher| scene.pusher.stall_force.map(|force| (force, pusher.direction)));
-        let stall = limit.map(|(force, direction)| Stall { impulse: force * input.h, direction });
-        self.setting = Setting { mass, inertia, h: input.h, per_rho, rate, stall };
+        let limit = input.pusher.and_then(|pusher| {
+            scene
+                .pusher
+                .stall_force
+                .map(|force| (force, pusher.direction))
+        });
+        let stall = limit.map(|(force, direction)| Stall {
+            impulse: force * input.h,
+            direction,
+        });
+        self.setting = Setting {
+            mass,
+            inertia,
+            h: input.h,
+            per_rho,
+            rate,
+            stall,
+        };
         ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |stall| stall.impulse / mass));
         let [vx, vy, omega] = particles.twist;
         let [fx, fy, torque] = particles.applied;
-        ncp.free = [vx + fx * per_mass, vy + fy * per_mass, (omega + torque * per_inertia) * rho];
+        ncp.free = [
+            vx + fx * per_mass,
+            vy + fy * per_mass,
+            (omega + torque * per_inertia) * rho,
+        ];
         let [mu_s, _, _, d_tri] = particles.friction;
         let arms = scene.foot_arms(stance, object, d_tri);
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
-            *row = FootRow { jx: -y * per_rho, jy: x * per_rho, bound: mu_s * (scene.gravity * input.h * load) };
+            *row = FootRow {
+                jx: -y * per_rho,
+                jy: x * per_rho,
+                bound: mu_s * (scene.gravity * input.h * load),
+            };
         }
     }
 
     /// Adds the contacts of the object with one body.
     #[inline(always)]
-    fn meet(&mut self, scene: &Scene, object: &Frames<W>, other: &Other<'_, W>, narrow: &mut NarrowWork<W>, ncp: &mut Ncp<W>) {
+    fn meet(
+        &mut self,
+        scene: &Scene,
+        object: &Frames<W>,
+        other: &Other<'_, W>,
+        narrow: &mut NarrowWork<W>,
+        ncp: &mut Ncp<W>,
+    ) {
         let shapes = [&scene.object.shape, other.shape];
         let near = near(shapes, &object.origin, other.frame.origin, self.reach);
         if !near.any() {
             return;
         }
-        let frames = PairFrames { object: *object, other: other.frame.splat() };
+        let frames = PairFrames {
+            object: *object,
+            other: other.frame.splat(),
+        };
         narrow.meet(shapes, &frames, self.reach, near);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
-            let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize) as f64;
-            self.rows.push(Row { body: other.body, key, present: contact.present, gap: contact.gap });
-            ncp.contacts.push(row(&self.setting, object, other, contact));
+            let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize)
+                as f64;
+            self.rows.push(Row {
+                body: other.body,
+                key,
+                present: contact.present,
+                gap: contact.gap,
+            });
+            ncp.contacts
+                .push(row(&self.setting, object, other, contact));
         }
     }
 
@@ -189,7 +265,8 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// Remembers the impulses, of the contacts the first [`REMEMBERED`] that press, and where the pusher stands.
+    /// Remembers the impulses, of the contacts the first [`REMEMBERED`] that press, and where the
+    /// pusher stands.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Impulses<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
@@ -215,23 +292,44 @@ impl<const W: usize> Assembly<W> {
 
     /// The body of each contact of one lane, in the order of its problem.
     pub fn bodies(&self, lane: usize) -> Vec<Body> {
-        self.rows.iter().filter(|row| row.present.lane(lane)).map(|row| row.body).collect()
+        self.rows
+            .iter()
+            .filter(|row| row.present.lane(lane))
+            .map(|row| row.body)
+            .collect()
     }
 
     /// One lane's problem in SI units; the applied impulse is part of its twist.
     pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
-        let Setting { mass, inertia, h, stall, .. } = self.setting;
+        let Setting {
+            mass,
+            inertia,
+            h,
+            stall,
+            ..
+        } = self.setting;
         let rho = (inertia / mass).sqrt();
         let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
-        let foot = |row: &FootRow<W>| Foot { arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho], bound: row.bound.0[lane] * mass };
-        let rows = self.rows.iter().zip(&ncp.contacts).filter(|(row, _)| row.present.lane(lane));
+        let foot = |row: &FootRow<W>| Foot {
+            arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho],
+            bound: row.bound.0[lane] * mass,
+        };
+        let rows = self
+            .rows
+            .iter()
+            .zip(&ncp.contacts)
+            .filter(|(row, _)| row.present.lane(lane));
         let contacts = rows.map(|(row, numbers)| {
             let gap = row.gap.0[lane];
-            let ([nx, ny, normal], [.., tangential]) = (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
+            let ([nx, ny, normal], [.., tangential]) =
+                (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
             let (approach, slip) = (gap / h - numbers.gap.0[lane], -numbers.slip.0[lane]);
             ContactPoint {
                 normal: [nx, ny],
-                arm: [(tangential * nx + normal * ny) * rho, (tangential * ny - normal * nx) * rho],
+                arm: [
+                    (tangential * nx + normal * ny) * rho,
+                    (tangential * ny - normal * nx) * rho,
+                ],
                 gap,
                 mu: numbers.mu.0[lane],
                 surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
@@ -242,7 +340,11 @@ impl<const W: usize> Assembly<W> {
             mass,
             inertia,
             h,
-            twist: Twist { vx, vy, omega: scaled / rho },
+            twist: Twist {
+                vx,
+                vy,
+                omega: scaled / rho,
+            },
             applied: Wrench::default(),
             contacts: contacts.collect(),
             feet: ncp.feet.each_ref().map(foot),
@@ -253,11 +355,25 @@ impl<const W: usize> Assembly<W> {
 
 /// The row of one contact.
 #[inline(always)]
-fn row<const W: usize>(setting: &Setting, object: &Frames<W>, other: &Other<'_, W>, contact: &Contact<W>) -> ContactRow<W> {
+fn row<const W: usize>(
+    setting: &Setting,
+    object: &Frames<W>,
+    other: &Other<'_, W>,
+    contact: &Contact<W>,
+) -> ContactRow<W> {
     let Setting { per_rho, rate, .. } = *setting;
-    let Contact { present, normal: [nx, ny], arm: [x, y], gap, .. } = *contact;
+    let Contact {
+        present,
+        normal: [nx, ny],
+        arm: [x, y],
+        gap,
+        ..
+    } = *contact;
     let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
-        let arm = [object.origin[0] + x - motion.pose.x, object.origin[1] + y - motion.pose.y];
+        let arm = [
+            object.origin[0] + x - motion.pose.x,
+            object.origin[1] + y - motion.pose.y,
+        ];
         let Twist { vx, vy, omega } = motion.twist;
         [arm[1] * -omega + vx, arm[0] * omega + vy]
     });
@@ -267,7 +383,10 @@ fn row<const W: usize>(setting: &Setting, object: &Frames<W>, other: &Other<'_, 
     ContactRow {
         n: [keep(nx), keep(ny), keep((x * ny - y * nx) * per_rho)],
         t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * per_rho)],
-        gap: present.select(gap * rate - (nx * u[0] + ny * u[1]), ContactRow::<W>::OPEN.gap),
+        gap: present.select(
+            gap * rate - (nx * u[0] + ny * u[1]),
+            ContactRow::<W>::OPEN.gap,
+        ),
         // the way back to the pose lies in the gap already
         slip: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
         nd: keep(nd),
@@ -288,9 +407,15 @@ impl Scene {
         }
     }
 
-    /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod (m).
+    /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
+    /// (m).
     #[inline(always)]
-    fn foot_arms<const W: usize>(&self, stance: &[[f64; 2]; 3], frames: &Frames<W>, d_tri: Lanes<W>) -> [[Lanes<W>; 2]; 3] {
+    fn foot_arms<const W: usize>(
+        &self,
+        stance: &[[f64; 2]; 3],
+        frames: &Frames<W>,
+        d_tri: Lanes<W>,
+    ) -> [[Lanes<W>; 2]; 3] {
         let radius = match self.feet {
             Feet::Tripod { .. } => d_tri,
             Feet::Known { .. } => Lanes::splat(1.0),
@@ -311,12 +436,16 @@ impl Scene {
         }
     }
 
-    /// The feet of an object at angle `theta`: arms in the world frame, friction bounds for a step of `h` seconds.
+    /// The feet of an object at angle `theta`: arms in the world frame, friction bounds for a step
+    /// of `h` seconds.
     pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
         let total = friction.mu_s * self.object.mass * self.gravity * h;
         let frames = Frames::new(&[Lanes([0.0]), Lanes([0.0]), Lanes([theta])]);
         let arms = self.foot_arms(&self.stance(), &frames, Lanes([friction.d_tri]));
         let loads = self.foot_loads();
-        std::array::from_fn(|k| Foot { arm: arms[k].map(|x| x.0[0]), bound: total * loads[k] })
+        std::array::from_fn(|k| Foot {
+            arm: arms[k].map(|x| x.0[0]),
+            bound: total * loads[k],
+        })
     }
 }

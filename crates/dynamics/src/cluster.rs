@@ -29,24 +29,41 @@ pub(crate) struct Cluster {
 impl Cluster {
     /// One cluster of so many features, wherever they are.
     pub fn of_all(features: usize) -> Self {
-        Self { members: 0..features, centre: [0.0; 2], radius: f64::INFINITY }
+        Self {
+            members: 0..features,
+            centre: [0.0; 2],
+            radius: f64::INFINITY,
+        }
     }
 
-    /// The clusters of a convex polygon's edges, in which corner k is the end of edge k; a single one where there are few.
+    /// The clusters of a convex polygon's edges, in which corner k is the end of edge k; a single
+    /// one where there are few.
     pub fn of_polygon(edges: &[Edge]) -> Vec<Self> {
         if edges.len() < FEWEST {
             return vec![Self::of_all(edges.len())];
         }
         let starts = (0..edges.len()).step_by(SIZE);
-        starts.map(|start| Self::new(edges, start..edges.len().min(start + SIZE))).collect()
+        starts
+            .map(|start| Self::new(edges, start..edges.len().min(start + SIZE)))
+            .collect()
     }
 
     fn new(edges: &[Edge], members: Range<usize>) -> Self {
-        let ends = || edges[members.clone()].iter().flat_map(|edge| [edge.start, edge.at(edge.length)]);
+        let ends = || {
+            edges[members.clone()]
+                .iter()
+                .flat_map(|edge| [edge.start, edge.at(edge.length)])
+        };
         let count = 2.0 * members.len() as f64;
-        let centre = ends().fold([0.0; 2], |sum, p| [sum[0] + p[0] / count, sum[1] + p[1] / count]);
+        let centre = ends().fold([0.0; 2], |sum, p| {
+            [sum[0] + p[0] / count, sum[1] + p[1] / count]
+        });
         let radius = ends().map(|p| length(sub(p, centre))).fold(0.0, f64::max) * (1.0 + SLACK);
-        Self { members, centre, radius }
+        Self {
+            members,
+            centre,
+            radius,
+        }
     }
 
     /// Its members among `count` edges, or round vertices.

@@ -1,7 +1,8 @@
-//! The linear system of one Newton step on an [`Ncp`], with all impulses eliminated: [`Linearised`].
+//! The linear system of one Newton step on an [`Ncp`], with all impulses eliminated:
+//! [`Linearised`].
 //!
-//! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a 3×3 system in the twist,
-//! whatever the number of contacts, and one equation in y.
+//! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a
+//! 3×3 system in the twist, whatever the number of contacts, and one equation in y.
 
 use crate::elimination::{solve_four, solve_three};
 use crate::impulses::Impulses;
@@ -43,7 +44,8 @@ impl<const W: usize> FootStep<W> {
     }
 }
 
-/// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs, both coefficients at least 0.
+/// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs, both coefficients at least
+/// 0.
 #[derive(Clone, Copy, Debug)]
 pub struct StallStep<const W: usize> {
     /// Coefficient of the slack.
@@ -58,17 +60,24 @@ pub struct StallStep<const W: usize> {
 const UNDETERMINED: f64 = 1e-9;
 
 impl<const W: usize> StallStep<W> {
-    /// The pusher yields and the object resists with the stall force where `yields`, else it keeps its commanded motion.
+    /// The pusher yields and the object resists with the stall force where `yields`, else it keeps
+    /// its commanded motion.
     #[inline(always)]
     pub fn decided(yields: Mask<W>, slack: Lanes<W>, pusher_yield: Lanes<W>) -> Self {
         let one = Lanes::splat(1.0);
-        Self { slack: yields.keep(one), pusher: (!yields).keep(one), rhs: -yields.select(slack, pusher_yield) }
+        Self {
+            slack: yields.keep(one),
+            pusher: (!yields).keep(one),
+            rhs: -yields.select(slack, pusher_yield),
+        }
     }
 
     /// Whether y is 0 and stays so in every lane.
     #[inline(always)]
     fn holds_all(&self, pusher_yield: Lanes<W>) -> bool {
-        !(self.slack.abs() + pusher_yield.abs() + self.rhs.abs()).gt(Lanes::ZERO).any()
+        !(self.slack.abs() + pusher_yield.abs() + self.rhs.abs())
+            .gt(Lanes::ZERO)
+            .any()
     }
 }
 
@@ -91,8 +100,15 @@ impl<const W: usize> Default for Linearised<W> {
         Self {
             imbalance: [o; 3],
             contacts: Vec::with_capacity(ROOM),
-            feet: [FootStep { r: [o; 2], k: [[o; 2]; 2] }; 3],
-            stall: StallStep { slack: o, pusher: Lanes::splat(1.0), rhs: o },
+            feet: [FootStep {
+                r: [o; 2],
+                k: [[o; 2]; 2],
+            }; 3],
+            stall: StallStep {
+                slack: o,
+                pusher: Lanes::splat(1.0),
+                rhs: o,
+            },
         }
     }
 }
@@ -106,14 +122,26 @@ impl<const W: usize> Linearised<W> {
             let [x, y, turn] = solve_three(&momentum.equations());
             [x, y, turn, Lanes::ZERO]
         } else {
-            solve_four(&self.push(ncp).bordered(&self.stall, &momentum, p.pusher_yield))
+            solve_four(
+                &self
+                    .push(ncp)
+                    .bordered(&self.stall, &momentum, p.pusher_yield),
+            )
         };
         self.take_step([x, y, turn], dy, ncp, p, open);
     }
 
-    /// The twist is updated rather than summed from the impulses, which would round at the size of the impulses.
+    /// The twist is updated rather than summed from the impulses, which would round at the size of
+    /// the impulses.
     #[inline(always)]
-    fn take_step(&self, dv: Triple<W>, dy: Lanes<W>, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
+    fn take_step(
+        &self,
+        dv: Triple<W>,
+        dy: Lanes<W>,
+        ncp: &Ncp<W>,
+        p: &mut Impulses<W>,
+        open: Mask<W>,
+    ) {
         // no loop: across the feet instead of the lanes, the compiler would gather lane by lane
         let ([a, b, c], [foot_a, foot_b, foot_c]) = (&mut p.feet, &ncp.feet);
         self.feet[0].take(foot_a, &dv, open, a);
@@ -124,7 +152,10 @@ impl<const W: usize> Linearised<W> {
             let dgamma = dot(&row.n, &dv).plus(row.nd, dy);
             let ds = dot(&row.t, &dv).plus(row.td, dy);
             *p_n = open.select((*p_n + step.n).less(step.nn, dgamma), *p_n);
-            *p_t = open.select((*p_t + step.t).less(step.tt, ds).less(step.tn, dgamma), *p_t);
+            *p_t = open.select(
+                (*p_t + step.t).less(step.tt, ds).less(step.tn, dgamma),
+                *p_t,
+            );
         }
         p.pusher_yield = open.select(p.pusher_yield + dy, p.pusher_yield);
         for (v, dv) in p.v.iter_mut().zip(dv) {
@@ -147,7 +178,12 @@ impl<const W: usize> Linearised<W> {
     #[inline(always)]
     fn push(&self, ncp: &Ncp<W>) -> Push<W> {
         let o = Lanes::ZERO;
-        let mut push = Push { column: [o; 3], row: [o; 3], corner: o, rhs: o };
+        let mut push = Push {
+            column: [o; 3],
+            row: [o; 3],
+            corner: o,
+            rhs: o,
+        };
         for (i, step) in &self.contacts {
             push.add_contact(&ncp.contacts[*i], step);
         }
@@ -175,7 +211,11 @@ impl<const W: usize> Momentum<W> {
     #[inline(always)]
     fn equations(&self) -> [[Lanes<W>; 4]; 3] {
         let (a, r) = (&self.matrix, &self.rhs);
-        [[a[0][0], a[0][1], a[0][2], r[0]], [a[1][0], a[1][1], a[1][2], r[1]], [a[2][0], a[2][1], a[2][2], r[2]]]
+        [
+            [a[0][0], a[0][1], a[0][2], r[0]],
+            [a[1][0], a[1][1], a[1][2], r[1]],
+            [a[2][0], a[2][1], a[2][2], r[2]],
+        ]
     }
 
     /// A += Jᵀ K J, rhs += Jᵀ r.
@@ -186,7 +226,9 @@ impl<const W: usize> Momentum<W> {
         for j in 0..3 {
             self.matrix[0][j] += k[0][j];
             self.matrix[1][j] += k[1][j];
-            self.matrix[2][j] = self.matrix[2][j].plus(foot.jx, k[0][j]).plus(foot.jy, k[1][j]);
+            self.matrix[2][j] = self.matrix[2][j]
+                .plus(foot.jx, k[0][j])
+                .plus(foot.jy, k[1][j]);
         }
         foot.add_wrench(&mut self.rhs, &step.r);
     }
@@ -206,8 +248,8 @@ impl<const W: usize> Momentum<W> {
     }
 }
 
-/// The pusher's force F, by which the object resists along d: dF = rhs − row·dv − corner dy; and what its yield does to the momentum:
-/// matrix·dv + column dy = rhs.
+/// The pusher's force F, by which the object resists along d: dF = rhs − row·dv − corner dy; and
+/// what its yield does to the momentum: matrix·dv + column dy = rhs.
 struct Push<const W: usize> {
     column: Triple<W>,
     row: Triple<W>,
@@ -218,11 +260,17 @@ struct Push<const W: usize> {
 impl<const W: usize> Push<W> {
     /// [`Momentum::add_contact`] with n and t extended by their parts along d.
     #[inline(always)]
-    fn add_contact(&mut self, ContactRow { n, t, nd, td, .. }: &ContactRow<W>, step: &ContactStep<W>) {
+    fn add_contact(
+        &mut self,
+        ContactRow { n, t, nd, td, .. }: &ContactRow<W>,
+        step: &ContactStep<W>,
+    ) {
         let (normal, tangential) = (step.nn * *nd, (step.tt * *td).plus(step.tn, *nd));
         for j in 0..3 {
             self.column[j] = self.column[j].plus(n[j], normal).plus(t[j], tangential);
-            self.row[j] = self.row[j].plus(*nd, step.nn * n[j]).plus(*td, (step.tt * t[j]).plus(step.tn, n[j]));
+            self.row[j] = self.row[j]
+                .plus(*nd, step.nn * n[j])
+                .plus(*td, (step.tt * t[j]).plus(step.tn, n[j]));
         }
         self.corner = self.corner.plus(*nd, normal).plus(*td, tangential);
         self.rhs = self.rhs.plus(*nd, step.n).plus(*td, step.t);
@@ -230,8 +278,14 @@ impl<const W: usize> Push<W> {
 
     /// The system in (dv, dy) whose fourth row is the stall pair; `pusher_yield` is the present y.
     #[inline(always)]
-    fn bordered(&self, stall: &StallStep<W>, momentum: &Momentum<W>, pusher_yield: Lanes<W>) -> [[Lanes<W>; 5]; 4] {
-        let determined = ((stall.slack * self.corner).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
+    fn bordered(
+        &self,
+        stall: &StallStep<W>,
+        momentum: &Momentum<W>,
+        pusher_yield: Lanes<W>,
+    ) -> [[Lanes<W>; 5]; 4] {
+        let determined =
+            ((stall.slack * self.corner).abs() + stall.pusher).gt(Lanes::splat(UNDETERMINED));
         let last = |number: Lanes<W>| determined.keep(stall.slack * number);
         let corner = last(self.corner) + determined.select(stall.pusher, Lanes::splat(1.0));
         let stalled = determined.select(stall.rhs + stall.slack * self.rhs, -pusher_yield);
@@ -240,7 +294,13 @@ impl<const W: usize> Push<W> {
             [a[0], a[1], a[2], self.column[0], a[3]],
             [b[0], b[1], b[2], self.column[1], b[3]],
             [c[0], c[1], c[2], self.column[2], c[3]],
-            [last(self.row[0]), last(self.row[1]), last(self.row[2]), corner, stalled],
+            [
+                last(self.row[0]),
+                last(self.row[1]),
+                last(self.row[2]),
+                corner,
+                stalled,
+            ],
         ]
     }
 }

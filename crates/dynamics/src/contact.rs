@@ -4,7 +4,8 @@ use crate::frames::{Vec2s, cross, dot, lane_of, splat, sub};
 use crate::lanes::{Lanes, Mask};
 use crate::narrow::Gap;
 
-/// Contacts whose lines of action are nearer than this share of the object's size, with normals within about 0.1 rad, are one.
+/// Contacts whose lines of action are nearer than this share of the object's size, with normals
+/// within about 0.1 rad, are one.
 const SAME_LINE: f64 = 1e-4;
 
 /// Cosine of the largest angle between the normals of one contact.
@@ -32,12 +33,22 @@ impl<const W: usize> Contact<W> {
     /// A contact of one lane.
     pub fn in_lane(place: u32, lane: usize, gap: &Gap) -> Self {
         let present = Mask::from_fn(|i| i == lane);
-        Self { place, present, normal: splat(gap.normal), arm: splat(gap.arm), gap: Lanes::splat(gap.gap) }
+        Self {
+            place,
+            present,
+            normal: splat(gap.normal),
+            arm: splat(gap.arm),
+            gap: Lanes::splat(gap.gap),
+        }
     }
 
     /// One lane's contact.
     pub fn lane(&self, lane: usize) -> Gap {
-        Gap { normal: lane_of(&self.normal, lane), arm: lane_of(&self.arm, lane), gap: self.gap.0[lane] }
+        Gap {
+            normal: lane_of(&self.normal, lane),
+            arm: lane_of(&self.arm, lane),
+            gap: self.gap.0[lane],
+        }
     }
 
     /// Takes over what `from` has in the lanes of `mask`.
@@ -64,7 +75,11 @@ pub(crate) struct Contacts<const W: usize> {
 
 impl<const W: usize> Default for Contacts<W> {
     fn default() -> Self {
-        Self { list: Vec::new(), same_line: 0.0, hidden: None }
+        Self {
+            list: Vec::new(),
+            same_line: 0.0,
+            hidden: None,
+        }
     }
 }
 
@@ -90,7 +105,8 @@ impl<const W: usize> Contacts<W> {
         }
     }
 
-    /// Of two contacts with one line of action, which have one row W_n, keeps that with the smaller gap.
+    /// Of two contacts with one line of action, which have one row W_n, keeps that with the smaller
+    /// gap.
     #[inline(always)]
     pub fn push(&mut self, mut new: Contact<W>) {
         for old in &mut self.list {
@@ -108,11 +124,15 @@ impl<const W: usize> Contacts<W> {
         }
     }
 
-    /// A contact whose point a sibling part hides counts only in overlap, and only if there is no other.
+    /// A contact whose point a sibling part hides counts only in overlap, and only if there is no
+    /// other.
     #[inline(always)]
     pub fn push_unless(&mut self, hidden: Mask<W>, contact: Contact<W>) {
         let deep = hidden & contact.present & contact.gap.lt(Lanes::ZERO);
-        self.push(Contact { present: contact.present & !hidden, ..contact });
+        self.push(Contact {
+            present: contact.present & !hidden,
+            ..contact
+        });
         if !deep.any() {
             return;
         }
@@ -121,7 +141,12 @@ impl<const W: usize> Contacts<W> {
                 let deeper = deep & (!old.present | contact.gap.lt(old.gap));
                 old.take(deeper, &contact);
             }
-            None => self.hidden = Some(Contact { present: deep, ..contact }),
+            None => {
+                self.hidden = Some(Contact {
+                    present: deep,
+                    ..contact
+                })
+            }
         }
     }
 
@@ -129,7 +154,11 @@ impl<const W: usize> Contacts<W> {
     #[inline(always)]
     pub fn settle_hidden(&mut self, place: u32) {
         if let Some(hidden) = self.hidden.take() {
-            self.push(Contact { place, present: hidden.present & !self.deeper_than(0.0), ..hidden });
+            self.push(Contact {
+                place,
+                present: hidden.present & !self.deeper_than(0.0),
+                ..hidden
+            });
         }
     }
 
@@ -137,11 +166,13 @@ impl<const W: usize> Contacts<W> {
     #[inline(always)]
     pub fn deeper_than(&self, depth: f64) -> Mask<W> {
         let deep = |contact: &Contact<W>| contact.present & contact.gap.lt(Lanes::splat(depth));
-        self.list.iter().fold(Mask::splat(false), |all, contact| all | deep(contact))
+        self.list
+            .iter()
+            .fold(Mask::splat(false), |all, contact| all | deep(contact))
     }
 
-    /// Drops contacts that are deeper than `least` (m), where that is an overlap, in the lanes of `asked`; those where one as deep is
-    /// left.
+    /// Drops contacts that are deeper than `least` (m), where that is an overlap, in the lanes of
+    /// `asked`; those where one as deep is left.
     #[inline(always)]
     pub fn bound(&mut self, asked: Mask<W>, least: Lanes<W>, slack: f64) -> Mask<W> {
         let asked = asked & least.lt(Lanes::ZERO);

@@ -1,9 +1,12 @@
-//! The second solver: one Newton step on the smoothed rows per reduction of ε, `W` particles side by side.
+//! The second solver: one Newton step on the smoothed rows per reduction of ε, `W` particles side
+//! by side.
 //!
-//! Where an object jams or rests among redundant contacts the natural map of the first solver jumps between modes; smoothed rows
-//! do not. There is no line search: ε falls while the smoothed residual is not too far above it, so that every particle does the
-//! same arithmetic. Long before ε is small the modes show, and Newton's method with these modes held ends it. A lane that is done takes
-//! up the next problem; lanes that look at their modes wait for others to look with them, so that neither kind of step runs for few.
+//! Where an object jams or rests among redundant contacts the natural map of the first solver jumps
+//! between modes; smoothed rows do not. There is no line search: ε falls while the smoothed
+//! residual is not too far above it, so that every particle does the same arithmetic. Long before ε
+//! is small the modes show, and Newton's method with these modes held ends it. A lane that is done
+//! takes up the next problem; lanes that look at their modes wait for others to look with them, so
+//! that neither kind of step runs for few.
 
 use crate::condensed::Linearised;
 use crate::impulses::Impulses;
@@ -98,14 +101,22 @@ impl<const W: usize> Default for Continuation<W> {
             linearised: Linearised::default(),
             certificate: NaturalMap::default(),
             polish: Polish::default(),
-            lanes: LaneStates { waiting: no, epsilon: o, smallest: o, next_look: o, steps: o, residual: o },
+            lanes: LaneStates {
+                waiting: no,
+                epsilon: o,
+                smallest: o,
+                next_look: o,
+                steps: o,
+                residual: o,
+            },
         }
     }
 }
 
 impl<const W: usize> Continuation<W> {
-    /// Goes down from the warm starts of the problems at `places`; tells `finish` how each ended, solved where its residual is at
-    /// most `tolerance`. What becomes of a problem does not depend on the others.
+    /// Goes down from the warm starts of the problems at `places`; tells `finish` how each ended,
+    /// solved where its residual is at most `tolerance`. What becomes of a problem does not depend
+    /// on the others.
     #[inline(always)]
     pub fn solve(
         &mut self,
@@ -125,7 +136,9 @@ impl<const W: usize> Continuation<W> {
             if !self.packed.busy.any() {
                 return;
             }
-            let violation = self.map.take(&self.packed.ncp, &self.packed.p, self.lanes.epsilon);
+            let violation = self
+                .map
+                .take(&self.packed.ncp, &self.packed.p, self.lanes.epsilon);
             let near = violation.lt(self.lanes.epsilon * descent.near);
             self.lanes.note(self.packed.busy, near);
             if self.lanes.enough_wait(self.packed.busy) {
@@ -138,8 +151,16 @@ impl<const W: usize> Continuation<W> {
 
     /// Puts a problem into a free lane.
     #[inline(always)]
-    fn load(&mut self, Block { ncps, warm }: Block<'_, W>, Place { chunk, lane }: Place, task: usize, descent: &Descent) {
-        let Some(slot) = self.packed.load(&ncps[chunk], &warm[chunk], lane, task) else { return };
+    fn load(
+        &mut self,
+        Block { ncps, warm }: Block<'_, W>,
+        Place { chunk, lane }: Place,
+        task: usize,
+        descent: &Descent,
+    ) {
+        let Some(slot) = self.packed.load(&ncps[chunk], &warm[chunk], lane, task) else {
+            return;
+        };
         let scale = ncps[chunk].speed_scale().0[lane];
         let lanes = &mut self.lanes;
         lanes.waiting.set(slot, false);
@@ -159,13 +180,20 @@ impl<const W: usize> Continuation<W> {
     fn look(&mut self, descent: &Descent, tolerance: f64) {
         let looking = self.lanes.waiting;
         self.trial.copy_from(&self.packed.p);
-        self.polish.polish(&self.packed.ncp, &mut self.trial, looking, descent.sliding, POLISH_STEPS);
+        self.polish.polish(
+            &self.packed.ncp,
+            &mut self.trial,
+            looking,
+            descent.sliding,
+            POLISH_STEPS,
+        );
         let residual = self.certificate.take(&self.packed.ncp, &self.trial);
         let lanes = &mut self.lanes;
         lanes.residual = looking.select(residual, lanes.residual);
         lanes.next_look = looking.select(lanes.next_look * LOOK, lanes.next_look);
         // what has no smaller ε to go to ends here
-        let last = looking & residual.gt(Lanes::splat(tolerance)) & !lanes.epsilon.gt(lanes.smallest);
+        let last =
+            looking & residual.gt(Lanes::splat(tolerance)) & !lanes.epsilon.gt(lanes.smallest);
         lanes.steps = last.select(Lanes::splat(STEPS), lanes.steps);
         lanes.waiting = Mask::splat(false);
     }
@@ -181,7 +209,13 @@ impl<const W: usize> Continuation<W> {
         }
         for lane in over.lanes() {
             let (task, steps) = (packed.tags[lane], lanes.steps.0[lane] as u32);
-            finish(&End { task, residual: lanes.residual.0[lane], steps, impulses: &self.trial, lane });
+            finish(&End {
+                task,
+                residual: lanes.residual.0[lane],
+                steps,
+                impulses: &self.trial,
+                lane,
+            });
         }
         packed.busy = packed.busy & !over;
     }

@@ -1,4 +1,5 @@
-//! Pairs with an ellipse: closed form over an edge, Newton's method on the separation otherwise ([`crate::separation`]).
+//! Pairs with an ellipse: closed form over an edge, Newton's method on the separation otherwise
+//! ([`crate::separation`]).
 
 use crate::Shape;
 use crate::feature::{Cone, Edge, Ellipse, Round};
@@ -58,31 +59,64 @@ impl EllipsePair<'_> {
 
     /// An ellipse of the other body, in the object's frame.
     fn ellipse_on_object(&self, ellipse: &Ellipse, out: &mut Found) {
-        meetings(ellipse, self.object, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
-            let contact = self.contact(negate(normal), add(touch, scale(-gap, normal)), gap);
-            out.push((contact, hidden || ellipse.covered && hides(self.other, self.in_other.point(touch))));
-        });
+        meetings(
+            ellipse,
+            self.object,
+            [self.reach, self.slack],
+            |Meeting {
+                 normal,
+                 touch,
+                 gap,
+                 hidden,
+             }| {
+                let contact = self.contact(negate(normal), add(touch, scale(-gap, normal)), gap);
+                out.push((
+                    contact,
+                    hidden || ellipse.covered && hides(self.other, self.in_other.point(touch)),
+                ));
+            },
+        );
     }
 
     fn ellipse_on_other(&self, own: &Ellipse, out: &mut Found) {
         let ellipse = own.seen_from(&self.in_other);
-        meetings(&ellipse, self.other, [self.reach, self.slack], |Meeting { normal, touch, gap, hidden }| {
-            let touch = self.in_object.point(touch);
-            let contact = Gap { normal: self.other_frame.turn(normal), arm: self.object_frame.turn(touch), gap };
-            out.push((contact, hidden || own.covered && hides(self.object, touch)));
-        });
+        meetings(
+            &ellipse,
+            self.other,
+            [self.reach, self.slack],
+            |Meeting {
+                 normal,
+                 touch,
+                 gap,
+                 hidden,
+             }| {
+                let touch = self.in_object.point(touch);
+                let contact = Gap {
+                    normal: self.other_frame.turn(normal),
+                    arm: self.object_frame.turn(touch),
+                    gap,
+                };
+                out.push((contact, hidden || own.covered && hides(self.object, touch)));
+            },
+        );
     }
 
     /// Both in the object's frame.
     fn ellipse_on_ellipse(&self, own: &Ellipse, theirs: &Ellipse, out: &mut Found) {
-        let separation = Separation { d: sub(own.centre, theirs.centre), ellipses: [Some(own), Some(theirs)], radius: 0.0 };
+        let separation = Separation {
+            d: sub(own.centre, theirs.centre),
+            ellipses: [Some(own), Some(theirs)],
+            radius: 0.0,
+        };
         if length(separation.d) - own.radius() - theirs.radius() >= self.reach {
             return;
         }
-        let Some(Peak { normal, gap }) = separation.widest(&Cone::full(), 0.0) else { return };
+        let Some(Peak { normal, gap }) = separation.widest(&Cone::full(), 0.0) else {
+            return;
+        };
         let touch = own.point(negate(normal));
-        let hidden =
-            own.covered && hides(self.object, touch) || theirs.covered && hides(self.other, self.in_other.point(theirs.point(normal)));
+        let hidden = own.covered && hides(self.object, touch)
+            || theirs.covered && hides(self.other, self.in_other.point(theirs.point(normal)));
         if gap < self.reach {
             out.push((self.contact(normal, touch, gap), hidden));
         }
@@ -90,14 +124,26 @@ impl EllipsePair<'_> {
 
     /// A contact given in the object's frame.
     fn contact(&self, normal: Vec2, touch: Vec2, gap: f64) -> Gap {
-        Gap { normal: self.object_frame.turn(normal), arm: self.object_frame.turn(touch), gap }
+        Gap {
+            normal: self.object_frame.turn(normal),
+            arm: self.object_frame.turn(touch),
+            gap,
+        }
     }
 }
 
 /// Reports where an ellipse meets a shape with a gap below `reach`.
-fn meetings(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], report: impl FnMut(Meeting)) {
+fn meetings(
+    ellipse: &Ellipse,
+    shape: &Shape,
+    [reach, slack]: [f64; 2],
+    report: impl FnMut(Meeting),
+) {
     if shape.parts().len() == 1 {
-        with_convex(ellipse, shape, slack).into_iter().filter(|meeting| meeting.gap < reach).for_each(report);
+        with_convex(ellipse, shape, slack)
+            .into_iter()
+            .filter(|meeting| meeting.gap < reach)
+            .for_each(report);
     } else {
         with_union(ellipse, shape, [reach, slack], report);
     }
@@ -106,7 +152,12 @@ fn meetings(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], report: 
 /// Two convex bodies have one contact: where the separation is largest.
 fn with_convex(ellipse: &Ellipse, shape: &Shape, slack: f64) -> Option<Meeting> {
     let mut best: Option<Meeting> = None;
-    for meeting in shape.outline().edges.iter().filter_map(|edge| over_edge(ellipse, edge, slack)) {
+    for meeting in shape
+        .outline()
+        .edges
+        .iter()
+        .filter_map(|edge| over_edge(ellipse, edge, slack))
+    {
         // apart, a local maximum is the only one
         if meeting.gap >= 0.0 {
             return Some(meeting);
@@ -114,7 +165,9 @@ fn with_convex(ellipse: &Ellipse, shape: &Shape, slack: f64) -> Option<Meeting> 
         best = wider(best, meeting);
     }
     for round in &shape.outline().rounds {
-        let bound = round.cone.support(sub(ellipse.centre, round.centre)) - ellipse.inner_radius() - round.radius;
+        let bound = round.cone.support(sub(ellipse.centre, round.centre))
+            - ellipse.inner_radius()
+            - round.radius;
         if best.is_none_or(|best| bound > best.gap)
             && let Some(meeting) = about_round(ellipse, round, slack)
         {
@@ -129,9 +182,15 @@ fn wider(best: Option<Meeting>, new: Meeting) -> Option<Meeting> {
     Some(best.filter(|best| best.gap >= new.gap).unwrap_or(new))
 }
 
-/// With a union it is every feature that has the ellipse's centre in front; where the centre is inside, the least penetration too;
-/// where none of these answers for an overlap, as about a part that the ellipse holds whole, the least penetration into the parts.
-fn with_union(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut report: impl FnMut(Meeting)) {
+/// With a union it is every feature that has the ellipse's centre in front; where the centre is
+/// inside, the least penetration too; where none of these answers for an overlap, as about a part
+/// that the ellipse holds whole, the least penetration into the parts.
+fn with_union(
+    ellipse: &Ellipse,
+    shape: &Shape,
+    [reach, slack]: [f64; 2],
+    mut report: impl FnMut(Meeting),
+) {
     let (mut way_out, mut answered): (Option<Meeting>, bool) = (None, false);
     let mut meet = |meeting: Meeting, from: Vec2| {
         let height = dot(meeting.normal, sub(ellipse.centre, from));
@@ -148,17 +207,33 @@ fn with_union(ellipse: &Ellipse, shape: &Shape, [reach, slack]: [f64; 2], mut re
         }
     }
     for round in &shape.outline().rounds {
-        let near = length(sub(ellipse.centre, round.centre)) - round.radius - ellipse.radius() < reach;
-        let Some(meeting) = near.then(|| about_round(ellipse, round, slack)).flatten() else { continue };
-        let hidden = round.covered && hides(shape, add(round.centre, scale(round.radius, meeting.normal)));
+        let near =
+            length(sub(ellipse.centre, round.centre)) - round.radius - ellipse.radius() < reach;
+        let Some(meeting) = near.then(|| about_round(ellipse, round, slack)).flatten() else {
+            continue;
+        };
+        let hidden = round.covered
+            && hides(
+                shape,
+                add(round.centre, scale(round.radius, meeting.normal)),
+            );
         meet(Meeting { hidden, ..meeting }, round.centre);
     }
     let way_out = way_out.filter(|_| shape.contains(&splat::<1>(ellipse.centre)).lane(0));
-    let least = if answered || way_out.is_some() { None } else { least_penetration(ellipse, shape.solids()) };
-    way_out.or(least).filter(|way| way.gap < reach).into_iter().for_each(report);
+    let least = if answered || way_out.is_some() {
+        None
+    } else {
+        least_penetration(ellipse, shape.solids())
+    };
+    way_out
+        .or(least)
+        .filter(|way| way.gap < reach)
+        .into_iter()
+        .for_each(report);
 }
 
-/// Into the polygons of a union that an ellipse overlaps: each one's shallowest way out, the deepest of these.
+/// Into the polygons of a union that an ellipse overlaps: each one's shallowest way out, the
+/// deepest of these.
 fn least_penetration(ellipse: &Ellipse, solids: &[Solid]) -> Option<Meeting> {
     let overlapped = solids.iter().filter(|solid| reaches_into(ellipse, solid));
     let ways = overlapped.filter_map(|solid| shallowest(ellipse, solid));
@@ -167,11 +242,25 @@ fn least_penetration(ellipse: &Ellipse, solids: &[Solid]) -> Option<Meeting> {
 
 /// The side that an ellipse reaches least far behind; seams are no way out.
 fn shallowest(ellipse: &Ellipse, solid: &Solid) -> Option<Meeting> {
-    let Solid::Polygon(polygon) = solid else { return None };
-    polygon.sides.iter().filter(|side| side.exposed).fold(None, |best, side| {
-        let gap = dot(side.normal, ellipse.centre) - side.offset - ellipse.support(side.normal);
-        wider(best, Meeting { normal: side.normal, touch: ellipse.point(negate(side.normal)), gap, hidden: false })
-    })
+    let Solid::Polygon(polygon) = solid else {
+        return None;
+    };
+    polygon
+        .sides
+        .iter()
+        .filter(|side| side.exposed)
+        .fold(None, |best, side| {
+            let gap = dot(side.normal, ellipse.centre) - side.offset - ellipse.support(side.normal);
+            wider(
+                best,
+                Meeting {
+                    normal: side.normal,
+                    touch: ellipse.point(negate(side.normal)),
+                    gap,
+                    hidden: false,
+                },
+            )
+        })
 }
 
 /// Whether a boundary point of one part of `shape` is not on the union's boundary.
@@ -179,16 +268,23 @@ fn hides(shape: &Shape, point: Vec2) -> bool {
     shape.hides(&splat::<1>(point)).lane(0)
 }
 
-/// Whether an ellipse and a polygon overlap: scaled so that the ellipse is the unit circle, by the distance from its centre.
+/// Whether an ellipse and a polygon overlap: scaled so that the ellipse is the unit circle, by the
+/// distance from its centre.
 fn reaches_into(ellipse: &Ellipse, solid: &Solid) -> bool {
-    let Solid::Polygon(polygon) = solid else { return false };
+    let Solid::Polygon(polygon) = solid else {
+        return false;
+    };
     let [a, b] = ellipse.semi_axes;
     let scaled = |corner: &Vec2| {
         let d = sub(*corner, ellipse.centre);
         [dot(ellipse.axis, d) / a, cross(ellipse.axis, d) / b]
     };
     let next = polygon.corners.iter().cycle().skip(1);
-    let nearest = polygon.corners.iter().zip(next).map(|(from, to)| distance_to_segment(scaled(from), scaled(to)));
+    let nearest = polygon
+        .corners
+        .iter()
+        .zip(next)
+        .map(|(from, to)| distance_to_segment(scaled(from), scaled(to)));
     solid.depth(ellipse.centre) > 0.0 || nearest.fold(f64::INFINITY, f64::min) < 1.0
 }
 
@@ -205,12 +301,26 @@ fn over_edge(ellipse: &Ellipse, edge: &Edge, slack: f64) -> Option<Meeting> {
     let touch = ellipse.point(negate(normal));
     let (s, _) = edge.coordinates(touch);
     let (_, height) = edge.coordinates(ellipse.centre);
-    edge.holds(s, slack).then(|| Meeting { normal, touch, gap: height - ellipse.support(normal), hidden: false })
+    edge.holds(s, slack).then(|| Meeting {
+        normal,
+        touch,
+        gap: height - ellipse.support(normal),
+        hidden: false,
+    })
 }
 
 /// The largest separation from a corner or a disc within its cone.
 fn about_round(ellipse: &Ellipse, round: &Round, slack: f64) -> Option<Meeting> {
-    let separation = Separation { d: sub(ellipse.centre, round.centre), ellipses: [Some(ellipse), None], radius: round.radius };
+    let separation = Separation {
+        d: sub(ellipse.centre, round.centre),
+        ellipses: [Some(ellipse), None],
+        radius: round.radius,
+    };
     let Peak { normal, gap } = separation.widest(&round.cone, slack)?;
-    Some(Meeting { normal, touch: ellipse.point(negate(normal)), gap, hidden: false })
+    Some(Meeting {
+        normal,
+        touch: ellipse.point(negate(normal)),
+        gap,
+        hidden: false,
+    })
 }

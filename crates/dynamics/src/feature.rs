@@ -1,8 +1,10 @@
-//! What of a boundary can touch: straight [`Edge`]s, [`Round`] vertices (corners and discs) and [`Ellipse`]s, in the body frame.
+//! What of a boundary can touch: straight [`Edge`]s, [`Round`] vertices (corners and discs) and
+//! [`Ellipse`]s, in the body frame.
 
 use crate::plane::{Frame, Vec2, add, cross, dot, length, right, scale, sub, unit};
 
-/// Angle by which a corner's normal cone is widened where it meets an edge (rad): faces that meet, slightly tilted, give two points.
+/// Angle by which a corner's normal cone is widened where it meets an edge (rad): faces that meet,
+/// slightly tilted, give two points.
 const TILT: f64 = 0.1;
 
 /// Directions at which a full circle of normals is sampled for local maxima of the separation.
@@ -16,7 +18,8 @@ pub(crate) struct Edge {
     pub along: Vec2,
     /// Length (m).
     pub length: f64,
-    /// How far the edge's line runs on inside the body before its start and after its end (m); 0 at a convex corner.
+    /// How far the edge's line runs on inside the body before its start and after its end (m); 0 at
+    /// a convex corner.
     pub buried: [f64; 2],
     /// The edges that meet it in a reflex corner at its start and at its end.
     pub reflex: [Option<u32>; 2],
@@ -25,7 +28,13 @@ pub(crate) struct Edge {
 impl Edge {
     pub fn between(from: Vec2, to: Vec2) -> Self {
         let d = sub(to, from);
-        Self { start: from, along: unit(d), length: length(d), buried: [0.0; 2], reflex: [None; 2] }
+        Self {
+            start: from,
+            along: unit(d),
+            length: length(d),
+            buried: [0.0; 2],
+            reflex: [None; 2],
+        }
     }
 
     /// Unit outward normal.
@@ -57,12 +66,14 @@ impl Edge {
 /// Outward normals of a round vertex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cone {
-    /// Directions of the edges that end and begin at a corner; zero for a full circle, where every test then holds.
+    /// Directions of the edges that end and begin at a corner; zero for a full circle, where every
+    /// test then holds.
     pub along: [Vec2; 2],
     /// Unit vector in the middle of the widened cone, and the cosine of half its angle.
     pub middle: Vec2,
     pub cos_tilted: f64,
-    /// First sampled direction, cosine and sine of the angle between samples, and how many steps lead through the cone.
+    /// First sampled direction, cosine and sine of the angle between samples, and how many steps
+    /// lead through the cone.
     pub first: Vec2,
     pub step: Vec2,
     pub steps: u32,
@@ -71,7 +82,14 @@ pub(crate) struct Cone {
 impl Cone {
     pub fn full() -> Self {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU / SAMPLES);
-        Self { along: [[0.0; 2]; 2], middle: [0.0; 2], cos_tilted: -1.0, first: [1.0, 0.0], step: [cos, sin], steps: SAMPLES as u32 }
+        Self {
+            along: [[0.0; 2]; 2],
+            middle: [0.0; 2],
+            cos_tilted: -1.0,
+            first: [1.0, 0.0],
+            step: [cos, sin],
+            steps: SAMPLES as u32,
+        }
     }
 
     /// The cone of a convex corner between edges along `before` and `after`.
@@ -81,11 +99,22 @@ impl Cone {
         let (sin, cos) = libm::sincos(turn / steps);
         let (half_sin, half_cos) = libm::sincos(turn / 2.0);
         let first = right(before);
-        let middle = [half_cos * first[0] - half_sin * first[1], half_sin * first[0] + half_cos * first[1]];
-        Self { along: [before, after], middle, cos_tilted: libm::cos(turn / 2.0 + TILT), first, step: [cos, sin], steps: steps as u32 }
+        let middle = [
+            half_cos * first[0] - half_sin * first[1],
+            half_sin * first[0] + half_cos * first[1],
+        ];
+        Self {
+            along: [before, after],
+            middle,
+            cos_tilted: libm::cos(turn / 2.0 + TILT),
+            first,
+            step: [cos, sin],
+            steps: steps as u32,
+        }
     }
 
-    /// Whether a direction, of any length, lies in the cone; `slack` has its unit. The borders are those of the edges beside it.
+    /// Whether a direction, of any length, lies in the cone; `slack` has its unit. The borders are
+    /// those of the edges beside it.
     #[inline(always)]
     pub fn holds(&self, direction: Vec2, slack: f64) -> bool {
         dot(self.along[0], direction) >= -slack && dot(self.along[1], direction) <= slack
@@ -129,7 +158,8 @@ pub(crate) struct Ellipse {
 }
 
 impl Ellipse {
-    /// Half the width in direction `n` (unit): h(n) = max of n·p over the ellipse about its centre (m).
+    /// Half the width in direction `n` (unit): h(n) = max of n·p over the ellipse about its centre
+    /// (m).
     #[inline(always)]
     pub fn support(&self, n: Vec2) -> f64 {
         let [a, b] = self.semi_axes;
@@ -141,12 +171,25 @@ impl Ellipse {
     pub fn point(&self, n: Vec2) -> Vec2 {
         let [a, b] = self.semi_axes;
         let h = self.support(n);
-        let (x, y) = (a * (a * dot(self.axis, n) / h), b * (b * cross(self.axis, n) / h));
-        add(self.centre, [x * self.axis[0] - y * self.axis[1], x * self.axis[1] + y * self.axis[0]])
+        let (x, y) = (
+            a * (a * dot(self.axis, n) / h),
+            b * (b * cross(self.axis, n) / h),
+        );
+        add(
+            self.centre,
+            [
+                x * self.axis[0] - y * self.axis[1],
+                x * self.axis[1] + y * self.axis[0],
+            ],
+        )
     }
 
     pub fn seen_from(&self, frame: &Frame) -> Self {
-        Self { centre: frame.point(self.centre), axis: frame.turn(self.axis), ..*self }
+        Self {
+            centre: frame.point(self.centre),
+            axis: frame.turn(self.axis),
+            ..*self
+        }
     }
 
     /// Smallest distance of its boundary from its centre (m).

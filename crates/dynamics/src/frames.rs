@@ -52,37 +52,57 @@ impl<const W: usize> Frames<W> {
     #[inline(always)]
     pub fn new([x, y, theta]: &[Lanes<W>; 3]) -> Self {
         let (sin, cos) = sin_cos(*theta);
-        Self { origin: [*x, *y], cos, sin }
+        Self {
+            origin: [*x, *y],
+            cos,
+            sin,
+        }
     }
 
     /// One lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> Frame {
-        Frame { origin: lane_of(&self.origin, lane), cos: self.cos.0[lane], sin: self.sin.0[lane] }
+        Frame {
+            origin: lane_of(&self.origin, lane),
+            cos: self.cos.0[lane],
+            sin: self.sin.0[lane],
+        }
     }
 
     /// R v.
     #[inline(always)]
     pub fn turn(&self, v: &Vec2s<W>) -> Vec2s<W> {
-        [self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1]]
+        [
+            self.cos * v[0] - self.sin * v[1],
+            self.sin * v[0] + self.cos * v[1],
+        ]
     }
 
     /// R v of a vector that is the same in every lane.
     #[inline(always)]
     pub fn turn_fixed(&self, v: Vec2) -> Vec2s<W> {
-        [self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1]]
+        [
+            self.cos * v[0] - self.sin * v[1],
+            self.sin * v[0] + self.cos * v[1],
+        ]
     }
 
     /// Rᵀ v of a vector that is the same in every lane.
     #[inline(always)]
     pub fn turn_back_fixed(&self, v: Vec2) -> Vec2s<W> {
-        [self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0]]
+        [
+            self.cos * v[0] + self.sin * v[1],
+            self.cos * v[1] - self.sin * v[0],
+        ]
     }
 
     /// Rᵀ v.
     #[inline(always)]
     pub fn turn_back(&self, v: &Vec2s<W>) -> Vec2s<W> {
-        [self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0]]
+        [
+            self.cos * v[0] + self.sin * v[1],
+            self.cos * v[1] - self.sin * v[0],
+        ]
     }
 
     /// A point that is the same in every lane.
@@ -105,7 +125,11 @@ impl<const W: usize> Frames<W> {
     #[inline(always)]
     pub fn inverse(&self) -> Self {
         let [x, y] = self.turn_back(&self.origin);
-        Self { origin: [-x, -y], cos: self.cos, sin: -self.sin }
+        Self {
+            origin: [-x, -y],
+            cos: self.cos,
+            sin: -self.sin,
+        }
     }
 }
 
@@ -113,6 +137,10 @@ impl Frame {
     /// The same frame in every lane.
     #[inline(always)]
     pub fn splat<const W: usize>(&self) -> Frames<W> {
-        Frames { origin: splat(self.origin), cos: Lanes::splat(self.cos), sin: Lanes::splat(self.sin) }
+        Frames {
+            origin: splat(self.origin),
+            cos: Lanes::splat(self.cos),
+            sin: Lanes::splat(self.sin),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The third solver: the path of smoothed solutions, followed with care, one particle at a time.
 //!
-//! ε is driven to zero; every reduction begins with a step along the path's tangent, and every step halves until the smoothed
-//! residual falls.
+//! ε is driven to zero; every reduction begins with a step along the path's tangent, and every step
+//! halves until the smoothed residual falls.
 
 use fearless_simd::Level;
 
@@ -31,15 +31,24 @@ impl Default for Homotopy {
     fn default() -> Self {
         let none = Impulses::zero(0);
         let (map, linearised) = (SmoothedMap::default(), Linearised::default());
-        Self { map, linearised, guess: none.clone(), full: none.clone(), trial: none.clone(), settled: none, level: Level::new() }
+        Self {
+            map,
+            linearised,
+            guess: none.clone(),
+            full: none.clone(),
+            trial: none.clone(),
+            settled: none,
+            level: Level::new(),
+        }
     }
 }
 
 impl Homotopy {
-    /// Follows ε from `first` times the problem's speed scale down to 1e-11 of it; the end is meant to be polished.
+    /// Follows ε from `first` times the problem's speed scale down to 1e-11 of it; the end is meant
+    /// to be polished.
     ///
-    /// `start` seeds the path; returns its end, or the last point reached. Where a reduction was too bold to recover from, a
-    /// milder one is tried from the last good point.
+    /// `start` seeds the path; returns its end, or the last point reached. Where a reduction was
+    /// too bold to recover from, a milder one is tried from the last good point.
     pub fn follow(&mut self, ncp: &Ncp<1>, start: &Impulses<1>, first: f64) -> &Impulses<1> {
         let scale = ncp.speed_scale().0[0];
         let (mut settled_at, mut epsilon) = (first * scale, first * scale);
@@ -69,7 +78,8 @@ impl Homotopy {
         &self.settled
     }
 
-    /// From a point settled at `from`, Newton steps to `epsilon`; false where they do not get there.
+    /// From a point settled at `from`, Newton steps to `epsilon`; false where they do not get
+    /// there.
     fn settle(&mut self, ncp: &Ncp<1>, from: f64, epsilon: f64) -> bool {
         if from > epsilon && self.newton_step(ncp, from, epsilon) {
             std::mem::swap(&mut self.guess, &mut self.full);
@@ -94,7 +104,8 @@ impl Homotopy {
         merit < 0.1 * epsilon
     }
 
-    /// A Newton step, halved until the smoothed residual falls to what is returned; `None` where halving does not help.
+    /// A Newton step, halved until the smoothed residual falls to what is returned; `None` where
+    /// halving does not help.
     fn damped_step(&mut self, ncp: &Ncp<1>, epsilon: f64, merit: f64) -> Option<f64> {
         if !self.newton_step(ncp, epsilon, epsilon) {
             return None;
@@ -120,7 +131,8 @@ impl Homotopy {
             #[inline(always)]
             || {
                 self.map.take(ncp, &self.guess, Lanes([from]));
-                self.linearised.smoothed(ncp, &self.guess, &self.map, Lanes([target]));
+                self.linearised
+                    .smoothed(ncp, &self.guess, &self.map, Lanes([target]));
                 self.linearised.step(ncp, &mut self.full, Mask::splat(true));
             },
         );
@@ -129,7 +141,13 @@ impl Homotopy {
 }
 
 /// The smoothed residual.
-fn violation(level: Level, map: &mut SmoothedMap<1>, ncp: &Ncp<1>, p: &Impulses<1>, epsilon: f64) -> f64 {
+fn violation(
+    level: Level,
+    map: &mut SmoothedMap<1>,
+    ncp: &Ncp<1>,
+    p: &Impulses<1>,
+    epsilon: f64,
+) -> f64 {
     on_widest(
         level,
         #[inline(always)]

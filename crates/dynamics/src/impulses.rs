@@ -28,7 +28,13 @@ impl<const W: usize> Impulses<W> {
             zeros.resize(contacts, Lanes::ZERO);
             zeros
         };
-        Self { v: [Lanes::ZERO; 3], normal: zeros(), tangential: zeros(), feet: [[Lanes::ZERO; 2]; 3], pusher_yield: Lanes::ZERO }
+        Self {
+            v: [Lanes::ZERO; 3],
+            normal: zeros(),
+            tangential: zeros(),
+            feet: [[Lanes::ZERO; 2]; 3],
+            pusher_yield: Lanes::ZERO,
+        }
     }
 
     /// Makes room for `contacts` contacts; new entries are zero.
@@ -57,7 +63,11 @@ impl<const W: usize> Impulses<W> {
     #[inline(always)]
     fn zip(&mut self, other: &Self, f: impl Fn(Lanes<W>, Lanes<W>) -> Lanes<W>) {
         let pairs = self.v.iter_mut().zip(&other.v);
-        let feet = self.feet.as_flattened_mut().iter_mut().zip(other.feet.as_flattened());
+        let feet = self
+            .feet
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(other.feet.as_flattened());
         let normal = self.normal.iter_mut().zip(&other.normal);
         let tangential = self.tangential.iter_mut().zip(&other.tangential);
         for (to, from) in pairs.chain(feet).chain(normal).chain(tangential) {
@@ -71,7 +81,8 @@ impl<const W: usize> Impulses<W> {
         self.normal.clear();
         self.tangential.clear();
         self.resize(contacts);
-        (self.v, self.feet, self.pusher_yield) = ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
+        (self.v, self.feet, self.pusher_yield) =
+            ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
     }
 
     /// The start without any impulse: the free motion.
@@ -80,13 +91,23 @@ impl<const W: usize> Impulses<W> {
         self.v = ncp.free;
     }
 
-    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in `ncp`; what contacts `to` has beyond
-    /// these carry nothing.
+    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in
+    /// `ncp`; what contacts `to` has beyond these carry nothing.
     #[inline(always)]
-    pub fn pack_lane<const V: usize>(&self, ncp: &Ncp<W>, lane: usize, to: &mut Impulses<V>, slot: usize) {
+    pub fn pack_lane<const V: usize>(
+        &self,
+        ncp: &Ncp<W>,
+        lane: usize,
+        to: &mut Impulses<V>,
+        slot: usize,
+    ) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
         let mut k = 0;
-        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(self.normal.iter().zip(&self.tangential)) {
+        for (row, (p_n, p_t)) in ncp
+            .contacts
+            .iter()
+            .zip(self.normal.iter().zip(&self.tangential))
+        {
             if row.is_present(lane) {
                 to.normal[k].0[slot] = p_n.0[lane];
                 to.tangential[k].0[slot] = p_t.0[lane];
@@ -100,10 +121,20 @@ impl<const W: usize> Impulses<W> {
 
     /// The inverse of [`Impulses::pack_lane`]; contacts that the lane does not have carry nothing.
     #[inline(always)]
-    pub fn unpack_lane<const V: usize>(&mut self, ncp: &Ncp<W>, lane: usize, from: &Impulses<V>, slot: usize) {
+    pub fn unpack_lane<const V: usize>(
+        &mut self,
+        ncp: &Ncp<W>,
+        lane: usize,
+        from: &Impulses<V>,
+        slot: usize,
+    ) {
         copy_lane(self.singles_mut(), lane, from.singles(), slot);
         let mut k = 0;
-        for (row, (to_n, to_t)) in ncp.contacts.iter().zip(self.normal.iter_mut().zip(&mut self.tangential)) {
+        for (row, (to_n, to_t)) in ncp
+            .contacts
+            .iter()
+            .zip(self.normal.iter_mut().zip(&mut self.tangential))
+        {
             let (mut p_n, mut p_t) = (0.0, 0.0);
             if row.is_present(lane) {
                 (p_n, p_t) = (from.normal[k].0[slot], from.tangential[k].0[slot]);
@@ -131,9 +162,14 @@ impl<const W: usize> Impulses<W> {
         let m = problem.mass;
         let rho = (problem.inertia / m).sqrt();
         let contacts = problem.contacts.len();
-        let newton_seconds = |column: &[Lanes<W>]| column[..contacts].iter().map(|p| p.0[lane] * m).collect();
+        let newton_seconds =
+            |column: &[Lanes<W>]| column[..contacts].iter().map(|p| p.0[lane] * m).collect();
         StepSolution {
-            twist: Twist { vx: self.v[0].0[lane], vy: self.v[1].0[lane], omega: self.v[2].0[lane] / rho },
+            twist: Twist {
+                vx: self.v[0].0[lane],
+                vy: self.v[1].0[lane],
+                omega: self.v[2].0[lane] / rho,
+            },
             normal: newton_seconds(&self.normal),
             tangential: newton_seconds(&self.tangential),
             feet: self.feet.map(|p| p.map(|x| x.0[lane] * m)),

@@ -1,8 +1,9 @@
 //! `W` particles side by side: [`Lanes`] and [`Mask`].
 //!
-//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and exactly rounded, on any machine; where a
-//! product and a sum are rounded together, [`Lanes::plus`] and [`Lanes::less`] say so. A particle's result does not depend on `W` nor on
-//! its neighbours; `Lanes<1>` is the scalar reference.
+//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and
+//! exactly rounded, on any machine; where a product and a sum are rounded together, [`Lanes::plus`]
+//! and [`Lanes::less`] say so. A particle's result does not depend on `W` nor on its neighbours;
+//! `Lanes<1>` is the scalar reference.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
@@ -12,7 +13,8 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign
 #[repr(align(64))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
 
-/// `W` conditions, one per particle; as wide as the numbers that they choose between, so that choosing is bitwise.
+/// `W` conditions, one per particle; as wide as the numbers that they choose between, so that
+/// choosing is bitwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(64))]
 pub struct Mask<const W: usize>([u64; W]);
@@ -54,16 +56,20 @@ impl<const W: usize> Lanes<W> {
         Self(from_fn(|i| self.0[i].sqrt()))
     }
 
-    /// 1/√x of positive normal numbers, to 3e-12; finite where x is 0, not finite where it is not. Nothing waits for the divider.
+    /// 1/√x of positive normal numbers, to 3e-12; finite where x is 0, not finite where it is not.
+    /// Nothing waits for the divider.
     ///
-    /// Halving the exponent gives 1/√x to 3.4 % (Lomont 2003). A Newton step leaves 3/2 of the error's square, always on one side: half of
-    /// that is added to the first.
+    /// Halving the exponent gives 1/√x to 3.4 % (Lomont 2003). A Newton step leaves 3/2 of the
+    /// error's square, always on one side: half of that is added to the first.
     #[inline(always)]
     pub fn inverse_sqrt(self) -> Self {
         const FIRST_GUESS: u64 = 0x5fe6_eb50_c7b5_37a9;
         const LONGER: f64 = 1.0 + 8.8e-4;
-        let newton = |y: Self, half: Self, longer: f64| y * Self::splat(1.5 * longer).less(half * y, y);
-        let y = Self(from_fn(|i| f64::from_bits(FIRST_GUESS.wrapping_sub(self.0[i].to_bits() >> 1))));
+        let newton =
+            |y: Self, half: Self, longer: f64| y * Self::splat(1.5 * longer).less(half * y, y);
+        let y = Self(from_fn(|i| {
+            f64::from_bits(FIRST_GUESS.wrapping_sub(self.0[i].to_bits() >> 1))
+        }));
         let y = newton(y, self * (0.5 * LONGER), LONGER);
         let half = self * 0.5;
         newton(newton(y, half, 1.0), half, 1.0)
@@ -79,14 +85,20 @@ impl<const W: usize> Lanes<W> {
 
     /// self + a b, rounded once.
     #[inline(always)]
-    #[expect(clippy::disallowed_methods, reason = "correctly rounded on any machine")]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "correctly rounded on any machine"
+    )]
     pub fn plus(self, a: Self, b: Self) -> Self {
         Self(from_fn(|i| a.0[i].mul_add(b.0[i], self.0[i])))
     }
 
     /// self − a b, rounded once.
     #[inline(always)]
-    #[expect(clippy::disallowed_methods, reason = "correctly rounded on any machine")]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "correctly rounded on any machine"
+    )]
     pub fn less(self, a: Self, b: Self) -> Self {
         Self(from_fn(|i| (-a.0[i]).mul_add(b.0[i], self.0[i])))
     }
@@ -106,13 +118,19 @@ impl<const W: usize> Lanes<W> {
     /// +1 where the number is positive, −1 elsewhere.
     #[inline(always)]
     pub fn sign(self) -> Self {
-        self.gt(Self::ZERO).select(Self::splat(1.0), Self::splat(-1.0))
+        self.gt(Self::ZERO)
+            .select(Self::splat(1.0), Self::splat(-1.0))
     }
 }
 
 /// Copies lane `lane` of several numbers into lane `slot` of as many others.
 #[inline(always)]
-pub fn copy_lane<const N: usize, const V: usize, const W: usize>(to: [&mut Lanes<V>; N], slot: usize, from: [&Lanes<W>; N], lane: usize) {
+pub fn copy_lane<const N: usize, const V: usize, const W: usize>(
+    to: [&mut Lanes<V>; N],
+    slot: usize,
+    from: [&Lanes<W>; N],
+    lane: usize,
+) {
     for k in 0..N {
         to[k].0[slot] = from[k].0[lane];
     }
@@ -146,7 +164,9 @@ impl<const W: usize> Mask<W> {
     /// `yes` where the condition holds, `no` elsewhere.
     #[inline(always)]
     pub fn select(self, yes: Lanes<W>, no: Lanes<W>) -> Lanes<W> {
-        Lanes(from_fn(|i| f64::from_bits(self.0[i] & yes.0[i].to_bits() | !self.0[i] & no.0[i].to_bits())))
+        Lanes(from_fn(|i| {
+            f64::from_bits(self.0[i] & yes.0[i].to_bits() | !self.0[i] & no.0[i].to_bits())
+        }))
     }
 
     /// `yes` where the condition holds, 0 elsewhere.
@@ -267,21 +287,30 @@ mod tests {
     #[test]
     fn inverse_sqrt_agrees_with_root_and_division() {
         let mantissas = (0..4096).map(|i| 1.0 + f64::from(i) / 1024.0);
-        for x in mantissas.flat_map(|m| [-1000, -301, -7, 0, 1, 300, 1000].map(|e| m * 2f64.powi(e))) {
+        for x in
+            mantissas.flat_map(|m| [-1000, -301, -7, 0, 1, 300, 1000].map(|e| m * 2f64.powi(e)))
+        {
             let (found, exact) = (Lanes([x]).inverse_sqrt().0[0], 1.0 / x.sqrt());
-            assert!((found / exact - 1.0).abs() < 3e-12, "{x:e}: {found:e}, not {exact:e}");
+            assert!(
+                (found / exact - 1.0).abs() < 3e-12,
+                "{x:e}: {found:e}, not {exact:e}"
+            );
         }
         assert!(Lanes([0.0]).inverse_sqrt().0[0].is_finite());
         let [not, infinite] = Lanes([f64::NAN, f64::INFINITY]).inverse_sqrt().0;
         assert!(not.is_nan() && !infinite.is_finite());
     }
 
-    /// (1 + 2⁻³⁰)² − 1 has the digits 2⁻²⁹ + 2⁻⁶⁰; a product that was rounded first would have lost the last one.
+    /// (1 + 2⁻³⁰)² − 1 has the digits 2⁻²⁹ + 2⁻⁶⁰; a product that was rounded first would have lost
+    /// the last one.
     #[test]
     fn products_and_sums_are_rounded_once_on_any_instructions() {
         let (x, exact) = (1.0 + 2f64.powi(-30), 2f64.powi(-29) + 2f64.powi(-60));
         let squares = |x: f64| {
-            let (one, x) = (Lanes::<8>::splat(1.0), Lanes::<8>::splat(std::hint::black_box(x)));
+            let (one, x) = (
+                Lanes::<8>::splat(1.0),
+                Lanes::<8>::splat(std::hint::black_box(x)),
+            );
             [(-one).plus(x, x), -one.less(x, x)]
         };
         for level in [Level::baseline(), Level::new()] {
@@ -297,7 +326,16 @@ mod tests {
     #[test]
     fn lanes_of_a_mask_come_in_order() {
         let mask = Mask::<8>::from_fn(|lane| [1, 2, 7].contains(&lane));
-        assert_eq!((mask.lanes().collect::<Vec<_>>(), mask.count()), (vec![1, 2, 7], 3));
-        assert_eq!((Mask::<64>::splat(true).lanes().count(), Mask::<64>::splat(false).count()), (64, 0));
+        assert_eq!(
+            (mask.lanes().collect::<Vec<_>>(), mask.count()),
+            (vec![1, 2, 7], 3)
+        );
+        assert_eq!(
+            (
+                Mask::<64>::splat(true).lanes().count(),
+                Mask::<64>::splat(false).count()
+            ),
+            (64, 0)
+        );
     }
 }

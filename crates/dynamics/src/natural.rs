@@ -1,7 +1,9 @@
-//! The natural map of the mixed NCP at one point: [`NaturalMap`], what the certificate and the fast solver share.
+//! The natural map of the mixed NCP at one point: [`NaturalMap`], what the certificate and the fast
+//! solver share.
 //!
-//! Its zeros are the solutions. A foot's row is p − Π(p − s), Π the projection on the friction disc; a contact's rows are
-//! min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row is min(F_stall − F, y).
+//! Its zeros are the solutions. A foot's row is p − Π(p − s), Π the projection on the friction
+//! disc; a contact's rows are min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row is
+//! min(F_stall − F, y).
 
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, copy_lane};
@@ -35,7 +37,12 @@ pub struct ContactMap<const W: usize> {
 impl<const W: usize> Default for NaturalMap<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
-        Self { imbalance: [o; 3], slips: [[o; 2]; 3], contacts: Vec::with_capacity(ROOM), slack: o }
+        Self {
+            imbalance: [o; 3],
+            slips: [[o; 2]; 3],
+            contacts: Vec::with_capacity(ROOM),
+            slack: o,
+        }
     }
 }
 
@@ -58,10 +65,13 @@ impl<const W: usize> NaturalMap<W> {
         worst.note(squares.root());
         self.contacts.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let gap = row.gap_velocity(&p.v, p.pusher_yield).plus(ncp.compliance, *p_n);
+            let gap = row
+                .gap_velocity(&p.v, p.pusher_yield)
+                .plus(ncp.compliance, *p_n);
             worst.note(p_n.min(gap));
             let mut slip = Lanes::ZERO;
-            // where a contact carries nothing and stays open in every lane, its slip makes no difference
+            // where a contact carries nothing and stays open in every lane, its slip makes no
+            // difference
             if ((p_n.abs() + p_t.abs()).gt(Lanes::ZERO) | gap.lt(Lanes::ZERO)).any() {
                 slip = row.slip_velocity(&p.v, p.pusher_yield);
                 worst.note(slip_violation(row, slip, [*p_n, *p_t]));
@@ -71,13 +81,26 @@ impl<const W: usize> NaturalMap<W> {
         worst.size()
     }
 
-    /// Copies one lane of `ncp` into lane `slot` of `to`, a map of `contacts` contacts, without the rows that pad it.
+    /// Copies one lane of `ncp` into lane `slot` of `to`, a map of `contacts` contacts, without the
+    /// rows that pad it.
     #[inline(always)]
-    pub fn pack_lane(&self, ncp: &Ncp<W>, lane: usize, to: &mut Self, contacts: usize, slot: usize) {
+    pub fn pack_lane(
+        &self,
+        ncp: &Ncp<W>,
+        lane: usize,
+        to: &mut Self,
+        contacts: usize,
+        slot: usize,
+    ) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
         to.contacts.resize(contacts, ContactMap::OPEN);
         let mut k = 0;
-        for (map, _) in self.contacts.iter().zip(&ncp.contacts).filter(|(_, row)| row.is_present(lane)) {
+        for (map, _) in self
+            .contacts
+            .iter()
+            .zip(&ncp.contacts)
+            .filter(|(_, row)| row.is_present(lane))
+        {
             to.contacts[k].gap.0[slot] = map.gap.0[lane];
             to.contacts[k].slip.0[slot] = map.slip.0[lane];
             k += 1;
@@ -109,17 +132,27 @@ fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]
     let size = square(&z);
     let sliding = size.gt(bound * bound);
     let shrink = bound * size.inverse_sqrt();
-    [sliding.select((-p[0]).plus(shrink, z[0]), -slip[0]), sliding.select((-p[1]).plus(shrink, z[1]), -slip[1])]
+    [
+        sliding.select((-p[0]).plus(shrink, z[0]), -slip[0]),
+        sliding.select((-p[1]).plus(shrink, z[1]), -slip[1]),
+    ]
 }
 
 impl<const W: usize> ContactMap<W> {
     /// Of a row that only pads.
-    const OPEN: Self = Self { gap: ContactRow::<W>::OPEN.gap, slip: Lanes::ZERO };
+    const OPEN: Self = Self {
+        gap: ContactRow::<W>::OPEN.gap,
+        slip: Lanes::ZERO,
+    };
 }
 
 /// The friction row of a contact: p_t − clamp(p_t − s, ±μ p_n).
 #[inline(always)]
-fn slip_violation<const W: usize>(row: &ContactRow<W>, slip: Lanes<W>, [p_n, p_t]: [Lanes<W>; 2]) -> Lanes<W> {
+fn slip_violation<const W: usize>(
+    row: &ContactRow<W>,
+    slip: Lanes<W>,
+    [p_n, p_t]: [Lanes<W>; 2],
+) -> Lanes<W> {
     let bound = row.mu * p_n.max(Lanes::ZERO);
     p_t - (p_t - slip).min(bound).max(-bound)
 }

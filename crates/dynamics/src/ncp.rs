@@ -1,8 +1,10 @@
-//! The mixed NCP of one step in mass-normalised units, `W` particles side by side: [`Ncp`] and its unknowns [`Impulses`].
+//! The mixed NCP of one step in mass-normalised units, `W` particles side by side: [`Ncp`] and its
+//! unknowns [`Impulses`].
 //!
-//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ, so that every number is a speed (m/s)
-//! and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
-//! The residual of [`Ncp::residual`] is the certificate of model.md, "What solved means".
+//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ, so that
+//! every number is a speed (m/s) and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n,
+//! r × n / ρ), W_t = (t, r × t / ρ). The residual of [`Ncp::residual`] is the certificate of
+//! model.md, "What solved means".
 
 use crate::impulses::Impulses;
 use crate::lanes::{Lanes, copy_lane};
@@ -65,11 +67,12 @@ pub struct ContactRow<const W: usize> {
     pub mu: Lanes<W>,
 }
 
-/// Contacts for which working memory has room from the start: a part of it that is first needed late must not make a late step
-/// allocate.
+/// Contacts for which working memory has room from the start: a part of it that is first needed
+/// late must not make a late step allocate.
 pub(crate) const ROOM: usize = 16;
 
-/// `W` mixed NCPs with equally many contact rows (rows that a particle does not need are [`ContactRow::OPEN`]).
+/// `W` mixed NCPs with equally many contact rows (rows that a particle does not need are
+/// [`ContactRow::OPEN`]).
 #[derive(Clone, Debug)]
 pub struct Ncp<const W: usize> {
     /// Velocity without contact and friction impulses: v + M⁻¹ p_app.
@@ -80,7 +83,8 @@ pub struct Ncp<const W: usize> {
     pub contacts: Vec<ContactRow<W>>,
     /// F_stall h / m (m/s); infinite for a rigid pusher.
     pub stall: Lanes<W>,
-    /// Compliance κ of the gap rows: 0, or that of model.md's "Jamming" where no exact solution exists.
+    /// Compliance κ of the gap rows: 0, or that of model.md's "Jamming" where no exact solution
+    /// exists.
     pub compliance: Lanes<W>,
 }
 
@@ -121,13 +125,27 @@ impl<const W: usize> ContactRow<W> {
     #[inline(always)]
     fn numbers(&self) -> [&Lanes<W>; 11] {
         let ([nx, ny, turn], [tx, ty, twist]) = (&self.n, &self.t);
-        [nx, ny, turn, tx, ty, twist, &self.gap, &self.slip, &self.nd, &self.td, &self.mu]
+        [
+            nx, ny, turn, tx, ty, twist, &self.gap, &self.slip, &self.nd, &self.td, &self.mu,
+        ]
     }
 
     #[inline(always)]
     fn numbers_mut(&mut self) -> [&mut Lanes<W>; 11] {
         let ([nx, ny, turn], [tx, ty, twist]) = (&mut self.n, &mut self.t);
-        [nx, ny, turn, tx, ty, twist, &mut self.gap, &mut self.slip, &mut self.nd, &mut self.td, &mut self.mu]
+        [
+            nx,
+            ny,
+            turn,
+            tx,
+            ty,
+            twist,
+            &mut self.gap,
+            &mut self.slip,
+            &mut self.nd,
+            &mut self.td,
+            &mut self.mu,
+        ]
     }
 
     /// Gap velocity γ.
@@ -150,7 +168,8 @@ impl<const W: usize> Ncp<W> {
         self.compliance = Lanes::ZERO;
     }
 
-    /// Copies one lane into lane `slot` of `to`, without the open rows that pad it; what rows `to` has beyond these become open.
+    /// Copies one lane into lane `slot` of `to`, without the open rows that pad it; what rows `to`
+    /// has beyond these become open.
     #[inline(always)]
     pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Ncp<V>, slot: usize) {
         copy_lane(to.singles_mut(), slot, self.singles(), lane);
@@ -172,7 +191,10 @@ impl<const W: usize> Ncp<W> {
     fn singles(&self) -> [&Lanes<W>; 14] {
         let ([x, y, turn], [a, b, c]) = (&self.free, &self.feet);
         let [stall, compliance] = [&self.stall, &self.compliance];
-        [x, y, turn, &a.jx, &a.jy, &a.bound, &b.jx, &b.jy, &b.bound, &c.jx, &c.jy, &c.bound, stall, compliance]
+        [
+            x, y, turn, &a.jx, &a.jy, &a.bound, &b.jx, &b.jy, &b.bound, &c.jx, &c.jy, &c.bound,
+            stall, compliance,
+        ]
     }
 
     #[inline(always)]
@@ -199,9 +221,19 @@ impl<const W: usize> Ncp<W> {
 
     /// No contact, no friction, at rest; a workspace to fill.
     pub fn empty() -> Self {
-        let foot = FootRow { jx: Lanes::ZERO, jy: Lanes::ZERO, bound: Lanes::ZERO };
+        let foot = FootRow {
+            jx: Lanes::ZERO,
+            jy: Lanes::ZERO,
+            bound: Lanes::ZERO,
+        };
         let contacts = Vec::with_capacity(ROOM);
-        Self { free: [Lanes::ZERO; 3], feet: [foot; 3], contacts, stall: Lanes::splat(f64::INFINITY), compliance: Lanes::ZERO }
+        Self {
+            free: [Lanes::ZERO; 3],
+            feet: [foot; 3],
+            contacts,
+            stall: Lanes::splat(f64::INFINITY),
+            compliance: Lanes::ZERO,
+        }
     }
 
     /// The largest speed that appears in a problem (m/s); its natural scale.
@@ -212,7 +244,9 @@ impl<const W: usize> Ncp<W> {
             let gap = row.gap.lt(Lanes::splat(FAR)).keep(row.gap.abs());
             largest = largest.max(gap).max(row.slip.abs());
         }
-        self.feet.iter().fold(largest, |largest, foot| largest.max(foot.bound))
+        self.feet
+            .iter()
+            .fold(largest, |largest, foot| largest.max(foot.bound))
     }
 
     /// Velocity that follows from the impulses by the Newton–Euler rows.
@@ -246,7 +280,8 @@ impl<const W: usize> Ncp<W> {
         [x - p.v[0], y - p.v[1], turn - p.v[2]]
     }
 
-    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the certificate of a solution.
+    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the
+    /// certificate of a solution.
     pub fn residual(&self, p: &Impulses<W>) -> Lanes<W> {
         NaturalMap::default().take(self, p)
     }
@@ -286,7 +321,8 @@ impl<const W: usize> Worst<W> {
 }
 
 impl<const W: usize> Ncp<W> {
-    /// Fills these problems from ones in SI units; memory is reused, shorter contact lists are padded with open rows.
+    /// Fills these problems from ones in SI units; memory is reused, shorter contact lists are
+    /// padded with open rows.
     pub fn assign(&mut self, problems: &[StepProblem; W]) {
         let rows = problems.iter().map(|p| p.contacts.len()).max().unwrap_or(0);
         self.contacts.clear();
@@ -302,8 +338,11 @@ impl<const W: usize> Ncp<W> {
         let rho = (problem.inertia / m).sqrt();
         self.free[0].0[lane] = problem.twist.vx + problem.applied.fx / m;
         self.free[1].0[lane] = problem.twist.vy + problem.applied.fy / m;
-        self.free[2].0[lane] = rho * (problem.twist.omega + problem.applied.torque / problem.inertia);
-        self.stall.0[lane] = problem.stall.map_or(f64::INFINITY, |stall| stall.impulse / m);
+        self.free[2].0[lane] =
+            rho * (problem.twist.omega + problem.applied.torque / problem.inertia);
+        self.stall.0[lane] = problem
+            .stall
+            .map_or(f64::INFINITY, |stall| stall.impulse / m);
         for (row, foot) in self.feet.iter_mut().zip(&problem.feet) {
             row.jx.0[lane] = -foot.arm[1] / rho;
             row.jy.0[lane] = foot.arm[0] / rho;
@@ -311,7 +350,11 @@ impl<const W: usize> Ncp<W> {
         }
         let direction = problem.stall.map_or([0.0; 2], |stall| stall.direction);
         for (row, contact) in self.contacts.iter_mut().zip(&problem.contacts) {
-            let d = if contact.on_pusher { direction } else { [0.0; 2] };
+            let d = if contact.on_pusher {
+                direction
+            } else {
+                [0.0; 2]
+            };
             row.set_lane(lane, contact, d, Scale { rho, h: problem.h });
         }
     }

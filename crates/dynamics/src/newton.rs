@@ -1,10 +1,13 @@
-//! The fast solver: a semismooth Newton iteration on the natural map of the mixed NCP, `W` particles side by side.
+//! The fast solver: a semismooth Newton iteration on the natural map of the mixed NCP, `W`
+//! particles side by side.
 //!
-//! Every row is either held (its velocity is driven to zero) or given (its impulse is known up to the other rows), decided by
-//! the natural map of the iterate as in Alart & Curnier (1991), in which slips have weights of their own. Held rows enter with a
-//! finite stiffness k and keep their impulse from one iteration to the next (a method of multipliers), so that redundant contacts do no
-//! harm. The error shrinks by K/(K + k) an iteration once the modes are right, K what else resists; a particle's warm start is its last
-//! step's impulses. Stiff rows answer sooner, soft ones where modes contradict each other: the iterations take turns.
+//! Every row is either held (its velocity is driven to zero) or given (its impulse is known up to
+//! the other rows), decided by the natural map of the iterate as in Alart & Curnier (1991), in
+//! which slips have weights of their own. Held rows enter with a finite stiffness k and keep their
+//! impulse from one iteration to the next (a method of multipliers), so that redundant contacts do
+//! no harm. The error shrinks by K/(K + k) an iteration once the modes are right, K what else
+//! resists; a particle's warm start is its last step's impulses. Stiff rows answer sooner, soft
+//! ones where modes contradict each other: the iterations take turns.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
@@ -12,11 +15,12 @@ use crate::lanes::{Lanes, Mask};
 use crate::natural::{ContactMap, NaturalMap, TINY};
 use crate::ncp::{self, ContactRow, Ncp};
 
-/// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding feet, bound / slip speed, which hold
-/// a jammed object's creep of 1e-8 m/s.
+/// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding
+/// feet, bound / slip speed, which hold a jammed object's creep of 1e-8 m/s.
 const STIFF: f64 = 5.0e8;
 
-/// The same where stiff iterations have come to nothing: softer by what impulses of rows that contradict each other may grow.
+/// The same where stiff iterations have come to nothing: softer by what impulses of rows that
+/// contradict each other may grow.
 const SOFT: f64 = 3.0e6;
 
 /// So many iterations are stiff, as many soft, and so on.
@@ -25,7 +29,8 @@ const TURN: f64 = 8.0;
 /// Weight of slip against impulse where feet near a solution are told to stick or slide.
 pub const NEAR: f64 = 2.0e8;
 
-/// Weight of impulse against slip where closed contacts are told so, in units of the inertia that resists the slip.
+/// Weight of impulse against slip where closed contacts are told so, in units of the inertia that
+/// resists the slip.
 const CONTACT: f64 = 4.0;
 
 /// When the iteration ends.
@@ -35,7 +40,8 @@ pub struct Goal {
     pub residual: f64,
     /// Most iterations.
     pub iterations: u32,
-    /// Weight k of slip against impulse where feet are told to stick or slide: [`NEAR`] a solution, 1 from afar.
+    /// Weight k of slip against impulse where feet are told to stick or slide: [`NEAR`] a solution,
+    /// 1 from afar.
     pub weight: f64,
 }
 
@@ -52,7 +58,10 @@ impl Together {
     /// Until no lane is open.
     #[inline(always)]
     pub fn to_the_end(goal: &Goal) -> Self {
-        Self { iterations: goal.iterations, lanes: 1 }
+        Self {
+            iterations: goal.iterations,
+            lanes: 1,
+        }
     }
 }
 
@@ -65,7 +74,10 @@ pub struct Newton<const W: usize> {
 
 impl<const W: usize> Default for Newton<W> {
     fn default() -> Self {
-        Self { map: NaturalMap::default(), linearised: Linearised::default() }
+        Self {
+            map: NaturalMap::default(),
+            linearised: Linearised::default(),
+        }
     }
 }
 
@@ -82,7 +94,11 @@ pub struct Progress<const W: usize> {
 
 impl<const W: usize> Progress<W> {
     /// Nothing to do.
-    pub const NONE: Self = Self { residual: Lanes::ZERO, iterations: Lanes::ZERO, open: Mask::splat(false) };
+    pub const NONE: Self = Self {
+        residual: Lanes::ZERO,
+        iterations: Lanes::ZERO,
+        open: Mask::splat(false),
+    };
 
     /// Copies one lane into lane `slot` of `to`.
     #[inline(always)]
@@ -94,17 +110,29 @@ impl<const W: usize> Progress<W> {
 }
 
 impl<const W: usize> Newton<W> {
-    /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all iterations; returns the residuals.
+    /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all
+    /// iterations; returns the residuals.
     #[inline(always)]
     pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> Lanes<W> {
-        self.begin(ncp, p, goal, Together::to_the_end(&goal)).residual
+        self.begin(ncp, p, goal, Together::to_the_end(&goal))
+            .residual
     }
 
     /// The same while it is worth it for all lanes together.
     #[inline(always)]
-    pub fn begin(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, together: Together) -> Progress<W> {
+    pub fn begin(
+        &mut self,
+        ncp: &Ncp<W>,
+        p: &mut Impulses<W>,
+        goal: Goal,
+        together: Together,
+    ) -> Progress<W> {
         let residual = self.map.take(ncp, p);
-        let mut progress = Progress { residual, iterations: Lanes::ZERO, open: residual.gt(Lanes::splat(goal.residual)) };
+        let mut progress = Progress {
+            residual,
+            iterations: Lanes::ZERO,
+            open: residual.gt(Lanes::splat(goal.residual)),
+        };
         for _ in 0..together.iterations {
             if progress.open.count() < together.lanes {
                 break;
@@ -116,21 +144,44 @@ impl<const W: usize> Newton<W> {
 
     /// One iteration of the open lanes, from the point that they have come to.
     ///
-    /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on its neighbours.
+    /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on
+    /// its neighbours.
     #[inline(always)]
-    pub fn advance(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal, progress: &mut Progress<W>) {
-        let Progress { residual, iterations, open } = progress;
-        self.linearised.by_natural_map(ncp, p, &self.map, goal.weight, stiffness(*iterations));
+    pub fn advance(
+        &mut self,
+        ncp: &Ncp<W>,
+        p: &mut Impulses<W>,
+        goal: Goal,
+        progress: &mut Progress<W>,
+    ) {
+        let Progress {
+            residual,
+            iterations,
+            open,
+        } = progress;
+        self.linearised
+            .by_natural_map(ncp, p, &self.map, goal.weight, stiffness(*iterations));
         self.linearised.step(ncp, p, *open);
         *residual = open.select(self.map.take(ncp, p), *residual);
         *iterations += open.keep(Lanes::splat(1.0));
-        *open = *open & residual.gt(Lanes::splat(goal.residual)) & iterations.lt(Lanes::splat(f64::from(goal.iterations)));
+        *open = *open
+            & residual.gt(Lanes::splat(goal.residual))
+            & iterations.lt(Lanes::splat(f64::from(goal.iterations)));
     }
 
-    /// Copies what one lane of `ncp` has come to into lane `slot` of `to`, whose problems are `packed`.
+    /// Copies what one lane of `ncp` has come to into lane `slot` of `to`, whose problems are
+    /// `packed`.
     #[inline(always)]
-    pub fn pack_lane(&self, ncp: &Ncp<W>, lane: usize, to: &mut Self, packed: &Ncp<W>, slot: usize) {
-        self.map.pack_lane(ncp, lane, &mut to.map, packed.contacts.len(), slot);
+    pub fn pack_lane(
+        &self,
+        ncp: &Ncp<W>,
+        lane: usize,
+        to: &mut Self,
+        packed: &Ncp<W>,
+        slot: usize,
+    ) {
+        self.map
+            .pack_lane(ncp, lane, &mut to.map, packed.contacts.len(), slot);
     }
 }
 
@@ -145,15 +196,34 @@ fn stiffness<const W: usize>(iterations: Lanes<W>) -> Lanes<W> {
 impl<const W: usize> Linearised<W> {
     /// The natural map's own choice of modes at `p`, where it is `map`.
     #[inline(always)]
-    fn by_natural_map(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &NaturalMap<W>, weight: f64, stiffness: Lanes<W>) {
+    fn by_natural_map(
+        &mut self,
+        ncp: &Ncp<W>,
+        p: &Impulses<W>,
+        map: &NaturalMap<W>,
+        weight: f64,
+        stiffness: Lanes<W>,
+    ) {
         self.imbalance = map.imbalance;
         for k in 0..3 {
-            self.feet[k] = FootStep::decided(ncp.feet[k].bound, &p.feet[k], &map.slips[k], weight, stiffness);
+            self.feet[k] = FootStep::decided(
+                ncp.feet[k].bound,
+                &p.feet[k],
+                &map.slips[k],
+                weight,
+                stiffness,
+            );
         }
         self.contacts.clear();
         let hold = Hold::new(stiffness, ncp.compliance);
         let points = p.normal.iter().zip(&p.tangential);
-        for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
+        for (i, ((row, contact), (p_n, p_t))) in ncp
+            .contacts
+            .iter()
+            .zip(&map.contacts)
+            .zip(points)
+            .enumerate()
+        {
             if let Some(step) = contact.linearised(row, [*p_n, *p_t], &hold) {
                 self.contacts.push((i, step));
             }
@@ -162,7 +232,8 @@ impl<const W: usize> Linearised<W> {
     }
 }
 
-/// What it would take to hold a foot: the impulse z = p − k s, k the weight of slip against impulse.
+/// What it would take to hold a foot: the impulse z = p − k s, k the weight of slip against
+/// impulse.
 #[derive(Clone, Copy, Debug)]
 pub struct Holding<const W: usize> {
     z: [Lanes<W>; 2],
@@ -178,22 +249,41 @@ impl<const W: usize> Holding<W> {
     pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
         let k = Lanes::splat(weight);
         let z = [p[0].less(k, slip[0]), p[1].less(k, slip[1])];
-        Self { z, square: ncp::square(&z), weight }
+        Self {
+            z,
+            square: ncp::square(&z),
+            weight,
+        }
     }
 }
 
 impl<const W: usize> FootStep<W> {
     /// A foot that sticks while what would hold it is within its bound, else slides.
     #[inline(always)]
-    fn decided(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64, stiffness: Lanes<W>) -> Self {
+    fn decided(
+        bound: Lanes<W>,
+        p: &[Lanes<W>; 2],
+        slip: &[Lanes<W>; 2],
+        weight: f64,
+        stiffness: Lanes<W>,
+    ) -> Self {
         let holding = Holding::new(p, slip, weight);
-        Self::in_mode(bound, p, slip, &holding, holding.square.gt(bound * bound), stiffness)
+        Self::in_mode(
+            bound,
+            p,
+            slip,
+            &holding,
+            holding.square.gt(bound * bound),
+            stiffness,
+        )
     }
 
-    /// A foot that slides where `slides`, with p = bound z / |z|; elsewhere its slip is driven to zero with `stiffness`.
+    /// A foot that slides where `slides`, with p = bound z / |z|; elsewhere its slip is driven to
+    /// zero with `stiffness`.
     ///
-    /// Sliding is linearised with p itself, kept inside its disc, in place of bound z / |z| (Andersen et al. 2000): far from the
-    /// solution, where p and s do not oppose each other yet, the impulse then does not turn too far.
+    /// Sliding is linearised with p itself, kept inside its disc, in place of bound z / |z|
+    /// (Andersen et al. 2000): far from the solution, where p and s do not oppose each other yet,
+    /// the impulse then does not turn too far.
     #[inline(always)]
     pub fn in_mode(
         bound: Lanes<W>,
@@ -218,19 +308,34 @@ impl<const W: usize> FootStep<W> {
         let u = [z[0] * unit, z[1] * unit];
         let q = [p[0] * inside, p[1] * inside];
         Self {
-            r: [slides.select((-p[0]).plus(bound, u[0]), held[0]), slides.select((-p[1]).plus(bound, u[1]), held[1])],
+            r: [
+                slides.select((-p[0]).plus(bound, u[0]), held[0]),
+                slides.select((-p[1]).plus(bound, u[1]), held[1]),
+            ],
             k: [
-                [slides.select(full.less(q[0], u[0]), stiffness), slides.keep(-q[0] * u[1])],
-                [slides.keep(-q[1] * u[0]), slides.select(full.less(q[1], u[1]), stiffness)],
+                [
+                    slides.select(full.less(q[0], u[0]), stiffness),
+                    slides.keep(-q[0] * u[1]),
+                ],
+                [
+                    slides.keep(-q[1] * u[0]),
+                    slides.select(full.less(q[1], u[1]), stiffness),
+                ],
             ],
         }
     }
 }
 
 impl<const W: usize> ContactMap<W> {
-    /// Open, sticking or sliding either way; `None` where it is open in every lane and carries nothing.
+    /// Open, sticking or sliding either way; `None` where it is open in every lane and carries
+    /// nothing.
     #[inline(always)]
-    fn linearised(&self, row: &ContactRow<W>, p: [Lanes<W>; 2], hold: &Hold<W>) -> Option<ContactStep<W>> {
+    fn linearised(
+        &self,
+        row: &ContactRow<W>,
+        p: [Lanes<W>; 2],
+        hold: &Hold<W>,
+    ) -> Option<ContactStep<W>> {
         let one = Lanes::splat(1.0);
         let closed = (p[0] * one.plus(row.n[2], row.n[2])).gt(self.gap);
         if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
@@ -239,7 +344,11 @@ impl<const W: usize> ContactMap<W> {
         let inertia = one.plus(row.t[2], row.t[2]) * CONTACT;
         let z = (-self.slip).plus(p[1], inertia);
         let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
-        let mode = Mode { closed, sliding, ratio: z.sign() * row.mu };
+        let mode = Mode {
+            closed,
+            sliding,
+            ratio: z.sign() * row.mu,
+        };
         Some(ContactStep::in_mode(p, [self.gap, self.slip], mode, hold))
     }
 }
@@ -268,15 +377,27 @@ impl<const W: usize> Hold<W> {
     pub fn new(stiffness: Lanes<W>, compliance: Lanes<W>) -> Self {
         // bodies are rigid but where no solution exists: no division then
         let yields = compliance.gt(Lanes::ZERO).any();
-        let gap = if yields { stiffness / Lanes::splat(1.0).plus(compliance, stiffness) } else { stiffness };
-        Self { gap, slip: stiffness }
+        let gap = if yields {
+            stiffness / Lanes::splat(1.0).plus(compliance, stiffness)
+        } else {
+            stiffness
+        };
+        Self {
+            gap,
+            slip: stiffness,
+        }
     }
 }
 
 impl<const W: usize> ContactStep<W> {
     /// A contact of impulses `p` and velocities (γ, s) in a given mode.
     #[inline(always)]
-    pub fn in_mode(p: [Lanes<W>; 2], [gamma, slip]: [Lanes<W>; 2], mode: Mode<W>, hold: &Hold<W>) -> Self {
+    pub fn in_mode(
+        p: [Lanes<W>; 2],
+        [gamma, slip]: [Lanes<W>; 2],
+        mode: Mode<W>,
+        hold: &Hold<W>,
+    ) -> Self {
         let n = mode.closed.select(-gamma * hold.gap, -p[0]);
         let nn = mode.closed.keep(hold.gap);
         let free = mode.sliding | !mode.closed;
@@ -299,7 +420,8 @@ mod tests {
         let vector = |x: f64| [Lanes([x]), Lanes([-0.5 * x])];
         for slip in [1e-12, 1e-3, 1.0, 1e6] {
             for p in [0.0, 1e-6, 3.0] {
-                let step = FootStep::decided(Lanes::ZERO, &vector(p), &vector(slip), NEAR, Lanes([STIFF]));
+                let step =
+                    FootStep::decided(Lanes::ZERO, &vector(p), &vector(slip), NEAR, Lanes([STIFF]));
                 assert_eq!(step.r, vector(p).map(|p| -p), "slip {slip}, impulse {p}");
                 assert_eq!(step.k, [[Lanes::ZERO; 2]; 2], "slip {slip}, impulse {p}");
             }

@@ -1,5 +1,5 @@
-//! Least penetration of overlapping polygons by separating axes ([`least_penetration`]), and where it need not be asked for
-//! ([`separated`]).
+//! Least penetration of overlapping polygons by separating axes ([`least_penetration`]), and where
+//! it need not be asked for ([`separated`]).
 
 use crate::frames::{Frames, dot_fixed};
 use crate::lanes::{Lanes, Mask};
@@ -17,8 +17,13 @@ pub(crate) struct Overlap {
     pub gap: f64,
 }
 
-/// The deepest one of the least penetrations of all pairs of polygons that overlap; `frame` is that of `theirs` seen from `mine`.
-pub(crate) fn least_penetration(mine: &[Solid], theirs: &[Solid], frame: &Frame) -> Option<Overlap> {
+/// The deepest one of the least penetrations of all pairs of polygons that overlap; `frame` is that
+/// of `theirs` seen from `mine`.
+pub(crate) fn least_penetration(
+    mine: &[Solid],
+    theirs: &[Solid],
+    frame: &Frame,
+) -> Option<Overlap> {
     let inverse = frame.inverse();
     let mut deepest: Option<Overlap> = None;
     for a in mine.iter().filter_map(polygon) {
@@ -33,7 +38,11 @@ pub(crate) fn least_penetration(mine: &[Solid], theirs: &[Solid], frame: &Frame)
 }
 
 fn polygon(solid: &Solid) -> Option<&Polygon> {
-    if let Solid::Polygon(polygon) = solid { Some(polygon) } else { None }
+    if let Solid::Polygon(polygon) = solid {
+        Some(polygon)
+    } else {
+        None
+    }
 }
 
 fn of_pair(a: &Polygon, b: &Polygon, frame: &Frame, inverse: &Frame) -> Option<Overlap> {
@@ -41,14 +50,23 @@ fn of_pair(a: &Polygon, b: &Polygon, frame: &Frame, inverse: &Frame) -> Option<O
         return None;
     }
     let (normal, corner, gap) = shallowest(a, b, inverse)?;
-    let by_a = Overlap { normal: negate(normal), touch: add(frame.point(corner), scale(-gap, normal)), gap };
+    let by_a = Overlap {
+        normal: negate(normal),
+        touch: add(frame.point(corner), scale(-gap, normal)),
+        gap,
+    };
     let (normal, corner, gap) = shallowest(b, a, frame)?;
-    let by_b = Overlap { normal: frame.turn(normal), touch: corner, gap };
+    let by_b = Overlap {
+        normal: frame.turn(normal),
+        touch: corner,
+        gap,
+    };
     Some(if by_a.gap >= by_b.gap { by_a } else { by_b })
 }
 
-/// Among the sides of `a`, the one that `b` reaches least far behind: its normal in a's frame, b's deepest corner in b's frame, and
-/// the gap. `None` where a side has all of `b` before it. Seams are no way out. `frame` is that of `a` seen from `b`.
+/// Among the sides of `a`, the one that `b` reaches least far behind: its normal in a's frame, b's
+/// deepest corner in b's frame, and the gap. `None` where a side has all of `b` before it. Seams
+/// are no way out. `frame` is that of `a` seen from `b`.
 fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f64)> {
     let mut best: Option<(Vec2, Vec2, f64)> = None;
     for (side, start) in a.sides.iter().zip(&a.corners) {
@@ -56,7 +74,11 @@ fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f6
         let mut deepest = (b.corners[0], f64::INFINITY);
         for corner in &b.corners {
             let height = dot(normal, sub(*corner, on_line));
-            deepest = if height < deepest.1 { (*corner, height) } else { deepest };
+            deepest = if height < deepest.1 {
+                (*corner, height)
+            } else {
+                deepest
+            };
         }
         if deepest.1 >= 0.0 {
             return None;
@@ -68,10 +90,13 @@ fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f6
     best
 }
 
-/// The gap of [`least_penetration`] of two convex polygons (m), not negative where they do not overlap; `frames` are those of `b` seen
-/// from `a`, and the inverse.
+/// The gap of [`least_penetration`] of two convex polygons (m), not negative where they do not
+/// overlap; `frames` are those of `b` seen from `a`, and the inverse.
 #[inline(always)]
-pub(crate) fn least_gap<const W: usize>([a, b]: [&Solid; 2], [in_a, in_b]: [&Frames<W>; 2]) -> Lanes<W> {
+pub(crate) fn least_gap<const W: usize>(
+    [a, b]: [&Solid; 2],
+    [in_a, in_b]: [&Frames<W>; 2],
+) -> Lanes<W> {
     let mut least = Lanes::splat(f64::NEG_INFINITY);
     for (mine, theirs, frame) in [(a, b, in_a), (b, a, in_b)] {
         if let (Solid::Polygon(mine), Solid::Polygon(theirs)) = (mine, theirs) {
@@ -83,7 +108,8 @@ pub(crate) fn least_gap<const W: usize>([a, b]: [&Solid; 2], [in_a, in_b]: [&Fra
     least
 }
 
-/// Height of the lowest corner above the line of a side (m); `frame` is that of the corners seen from the side's body.
+/// Height of the lowest corner above the line of a side (m); `frame` is that of the corners seen
+/// from the side's body.
 #[inline(always)]
 fn lowest<const W: usize>(side: &Side, corners: &[Vec2], frame: &Frames<W>) -> Lanes<W> {
     let turned = frame.turn_back_fixed(side.normal);
@@ -94,10 +120,17 @@ fn lowest<const W: usize>(side: &Side, corners: &[Vec2], frame: &Frames<W>) -> L
     lowest + (dot_fixed(&frame.origin, side.normal) - side.offset)
 }
 
-/// The lanes of `asked` in which every pair of polygons has a side that the other one does not reach deeper than `depth` (m,
-/// negative) behind; `frames` are those of `theirs` seen from `mine`, and the inverse.
+/// The lanes of `asked` in which every pair of polygons has a side that the other one does not
+/// reach deeper than `depth` (m, negative) behind; `frames` are those of `theirs` seen from `mine`,
+/// and the inverse.
 #[inline(always)]
-pub(crate) fn separated<const W: usize>(mine: &[Solid], theirs: &[Solid], frames: [&Frames<W>; 2], asked: Mask<W>, depth: f64) -> Mask<W> {
+pub(crate) fn separated<const W: usize>(
+    mine: &[Solid],
+    theirs: &[Solid],
+    frames: [&Frames<W>; 2],
+    asked: Mask<W>,
+    depth: f64,
+) -> Mask<W> {
     let [in_mine, in_theirs] = frames;
     let mut all = asked;
     for a in mine.iter().filter_map(polygon) {
@@ -112,14 +145,24 @@ pub(crate) fn separated<const W: usize>(mine: &[Solid], theirs: &[Solid], frames
     all
 }
 
-/// The lanes of `asked` in which a side of `a` has all of `b` above `depth`; `frame` is that of `b` seen from `a`.
+/// The lanes of `asked` in which a side of `a` has all of `b` above `depth`; `frame` is that of `b`
+/// seen from `a`.
 #[inline(always)]
-fn has_clear_side<const W: usize>(a: &Polygon, b: &Polygon, frame: &Frames<W>, asked: Mask<W>, depth: f64) -> Mask<W> {
-    let Some(lane) = asked.lanes().next() else { return asked };
+fn has_clear_side<const W: usize>(
+    a: &Polygon,
+    b: &Polygon,
+    frame: &Frames<W>,
+    asked: Mask<W>,
+    depth: f64,
+) -> Mask<W> {
+    let Some(lane) = asked.lanes().next() else {
+        return asked;
+    };
     // the side that faces the other's centre is the likely one
     let centre = frame.lane(lane).point(b.centre);
     let above = |k: usize| dot(a.sides[k].normal, centre) - a.sides[k].offset;
-    let likely = (1..a.sides.len()).fold(0, |best, k| if above(k) > above(best) { k } else { best });
+    let likely =
+        (1..a.sides.len()).fold(0, |best, k| if above(k) > above(best) { k } else { best });
     let mut clear = Mask::splat(false);
     for k in std::iter::once(likely).chain(0..a.sides.len()) {
         clear = clear | lowest(&a.sides[k], &b.corners, frame).gt(Lanes::splat(depth));

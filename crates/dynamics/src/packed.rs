@@ -13,7 +13,8 @@ pub struct Place {
     pub lane: usize,
 }
 
-/// Up to `W` problems, each in a lane of its own without the rows that padded it, with the point that its solver has come to.
+/// Up to `W` problems, each in a lane of its own without the rows that padded it, with the point
+/// that its solver has come to.
 #[derive(Clone, Debug)]
 pub struct Packed<const W: usize> {
     /// The problems.
@@ -28,7 +29,12 @@ pub struct Packed<const W: usize> {
 
 impl<const W: usize> Default for Packed<W> {
     fn default() -> Self {
-        Self { ncp: Ncp::empty(), p: Impulses::zero(0), busy: Mask::splat(false), tags: [0; W] }
+        Self {
+            ncp: Ncp::empty(),
+            p: Impulses::zero(0),
+            busy: Mask::splat(false),
+            tags: [0; W],
+        }
     }
 }
 
@@ -40,9 +46,16 @@ impl<const W: usize> Packed<W> {
         self.busy = Mask::splat(false);
     }
 
-    /// Copies lane `lane` of a chunk into a free lane, whose number it returns; `None` where none is free.
+    /// Copies lane `lane` of a chunk into a free lane, whose number it returns; `None` where none
+    /// is free.
     #[inline(always)]
-    pub fn load(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, lane: usize, tag: usize) -> Option<usize> {
+    pub fn load(
+        &mut self,
+        ncp: &Ncp<W>,
+        p: &Impulses<W>,
+        lane: usize,
+        tag: usize,
+    ) -> Option<usize> {
         let slot = (0..W).find(|slot| !self.busy.lane(*slot))?;
         ncp.pack_lane(lane, &mut self.ncp, slot);
         self.p.resize(self.ncp.contacts.len());

@@ -12,13 +12,15 @@ use crate::overlap::{least_gap, least_penetration, separated};
 use crate::plane::{Vec2, negate, scale};
 use crate::stand::{Search, Stand};
 
-/// Width of the borders between features, as a share of the bodies' size: at least one of two neighbours always answers.
+/// Width of the borders between features, as a share of the bodies' size: at least one of two
+/// neighbours always answers.
 const BORDER: f64 = 1e-12;
 
 /// Slack of the borders of a cone (rad).
 const ANGLE: f64 = 1e-9;
 
-/// Depth, as a share of the smaller body's size, above which the features' own contacts are compared with the least penetration.
+/// Depth, as a share of the smaller body's size, above which the features' own contacts are
+/// compared with the least penetration.
 const SHALLOW: f64 = 1e-5;
 
 /// Two placed shapes and where their contacts go.
@@ -49,7 +51,8 @@ struct Places {
     ellipses: u32,
 }
 
-/// The contact that stands for an overlap no feature answers for, and one whose point a sibling part hides: after all others.
+/// The contact that stands for an overlap no feature answers for, and one whose point a sibling
+/// part hides: after all others.
 const LEAST_PENETRATION: u32 = Contact::<1>::PLACES - 2;
 const HIDDEN: u32 = Contact::<1>::PLACES - 1;
 
@@ -78,7 +81,11 @@ impl<'a, const W: usize> Pair<'a, W> {
             near,
             reach,
             slack: BORDER * (object.bounding_radius() + other.bounding_radius()),
-            places: Places { round_on_round: round_on_round as u32, round_on_other: round_on_other as u32, ellipses: ellipses as u32 },
+            places: Places {
+                round_on_round: round_on_round as u32,
+                round_on_other: round_on_other as u32,
+                ellipses: ellipses as u32,
+            },
             work,
         }
     }
@@ -100,7 +107,8 @@ impl<'a, const W: usize> Pair<'a, W> {
         self.work.found.settle_hidden(HIDDEN);
     }
 
-    /// The other's corners and discs against the object's edges, corners and discs, in the object's frame.
+    /// The other's corners and discs against the object's edges, corners and discs, in the object's
+    /// frame.
     #[inline(always)]
     fn rounds_on_object(&mut self, mine: &Outline, theirs: &Outline) {
         for (i, round) in theirs.rounds.iter().enumerate() {
@@ -109,20 +117,37 @@ impl<'a, const W: usize> Pair<'a, W> {
             if !search.within.any() {
                 continue;
             }
-            let at = Over { frame: self.in_object, round };
+            let at = Over {
+                frame: self.in_object,
+                round,
+            };
             search.stands(
                 #[inline(always)]
                 |edge| at.faces(edge),
                 &mut self.work.near,
             );
             for k in 0..self.work.near.len() {
-                let Stand { edge: index, s, height, present, .. } = self.work.near[k];
+                let Stand {
+                    edge: index,
+                    s,
+                    height,
+                    present,
+                    ..
+                } = self.work.near[k];
                 let edge = &mine.edges[index];
                 let normal = self.object_frame.turn_fixed(negate(edge.normal()));
-                let foot = [s * edge.along[0] + edge.start[0], s * edge.along[1] + edge.start[1]];
+                let foot = [
+                    s * edge.along[0] + edge.start[0],
+                    s * edge.along[1] + edge.start[1],
+                ];
                 let gap = height - round.radius;
-                let contact =
-                    Contact { place: (i * mine.edges.len() + index) as u32, present, normal, arm: self.object_frame.turn(&foot), gap };
+                let contact = Contact {
+                    place: (i * mine.edges.len() + index) as u32,
+                    present,
+                    normal,
+                    arm: self.object_frame.turn(&foot),
+                    gap,
+                };
                 self.push(contact, round.covered, || at.touch(edge), self.other);
             }
             for cluster in &mine.clusters {
@@ -158,28 +183,49 @@ impl<'a, const W: usize> Pair<'a, W> {
         if !search.within.any() {
             return;
         }
-        let at = Over { frame: self.in_other, round };
+        let at = Over {
+            frame: self.in_other,
+            round,
+        };
         search.stands(
             #[inline(always)]
             |edge| at.faces(edge),
             &mut self.work.near,
         );
         for k in 0..self.work.near.len() {
-            let Stand { edge: index, height, present, .. } = self.work.near[k];
+            let Stand {
+                edge: index,
+                height,
+                present,
+                ..
+            } = self.work.near[k];
             let edge = &theirs.edges[index];
             let place = self.places.round_on_other + (j * theirs.edges.len() + index) as u32;
             let normal = self.other_frame.turn_fixed(edge.normal());
-            let contact = Contact { place, present, normal, arm: self.object_frame.turn(&at.touch(edge)), gap: height - round.radius };
+            let contact = Contact {
+                place,
+                present,
+                normal,
+                arm: self.object_frame.turn(&at.touch(edge)),
+                gap: height - round.radius,
+            };
             self.push(contact, round.covered, || at.touch(edge), self.object);
         }
     }
 
-    /// The search for a disc about `centre`, in the frame of `shape`, where it comes near the shape's bounding disc.
+    /// The search for a disc about `centre`, in the frame of `shape`, where it comes near the
+    /// shape's bounding disc.
     #[inline(always)]
     fn search<'s>(&self, shape: &'s Shape, centre: &'s Vec2s<W>, radius: f64) -> Search<'s, W> {
         let near = self.reach + (shape.bounding_radius() + radius);
         let within = self.near & near.gt(Lanes::ZERO) & dot(centre, centre).lt(near * near);
-        Search { shape, centre, within, limit: self.reach + radius, slack: Lanes::splat(self.slack) }
+        Search {
+            shape,
+            centre,
+            within,
+            limit: self.reach + radius,
+            slack: Lanes::splat(self.slack),
+        }
     }
 
     /// Two corners or discs; `centre` is that of the other's one in the object's frame.
@@ -192,26 +238,47 @@ impl<'a, const W: usize> Pair<'a, W> {
             return;
         }
         let back = self.in_object.turn_back(&d);
-        present = present & own.cone.holds_each(&[-d[0], -d[1]], self.slack) & round.cone.holds_each(&back, self.slack);
+        present = present
+            & own.cone.holds_each(&[-d[0], -d[1]], self.slack)
+            & round.cone.holds_each(&back, self.slack);
         if present.any() {
             self.push_rounds(place, own, round, &d, present);
         }
     }
 
-    /// `d` leads from the other's centre to the object's one. A corner's own edges answer for what is right at it.
+    /// `d` leads from the other's centre to the object's one. A corner's own edges answer for what
+    /// is right at it.
     #[inline(always)]
-    fn push_rounds(&mut self, place: u32, own: &Round, round: &Round, d: &Vec2s<W>, mut present: Mask<W>) {
+    fn push_rounds(
+        &mut self,
+        place: u32,
+        own: &Round,
+        round: &Round,
+        d: &Vec2s<W>,
+        mut present: Mask<W>,
+    ) {
         let distance = dot(d, d).sqrt();
         if !(own.cone.is_full() && round.cone.is_full()) {
             present = present & distance.gt(Lanes::splat(self.slack));
         }
         let apart = distance.gt(Lanes::ZERO);
         let inverse = Lanes::splat(1.0) / apart.select(distance, Lanes::splat(1.0));
-        let normal = [apart.select(d[0] * inverse, Lanes::splat(1.0)), apart.keep(d[1] * inverse)];
+        let normal = [
+            apart.select(d[0] * inverse, Lanes::splat(1.0)),
+            apart.keep(d[1] * inverse),
+        ];
         let back = self.in_object.turn_back(&normal);
-        present = present & own.cone.holds_each(&[-normal[0], -normal[1]], ANGLE) & round.cone.holds_each(&back, ANGLE);
-        let touch = [-normal[0] * own.radius + own.centre[0], -normal[1] * own.radius + own.centre[1]];
-        let theirs = [back[0] * round.radius + round.centre[0], back[1] * round.radius + round.centre[1]];
+        present = present
+            & own.cone.holds_each(&[-normal[0], -normal[1]], ANGLE)
+            & round.cone.holds_each(&back, ANGLE);
+        let touch = [
+            -normal[0] * own.radius + own.centre[0],
+            -normal[1] * own.radius + own.centre[1],
+        ];
+        let theirs = [
+            back[0] * round.radius + round.centre[0],
+            back[1] * round.radius + round.centre[1],
+        ];
         let mut hidden = Mask::splat(false);
         if own.covered {
             hidden = hidden | self.object.hides(&touch);
@@ -220,13 +287,25 @@ impl<'a, const W: usize> Pair<'a, W> {
             hidden = hidden | self.other.hides(&theirs);
         }
         let gap = distance - own.radius - round.radius;
-        let contact = Contact { place, present, normal: self.object_frame.turn(&normal), arm: self.object_frame.turn(&touch), gap };
+        let contact = Contact {
+            place,
+            present,
+            normal: self.object_frame.turn(&normal),
+            arm: self.object_frame.turn(&touch),
+            gap,
+        };
         self.work.found.push_unless(hidden, contact);
     }
 
     /// Adds a contact; where `covered`, a sibling part in `shape` may hide its point.
     #[inline(always)]
-    fn push(&mut self, contact: Contact<W>, covered: bool, touch: impl Fn() -> Vec2s<W>, shape: &Shape) {
+    fn push(
+        &mut self,
+        contact: Contact<W>,
+        covered: bool,
+        touch: impl Fn() -> Vec2s<W>,
+        shape: &Shape,
+    ) {
         if covered {
             self.work.found.push_unless(shape.hides(&touch()), contact);
         } else {
@@ -257,21 +336,36 @@ impl<'a, const W: usize> Pair<'a, W> {
         }
     }
 
-    /// Polygons that overlap although no feature answered for it; of two convex ones, the least penetration bounds all gaps.
+    /// Polygons that overlap although no feature answered for it; of two convex ones, the least
+    /// penetration bounds all gaps.
     #[inline(always)]
     fn polygons(&mut self) {
         let (mine, theirs) = (self.object.solids(), self.other.solids());
         let frames = [&self.in_object, &self.in_other];
-        let convex = if let ([a], [b]) = (mine, theirs) { Some([a, b]) } else { None };
-        let asked = if convex.is_some() { self.near } else { self.near & !self.work.found.deeper_than(0.0) };
-        let depth = -SHALLOW * self.object.bounding_radius().min(self.other.bounding_radius());
+        let convex = if let ([a], [b]) = (mine, theirs) {
+            Some([a, b])
+        } else {
+            None
+        };
+        let asked = if convex.is_some() {
+            self.near
+        } else {
+            self.near & !self.work.found.deeper_than(0.0)
+        };
+        let depth = -SHALLOW
+            * self
+                .object
+                .bounding_radius()
+                .min(self.other.bounding_radius());
         let shallow = asked & !self.work.found.deeper_than(depth);
         let mut suspects = asked & !separated(mine, theirs, frames, shallow, depth);
         if let Some(pair) = convex
             && suspects.any()
         {
             let least = least_gap(pair, frames);
-            suspects = suspects & least.lt(self.reach.min(Lanes::ZERO)) & !self.work.found.bound(suspects, least, self.slack);
+            suspects = suspects
+                & least.lt(self.reach.min(Lanes::ZERO))
+                & !self.work.found.bound(suspects, least, self.slack);
         }
         if suspects.any() {
             self.least_penetrations(suspects);
@@ -282,13 +376,27 @@ impl<'a, const W: usize> Pair<'a, W> {
     fn least_penetrations(&mut self, suspects: Mask<W>) {
         for lane in suspects.lanes() {
             let in_object = self.in_object.lane(lane);
-            let Some(least) = least_penetration(self.object.solids(), self.other.solids(), &in_object) else { continue };
+            let Some(least) =
+                least_penetration(self.object.solids(), self.other.solids(), &in_object)
+            else {
+                continue;
+            };
             let here = Mask::from_fn(|i| i == lane);
-            let answered = self.work.found.bound(here, Lanes::splat(least.gap), self.slack).lane(lane);
+            let answered = self
+                .work
+                .found
+                .bound(here, Lanes::splat(least.gap), self.slack)
+                .lane(lane);
             if least.gap < self.reach.0[lane] && !answered {
                 let frame = self.object_frame.lane(lane);
-                let gap = Gap { normal: frame.turn(least.normal), arm: frame.turn(least.touch), gap: least.gap };
-                self.work.found.push(Contact::in_lane(LEAST_PENETRATION, lane, &gap));
+                let gap = Gap {
+                    normal: frame.turn(least.normal),
+                    arm: frame.turn(least.touch),
+                    gap: least.gap,
+                };
+                self.work
+                    .found
+                    .push(Contact::in_lane(LEAST_PENETRATION, lane, &gap));
             }
         }
     }
@@ -308,7 +416,9 @@ impl<const W: usize> Over<'_, W> {
         if self.round.cone.is_full() {
             return Mask::splat(true);
         }
-        self.round.cone.faces_each(&self.frame.turn_back_fixed(negate(edge.normal())))
+        self.round
+            .cone
+            .faces_each(&self.frame.turn_back_fixed(negate(edge.normal())))
     }
 
     /// Its point nearest to the line of an edge, in its own body's frame.
@@ -317,7 +427,9 @@ impl<const W: usize> Over<'_, W> {
         if self.round.radius == 0.0 {
             return splat(self.round.centre);
         }
-        let [x, y] = self.frame.turn_back_fixed(scale(-self.round.radius, edge.normal()));
+        let [x, y] = self
+            .frame
+            .turn_back_fixed(scale(-self.round.radius, edge.normal()));
         [x + self.round.centre[0], y + self.round.centre[1]]
     }
 }
@@ -327,7 +439,8 @@ impl crate::feature::Cone {
     #[inline(always)]
     fn holds_each<const W: usize>(&self, direction: &Vec2s<W>, slack: f64) -> Mask<W> {
         let [before, after]: [Vec2; 2] = self.along;
-        !dot_fixed(direction, before).lt(Lanes::splat(-slack)) & !dot_fixed(direction, after).gt(Lanes::splat(slack))
+        !dot_fixed(direction, before).lt(Lanes::splat(-slack))
+            & !dot_fixed(direction, after).gt(Lanes::splat(slack))
     }
 
     /// Where a unit vector lies in the widened cone.

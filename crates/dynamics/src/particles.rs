@@ -1,4 +1,5 @@
-//! What a step reads and writes of a particle: [`Particle`], and [`Particles`], `W` of them side by side.
+//! What a step reads and writes of a particle: [`Particle`], and [`Particles`], `W` of them side by
+//! side.
 
 use crate::lanes::Lanes;
 use crate::scene::Friction;
@@ -16,8 +17,8 @@ pub struct Particle {
     pub twist: Twist,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
-    /// How far the pusher stands behind its pose, against its direction, since it gave way in the step before (m); 0 where its pose is
-    /// where it stands.
+    /// How far the pusher stands behind its pose, against its direction, since it gave way in the
+    /// step before (m); 0 where its pose is where it stands.
     pub pusher_lag: f64,
     /// Impulses of the step before.
     pub warm: WarmStart,
@@ -30,7 +31,8 @@ pub struct WarmStart {
     pub feet: [[f64; 2]; 3],
     /// Speed by which the pusher gave way (m/s).
     pub pusher_yield: f64,
-    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact), p_n, p_t (m/s).
+    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact),
+    /// p_n, p_t (m/s).
     pub contacts: [[f64; 3]; REMEMBERED],
 }
 
@@ -49,9 +51,14 @@ impl WarmStart {
 
     /// The inverse of [`WarmStart::to_array`].
     pub fn from_array(array: &[f64; Self::LEN]) -> Self {
-        let mut warm = Self { pusher_yield: array[6], ..Self::default() };
+        let mut warm = Self {
+            pusher_yield: array[6],
+            ..Self::default()
+        };
         warm.feet.as_flattened_mut().copy_from_slice(&array[..6]);
-        warm.contacts.as_flattened_mut().copy_from_slice(&array[7..]);
+        warm.contacts
+            .as_flattened_mut()
+            .copy_from_slice(&array[7..]);
         warm
     }
 }
@@ -76,23 +83,46 @@ pub struct Particles<const W: usize> {
 impl<const W: usize> Default for Particles<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
-        Self { pose: [o; 3], twist: [o; 3], applied: [o; 3], friction: [o; 4], pusher_lag: o, warm: [o; WarmStart::LEN] }
+        Self {
+            pose: [o; 3],
+            twist: [o; 3],
+            applied: [o; 3],
+            friction: [o; 4],
+            pusher_lag: o,
+            warm: [o; WarmStart::LEN],
+        }
     }
 }
 
 /// Writes plain numbers to one lane.
 fn set_lane<const W: usize, const N: usize>(to: &mut [Lanes<W>; N], lane: usize, from: [f64; N]) {
-    to.iter_mut().zip(from).for_each(|(to, from)| to.0[lane] = from);
+    to.iter_mut()
+        .zip(from)
+        .for_each(|(to, from)| to.0[lane] = from);
 }
 
 impl<const W: usize> Particles<W> {
     /// Overwrites one lane.
     pub fn set(&mut self, lane: usize, particle: &Particle, friction: &Friction) {
-        let Particle { pose, twist, applied, pusher_lag, warm } = particle;
+        let Particle {
+            pose,
+            twist,
+            applied,
+            pusher_lag,
+            warm,
+        } = particle;
         set_lane(&mut self.pose, lane, [pose.x, pose.y, pose.theta]);
         set_lane(&mut self.twist, lane, [twist.vx, twist.vy, twist.omega]);
-        set_lane(&mut self.applied, lane, [applied.fx, applied.fy, applied.torque]);
-        set_lane(&mut self.friction, lane, [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri]);
+        set_lane(
+            &mut self.applied,
+            lane,
+            [applied.fx, applied.fy, applied.torque],
+        );
+        set_lane(
+            &mut self.friction,
+            lane,
+            [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri],
+        );
         self.pusher_lag.0[lane] = *pusher_lag;
         set_lane(&mut self.warm, lane, warm.to_array());
     }

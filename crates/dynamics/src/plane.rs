@@ -68,19 +68,29 @@ pub(crate) struct Frame {
 impl Frame {
     pub fn new(pose: Pose) -> Self {
         let (sin, cos) = libm::sincos(pose.theta);
-        Self { origin: [pose.x, pose.y], cos, sin }
+        Self {
+            origin: [pose.x, pose.y],
+            cos,
+            sin,
+        }
     }
 
     /// R v.
     #[inline(always)]
     pub fn turn(&self, v: Vec2) -> Vec2 {
-        [self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1]]
+        [
+            self.cos * v[0] - self.sin * v[1],
+            self.sin * v[0] + self.cos * v[1],
+        ]
     }
 
     /// Rᵀ v.
     #[inline(always)]
     pub fn turn_back(&self, v: Vec2) -> Vec2 {
-        [self.cos * v[0] + self.sin * v[1], self.cos * v[1] - self.sin * v[0]]
+        [
+            self.cos * v[0] + self.sin * v[1],
+            self.cos * v[1] - self.sin * v[0],
+        ]
     }
 
     #[inline(always)]
@@ -90,6 +100,10 @@ impl Frame {
 
     #[inline(always)]
     pub fn inverse(&self) -> Frame {
-        Frame { origin: negate(self.turn_back(self.origin)), cos: self.cos, sin: -self.sin }
+        Frame {
+            origin: negate(self.turn_back(self.origin)),
+            cos: self.cos,
+            sin: -self.sin,
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Newton's method with the modes of a guess held fixed: [`polish`].
 //!
-//! A smoothed solution shows every contact's and foot's mode plainly (an impulse well inside its bound sticks, one on it slides),
-//! also at speeds so small that the natural map of the fast solver, which weighs impulses against speeds, cannot tell.
+//! A smoothed solution shows every contact's and foot's mode plainly (an impulse well inside its
+//! bound sticks, one on it slides), also at speeds so small that the natural map of the fast
+//! solver, which weighs impulses against speeds, cannot tell.
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
@@ -9,8 +10,8 @@ use crate::lanes::{Lanes, Mask};
 use crate::ncp::{ContactRow, Ncp, ROOM, Triple};
 use crate::newton::{self, Hold, Holding, Mode};
 
-/// Stiffness of held rows, in units of the object's mass per step: softer than the fast solver's, since a guess may hold rows that
-/// contradict each other, and the impulses grow with it.
+/// Stiffness of held rows, in units of the object's mass per step: softer than the fast solver's,
+/// since a guess may hold rows that contradict each other, and the impulses grow with it.
 const STIFFNESS: f64 = 1.0e6;
 
 /// Relative change of the velocity at which the iteration ends.
@@ -25,7 +26,10 @@ pub struct Polish<const W: usize> {
 
 impl<const W: usize> Default for Polish<W> {
     fn default() -> Self {
-        Self { linearised: Linearised::default(), modes: Vec::with_capacity(ROOM) }
+        Self {
+            linearised: Linearised::default(),
+            modes: Vec::with_capacity(ROOM),
+        }
     }
 }
 
@@ -34,17 +38,26 @@ impl<const W: usize> Polish<W> {
     ///
     /// An impulse above the share `sliding` of its bound counts as sliding.
     #[inline(always)]
-    pub fn polish(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, mut open: Mask<W>, sliding: f64, limit: u32) {
+    pub fn polish(
+        &mut self,
+        ncp: &Ncp<W>,
+        p: &mut Impulses<W>,
+        mut open: Mask<W>,
+        sliding: f64,
+        limit: u32,
+    ) {
         self.modes.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
-            self.modes.push(contact_mode(row, [*p_n, *p_t], gamma, sliding));
+            self.modes
+                .push(contact_mode(row, [*p_n, *p_t], gamma, sliding));
         }
         let mut slides = [open; 3];
         for k in 0..3 {
             slides[k] = length(&p.feet[k]).gt(ncp.feet[k].bound * sliding);
         }
-        let yields = ncp.stall.lt(Lanes::splat(f64::INFINITY)) & p.pusher_yield.gt(ncp.stall - ncp.resistance(p));
+        let yields = ncp.stall.lt(Lanes::splat(f64::INFINITY))
+            & p.pusher_yield.gt(ncp.stall - ncp.resistance(p));
         for _ in 0..limit {
             let before = (p.v, p.pusher_yield);
             self.linearise(ncp, p, &slides, yields);
@@ -63,17 +76,30 @@ impl<const W: usize> Polish<W> {
         contacts.clear();
         let hold = Hold::new(Lanes::splat(STIFFNESS), ncp.compliance);
         let points = p.normal.iter().zip(&p.tangential);
-        for (i, ((row, mode), (p_n, p_t))) in ncp.contacts.iter().zip(&self.modes).zip(points).enumerate() {
+        for (i, ((row, mode), (p_n, p_t))) in
+            ncp.contacts.iter().zip(&self.modes).zip(points).enumerate()
+        {
             let gamma = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
             let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            contacts.push((i, ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, &hold)));
+            contacts.push((
+                i,
+                ContactStep::in_mode([*p_n, *p_t], [gamma, slip], *mode, &hold),
+            ));
         }
         for k in 0..3 {
             let slip = ncp.feet[k].slip(&p.v);
             let holding = Holding::new(&p.feet[k], &slip, newton::NEAR);
-            self.linearised.feet[k] = FootStep::in_mode(ncp.feet[k].bound, &p.feet[k], &slip, &holding, slides[k], Lanes::splat(STIFFNESS));
+            self.linearised.feet[k] = FootStep::in_mode(
+                ncp.feet[k].bound,
+                &p.feet[k],
+                &slip,
+                &holding,
+                slides[k],
+                Lanes::splat(STIFFNESS),
+            );
         }
-        self.linearised.stall = StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);
+        self.linearised.stall =
+            StallStep::decided(yields, ncp.stall - ncp.resistance(p), p.pusher_yield);
     }
 }
 
@@ -95,6 +121,15 @@ fn length<const W: usize>(p: &[Lanes<W>; 2]) -> Lanes<W> {
 }
 
 #[inline(always)]
-fn contact_mode<const W: usize>(row: &ContactRow<W>, p: [Lanes<W>; 2], gamma: Lanes<W>, sliding: f64) -> Mode<W> {
-    Mode { closed: p[0].gt(gamma), sliding: p[1].abs().gt(row.mu * p[0] * sliding), ratio: p[1].sign() * row.mu }
+fn contact_mode<const W: usize>(
+    row: &ContactRow<W>,
+    p: [Lanes<W>; 2],
+    gamma: Lanes<W>,
+    sliding: f64,
+) -> Mode<W> {
+    Mode {
+        closed: p[0].gt(gamma),
+        sliding: p[1].abs().gt(row.mu * p[0] * sliding),
+        ratio: p[1].sign() * row.mu,
+    }
 }

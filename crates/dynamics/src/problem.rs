@@ -1,8 +1,10 @@
-//! The mixed nonlinear complementarity problem of one time step (eq. 1–2) in SI units: [`StepProblem`] and [`StepSolution`].
+//! The mixed nonlinear complementarity problem of one time step (eq. 1–2) in SI units:
+//! [`StepProblem`] and [`StepSolution`].
 //!
-//! Unknowns are the twist v⁺, per contact the normal and tangential impulse (p_n, p_t), per foot a planar friction impulse p_k,
-//! and the speed y ≥ 0 by which a stalled pusher falls short of its command. Conditions, with W_n = (n, r × n), W_t = (t, r × t),
-//! t = n turned by +90°, and u the commanded surface velocity of the other body:
+//! Unknowns are the twist v⁺, per contact the normal and tangential impulse (p_n, p_t), per foot a
+//! planar friction impulse p_k, and the speed y ≥ 0 by which a stalled pusher falls short of its
+//! command. Conditions, with W_n = (n, r × n), W_t = (t, r × t), t = n turned by +90°, and u the
+//! commanded surface velocity of the other body:
 //!
 //! ```text
 //! M v⁺ = M v + p_app + Σ W_n p_n + Σ W_t p_t + Σ J_kᵀ p_k

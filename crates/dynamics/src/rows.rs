@@ -4,7 +4,8 @@ use crate::Lanes;
 use crate::impulses::Impulses;
 use crate::ncp::{ContactRow, Ncp};
 
-/// A vector of the scaled velocity space (x, y, ρ θ), or of (x, y, ρ θ, y) with the pusher's yield speed appended.
+/// A vector of the scaled velocity space (x, y, ρ θ), or of (x, y, ρ θ, y) with the pusher's yield
+/// speed appended.
 pub type Vector<const N: usize> = [f64; N];
 
 /// a · b.
@@ -41,8 +42,15 @@ impl Contact {
     /// Whether the other contact says the same, to rounding.
     pub fn repeats(&self, other: &Self) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-14 * (1.0 + a.abs());
-        let columns = self.n.iter().zip(&other.n).chain(self.t.iter().zip(&other.t));
-        columns.into_iter().all(|(a, b)| near(*a, *b)) && near(self.gap, other.gap) && near(self.slip, other.slip) && self.mu == other.mu
+        let columns = self
+            .n
+            .iter()
+            .zip(&other.n)
+            .chain(self.t.iter().zip(&other.t));
+        columns.into_iter().all(|(a, b)| near(*a, *b))
+            && near(self.gap, other.gap)
+            && near(self.slip, other.slip)
+            && self.mu == other.mu
     }
 }
 
@@ -84,11 +92,20 @@ impl Rows {
     pub fn assign(&mut self, ncp: &Ncp<1>) {
         let column = |c: &[Lanes<1>; 3], d: Lanes<1>| [c[0].0[0], c[1].0[0], c[2].0[0], d.0[0]];
         self.free = ncp.free.map(|x| x.0[0]);
-        self.feet = ncp.feet.map(|f| Foot { jx: f.jx.0[0], jy: f.jy.0[0], bound: f.bound.0[0] });
+        self.feet = ncp.feet.map(|f| Foot {
+            jx: f.jx.0[0],
+            jy: f.jy.0[0],
+            bound: f.bound.0[0],
+        });
         self.stall = ncp.stall.0[0];
         self.speed_scale = ncp.speed_scale().0[0];
-        let contact =
-            |c: &ContactRow<1>| Contact { n: column(&c.n, c.nd), t: column(&c.t, c.td), gap: c.gap.0[0], slip: c.slip.0[0], mu: c.mu.0[0] };
+        let contact = |c: &ContactRow<1>| Contact {
+            n: column(&c.n, c.nd),
+            t: column(&c.t, c.td),
+            gap: c.gap.0[0],
+            slip: c.slip.0[0],
+            mu: c.mu.0[0],
+        };
         self.contacts.clear();
         self.contacts.extend(ncp.contacts.iter().map(contact));
     }
@@ -118,12 +135,22 @@ impl Guess {
     }
 }
 
-/// Solves the dense N×N system m x = b by elimination with row pivoting; `None` where a pivot is at most `singular` times the
-/// largest entry.
-pub fn solve_dense<const N: usize>(mut m: [[f64; N]; N], mut b: [f64; N], singular: f64) -> Option<[f64; N]> {
+/// Solves the dense N×N system m x = b by elimination with row pivoting; `None` where a pivot is at
+/// most `singular` times the largest entry.
+pub fn solve_dense<const N: usize>(
+    mut m: [[f64; N]; N],
+    mut b: [f64; N],
+    singular: f64,
+) -> Option<[f64; N]> {
     let largest = m.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs()));
     for c in 0..N {
-        let pivot = (c..N).fold(c, |best, r| if m[r][c].abs() > m[best][c].abs() { r } else { best });
+        let pivot = (c..N).fold(c, |best, r| {
+            if m[r][c].abs() > m[best][c].abs() {
+                r
+            } else {
+                best
+            }
+        });
         m.swap(c, pivot);
         b.swap(c, pivot);
         if m[c][c].abs() <= singular * largest || !m[c][c].is_finite() {

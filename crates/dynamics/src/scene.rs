@@ -1,4 +1,5 @@
-//! What is known before an experiment: object, support, pusher, fixels ([`Scene`]) and the friction parameters ([`Friction`]).
+//! What is known before an experiment: object, support, pusher, fixels ([`Scene`]) and the friction
+//! parameters ([`Friction`]).
 
 use crate::{Pose, Shape};
 
@@ -36,7 +37,8 @@ impl Object {
 /// Where the object stands on the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feet {
-    /// Three feet 120° apart at radius d_tri, a third of the weight each; the first one in direction `angle` (rad) of the object frame.
+    /// Three feet 120° apart at radius d_tri, a third of the weight each; the first one in
+    /// direction `angle` (rad) of the object frame.
     Tripod {
         /// Direction of the first foot in the object frame (rad).
         angle: f64,
@@ -68,7 +70,8 @@ pub struct Fixel {
     pub shape: Shape,
 }
 
-/// Everything that the contact dynamics needs to know and that does not change during an experiment.
+/// Everything that the contact dynamics needs to know and that does not change during an
+/// experiment.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Gravity (m/s²), presses the object on the support.

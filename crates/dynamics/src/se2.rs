@@ -1,6 +1,7 @@
 //! Planar rigid-body quantities: [`Pose`], [`Twist`], [`Wrench`], all in the world frame, SI units.
 
-/// Pose of a body: position of its frame's origin (m) and angle of its x axis, counter-clockwise (rad), not wrapped.
+/// Pose of a body: position of its frame's origin (m) and angle of its x axis, counter-clockwise
+/// (rad), not wrapped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// x of the origin (m).
@@ -11,7 +12,8 @@ pub struct Pose {
     pub theta: f64,
 }
 
-/// Planar twist: velocity of the body's origin in the world frame (m/s) and angular velocity (rad/s).
+/// Planar twist: velocity of the body's origin in the world frame (m/s) and angular velocity
+/// (rad/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
     /// x velocity (m/s).
@@ -22,7 +24,8 @@ pub struct Twist {
     pub omega: f64,
 }
 
-/// Planar wrench, or the impulse of one: force (N) or impulse (N s), and torque about the origin (N m) or (N m s).
+/// Planar wrench, or the impulse of one: force (N) or impulse (N s), and torque about the origin (N
+/// m) or (N m s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// x component (N) or (N s).
@@ -54,22 +57,38 @@ impl Pose {
     /// Turns a vector of the body frame into the world frame.
     pub fn rotate(&self, vector: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.theta);
-        [cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]]
+        [
+            cos * vector[0] - sin * vector[1],
+            sin * vector[0] + cos * vector[1],
+        ]
     }
 
     /// The pose after moving with `twist` for `h` seconds: q + h v (eq. 6, last line).
     pub fn advance(&self, twist: Twist, h: f64) -> Self {
-        Self::new(self.x + h * twist.vx, self.y + h * twist.vy, self.theta + h * twist.omega)
+        Self::new(
+            self.x + h * twist.vx,
+            self.y + h * twist.vy,
+            self.theta + h * twist.omega,
+        )
     }
 
     /// The mean twist that leads from `self` to `next` within `h` seconds.
     pub fn twist_to(&self, next: Pose, h: f64) -> Twist {
-        Twist { vx: (next.x - self.x) / h, vy: (next.y - self.y) / h, omega: (next.theta - self.theta) / h }
+        Twist {
+            vx: (next.x - self.x) / h,
+            vy: (next.y - self.y) / h,
+            omega: (next.theta - self.theta) / h,
+        }
     }
 
-    /// The pose at fraction `s` in [0, 1] of the straight way to `next`; angles are interpolated as they stand.
+    /// The pose at fraction `s` in [0, 1] of the straight way to `next`; angles are interpolated as
+    /// they stand.
     pub fn interpolate(&self, next: Pose, s: f64) -> Self {
-        Self::new(self.x + s * (next.x - self.x), self.y + s * (next.y - self.y), self.theta + s * (next.theta - self.theta))
+        Self::new(
+            self.x + s * (next.x - self.x),
+            self.y + s * (next.y - self.y),
+            self.theta + s * (next.theta - self.theta),
+        )
     }
 
     /// True where all three numbers are finite.

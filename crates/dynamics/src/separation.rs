@@ -1,9 +1,11 @@
 //! Largest separation of two smooth convex features over the direction: [`Separation`].
 //!
-//! g(n) = n·d − h₁(n) − h₂(n) − r for unit n, d from the centre of one feature to that of the other, h the support functions of the
-//! ellipses among them and r the sum of the radii of the round vertices. Apart, the only local maximum with g > 0 is their distance;
-//! in overlap, the largest local maximum is minus the least penetration. n points from the first feature to the second.
-//! Scaled to any length, g is concave, which is why a positive local maximum is the only one.
+//! g(n) = n·d − h₁(n) − h₂(n) − r for unit n, d from the centre of one feature to that of the
+//! other, h the support functions of the ellipses among them and r the sum of the radii of the
+//! round vertices. Apart, the only local maximum with g > 0 is their distance; in overlap, the
+//! largest local maximum is minus the least penetration. n points from the first feature to the
+//! second. Scaled to any length, g is concave, which is why a positive local maximum is the only
+//! one.
 
 use crate::feature::{Cone, Ellipse};
 use crate::plane::{Vec2, add, cross, dot, left, scale, unit};
@@ -34,7 +36,8 @@ pub(crate) struct Peak {
 }
 
 impl Separation<'_> {
-    /// The largest local maximum in the cone, of the first feature's normals; `None` where g only falls from the cone's borders.
+    /// The largest local maximum in the cone, of the first feature's normals; `None` where g only
+    /// falls from the cone's borders.
     pub fn widest(&self, cone: &Cone, slack: f64) -> Option<Peak> {
         let start = unit(self.d);
         if self.gap(start) > 0.0 {
@@ -46,8 +49,9 @@ impl Separation<'_> {
         self.best_sampled(cone, slack)
     }
 
-    /// Brackets every local maximum between neighbouring samples of the cone and refines it; a slope at a border of the cone is the
-    /// distance by which the ellipse's lowest point misses the edge there, so it has the same slack.
+    /// Brackets every local maximum between neighbouring samples of the cone and refines it; a
+    /// slope at a border of the cone is the distance by which the ellipse's lowest point misses the
+    /// edge there, so it has the same slack.
     fn best_sampled(&self, cone: &Cone, slack: f64) -> Option<Peak> {
         let mut best: Option<Peak> = None;
         let (mut low, mut slope) = (cone.first, self.slope(cone.first));
@@ -68,19 +72,31 @@ impl Separation<'_> {
     /// The local maximum uphill of a direction.
     fn climb(&self, start: Vec2) -> Peak {
         let slope = self.slope(start);
-        let stride = if slope > 0.0 { STRIDE } else { [STRIDE[0], -STRIDE[1]] };
+        let stride = if slope > 0.0 {
+            STRIDE
+        } else {
+            [STRIDE[0], -STRIDE[1]]
+        };
         let mut from = start;
         for _ in 0..63 {
             let to = turned(from, stride);
             if self.slope(to) * slope <= 0.0 {
-                return if slope > 0.0 { self.refine(from, to) } else { self.refine(to, from) };
+                return if slope > 0.0 {
+                    self.refine(from, to)
+                } else {
+                    self.refine(to, from)
+                };
             }
             from = to;
         }
-        Peak { normal: start, gap: self.gap(start) }
+        Peak {
+            normal: start,
+            gap: self.gap(start),
+        }
     }
 
-    /// Newton's method on g' = 0 between `low`, where g rises, and `high`, where it falls (counter-clockwise from low).
+    /// Newton's method on g' = 0 between `low`, where g rises, and `high`, where it falls
+    /// (counter-clockwise from low).
     fn refine(&self, mut low: Vec2, mut high: Vec2) -> Peak {
         let mut n = unit(add(low, high));
         for _ in 0..STEPS {
@@ -102,11 +118,17 @@ impl Separation<'_> {
             }
             n = next;
         }
-        Peak { normal: n, gap: self.gap(n) }
+        Peak {
+            normal: n,
+            gap: self.gap(n),
+        }
     }
 
     fn gap(&self, n: Vec2) -> f64 {
-        self.ellipses.iter().flatten().fold(dot(n, self.d) - self.radius, |g, e| g - e.support(n))
+        self.ellipses
+            .iter()
+            .flatten()
+            .fold(dot(n, self.d) - self.radius, |g, e| g - e.support(n))
     }
 
     fn slope(&self, n: Vec2) -> f64 {

@@ -7,10 +7,12 @@ use crate::plane::Vec2;
 use crate::shape_error::{ShapeError, check};
 use crate::solid::Solid;
 
-/// Two boundary points nearer than this share of the shape's extent are one point; files are rounded to 1 µm.
+/// Two boundary points nearer than this share of the shape's extent are one point; files are
+/// rounded to 1 µm.
 pub(crate) const TOLERANCE: f64 = 2e-5;
 
-/// A part's boundary point deeper than this share of the shape's size in another part is not on the union's boundary.
+/// A part's boundary point deeper than this share of the shape's size in another part is not on the
+/// union's boundary.
 const HIDDEN: f64 = 1e-9;
 
 /// One convex part of a [`Shape`], in the body frame.
@@ -52,10 +54,12 @@ pub struct Shape {
 impl Shape {
     /// A shape from its parts.
     ///
-    /// Parts may share edges, wholly or in part, and may overlap; only the boundary of their union touches anything.
+    /// Parts may share edges, wholly or in part, and may overlap; only the boundary of their union
+    /// touches anything.
     ///
     /// # Errors
-    /// [`ShapeError`], which names the part and the vertex (counted from 1), the value found, the rule and what to do.
+    /// [`ShapeError`], which names the part and the vertex (counted from 1), the value found, the
+    /// rule and what to do.
     ///
     /// ```
     /// # use stickslip_dynamics::{Part, Shape};
@@ -68,8 +72,16 @@ impl Shape {
         let tolerance = TOLERANCE * extent(&parts);
         let mut solids: Vec<Solid> = parts.iter().map(Solid::new).collect();
         let outline = Outline::new(&parts, &mut solids, tolerance);
-        solids.iter_mut().for_each(|solid| solid.close_seams(tolerance));
-        Ok(Self { parts, solids, outline, bounding_radius, tolerance })
+        solids
+            .iter_mut()
+            .for_each(|solid| solid.close_seams(tolerance));
+        Ok(Self {
+            parts,
+            solids,
+            outline,
+            bounding_radius,
+            tolerance,
+        })
     }
 
     /// The parts it was made of.
@@ -77,7 +89,8 @@ impl Shape {
         &self.parts
     }
 
-    /// Radius of the smallest disc about the frame's origin that holds the shape (m); of an ellipse off the origin, a bound.
+    /// Radius of the smallest disc about the frame's origin that holds the shape (m); of an ellipse
+    /// off the origin, a bound.
     pub fn bounding_radius(&self) -> f64 {
         self.bounding_radius
     }
@@ -99,7 +112,8 @@ impl Shape {
         self.tolerance
     }
 
-    /// Where a boundary point of one part lies inside another one, and so not on the union's boundary.
+    /// Where a boundary point of one part lies inside another one, and so not on the union's
+    /// boundary.
     #[inline(always)]
     pub(crate) fn hides<const W: usize>(&self, points: &Vec2s<W>) -> Mask<W> {
         self.holds_deeper(points, HIDDEN * self.bounding_radius)
@@ -126,9 +140,14 @@ impl Part {
     /// Largest distance of its points from the frame's origin (m).
     fn reach(&self) -> f64 {
         match self {
-            Part::Polygon { vertices } => vertices.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max),
+            Part::Polygon { vertices } => vertices
+                .iter()
+                .map(|v| v[0].hypot(v[1]))
+                .fold(0.0, f64::max),
             Part::Disc { radius, centre } => radius + centre[0].hypot(centre[1]),
-            Part::Ellipse { semi_axes, centre, .. } => semi_axes[0].max(semi_axes[1]) + centre[0].hypot(centre[1]),
+            Part::Ellipse {
+                semi_axes, centre, ..
+            } => semi_axes[0].max(semi_axes[1]) + centre[0].hypot(centre[1]),
         }
     }
 
@@ -137,11 +156,18 @@ impl Part {
         let about = |c: &Vec2, r: f64| [[c[0] - r, c[1] - r], [c[0] + r, c[1] + r]];
         match self {
             Part::Polygon { vertices } => {
-                let fold = |f: fn(f64, f64) -> f64| vertices.iter().skip(1).fold(vertices[0], |m, v| [f(m[0], v[0]), f(m[1], v[1])]);
+                let fold = |f: fn(f64, f64) -> f64| {
+                    vertices
+                        .iter()
+                        .skip(1)
+                        .fold(vertices[0], |m, v| [f(m[0], v[0]), f(m[1], v[1])])
+                };
                 [fold(f64::min), fold(f64::max)]
             }
             Part::Disc { radius, centre } => about(centre, *radius),
-            Part::Ellipse { semi_axes, centre, .. } => about(centre, semi_axes[0].max(semi_axes[1])),
+            Part::Ellipse {
+                semi_axes, centre, ..
+            } => about(centre, semi_axes[0].max(semi_axes[1])),
         }
     }
 }
@@ -149,6 +175,9 @@ impl Part {
 /// The longer side of a box about all parts (m).
 fn extent(parts: &[Part]) -> f64 {
     let boxes = || parts.iter().map(Part::bounds);
-    let side = |k: usize| boxes().map(|b| b[1][k]).fold(f64::MIN, f64::max) - boxes().map(|b| b[0][k]).fold(f64::MAX, f64::min);
+    let side = |k: usize| {
+        boxes().map(|b| b[1][k]).fold(f64::MIN, f64::max)
+            - boxes().map(|b| b[0][k]).fold(f64::MAX, f64::min)
+    };
     side(0).max(side(1))
 }

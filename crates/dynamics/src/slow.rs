@@ -18,10 +18,15 @@ use crate::solver::{Outcome, Report, Route, TOLERANCE};
 const POLISH_ITERATIONS: u32 = 30;
 
 /// The same by the fast solver.
-const POLISHED: Goal = Goal { residual: TOLERANCE, iterations: POLISH_ITERATIONS, weight: 1.0 };
+const POLISHED: Goal = Goal {
+    residual: TOLERANCE,
+    iterations: POLISH_ITERATIONS,
+    weight: 1.0,
+};
 
-/// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a fold, and most folds lie on
-/// few paths. What none of these solves costs the search over modes less than ten more of them.
+/// Smoothings at which the homotopy takes up cold starts, one after the other: a path may end at a
+/// fold, and most folds lie on few paths. What none of these solves costs the search over modes
+/// less than ten more of them.
 const HOLDING: [f64; 2] = [1.0, 1e-1];
 
 /// The same with the pusher yielding at its stall force.
@@ -33,7 +38,8 @@ const SOFT: f64 = 10.0;
 /// Smoothings tried at each compliance on that way.
 const SOFTENING: [f64; 4] = [1.0, 1e-2, 1e2, 1e-4];
 
-/// Readings of a warm start: its own modes, then everything stuck, as where a jammed or resting object stays.
+/// Readings of a warm start: its own modes, then everything stuck, as where a jammed or resting
+/// object stays.
 const WARM_SLIDING: [f64; 2] = [0.9999, f64::INFINITY];
 
 /// Newton steps in the modes of a warm start.
@@ -73,9 +79,16 @@ impl Default for SlowSolver {
 }
 
 impl SlowSolver {
-    /// Solves one lane of `ncp` from its warm start; the impulses are those of the lane's own contacts, without rows that pad it.
+    /// Solves one lane of `ncp` from its warm start; the impulses are those of the lane's own
+    /// contacts, without rows that pad it.
     #[inline(never)]
-    pub fn solve<const W: usize>(&mut self, ncp: &Ncp<W>, warm: &Impulses<W>, lane: usize, report: &mut Report) -> &Impulses<1> {
+    pub fn solve<const W: usize>(
+        &mut self,
+        ncp: &Ncp<W>,
+        warm: &Impulses<W>,
+        lane: usize,
+        report: &mut Report,
+    ) -> &Impulses<1> {
         self.ncp.clear();
         ncp.pack_lane(lane, &mut self.ncp, 0);
         self.rows.assign(&self.ncp);
@@ -87,7 +100,9 @@ impl SlowSolver {
 
     fn solve_loaded(&mut self, report: &mut Report) {
         report.route = Route::Homotopy;
-        report.residual = self.polisher.try_modes(&self.ncp, &self.start, &WARM_SLIDING, WARM_POLISH);
+        report.residual =
+            self.polisher
+                .try_modes(&self.ncp, &self.start, &WARM_SLIDING, WARM_POLISH);
         if report.residual > TOLERANCE {
             report.residual = self.follow_from(WARM);
         }
@@ -104,11 +119,14 @@ impl SlowSolver {
         }
     }
 
-    /// The homotopy from cold starts, with the pusher holding and with it yielding, until one of the polished ends is certified;
-    /// the residual of the last.
+    /// The homotopy from cold starts, with the pusher holding and with it yielding, until one of
+    /// the polished ends is certified; the residual of the last.
     fn follow(&mut self) -> f64 {
         let mut residual = f64::INFINITY;
-        let starts = HOLDING.iter().map(|first| (false, first)).chain(YIELDING.iter().map(|first| (true, first)));
+        let starts = HOLDING
+            .iter()
+            .map(|first| (false, first))
+            .chain(YIELDING.iter().map(|first| (true, first)));
         for (yields, &first) in starts {
             self.start.cold_start(&self.ncp);
             if yields {
@@ -142,7 +160,8 @@ impl SlowSolver {
         }
     }
 
-    /// Leaves the solution with compliant gap rows in the polisher: from soft rows, where it is near the free motion, to stiff ones.
+    /// Leaves the solution with compliant gap rows in the polisher: from soft rows, where it is
+    /// near the free motion, to stiff ones.
     fn solve_compliant(&mut self) {
         self.start.cold_start(&self.ncp);
         let mut compliance = SOFT;
@@ -158,13 +177,17 @@ impl SlowSolver {
 
     /// Leaves in `self.nearest` what comes nearest to a solution from `self.start`.
     ///
-    /// With impulses of a million metres per second, rounding alone may exceed the tolerance: then the last try need not be the best.
+    /// With impulses of a million metres per second, rounding alone may exceed the tolerance: then
+    /// the last try need not be the best.
     fn come_nearest(&mut self) {
         let mut least = f64::INFINITY;
         for first in SOFTENING {
             let polished = self.follow_from(first);
             let smoothed = self.polisher.map.take(&self.ncp, self.homotopy.end()).0[0];
-            for (residual, p) in [(polished, &self.polisher.p), (smoothed, self.homotopy.end())] {
+            for (residual, p) in [
+                (polished, &self.polisher.p),
+                (smoothed, self.homotopy.end()),
+            ] {
                 if residual < least {
                     least = residual;
                     self.nearest.copy_from(p);
@@ -190,7 +213,13 @@ struct Polisher {
 impl Default for Polisher {
     fn default() -> Self {
         let (modes, newton, map) = (Polish::default(), Newton::default(), NaturalMap::default());
-        Self { p: Impulses::zero(0), modes, newton, map, level: Level::new() }
+        Self {
+            p: Impulses::zero(0),
+            modes,
+            newton,
+            map,
+            level: Level::new(),
+        }
     }
 }
 
@@ -204,7 +233,8 @@ impl Polisher {
                 self.level,
                 #[inline(always)]
                 || {
-                    self.modes.polish(ncp, &mut self.p, Mask::splat(true), share, limit);
+                    self.modes
+                        .polish(ncp, &mut self.p, Mask::splat(true), share, limit);
                     self.map.take(ncp, &self.p).0[0]
                 },
             );
@@ -215,7 +245,8 @@ impl Polisher {
         residual
     }
 
-    /// Polishes a guess, in its own modes, as it is, and by the fast solver; returns the residual, the impulses are in `self.p`.
+    /// Polishes a guess, in its own modes, as it is, and by the fast solver; returns the residual,
+    /// the impulses are in `self.p`.
     fn polish(&mut self, ncp: &Ncp<1>, guess: &Impulses<1>) -> f64 {
         let residual = self.try_modes(ncp, guess, &SLIDING, POLISH_ITERATIONS);
         if residual <= TOLERANCE {
@@ -231,7 +262,8 @@ impl Polisher {
 }
 
 impl Impulses<1> {
-    /// Makes the pusher of a cold start yield: its contacts carry the stall force and it gives up the whole approach.
+    /// Makes the pusher of a cold start yield: its contacts carry the stall force and it gives up
+    /// the whole approach.
     fn yield_start(&mut self, ncp: &Ncp<1>) {
         let stall = ncp.stall.0[0];
         for (row, p_n) in ncp.contacts.iter().zip(&mut self.normal) {

@@ -1,8 +1,8 @@
 //! The smoothed NCP: every row depends smoothly on a speed ε, and at ε = 0 it is the NCP itself.
 //!
-//! Complementarity pairs a ⟂ b become a + b − sqrt((a − b)² + 4ε²) = 0 (Chen & Harker 1993), friction becomes
-//! bound·s + p σ = 0 with σ = sqrt(|s|² + ε²), linearised as it stands (the primal–dual form of Andersen, Christiansen, Conn &
-//! Overton 2000).
+//! Complementarity pairs a ⟂ b become a + b − sqrt((a − b)² + 4ε²) = 0 (Chen & Harker 1993),
+//! friction becomes bound·s + p σ = 0 with σ = sqrt(|s|² + ε²), linearised as it stands (the
+//! primal–dual form of Andersen, Christiansen, Conn & Overton 2000).
 
 use crate::condensed::{ContactStep, FootStep, Linearised, StallStep};
 use crate::impulses::Impulses;
@@ -49,8 +49,20 @@ struct SmoothedPair<const W: usize> {
 impl<const W: usize> Default for SmoothedMap<W> {
     fn default() -> Self {
         let o = Lanes::ZERO;
-        let foot = SmoothedFoot { slip: [o; 2], inverse: o };
-        Self { epsilon: o, feet: [foot; 3], contacts: Vec::with_capacity(ROOM), stall: SmoothedPair { difference: o, root: o, value: o } }
+        let foot = SmoothedFoot {
+            slip: [o; 2],
+            inverse: o,
+        };
+        Self {
+            epsilon: o,
+            feet: [foot; 3],
+            contacts: Vec::with_capacity(ROOM),
+            stall: SmoothedPair {
+                difference: o,
+                root: o,
+                value: o,
+            },
+        }
     }
 }
 
@@ -69,18 +81,32 @@ impl<const W: usize> SmoothedMap<W> {
             let inverse = squared.plus(slip, slip).inverse_sqrt();
             worst.note(pair.value);
             worst.note(p_t.plus(row.mu * p_n.max(Lanes::ZERO), slip * inverse));
-            self.contacts.push(SmoothedContact { pair, slip, inverse });
+            self.contacts.push(SmoothedContact {
+                pair,
+                slip,
+                inverse,
+            });
         }
         let mut squares = Worst::NONE;
         for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
             let slip = foot.slip(&p.v);
-            let inverse = squared.plus(slip[0], slip[0]).plus(slip[1], slip[1]).inverse_sqrt();
-            let off = [p_k[0].plus(foot.bound, slip[0] * inverse), p_k[1].plus(foot.bound, slip[1] * inverse)];
+            let inverse = squared
+                .plus(slip[0], slip[0])
+                .plus(slip[1], slip[1])
+                .inverse_sqrt();
+            let off = [
+                p_k[0].plus(foot.bound, slip[0] * inverse),
+                p_k[1].plus(foot.bound, slip[1] * inverse),
+            ];
             squares.note(square(&off));
             *map = SmoothedFoot { slip, inverse };
         }
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
-        self.stall = SmoothedPair::new(finite.keep(ncp.stall) - ncp.resistance(p), p.pusher_yield, squared);
+        self.stall = SmoothedPair::new(
+            finite.keep(ncp.stall) - ncp.resistance(p),
+            p.pusher_yield,
+            squared,
+        );
         worst.note(squares.root());
         worst.note(finite.keep(self.stall.value));
         worst.size()
@@ -92,13 +118,21 @@ impl<const W: usize> SmoothedPair<W> {
     fn new(a: Lanes<W>, b: Lanes<W>, epsilon_squared: Lanes<W>) -> Self {
         let difference = a - b;
         let root = (epsilon_squared * 4.0).plus(difference, difference).sqrt();
-        Self { difference, root, value: a + b - root }
+        Self {
+            difference,
+            root,
+            value: a + b - root,
+        }
     }
 
     /// Linearised in a, b and ε, and aimed at another ε.
     #[inline(always)]
     fn linearised(&self, aim: &Aim<W>) -> Pair<W> {
-        let Self { difference, root, value } = *self;
+        let Self {
+            difference,
+            root,
+            value,
+        } = *self;
         let sum = root + difference.abs();
         let inverse = Lanes::splat(1.0) / (root * sum);
         // 1 − |a − b| / root without cancellation
@@ -106,7 +140,11 @@ impl<const W: usize> SmoothedPair<W> {
         let more = Lanes::splat(2.0) - less;
         let forward = difference.gt(Lanes::ZERO);
         let value = value - aim.epsilon * 4.0 * (inverse * sum) * (aim.target - aim.epsilon);
-        Pair { a: forward.select(less, more), b: forward.select(more, less), value }
+        Pair {
+            a: forward.select(less, more),
+            b: forward.select(more, less),
+            value,
+        }
     }
 }
 
@@ -121,19 +159,40 @@ struct Pair<const W: usize> {
 }
 
 impl<const W: usize> Linearised<W> {
-    /// The smoothed rows at `p`, where they are `map`, linearised in unknowns and ε and aimed at ε = `target`.
+    /// The smoothed rows at `p`, where they are `map`, linearised in unknowns and ε and aimed at ε
+    /// = `target`.
     #[inline(always)]
-    pub fn smoothed(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, map: &SmoothedMap<W>, target: Lanes<W>) {
-        let aim = Aim { epsilon: map.epsilon, target };
+    pub fn smoothed(
+        &mut self,
+        ncp: &Ncp<W>,
+        p: &Impulses<W>,
+        map: &SmoothedMap<W>,
+        target: Lanes<W>,
+    ) {
+        let aim = Aim {
+            epsilon: map.epsilon,
+            target,
+        };
         self.imbalance = ncp.imbalance(p);
         self.contacts.clear();
         let points = p.normal.iter().zip(&p.tangential);
-        for (i, ((row, contact), (p_n, p_t))) in ncp.contacts.iter().zip(&map.contacts).zip(points).enumerate() {
-            self.contacts.push((i, aim.contact(row, contact, [*p_n, *p_t], ncp.compliance)));
+        for (i, ((row, contact), (p_n, p_t))) in ncp
+            .contacts
+            .iter()
+            .zip(&map.contacts)
+            .zip(points)
+            .enumerate()
+        {
+            self.contacts
+                .push((i, aim.contact(row, contact, [*p_n, *p_t], ncp.compliance)));
         }
         let ([a, b, c], [map_a, map_b, map_c]) = (&ncp.feet, &map.feet);
         // no loop, as in `Linearised::take_step`
-        self.feet = [aim.foot(a, map_a, &p.feet[0]), aim.foot(b, map_b, &p.feet[1]), aim.foot(c, map_c, &p.feet[2])];
+        self.feet = [
+            aim.foot(a, map_a, &p.feet[0]),
+            aim.foot(b, map_b, &p.feet[1]),
+            aim.foot(c, map_c, &p.feet[2]),
+        ];
         self.stall = aim.stall(ncp, &map.stall, p.pusher_yield);
     }
 }
@@ -152,10 +211,17 @@ impl<const W: usize> Aim<W> {
     }
 
     #[inline(always)]
-    fn contact(&self, row: &ContactRow<W>, map: &SmoothedContact<W>, p: [Lanes<W>; 2], compliance: Lanes<W>) -> ContactStep<W> {
+    fn contact(
+        &self,
+        row: &ContactRow<W>,
+        map: &SmoothedContact<W>,
+        p: [Lanes<W>; 2],
+        compliance: Lanes<W>,
+    ) -> ContactStep<W> {
         let pair = map.pair.linearised(self);
         // γ itself grows by κ dp_n
-        let weight = Lanes::splat(1.0) / (pair.a.max(Lanes::splat(2.0 / STIFFEST)) + compliance * pair.b);
+        let weight =
+            Lanes::splat(1.0) / (pair.a.max(Lanes::splat(2.0 / STIFFEST)) + compliance * pair.b);
         let (r_n, nn) = (-pair.value * weight, pair.b * weight);
 
         let inverse = map.inverse;
@@ -165,7 +231,13 @@ impl<const W: usize> Aim<W> {
         let clamped = p[1].min(bound).max(-bound);
         let tt = ((bound + clamped * unit) * inverse).min(Lanes::splat(STIFFEST));
         let ratio = p[0].gt(Lanes::ZERO).keep(-row.mu * unit);
-        ContactStep { n: r_n, t: ratio * r_n - (bound * unit + p[1] * self.shift(inverse)), nn, tn: ratio * nn, tt }
+        ContactStep {
+            n: r_n,
+            t: ratio * r_n - (bound * unit + p[1] * self.shift(inverse)),
+            nn,
+            tn: ratio * nn,
+            tt,
+        }
     }
 
     #[inline(always)]
@@ -180,8 +252,14 @@ impl<const W: usize> Aim<W> {
         let inside = [p[0] * shrink, p[1] * shrink];
         let bound = foot.bound * inverse;
         FootStep {
-            r: [-(foot.bound * unit[0] + p[0] * shift), -(foot.bound * unit[1] + p[1] * shift)],
-            k: [[bound + inside[0] * unit[0], inside[0] * unit[1]], [inside[1] * unit[0], bound + inside[1] * unit[1]]],
+            r: [
+                -(foot.bound * unit[0] + p[0] * shift),
+                -(foot.bound * unit[1] + p[1] * shift),
+            ],
+            k: [
+                [bound + inside[0] * unit[0], inside[0] * unit[1]],
+                [inside[1] * unit[0], bound + inside[1] * unit[1]],
+            ],
         }
     }
 
@@ -190,6 +268,10 @@ impl<const W: usize> Aim<W> {
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
         let pair = map.linearised(self);
         let one = Lanes::splat(1.0);
-        StallStep { slack: finite.keep(pair.a), pusher: finite.select(pair.b, one), rhs: -finite.select(pair.value, pusher_yield) }
+        StallStep {
+            slack: finite.keep(pair.a),
+            pusher: finite.select(pair.b, one),
+            rhs: -finite.select(pair.value, pusher_yield),
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! The inside of one convex part ([`Solid`]): depth of a point, and which stretch of a segment it covers.
+//! The inside of one convex part ([`Solid`]): depth of a point, and which stretch of a segment it
+//! covers.
 
 use crate::Part;
 use crate::feature::Edge;
@@ -56,10 +57,22 @@ impl Solid {
     pub fn new(part: &Part) -> Self {
         match part {
             Part::Polygon { vertices } => Solid::Polygon(Polygon::new(vertices)),
-            Part::Disc { radius, centre } => Solid::Oval { centre: *centre, axis: [1.0, 0.0], semi_axes: [*radius; 2] },
-            Part::Ellipse { semi_axes, centre, angle } => {
+            Part::Disc { radius, centre } => Solid::Oval {
+                centre: *centre,
+                axis: [1.0, 0.0],
+                semi_axes: [*radius; 2],
+            },
+            Part::Ellipse {
+                semi_axes,
+                centre,
+                angle,
+            } => {
                 let (sin, cos) = libm::sincos(*angle);
-                Solid::Oval { centre: *centre, axis: [cos, sin], semi_axes: *semi_axes }
+                Solid::Oval {
+                    centre: *centre,
+                    axis: [cos, sin],
+                    semi_axes: *semi_axes,
+                }
             }
         }
     }
@@ -67,16 +80,25 @@ impl Solid {
     /// Moves sides that are seams outward, so that no gap of rounding is left between parts.
     pub fn close_seams(&mut self, tolerance: f64) {
         if let Solid::Polygon(polygon) = self {
-            polygon.sides.iter_mut().filter(|side| side.seam).for_each(|side| side.offset += 2.0 * tolerance);
+            polygon
+                .sides
+                .iter_mut()
+                .filter(|side| side.seam)
+                .for_each(|side| side.offset += 2.0 * tolerance);
         }
     }
 
-    /// How deep points lie inside (m; negative outside): exact for polygons and discs inside, in sign for ellipses.
+    /// How deep points lie inside (m; negative outside): exact for polygons and discs inside, in
+    /// sign for ellipses.
     #[inline(always)]
     pub fn depths<const W: usize>(&self, points: &Vec2s<W>) -> Lanes<W> {
         match self {
             Solid::Polygon(polygon) => polygon.depths(points),
-            Solid::Oval { centre, axis, semi_axes: [a, b] } => {
+            Solid::Oval {
+                centre,
+                axis,
+                semi_axes: [a, b],
+            } => {
                 let d = [points[0] - centre[0], points[1] - centre[1]];
                 let scaled = [dot_fixed(&d, *axis) / *a, dot_fixed(&d, left(*axis)) / *b];
                 (-dot_each(&scaled, &scaled).sqrt() + 1.0) * if a < b { *a } else { *b }
@@ -98,17 +120,33 @@ impl Solid {
         (cover.near[1] - cover.near[0] > 4.0 * tolerance).then_some(cover)
     }
 
-    /// Roots of |S (start + s along − centre)|² = 1, S the scaling that makes the oval a unit circle.
+    /// Roots of |S (start + s along − centre)|² = 1, S the scaling that makes the oval a unit
+    /// circle.
     fn oval_cover(&self, edge: &Edge) -> Option<Cover> {
-        let Solid::Oval { centre, axis, semi_axes: [a, b] } = self else { return None };
+        let Solid::Oval {
+            centre,
+            axis,
+            semi_axes: [a, b],
+        } = self
+        else {
+            return None;
+        };
         let scaled = |v: Vec2| [dot(*axis, v) / a, cross(*axis, v) / b];
         let (d, t) = (scaled(sub(edge.start, *centre)), scaled(edge.along));
         let (half, tt) = (dot(d, t), dot(t, t));
         let discriminant = half * half - tt * (dot(d, d) - 1.0);
-        let root = if discriminant > 0.0 { discriminant.sqrt() } else { return None };
+        let root = if discriminant > 0.0 {
+            discriminant.sqrt()
+        } else {
+            return None;
+        };
         let low = ((-half - root) / tt).max(0.0);
         let high = ((-half + root) / tt).min(edge.length);
-        Some(Cover { near: [low, high], exact: [low, high], flush: false })
+        Some(Cover {
+            near: [low, high],
+            exact: [low, high],
+            flush: false,
+        })
     }
 }
 
@@ -116,13 +154,28 @@ impl Polygon {
     fn new(vertices: &[Vec2]) -> Self {
         let side = |(a, b): (&Vec2, &Vec2)| {
             let normal = right(unit(sub(*b, *a)));
-            Side { normal, offset: dot(normal, *a), exposed: false, seam: false }
+            Side {
+                normal,
+                offset: dot(normal, *a),
+                exposed: false,
+                seam: false,
+            }
         };
         let next = vertices.iter().cycle().skip(1);
         let count = vertices.len() as f64;
-        let centre = vertices.iter().fold([0.0; 2], |sum, v| [sum[0] + v[0] / count, sum[1] + v[1] / count]);
-        let radius = vertices.iter().map(|v| length(sub(*v, centre))).fold(0.0, f64::max);
-        Self { corners: vertices.to_vec(), sides: vertices.iter().zip(next).map(side).collect(), centre, radius }
+        let centre = vertices.iter().fold([0.0; 2], |sum, v| {
+            [sum[0] + v[0] / count, sum[1] + v[1] / count]
+        });
+        let radius = vertices
+            .iter()
+            .map(|v| length(sub(*v, centre)))
+            .fold(0.0, f64::max);
+        Self {
+            corners: vertices.to_vec(),
+            sides: vertices.iter().zip(next).map(side).collect(),
+            centre,
+            radius,
+        }
     }
 
     #[inline(always)]
@@ -134,11 +187,19 @@ impl Polygon {
         depths
     }
 
-    /// Clips the edge by the half planes, each moved outward by the tolerance; the exact ends lie where it crosses the very lines.
+    /// Clips the edge by the half planes, each moved outward by the tolerance; the exact ends lie
+    /// where it crosses the very lines.
     fn cover(&self, edge: &Edge, tolerance: f64) -> Option<Cover> {
-        let mut cover = Cover { near: [0.0, edge.length], exact: [0.0, edge.length], flush: false };
+        let mut cover = Cover {
+            near: [0.0, edge.length],
+            exact: [0.0, edge.length],
+            flush: false,
+        };
         for side in &self.sides {
-            let (height, slope) = (dot(side.normal, edge.start) - side.offset, dot(side.normal, edge.along));
+            let (height, slope) = (
+                dot(side.normal, edge.start) - side.offset,
+                dot(side.normal, edge.along),
+            );
             if (slope * edge.length).abs() <= tolerance {
                 let middle = height + 0.5 * slope * edge.length;
                 if middle > tolerance {

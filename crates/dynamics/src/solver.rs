@@ -1,8 +1,9 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
-//! The semismooth Newton iteration answers almost always. What it leaves of a whole block of particles goes to the smoothed
-//! Newton steps, packed together, still side by side; a smoothing homotopy, then an exhaustive search over contact modes take
-//! what is left, one by one. Whatever route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
+//! The semismooth Newton iteration answers almost always. What it leaves of a whole block of
+//! particles goes to the smoothed Newton steps, packed together, still side by side; a smoothing
+//! homotopy, then an exhaustive search over contact modes take what is left, one by one. Whatever
+//! route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
 
 use crate::continuation::{Block, Continuation, Descent, End};
 use crate::fast::{FastSolver, Iterated};
@@ -18,14 +19,35 @@ use crate::slow::SlowSolver;
 /// Largest natural-map residual of a solved step (m/s).
 pub const TOLERANCE: f64 = 1e-9;
 
-/// What the fast solver tries: a residual below [`TOLERANCE`], which counts in the end, for the impulses of feet that slip slowly.
-const FAST: Goal = Goal { residual: 1e-10, iterations: 32, weight: NEAR };
+/// What the fast solver tries: a residual below [`TOLERANCE`], which counts in the end, for the
+/// impulses of feet that slip slowly.
+const FAST: Goal = Goal {
+    residual: 1e-10,
+    iterations: 32,
+    weight: NEAR,
+};
 
-/// Ways down from a warm start that the smoothed steps try one after the other: from next to it, from afar, and slowly.
+/// Ways down from a warm start that the smoothed steps try one after the other: from next to it,
+/// from afar, and slowly.
 const DESCENTS: [Descent; 3] = [
-    Descent { start: 1e-7, reduction: 0.01, near: 1e6, sliding: 0.9999 },
-    Descent { start: 1e-1, reduction: 0.01, near: 1e3, sliding: 0.9999 },
-    Descent { start: 1e-3, reduction: 0.1, near: 10.0, sliding: 0.9999 },
+    Descent {
+        start: 1e-7,
+        reduction: 0.01,
+        near: 1e6,
+        sliding: 0.9999,
+    },
+    Descent {
+        start: 1e-1,
+        reduction: 0.01,
+        near: 1e3,
+        sliding: 0.9999,
+    },
+    Descent {
+        start: 1e-3,
+        reduction: 0.1,
+        near: 10.0,
+        sliding: 0.9999,
+    },
 ];
 
 /// How one step ended.
@@ -68,7 +90,12 @@ pub struct Report {
 
 impl Report {
     /// Of a step that no solver has looked at.
-    pub(crate) const UNSOLVED: Self = Self { outcome: Outcome::Failed, residual: f64::INFINITY, iterations: 0, route: Route::Newton };
+    pub(crate) const UNSOLVED: Self = Self {
+        outcome: Outcome::Failed,
+        residual: f64::INFINITY,
+        iterations: 0,
+        route: Route::Newton,
+    };
 }
 
 /// Solves one step's problem from a cold start.
@@ -82,7 +109,8 @@ impl Report {
 /// assert_eq!((report.outcome, solution.twist), (Outcome::Solved, twist));
 /// ```
 pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
-    let (mut ncps, mut p, mut reports) = ([Ncp::empty()], [Impulses::zero(0)], [[Report::UNSOLVED]]);
+    let (mut ncps, mut p, mut reports) =
+        ([Ncp::empty()], [Impulses::zero(0)], [[Report::UNSOLVED]]);
     Solver::default().solve(&mut Cold(problem), &mut ncps, &mut p, &mut reports);
     let ([p], [[report]]) = (p, reports);
     (p.to_solution(0, problem), report)
@@ -137,23 +165,50 @@ impl<const W: usize> Default for Solver<W> {
 }
 
 impl<const W: usize> Solver<W> {
-    /// Solves the block of problems that comes from `source`, `W` to a chunk; leaves the problems in `ncps`, their solutions in `p`.
+    /// Solves the block of problems that comes from `source`, `W` to a chunk; leaves the problems
+    /// in `ncps`, their solutions in `p`.
     #[inline(always)]
-    pub fn solve(&mut self, source: &mut impl Source<W>, ncps: &mut [Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
-        assert!(ncps.len() == p.len() && p.len() == reports.len(), "as many chunks of impulses and reports as of problems");
-        self.warm.resize_with(ncps.len().max(self.warm.len()), || Impulses::zero(0));
+    pub fn solve(
+        &mut self,
+        source: &mut impl Source<W>,
+        ncps: &mut [Ncp<W>],
+        p: &mut [Impulses<W>],
+        reports: &mut [[Report; W]],
+    ) {
+        assert!(
+            ncps.len() == p.len() && p.len() == reports.len(),
+            "as many chunks of impulses and reports as of problems"
+        );
+        self.warm
+            .resize_with(ncps.len().max(self.warm.len()), || Impulses::zero(0));
         for places in [&mut self.left, &mut self.kept] {
             places.clear();
-            // as many as can be left: how many there are changes from step to step, and no step after the first may allocate
+            // as many as can be left: how many there are changes from step to step, and no step
+            // after the first may allocate
             places.reserve(W * ncps.len());
         }
         let left = &mut self.left;
-        self.fast.solve(source, ncps, p, FAST, &mut |Iterated { place, residual, iterations }| {
-            reports[place.chunk][place.lane] = Report { outcome: Outcome::Solved, residual, iterations, route: Route::Newton };
-            if residual > TOLERANCE {
-                left.push(place);
-            }
-        });
+        self.fast.solve(
+            source,
+            ncps,
+            p,
+            FAST,
+            &mut |Iterated {
+                      place,
+                      residual,
+                      iterations,
+                  }| {
+                reports[place.chunk][place.lane] = Report {
+                    outcome: Outcome::Solved,
+                    residual,
+                    iterations,
+                    route: Route::Newton,
+                };
+                if residual > TOLERANCE {
+                    left.push(place);
+                }
+            },
+        );
         if !self.left.is_empty() {
             self.solve_left(source, ncps, p, reports);
         }
@@ -162,13 +217,23 @@ impl<const W: usize> Solver<W> {
         }
     }
 
-    /// The problems that the fast solver left, packed together; then one by one what is left of them.
+    /// The problems that the fast solver left, packed together; then one by one what is left of
+    /// them.
     #[inline(always)]
-    fn solve_left(&mut self, source: &impl Source<W>, ncps: &[Ncp<W>], p: &mut [Impulses<W>], reports: &mut [[Report; W]]) {
+    fn solve_left(
+        &mut self,
+        source: &impl Source<W>,
+        ncps: &[Ncp<W>],
+        p: &mut [Impulses<W>],
+        reports: &mut [[Report; W]],
+    ) {
         for &Place { chunk, .. } in &self.left {
             source.start(chunk, &ncps[chunk], &mut self.warm[chunk]);
         }
-        let block = Block { ncps, warm: &self.warm };
+        let block = Block {
+            ncps,
+            warm: &self.warm,
+        };
         for descent in &DESCENTS {
             self.kept.clear();
             let mut finish = |end: &End<'_, W>| {
@@ -178,24 +243,41 @@ impl<const W: usize> Solver<W> {
                 report.iterations += end.steps;
                 report.residual = end.residual;
                 if end.residual <= TOLERANCE {
-                    p[place.chunk].unpack_lane(&ncps[place.chunk], place.lane, end.impulses, end.lane);
+                    p[place.chunk].unpack_lane(
+                        &ncps[place.chunk],
+                        place.lane,
+                        end.impulses,
+                        end.lane,
+                    );
                 } else {
                     self.kept.push(place);
                 }
             };
-            self.continuation.solve(block, &self.left, descent, TOLERANCE, &mut finish);
+            self.continuation
+                .solve(block, &self.left, descent, TOLERANCE, &mut finish);
             std::mem::swap(&mut self.left, &mut self.kept);
         }
         for &Place { chunk, lane } in &self.left {
-            let solution = self.slow.solve(&ncps[chunk], &self.warm[chunk], lane, &mut reports[chunk][lane]);
+            let solution = self.slow.solve(
+                &ncps[chunk],
+                &self.warm[chunk],
+                lane,
+                &mut reports[chunk][lane],
+            );
             p[chunk].unpack_lane(&ncps[chunk], lane, solution, 0);
         }
     }
 }
 
-/// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a stuck object never drifts.
+/// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a
+/// stuck object never drifts.
 #[inline(always)]
-fn rest_exactly<const W: usize>(ncp: &Ncp<W>, p: &mut Impulses<W>, map: &mut NaturalMap<W>, reports: &mut [Report; W]) {
+fn rest_exactly<const W: usize>(
+    ncp: &Ncp<W>,
+    p: &mut Impulses<W>,
+    map: &mut NaturalMap<W>,
+    reports: &mut [Report; W],
+) {
     let mut fastest = Lanes::ZERO;
     for v in &p.v {
         fastest = fastest.max(v.abs());

@@ -10,7 +10,8 @@ pub(crate) struct Stage {
     pub scene: Scene,
     /// The object's radius of gyration ρ (m).
     pub rho: f64,
-    /// Reciprocals of ρ, of the object's mass and of its moment of inertia: the divider is the slowest part of a vector unit.
+    /// Reciprocals of ρ, of the object's mass and of its moment of inertia: the divider is the
+    /// slowest part of a vector unit.
     pub per_rho: f64,
     pub per_mass: f64,
     pub per_inertia: f64,
@@ -22,9 +23,25 @@ pub(crate) struct Stage {
 
 impl Stage {
     pub fn new(scene: Scene) -> Self {
-        let (rho, per_mass, per_inertia) = (scene.object.gyration_radius(), 1.0 / scene.object.mass, 1.0 / scene.object.inertia);
-        let fixels = scene.fixels.iter().map(|fixel| Frame::new(fixel.pose)).collect();
-        Self { rho, per_rho: 1.0 / rho, per_mass, per_inertia, stance: scene.stance(), fixels, scene }
+        let (rho, per_mass, per_inertia) = (
+            scene.object.gyration_radius(),
+            1.0 / scene.object.mass,
+            1.0 / scene.object.inertia,
+        );
+        let fixels = scene
+            .fixels
+            .iter()
+            .map(|fixel| Frame::new(fixel.pose))
+            .collect();
+        Self {
+            rho,
+            per_rho: 1.0 / rho,
+            per_mass,
+            per_inertia,
+            stance: scene.stance(),
+            fixels,
+            scene,
+        }
     }
 }
 
@@ -40,6 +57,13 @@ pub(crate) struct Moment<'a> {
 
 impl<'a> Moment<'a> {
     pub fn new(input: &'a StepInput) -> Self {
-        Self { input, rate: 1.0 / input.h, pusher: input.pusher.as_ref().map(|motion| (motion, Frame::new(motion.pose))) }
+        Self {
+            input,
+            rate: 1.0 / input.h,
+            pusher: input
+                .pusher
+                .as_ref()
+                .map(|motion| (motion, Frame::new(motion.pose))),
+        }
     }
 }

@@ -33,10 +33,11 @@ pub(crate) struct Search<'a, const W: usize> {
 }
 
 impl<const W: usize> Search<'_, W> {
-    /// Finds the edges over which the centre stands, less than the limit high, among those that the round vertex `faces`.
+    /// Finds the edges over which the centre stands, less than the limit high, among those that the
+    /// round vertex `faces`.
     ///
-    /// From outside these are all that see it on their outward side; from inside, the edge of least penetration and those that meet
-    /// it in a reflex corner as well.
+    /// From outside these are all that see it on their outward side; from inside, the edge of least
+    /// penetration and those that meet it in a reflex corner as well.
     #[inline(always)]
     pub fn stands(&self, faces: impl Fn(&Edge) -> Mask<W>, near: &mut Vec<Stand<W>>) {
         let mut found = self.scan(false, &faces, near);
@@ -44,29 +45,46 @@ impl<const W: usize> Search<'_, W> {
             found = self.scan(true, &faces, near);
         }
         if found.behind.any() {
-            leave_ways_out(self.shape, self.centre, found.behind, !found.highest.gt(self.slack), near);
+            leave_ways_out(
+                self.shape,
+                self.centre,
+                found.behind,
+                !found.highest.gt(self.slack),
+                near,
+            );
         }
     }
 
     /// Whether some feature of a cluster may be nearer than the limit.
     #[inline(always)]
     pub fn meets(&self, cluster: &Cluster) -> bool {
-        self.shape.outline().clusters.len() == 1 || (self.within & cluster.is_near(self.centre, self.limit.max(Lanes::ZERO))).any()
+        self.shape.outline().clusters.len() == 1
+            || (self.within & cluster.is_near(self.centre, self.limit.max(Lanes::ZERO))).any()
     }
 
-    /// Where the centre lies below all edges looked at, and so perhaps inside: then it meets the edge of least penetration that it
-    /// faces, wherever that is.
+    /// Where the centre lies below all edges looked at, and so perhaps inside: then it meets the
+    /// edge of least penetration that it faces, wherever that is.
     #[inline(always)]
     fn maybe_inside(&self, found: &Scanned<W>) -> Mask<W> {
         let radius = self.shape.bounding_radius();
-        self.within & dot(self.centre, self.centre).lt(Lanes::splat(radius * radius)) & !found.highest.gt(self.slack)
+        self.within
+            & dot(self.centre, self.centre).lt(Lanes::splat(radius * radius))
+            & !found.highest.gt(self.slack)
     }
 
     #[inline(always)]
-    fn scan(&self, everything: bool, faces: &impl Fn(&Edge) -> Mask<W>, near: &mut Vec<Stand<W>>) -> Scanned<W> {
+    fn scan(
+        &self,
+        everything: bool,
+        faces: &impl Fn(&Edge) -> Mask<W>,
+        near: &mut Vec<Stand<W>>,
+    ) -> Scanned<W> {
         near.clear();
         let outline = self.shape.outline();
-        let mut found = Scanned { highest: Lanes::splat(f64::NEG_INFINITY), behind: Mask::splat(false) };
+        let mut found = Scanned {
+            highest: Lanes::splat(f64::NEG_INFINITY),
+            behind: Mask::splat(false),
+        };
         for cluster in &outline.clusters {
             if !everything && !self.meets(cluster) {
                 continue;
@@ -76,13 +94,19 @@ impl<const W: usize> Search<'_, W> {
             for (k, edge) in outline.edges[members].iter().enumerate() {
                 let (s, height) = edge.coordinates_each(self.centre);
                 found.highest = found.highest.max(height);
-                let mut present = self.within & height.lt(self.limit) & edge.holds_each(s, self.slack);
+                let mut present =
+                    self.within & height.lt(self.limit) & edge.holds_each(s, self.slack);
                 if !present.any() {
                     continue;
                 }
                 present = present & faces(edge);
                 if present.any() {
-                    near.push(Stand { edge: start + k, s, height, present });
+                    near.push(Stand {
+                        edge: start + k,
+                        s,
+                        height,
+                        present,
+                    });
                     found.behind = found.behind | present & height.lt(Lanes::ZERO);
                 }
             }
@@ -99,10 +123,16 @@ struct Scanned<const W: usize> {
     behind: Mask<W>,
 }
 
-/// Of the edges behind which the point lies, keeps the way out: where it is inside, the edge of least penetration and those in a
-/// reflex corner with it.
+/// Of the edges behind which the point lies, keeps the way out: where it is inside, the edge of
+/// least penetration and those in a reflex corner with it.
 #[inline(always)]
-fn leave_ways_out<const W: usize>(shape: &Shape, centre: &Vec2s<W>, behind: Mask<W>, below_all: Mask<W>, near: &mut [Stand<W>]) {
+fn leave_ways_out<const W: usize>(
+    shape: &Shape,
+    centre: &Vec2s<W>,
+    behind: Mask<W>,
+    below_all: Mask<W>,
+    near: &mut [Stand<W>],
+) {
     let edges = &shape.outline().edges;
     let mut depth = Lanes::splat(f64::NEG_INFINITY);
     let mut way = Lanes::splat(-1.0);
@@ -113,15 +143,26 @@ fn leave_ways_out<const W: usize>(shape: &Shape, centre: &Vec2s<W>, behind: Mask
         depth = better.select(stand.height, depth);
         way = better.select(Lanes::splat(stand.edge as f64), way);
         let length = Lanes::splat(edges[stand.edge].length);
-        let flush = !stand.height.lt(Lanes::ZERO) & stand.height.lt(Lanes::splat(shape.tolerance()));
+        let flush =
+            !stand.height.lt(Lanes::ZERO) & stand.height.lt(Lanes::splat(shape.tolerance()));
         beside = beside | stand.present & flush & !stand.s.lt(Lanes::ZERO) & !stand.s.gt(length);
     }
-    // a corner flush with one face may lie behind the next; what rests on a face that it faces is outside
+    // a corner flush with one face may lie behind the next; what rests on a face that it faces is
+    // outside
     let asked = behind & !beside;
-    let inside = asked & if shape.parts().len() == 1 { below_all } else { shape.contains(centre) };
+    let inside = asked
+        & if shape.parts().len() == 1 {
+            below_all
+        } else {
+            shape.contains(centre)
+        };
     for k in 0..near.len() {
         let mut out = is(way, near[k].edge);
-        for other in near.iter().filter(|other| edges[other.edge].reflex.contains(&Some(near[k].edge as u32))) {
+        for other in near.iter().filter(|other| {
+            edges[other.edge]
+                .reflex
+                .contains(&Some(near[k].edge as u32))
+        }) {
             out = out | is(way, other.edge);
         }
         let stand = &mut near[k];
@@ -140,7 +181,10 @@ impl Edge {
     #[inline(always)]
     fn coordinates_each<const W: usize>(&self, point: &Vec2s<W>) -> (Lanes<W>, Lanes<W>) {
         let d = [point[0] - self.start[0], point[1] - self.start[1]];
-        (d[0] * self.along[0] + d[1] * self.along[1], d[0] * self.along[1] - d[1] * self.along[0])
+        (
+            d[0] * self.along[0] + d[1] * self.along[1],
+            d[0] * self.along[1] - d[1] * self.along[0],
+        )
     }
 
     /// Where a foot at distance `s` belongs to the edge.

@@ -17,7 +17,8 @@ pub struct Start {
     pub duration: f64,
 }
 
-/// A commanded speed over time: linear between knots, constant before the first and after the last one.
+/// A commanded speed over time: linear between knots, constant before the first and after the last
+/// one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedProfile {
     knots: Vec<[f64; 2]>,
@@ -33,19 +34,26 @@ impl Start {
     /// The commanded pose of the pusher at `time` (s).
     pub fn commanded(&self, time: f64) -> Pose {
         let ([x, y], way) = (self.direction_vector(), self.speed.travel(time));
-        Pose::new(self.pusher.x + way * x, self.pusher.y + way * y, self.pusher.theta)
+        Pose::new(
+            self.pusher.x + way * x,
+            self.pusher.y + way * y,
+            self.pusher.theta,
+        )
     }
 }
 
 impl SpeedProfile {
     /// The same speed at all times (m/s).
     pub fn constant(speed: f64) -> Self {
-        Self { knots: vec![[0.0, speed]] }
+        Self {
+            knots: vec![[0.0, speed]],
+        }
     }
 
     /// A speed through knots of time (s) and speed (m/s); two knots of one time are a jump.
     ///
-    /// `None` without knots, with a number that is not finite, or with a time before the last one's.
+    /// `None` without knots, with a number that is not finite, or with a time before the last
+    /// one's.
     ///
     /// ```
     /// # use stickslip_dynamics::SpeedProfile;
@@ -75,7 +83,11 @@ impl SpeedProfile {
 
     /// Way travelled from time 0 to `time` ≥ 0 (m).
     pub fn travel(&self, time: f64) -> f64 {
-        let inner = self.knots.iter().map(|knot| knot[0]).filter(|t| 0.0 < *t && *t < time);
+        let inner = self
+            .knots
+            .iter()
+            .map(|knot| knot[0])
+            .filter(|t| 0.0 < *t && *t < time);
         let ends: Vec<f64> = [0.0].into_iter().chain(inner).chain([time]).collect();
         let middle = |pair: &[f64]| self.at(0.5 * (pair[0] + pair[1])) * (pair[1] - pair[0]);
         ends.windows(2).map(middle).fold(0.0, |sum, way| sum + way)
@@ -104,7 +116,13 @@ mod tests {
 
     #[test]
     fn travel_is_the_area_under_the_speed() {
-        for (time, way) in [(0.0, 0.0), (1.0, 0.0), (2.0, 0.025), (3.0, 0.04), (5.0, 0.06)] {
+        for (time, way) in [
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (2.0, 0.025),
+            (3.0, 0.04),
+            (5.0, 0.06),
+        ] {
             assert!((profile().travel(time) - way).abs() < 1e-15, "{time}");
         }
         assert_eq!(SpeedProfile::constant(0.02).travel(3.0), 0.06);
@@ -127,6 +145,9 @@ mod tests {
             duration: 4.0,
         };
         let pose = start.commanded(2.0);
-        assert!((pose.x - 1.0).abs() < 1e-15 && (pose.y, pose.theta) == (3.0, 0.5), "{pose:?}");
+        assert!(
+            (pose.x - 1.0).abs() < 1e-15 && (pose.y, pose.theta) == (3.0, 0.5),
+            "{pose:?}"
+        );
     }
 }

@@ -1,6 +1,8 @@
-//! One time step Γ, and Γ' with noise (eq. 3 and 6), for a block of particles side by side: [`Dynamics::step_block`].
+//! One time step Γ, and Γ' with noise (eq. 3 and 6), for a block of particles side by side:
+//! [`Dynamics::step_block`].
 //!
-//! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end; q⁺ = q + h v⁺.
+//! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end;
+//! q⁺ = q + h v⁺.
 
 use std::ops::Range;
 
@@ -25,7 +27,8 @@ const MARGIN: f64 = 5e-4;
 /// Search distance at which widening ends (m): nothing real moves so far in one step.
 const WIDEST: f64 = 1e3;
 
-/// Lanes from which on vector instructions wider than the baseline's are worth their own copy of the step.
+/// Lanes from which on vector instructions wider than the baseline's are worth their own copy of
+/// the step.
 const WIDE: usize = 4;
 
 /// The pusher during one step.
@@ -35,7 +38,8 @@ pub struct PusherMotion {
     pub pose: Pose,
     /// Commanded twist during the step.
     pub twist: Twist,
-    /// Unit vector of its commanded translation (the last one where it stands): the direction in which it may give way.
+    /// Unit vector of its commanded translation (the last one where it stands): the direction in
+    /// which it may give way.
     pub direction: [f64; 2],
 }
 
@@ -65,7 +69,8 @@ pub struct Dynamics {
     level: Level,
 }
 
-/// Working memory of [`Dynamics::step_block`], `W` particles to a chunk; nothing is allocated once it has grown.
+/// Working memory of [`Dynamics::step_block`], `W` particles to a chunk; nothing is allocated once
+/// it has grown.
 #[derive(Clone, Debug)]
 pub struct StepWork<const W: usize> {
     narrow: NarrowWork<W>,
@@ -95,7 +100,8 @@ impl<const W: usize> StepWork<W> {
         &self.reports
     }
 
-    /// Normal impulses (N s) between the object and a body in the last step, summed over their contacts, by lane of a chunk.
+    /// Normal impulses (N s) between the object and a body in the last step, summed over their
+    /// contacts, by lane of a chunk.
     #[inline(always)]
     pub fn normal_impulses(&self, chunk: usize, body: Body) -> Lanes<W> {
         self.chunks[chunk].normal_impulses(&self.impulses[chunk], body)
@@ -111,7 +117,8 @@ impl<const W: usize> StepWork<W> {
         self.normal_impulses(particle / W, body).0[particle % W]
     }
 
-    /// The last step's problem of one particle, in SI units; the applied impulse is part of its twist.
+    /// The last step's problem of one particle, in SI units; the applied impulse is part of its
+    /// twist.
     pub fn problem(&self, particle: usize) -> StepProblem {
         let (chunk, lane) = (particle / W, particle % W);
         self.chunks[chunk].problem(&self.ncps[chunk], lane)
@@ -127,9 +134,12 @@ impl<const W: usize> StepWork<W> {
     }
 
     fn resize(&mut self, chunks: usize) {
-        self.chunks.resize_with(chunks.max(self.chunks.len()), Assembly::default);
-        self.ncps.resize_with(chunks.max(self.ncps.len()), Ncp::empty);
-        self.impulses.resize_with(chunks.max(self.impulses.len()), || Impulses::zero(0));
+        self.chunks
+            .resize_with(chunks.max(self.chunks.len()), Assembly::default);
+        self.ncps
+            .resize_with(chunks.max(self.ncps.len()), Ncp::empty);
+        self.impulses
+            .resize_with(chunks.max(self.impulses.len()), || Impulses::zero(0));
         self.reports.resize(chunks, [Report::UNSOLVED; W]);
     }
 }
@@ -137,7 +147,11 @@ impl<const W: usize> StepWork<W> {
 impl Dynamics {
     /// The dynamics of one scene, on the widest vector instructions that the machine has.
     pub fn new(scene: Scene) -> Self {
-        Self { reach: scene.object.shape.bounding_radius(), stage: Stage::new(scene), level: Level::new() }
+        Self {
+            reach: scene.object.shape.bounding_radius(),
+            stage: Stage::new(scene),
+            level: Level::new(),
+        }
     }
 
     /// The same on other vector instructions; no result depends on them.
@@ -171,9 +185,15 @@ impl Dynamics {
 
     /// Advances a block of particles by one step; how each ended is in `work`.
     ///
-    /// Every contact that could act takes part: where the solved twist could have closed a larger gap than was looked for,
-    /// the step is solved again with a wider search. A particle's result depends on nothing but the particle.
-    pub fn step_block<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
+    /// Every contact that could act takes part: where the solved twist could have closed a larger
+    /// gap than was looked for, the step is solved again with a wider search. A particle's result
+    /// depends on nothing but the particle.
+    pub fn step_block<const W: usize>(
+        &self,
+        input: &StepInput,
+        particles: &mut [Particles<W>],
+        work: &mut StepWork<W>,
+    ) {
         if W < WIDE {
             self.step_lanes(input, particles, work);
         } else {
@@ -186,7 +206,12 @@ impl Dynamics {
     }
 
     #[inline(always)]
-    fn step_lanes<const W: usize>(&self, input: &StepInput, particles: &mut [Particles<W>], work: &mut StepWork<W>) {
+    fn step_lanes<const W: usize>(
+        &self,
+        input: &StepInput,
+        particles: &mut [Particles<W>],
+        work: &mut StepWork<W>,
+    ) {
         work.resize(particles.len());
         let moment = &Moment::new(input);
         for (chunk, particles) in particles.iter().enumerate() {
@@ -194,10 +219,28 @@ impl Dynamics {
         }
         let mut asked = 0..particles.len();
         while !asked.is_empty() {
-            let StepWork { narrow, chunks, ncps, impulses, reports, solver } = work;
+            let StepWork {
+                narrow,
+                chunks,
+                ncps,
+                impulses,
+                reports,
+                solver,
+            } = work;
             let (particles, chunks) = (&particles[asked.clone()], &mut chunks[asked.clone()]);
-            let mut problems = Problems { stage: &self.stage, moment, particles, chunks, narrow };
-            solver.solve(&mut problems, &mut ncps[asked.clone()], &mut impulses[asked.clone()], &mut reports[asked.clone()]);
+            let mut problems = Problems {
+                stage: &self.stage,
+                moment,
+                particles,
+                chunks,
+                narrow,
+            };
+            solver.solve(
+                &mut problems,
+                &mut ncps[asked.clone()],
+                &mut impulses[asked.clone()],
+                &mut reports[asked.clone()],
+            );
             asked = self.too_narrow(moment.input, asked.start, work);
         }
         for (chunk, particles) in particles.iter_mut().enumerate() {
@@ -205,15 +248,24 @@ impl Dynamics {
         }
     }
 
-    /// The first chunk from `first` on in which some lane's solution moves farther than its search covered, to be solved again with a
-    /// wider one.
+    /// The first chunk from `first` on in which some lane's solution moves farther than its search
+    /// covered, to be solved again with a wider one.
     #[inline(always)]
-    fn too_narrow<const W: usize>(&self, input: &StepInput, first: usize, work: &mut StepWork<W>) -> Range<usize> {
+    fn too_narrow<const W: usize>(
+        &self,
+        input: &StepInput,
+        first: usize,
+        work: &mut StepWork<W>,
+    ) -> Range<usize> {
         let count = work.reports.len();
         for chunk in first..count {
             let reach = work.chunks[chunk].reach();
-            let needed = (self.point_speed(&work.twist(chunk, self.stage.per_rho)) + self.pusher_speed(input)) * input.h;
-            let wider = needed.gt(reach) & needed.lt(Lanes::splat(f64::INFINITY)) & reach.lt(Lanes::splat(WIDEST));
+            let needed = (self.point_speed(&work.twist(chunk, self.stage.per_rho))
+                + self.pusher_speed(input))
+                * input.h;
+            let wider = needed.gt(reach)
+                & needed.lt(Lanes::splat(f64::INFINITY))
+                & reach.lt(Lanes::splat(WIDEST));
             if wider.any() {
                 work.chunks[chunk].seek(wider.select(needed * 2.0, reach));
                 return chunk..chunk + 1;
@@ -223,7 +275,13 @@ impl Dynamics {
     }
 
     #[inline(always)]
-    fn integrate<const W: usize>(&self, h: f64, particles: &mut Particles<W>, chunk: usize, work: &StepWork<W>) {
+    fn integrate<const W: usize>(
+        &self,
+        h: f64,
+        particles: &mut Particles<W>,
+        chunk: usize,
+        work: &StepWork<W>,
+    ) {
         particles.twist = work.twist(chunk, self.stage.per_rho);
         for (q, v) in particles.pose.iter_mut().zip(&particles.twist) {
             *q += *v * h;
@@ -245,9 +303,14 @@ impl Dynamics {
     }
 
     #[inline(always)]
-    fn search_distance<const W: usize>(&self, input: &StepInput, particles: &Particles<W>) -> Lanes<W> {
+    fn search_distance<const W: usize>(
+        &self,
+        input: &StepInput,
+        particles: &Particles<W>,
+    ) -> Lanes<W> {
         let [fx, fy, torque] = &particles.applied;
-        let kick = length_at_most(fx, fy) * self.stage.per_mass + torque.abs() * (self.stage.per_inertia * self.reach);
+        let kick = length_at_most(fx, fy) * self.stage.per_mass
+            + torque.abs() * (self.stage.per_inertia * self.reach);
         let pusher = self.pusher_speed(input);
         let object = (self.point_speed(&particles.twist) + kick).max(Lanes::splat(pusher));
         (object * 1.5 + pusher) * input.h + MARGIN
@@ -275,7 +338,13 @@ struct Problems<'a, const W: usize> {
 impl<const W: usize> Source<W> for Problems<'_, W> {
     #[inline(always)]
     fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
-        self.chunks[chunk].collect(self.stage, self.moment, &self.particles[chunk], self.narrow, ncp);
+        self.chunks[chunk].collect(
+            self.stage,
+            self.moment,
+            &self.particles[chunk],
+            self.narrow,
+            ncp,
+        );
     }
 
     #[inline(always)]
@@ -303,7 +372,10 @@ mod tests {
             let (sin, cos) = libm::sincos(0.01 * f64::from(i));
             let length = 1e-3 * f64::from(i + 1);
             let bound = length_at_most(&Lanes([length * cos]), &Lanes([length * sin])).0[0];
-            assert!(bound >= length * (1.0 - 1e-15) && bound <= length * 13.0 / 12.0, "{bound} of {length}, direction {i}");
+            assert!(
+                bound >= length * (1.0 - 1e-15) && bound <= length * 13.0 / 12.0,
+                "{bound} of {length}, direction {i}"
+            );
         }
     }
 }

@@ -32,7 +32,8 @@ pub fn clip(interval: &mut (f64, f64), slope: f64, offset: f64) {
     }
 }
 
-/// Range of q·s/|s| for s on the segment from a to b; everything where the segment meets the origin.
+/// Range of q·s/|s| for s on the segment from a to b; everything where the segment meets the
+/// origin.
 pub fn unit_range(q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> (f64, f64) {
     let cross = |p: [f64; 2], r: [f64; 2]| p[0] * r[1] - p[1] * r[0];
     let size = q[0].hypot(q[1]);
@@ -42,7 +43,10 @@ pub fn unit_range(q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> (f64, f64) {
     if la < 1e-13 || lb < 1e-13 || opposite {
         return (-size, size);
     }
-    let (at_a, at_b) = ((q[0] * a[0] + q[1] * a[1]) / la, (q[0] * b[0] + q[1] * b[1]) / lb);
+    let (at_a, at_b) = (
+        (q[0] * a[0] + q[1] * a[1]) / la,
+        (q[0] * b[0] + q[1] * b[1]) / lb,
+    );
     let mut range = (at_a.min(at_b), at_a.max(at_b));
     // q (or its opposite) lies between the two directions
     let (qa, qb) = (cross(a, q) * turn, cross(q, b) * turn);
@@ -58,9 +62,12 @@ pub fn unit_range(q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> (f64, f64) {
 /// A unit vector orthogonal to three vectors; `None` where they are dependent.
 pub fn null_vector(rows: &[Vector<4>; 3]) -> Option<Vector<4>> {
     let minor = |skip: usize| {
-        let pick = |r: &Vector<4>| -> [f64; 3] { std::array::from_fn(|j| r[if j < skip { j } else { j + 1 }]) };
+        let pick = |r: &Vector<4>| -> [f64; 3] {
+            std::array::from_fn(|j| r[if j < skip { j } else { j + 1 }])
+        };
         let [a, b, c] = [pick(&rows[0]), pick(&rows[1]), pick(&rows[2])];
-        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
     };
     let d = [minor(0), -minor(1), minor(2), -minor(3)];
     let size = norm(&d);
@@ -72,7 +79,11 @@ pub fn null_vector(rows: &[Vector<4>; 3]) -> Option<Vector<4>> {
 pub fn dual_basis(g: &[Vector<4>; 4]) -> Option<[Vector<4>; 4]> {
     let mut dual = [[0.0; 4]; 4];
     for j in 0..4 {
-        dual[j] = solve_dense(*g, std::array::from_fn(|i| f64::from(u8::from(i == j))), DEPENDENT)?;
+        dual[j] = solve_dense(
+            *g,
+            std::array::from_fn(|i| f64::from(u8::from(i == j))),
+            DEPENDENT,
+        )?;
     }
     Some(dual)
 }
@@ -80,12 +91,18 @@ pub fn dual_basis(g: &[Vector<4>; 4]) -> Option<[Vector<4>; 4]> {
 /// The V of least length that best satisfies the equations.
 pub fn least_squares<const N: usize>(equations: &[Equation; N]) -> Vector<4> {
     // (A Aᵀ + tiny) z = b, V = Aᵀ z; two rounds of refinement remove the effect of tiny
-    let gram: [[f64; N]; N] =
-        std::array::from_fn(|i| std::array::from_fn(|j| dot(&equations[i].row, &equations[j].row) + if i == j { 1e-12 } else { 0.0 }));
+    let gram: [[f64; N]; N] = std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            dot(&equations[i].row, &equations[j].row) + if i == j { 1e-12 } else { 0.0 }
+        })
+    });
     let mut v = [0.0; 4];
     for _ in 0..3 {
-        let miss: [f64; N] = std::array::from_fn(|i| equations[i].value - dot(&equations[i].row, &v));
-        let Some(z) = solve_dense(gram, miss, 0.0) else { break };
+        let miss: [f64; N] =
+            std::array::from_fn(|i| equations[i].value - dot(&equations[i].row, &v));
+        let Some(z) = solve_dense(gram, miss, 0.0) else {
+            break;
+        };
         for (e, z) in equations.iter().zip(z) {
             v = plus(&v, z, &e.row);
         }

@@ -1,10 +1,15 @@
-//! Sine and cosine of many angles at once: [`sin_cos`], the polynomials of fdlibm (Sun Microsystems 1993) without its branches.
+//! Sine and cosine of many angles at once: [`sin_cos`], the polynomials of fdlibm (Sun Microsystems
+//! 1993) without its branches.
 
 use crate::lanes::{Lanes, Mask};
 
-/// π/2 as a sum of three numbers, the first two with so few digits that their multiples by whole numbers below 2²⁰ are exact
-/// (Cody & Waite 1980).
-const QUARTER: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_95e-21];
+/// π/2 as a sum of three numbers, the first two with so few digits that their multiples by whole
+/// numbers below 2²⁰ are exact (Cody & Waite 1980).
+const QUARTER: [f64; 3] = [
+    1.570_796_326_734_125_6,
+    6.077_100_506_303_966e-11,
+    2.022_266_248_795_95e-21,
+];
 
 const SIN: [f64; 6] = [
     1.589_690_995_211_55e-10,
@@ -73,12 +78,19 @@ mod tests {
 
     #[test]
     fn sin_cos_agrees_with_libm_over_many_turns() {
-        let borders = (-64..=64).flat_map(|k| [-1e-9, 0.0, 1e-9].map(|d| f64::from(k) * std::f64::consts::FRAC_PI_4 + d));
+        let borders = (-64..=64).flat_map(|k| {
+            [-1e-9, 0.0, 1e-9].map(|d| f64::from(k) * std::f64::consts::FRAC_PI_4 + d)
+        });
         let spread = (0..200_000).map(|i| (f64::from(i) - 1e5) * 0.012_345_678_9);
         for x in borders.chain(spread).chain([1e5, -1e5, 999_999.3]) {
             let (s, c) = sin_cos(Lanes([x]));
             let (sin, cos) = libm::sincos(x);
-            assert!((s.0[0] - sin).abs() < 4e-16 && (c.0[0] - cos).abs() < 4e-16, "{x}: {} {}, not {sin} {cos}", s.0[0], c.0[0]);
+            assert!(
+                (s.0[0] - sin).abs() < 4e-16 && (c.0[0] - cos).abs() < 4e-16,
+                "{x}: {} {}, not {sin} {cos}",
+                s.0[0],
+                c.0[0]
+            );
         }
     }
 }

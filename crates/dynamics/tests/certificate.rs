@@ -1,4 +1,5 @@
-//! The solver's certificate, computed in mass-normalised lanes, against the residual that testkit writes from the model in SI units.
+//! The solver's certificate, computed in mass-normalised lanes, against the residual that testkit
+//! writes from the model in SI units.
 
 mod common;
 
@@ -22,17 +23,30 @@ fn certificate(problem: &StepProblem, solution: &StepSolution) -> f64 {
 /// The largest number [m/s] that enters the rows.
 fn magnitude(problem: &StepProblem, solution: &StepSolution) -> f64 {
     let p = normalised(problem, solution);
-    let impulses = p.normal.iter().chain(&p.tangential).chain(p.feet.as_flattened()).chain(&p.v).map(|x| x.0[0]);
+    let impulses = p
+        .normal
+        .iter()
+        .chain(&p.tangential)
+        .chain(p.feet.as_flattened())
+        .chain(&p.v)
+        .map(|x| x.0[0]);
     let gaps = problem.contacts.iter().map(|c| c.gap / problem.h);
-    impulses.chain(gaps).map(f64::abs).fold(common::fastest(problem), f64::max)
+    impulses
+        .chain(gaps)
+        .map(f64::abs)
+        .fold(common::fastest(problem), f64::max)
 }
 
-/// Both residuals are sums of a few dozen terms; 1e-12 of the largest one leaves their rounding room.
+/// Both residuals are sums of a few dozen terms; 1e-12 of the largest one leaves their rounding
+/// room.
 #[track_caller]
 fn assert_agree(problem: &StepProblem, solution: &StepSolution, ours: f64, what: &str) {
     let theirs = residual_si(problem, solution);
     let tolerance = 1e-12 * (1.0 + magnitude(problem, solution));
-    assert!((ours - theirs).abs() <= tolerance, "{what}: {ours:e} here, {theirs:e} from the model");
+    assert!(
+        (ours - theirs).abs() <= tolerance,
+        "{what}: {ours:e} here, {theirs:e} from the model"
+    );
 }
 
 /// How many unknowns a solution has.
@@ -61,8 +75,17 @@ fn report_residual_of_every_answer_is_the_one_of_the_model() {
     for index in indices() {
         let problem = CORPUS.problem(index);
         let (solution, report) = solve(&problem);
-        assert_agree(&problem, &solution, report.residual, &format!("problem {index}"));
-        assert_eq!(report.outcome == Outcome::Solved, report.residual <= TOLERANCE, "problem {index}");
+        assert_agree(
+            &problem,
+            &solution,
+            report.residual,
+            &format!("problem {index}"),
+        );
+        assert_eq!(
+            report.outcome == Outcome::Solved,
+            report.residual <= TOLERANCE,
+            "problem {index}"
+        );
         solved += u32::from(report.outcome == Outcome::Solved);
     }
     assert!(solved > 3000, "only {solved} solved");
@@ -78,7 +101,12 @@ fn residual_of_disturbed_solutions_is_the_one_of_the_model() {
                 let mut disturbed = solution.clone();
                 disturb(&problem, &mut disturbed, j, speed);
                 let ours = certificate(&problem, &disturbed);
-                assert_agree(&problem, &disturbed, ours, &format!("problem {index}, unknown {j} off by {speed}"));
+                assert_agree(
+                    &problem,
+                    &disturbed,
+                    ours,
+                    &format!("problem {index}, unknown {j} off by {speed}"),
+                );
             }
         }
     }
@@ -92,9 +120,13 @@ fn residual_notices_every_unknown_that_is_off() {
         for j in (0..unknowns(&solution)).filter(|&j| j != 9 || problem.stall.is_none()) {
             let mut disturbed = solution.clone();
             disturb(&problem, &mut disturbed, j, 1e-3);
-            // Newton–Euler rows see at least the larger component of a unit vector of the plane; rows that were off may cancel it.
+            // Newton–Euler rows see at least the larger component of a unit vector of the plane;
+            // rows that were off may cancel it.
             let seen = certificate(&problem, &disturbed) + report.residual;
-            assert!(seen > 0.7e-3, "problem {index}, unknown {j} off by 1e-3: residual {seen:e}");
+            assert!(
+                seen > 0.7e-3,
+                "problem {index}, unknown {j} off by 1e-3: residual {seen:e}"
+            );
         }
     }
 }
@@ -106,6 +138,10 @@ fn residual_of_numbers_that_are_not_finite_is_infinite() {
     for j in 0..unknowns(&solution) {
         let mut disturbed = solution.clone();
         disturb(&problem, &mut disturbed, j, f64::NAN);
-        assert_eq!(certificate(&problem, &disturbed), f64::INFINITY, "unknown {j}");
+        assert_eq!(
+            certificate(&problem, &disturbed),
+            f64::INFINITY,
+            "unknown {j}"
+        );
     }
 }

@@ -1,12 +1,14 @@
 //! Kinetic energy while nobody pushes: it never rises, but for what overlap gives back.
 //!
-//! With v⁺ − v = M⁻¹ W p and friction that opposes slip, one step changes the energy by at most Σ v⁺·W_n p_n = −Σ p_n ψ/h.
+//! With v⁺ − v = M⁻¹ W p and friction that opposes slip, one step changes the energy by at most Σ
+//! v⁺·W_n p_n = −Σ p_n ψ/h.
 
 mod common;
 
 use common::{FRICTION, Rng, at, disc, fixel, kinetic_energy, pushing, regular, square, step};
 use stickslip_dynamics::{
-    Dynamics, Feet, Friction, Object, Outcome, Part, Particle, Pose, Pusher, Scene, Shape, StepInput, StepWork, TOLERANCE, Twist,
+    Dynamics, Feet, Friction, Object, Outcome, Part, Particle, Pose, Pusher, Scene, Shape,
+    StepInput, StepWork, TOLERANCE, Twist,
 };
 use stickslip_testkit::{gap_margin, may_jam};
 
@@ -37,20 +39,41 @@ fn arena(rng: &mut Rng) -> Dynamics {
         f
     };
     let fixels = (0..9).map(|k| place(k, rng)).collect();
-    let friction = Friction { mu_s: rng.within(0.0, 0.05), mu_f: rng.within(0.0, 0.8), mu_p: rng.within(0.0, 0.8), ..FRICTION };
+    let friction = Friction {
+        mu_s: rng.within(0.0, 0.05),
+        mu_f: rng.within(0.0, 0.8),
+        mu_p: rng.within(0.0, 0.8),
+        ..FRICTION
+    };
     Dynamics::new(Scene {
         gravity: 9.81,
-        object: Object { mass: 0.3, inertia: 1e-4, shape: any_shape(rng, 0.03) },
-        feet: Feet::Tripod { angle: rng.within(0.0, 2.0) },
-        pusher: Pusher { shape: disc(0.005), stall_force: (rng.below(2) == 0).then_some(2.0) },
+        object: Object {
+            mass: 0.3,
+            inertia: 1e-4,
+            shape: any_shape(rng, 0.03),
+        },
+        feet: Feet::Tripod {
+            angle: rng.within(0.0, 2.0),
+        },
+        pusher: Pusher {
+            shape: disc(0.005),
+            stall_force: (rng.below(2) == 0).then_some(2.0),
+        },
         fixels,
         nominal: friction,
     })
 }
 
 fn thrown(rng: &mut Rng) -> Particle {
-    let twist = Twist { vx: rng.within(-1.5, 1.5), vy: rng.within(-1.5, 1.5), omega: rng.within(-30.0, 30.0) };
-    Particle { twist, ..at(Pose::new(0.0, 0.0, rng.within(-3.0, 3.0))) }
+    let twist = Twist {
+        vx: rng.within(-1.5, 1.5),
+        vy: rng.within(-1.5, 1.5),
+        omega: rng.within(-30.0, 30.0),
+    };
+    Particle {
+        twist,
+        ..at(Pose::new(0.0, 0.0, rng.within(-3.0, 3.0)))
+    }
 }
 
 /// What happened in all runs.
@@ -61,7 +84,13 @@ struct Count {
     infeasible: u32,
 }
 
-fn check_step(dynamics: &Dynamics, input: &StepInput, particle: &mut Particle, work: &mut StepWork<1>, count: &mut Count) {
+fn check_step(
+    dynamics: &Dynamics,
+    input: &StepInput,
+    particle: &mut Particle,
+    work: &mut StepWork<1>,
+    count: &mut Count,
+) {
     let object = &dynamics.scene().object;
     let before = kinetic_energy(object, &particle.twist);
     let report = step(dynamics, input, particle, work);
@@ -70,16 +99,33 @@ fn check_step(dynamics: &Dynamics, input: &StepInput, particle: &mut Particle, w
     if report.outcome != Outcome::Solved {
         // Between fixels that it overlaps, it is held from two sides.
         assert_eq!(report.outcome, Outcome::Infeasible);
-        assert!(may_jam(&work.problem(0)) || gap_margin(&work.problem(0), 1.0) < 0.0, "{:?}", work.problem(0));
+        assert!(
+            may_jam(&work.problem(0)) || gap_margin(&work.problem(0), 1.0) < 0.0,
+            "{:?}",
+            work.problem(0)
+        );
         count.infeasible += 1;
         return;
     }
     let (problem, solution) = (work.problem(0), work.solution(0));
-    let returned: f64 = problem.contacts.iter().zip(&solution.normal).map(|(c, p)| p * (-c.gap / problem.h).max(0.0)).sum();
+    let returned: f64 = problem
+        .contacts
+        .iter()
+        .zip(&solution.normal)
+        .map(|(c, p)| p * (-c.gap / problem.h).max(0.0))
+        .sum();
     // A residual of TOLERANCE counts on the velocity of every impulse.
-    let impulses: f64 = solution.normal.iter().chain(solution.feet.as_flattened()).map(|p| p.abs()).sum();
+    let impulses: f64 = solution
+        .normal
+        .iter()
+        .chain(solution.feet.as_flattened())
+        .map(|p| p.abs())
+        .sum();
     let slack = 4.0 * TOLERANCE * (impulses + object.mass * libm::sqrt(2.0 * before / object.mass));
-    assert!(after <= before + returned + slack, "{before:e} J rises to {after:e} J, overlap returns {returned:e} J");
+    assert!(
+        after <= before + returned + slack,
+        "{before:e} J rises to {after:e} J, overlap returns {returned:e} J"
+    );
     count.touching += u32::from(solution.normal.iter().any(|&p| p > 0.0));
     // what rests in contact overlaps by rounding
     count.overlapping += u32::from(returned > slack);
@@ -97,6 +143,11 @@ fn step_with_the_pusher_at_rest_never_adds_kinetic_energy() {
         }
     }
     // Both halves of the claim were put to the test.
-    assert!(count.touching > 2000 && count.overlapping > 200 && count.touching - count.overlapping > 800, "{count:?}");
+    assert!(
+        count.touching > 2000
+            && count.overlapping > 200
+            && count.touching - count.overlapping > 800,
+        "{count:?}"
+    );
     assert!(count.infeasible * 100 < RUNS * STEPS, "{count:?}");
 }

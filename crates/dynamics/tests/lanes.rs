@@ -1,10 +1,12 @@
-//! Particles side by side must not influence each other: any number of lanes, on any vector instructions, gives the same bits.
+//! Particles side by side must not influence each other: any number of lanes, on any vector
+//! instructions, gives the same bits.
 
 mod common;
 
 use common::{FRICTION, Rng, bench_input, bench_scene, disc, fixel, pushing, square_scene};
 use stickslip_dynamics::{
-    Dynamics, Friction, Level, Outcome, Particle, Particles, Pose, Report, Route, StepInput, StepWork, Twist, Wrench,
+    Dynamics, Friction, Level, Outcome, Particle, Particles, Pose, Report, Route, StepInput,
+    StepWork, Twist, Wrench,
 };
 
 const PARTICLES: usize = 16;
@@ -21,8 +23,17 @@ struct Said {
 fn said(particle: &Particle, report: &Report) -> Said {
     let (q, v) = (particle.pose, particle.twist);
     let numbers = [q.x, q.y, q.theta, v.vx, v.vy, v.omega, report.residual];
-    let bits = numbers.iter().chain(&particle.warm.to_array()).map(|x| x.to_bits()).collect();
-    Said { numbers: bits, outcome: report.outcome, route: report.route, iterations: report.iterations }
+    let bits = numbers
+        .iter()
+        .chain(&particle.warm.to_array())
+        .map(|x| x.to_bits())
+        .collect();
+    Said {
+        numbers: bits,
+        outcome: report.outcome,
+        route: report.route,
+        iterations: report.iterations,
+    }
 }
 
 /// Steps blocks of `W` of the particles through all inputs.
@@ -41,7 +52,12 @@ fn run<const W: usize>(
         let mut row = vec![];
         for ((block, friction), work) in blocks.iter_mut().zip(frictions).zip(&mut works) {
             let reports = dynamics.step(input, friction, block, work);
-            row.extend(block.iter().zip(&reports).map(|(particle, report)| said(particle, report)));
+            row.extend(
+                block
+                    .iter()
+                    .zip(&reports)
+                    .map(|(particle, report)| said(particle, report)),
+            );
         }
         all.push(row);
     }
@@ -62,7 +78,9 @@ fn run_as_block<const W: usize>(
     let mut work = StepWork::default();
     let mut step = |input| {
         dynamics.step_block(input, &mut chunks, &mut work);
-        (0..PARTICLES).map(|i| said(&chunks[i / W].get(i % W), &work.reports()[i / W][i % W])).collect()
+        (0..PARTICLES)
+            .map(|i| said(&chunks[i / W].get(i % W), &work.reports()[i / W][i % W]))
+            .collect()
     };
     inputs.iter().map(&mut step).collect()
 }
@@ -93,26 +111,55 @@ fn assert_independent(
 ) -> Vec<Said> {
     let one = run::<1>(dynamics, inputs, friction, start);
     assert_same(&one, &run::<2>(dynamics, inputs, friction, start), 2);
-    assert_same(&one, &run_as_block::<1>(dynamics, inputs, friction, start), 1);
+    assert_same(
+        &one,
+        &run_as_block::<1>(dynamics, inputs, friction, start),
+        1,
+    );
     for level in levels() {
         let dynamics = dynamics.clone().with_level(level);
         assert_same(&one, &run::<8>(&dynamics, inputs, friction, start), 8);
-        assert_same(&one, &run_as_block::<4>(&dynamics, inputs, friction, start), 4);
-        assert_same(&one, &run_as_block::<8>(&dynamics, inputs, friction, start), 8);
+        assert_same(
+            &one,
+            &run_as_block::<4>(&dynamics, inputs, friction, start),
+            4,
+        );
+        assert_same(
+            &one,
+            &run_as_block::<8>(&dynamics, inputs, friction, start),
+            8,
+        );
     }
     one.into_iter().flatten().collect()
 }
 
-/// Particles in mixed order: as the scene has it, off by a little, far away, fast, spinning, loaded.
+/// Particles in mixed order: as the scene has it, off by a little, far away, fast, spinning,
+/// loaded.
 fn mixed_particles(rng: &mut Rng) -> ([Particle; PARTICLES], [Friction; PARTICLES]) {
     let mut start = [Particle::default(); PARTICLES];
     for (i, particle) in start.iter_mut().enumerate() {
-        particle.pose = Pose::new(rng.within(-3e-4, 3e-4), rng.within(-3e-4, 3e-4), rng.within(-9e-3, 9e-3));
+        particle.pose = Pose::new(
+            rng.within(-3e-4, 3e-4),
+            rng.within(-3e-4, 3e-4),
+            rng.within(-9e-3, 9e-3),
+        );
         match i % 8 {
             1 => particle.pose.x += 3.0,
-            3 => particle.twist = Twist { vx: 2.5, vy: -0.3, omega: 4.0 },
+            3 => {
+                particle.twist = Twist {
+                    vx: 2.5,
+                    vy: -0.3,
+                    omega: 4.0,
+                }
+            }
             4 => particle.twist.omega = 25.0,
-            5 => particle.applied = Wrench { fx: 0.02, fy: -0.01, torque: 3e-4 },
+            5 => {
+                particle.applied = Wrench {
+                    fx: 0.02,
+                    fy: -0.01,
+                    torque: 3e-4,
+                }
+            }
             6 => particle.pose.theta += 0.6,
             _ => {}
         }
@@ -132,8 +179,14 @@ fn step_of_mixed_particles_past_fixels_gives_the_same_bits_for_every_number_of_l
     let (start, friction) = mixed_particles(&mut Rng(3));
     let inputs: Vec<_> = (0..260).map(bench_input).collect();
     let said = assert_independent(&Dynamics::new(bench_scene()), &inputs, &friction, &start);
-    assert!(said.iter().filter(|s| s.iterations > 1).count() > 1000, "most particles were pushed");
-    assert!(said.iter().filter(|s| s.iterations > 4).count() > 50, "some lanes go on when the others of their chunk are done");
+    assert!(
+        said.iter().filter(|s| s.iterations > 1).count() > 1000,
+        "most particles were pushed"
+    );
+    assert!(
+        said.iter().filter(|s| s.iterations > 4).count() > 50,
+        "some lanes go on when the others of their chunk are done"
+    );
 }
 
 #[test]
@@ -142,13 +195,29 @@ fn step_with_some_particles_jammed_gives_the_same_bits_for_every_number_of_lanes
     // Two that are sure to be jammed amid others that are not.
     (start[2], friction[2]) = (Particle::default(), FRICTION);
     (start[11], friction[11]) = (Particle::default(), FRICTION);
-    let inputs: Vec<_> = (0..30).map(|k| pushing(0.01, -0.0301 + 2e-4 * f64::from(k), 0.0, 0.02)).collect();
+    let inputs: Vec<_> = (0..30)
+        .map(|k| pushing(0.01, -0.0301 + 2e-4 * f64::from(k), 0.0, 0.02))
+        .collect();
     for stall_force in [None, Some(3.0)] {
-        let mut scene = square_scene(vec![fixel(disc(0.005), 0.0305, 0.015), fixel(disc(0.005), 0.0305, -0.015)]);
+        let mut scene = square_scene(vec![
+            fixel(disc(0.005), 0.0305, 0.015),
+            fixel(disc(0.005), 0.0305, -0.015),
+        ]);
         scene.pusher.stall_force = stall_force;
         let said = assert_independent(&Dynamics::new(scene), &inputs, &friction, &start);
-        let unsolved = said.iter().filter(|s| s.outcome == Outcome::Infeasible).count();
-        assert_eq!(unsolved > 20, stall_force.is_none(), "{unsolved} of {} are infeasible", said.len());
-        assert!(said.iter().any(|s| s.route != Route::Newton), "the slow solvers took part");
+        let unsolved = said
+            .iter()
+            .filter(|s| s.outcome == Outcome::Infeasible)
+            .count();
+        assert_eq!(
+            unsolved > 20,
+            stall_force.is_none(),
+            "{unsolved} of {} are infeasible",
+            said.len()
+        );
+        assert!(
+            said.iter().any(|s| s.route != Route::Newton),
+            "the slow solvers took part"
+        );
     }
 }

@@ -61,7 +61,12 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     pub fn new(block: &'a mut BlockMut<'b>, chunk: usize) -> Self {
         let column = Columns::UNSOLVED.column;
         let bits = part(block.column(column), chunk, 0.0);
-        Self { block, chunk, column, bits }
+        Self {
+            block,
+            chunk,
+            column,
+            bits,
+        }
     }
 
     /// Where a flag is set.
@@ -76,7 +81,9 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     pub fn set(&mut self, flag: Flag, yes: Mask<LANES>) {
         self.go_to(flag.column);
         for (lane, bits) in self.bits.0.iter_mut().enumerate() {
-            *bits = f64::from_bits(bits.to_bits() & !(1 << flag.bit) | u64::from(yes.lane(lane)) << flag.bit);
+            *bits = f64::from_bits(
+                bits.to_bits() & !(1 << flag.bit) | u64::from(yes.lane(lane)) << flag.bit,
+            );
         }
     }
 

@@ -47,7 +47,12 @@ impl<'a> Cloud<'a> {
     #[must_use]
     pub fn friction(&self, particle: usize) -> Friction {
         let [mu_s, mu_p, mu_f, d_tri] = self.values(particle, Columns::FRICTION);
-        Friction { mu_s, mu_p, mu_f, d_tri }
+        Friction {
+            mu_s,
+            mu_p,
+            mu_f,
+            d_tri,
+        }
     }
 
     fn values<const K: usize>(&self, particle: usize, first: usize) -> [f64; K] {

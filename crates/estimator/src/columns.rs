@@ -42,7 +42,8 @@ impl Columns {
     pub const CONTACT_PUSHER: Flag = Self::flag(0);
     /// Whether the last step of a particle had no certified solution.
     pub const UNSOLVED: Flag = Self::flag(1);
-    /// Whether nothing drove the particle in its last step: the pusher stands, or the particle is at rest and out of its way.
+    /// Whether nothing drove the particle in its last step: the pusher stands, or the particle is
+    /// at rest and out of its way.
     pub const IDLE: Flag = Self::flag(2);
 
     /// For `fixels` fixels and `history` past poses.
@@ -56,7 +57,10 @@ impl Columns {
     }
 
     const fn flag(number: usize) -> Flag {
-        Flag { column: Self::FLAGS + number / BITS, bit: (number % BITS) as u32 }
+        Flag {
+            column: Self::FLAGS + number / BITS,
+            bit: (number % BITS) as u32,
+        }
     }
 
     /// c_j: whether fixel j touches.
@@ -64,7 +68,8 @@ impl Columns {
         Self::flag(SINGLE + fixel)
     }
 
-    /// c_j in the particle's last step under the pusher or in motion: whether fixel j bears it when it is pressed on.
+    /// c_j in the particle's last step under the pusher or in motion: whether fixel j bears it when
+    /// it is pressed on.
     pub fn against_fixel(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + self.fixels + fixel)
     }
@@ -94,9 +99,16 @@ mod tests {
     fn flags_of_many_fixels_lie_apart_and_before_the_past_poses() {
         let columns = Columns::new(50, 1);
         let of_fixels = (0..50).flat_map(|j| [columns.contact_fixel(j), columns.against_fixel(j)]);
-        let flags: Vec<Flag> = of_fixels.chain([Columns::CONTACT_PUSHER, Columns::UNSOLVED, Columns::IDLE]).collect();
-        let places: HashSet<(usize, u32)> = flags.iter().map(|flag| (flag.column, flag.bit)).collect();
+        let flags: Vec<Flag> = of_fixels
+            .chain([Columns::CONTACT_PUSHER, Columns::UNSOLVED, Columns::IDLE])
+            .collect();
+        let places: HashSet<(usize, u32)> =
+            flags.iter().map(|flag| (flag.column, flag.bit)).collect();
         assert_eq!((flags.len(), places.len()), (103, 103));
-        assert!(flags.iter().all(|flag| flag.column < columns.past_pose(0) && flag.bit < 52));
+        assert!(
+            flags
+                .iter()
+                .all(|flag| flag.column < columns.past_pose(0) && flag.bit < 52)
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The particle filter's model of a pushed object (eq. 6): Γ' as transition, camera and tactile sensors as observation.
+//! The particle filter's model of a pushed object (eq. 6): Γ' as transition, camera and tactile
+//! sensors as observation.
 
 use stickslip_dynamics::{Dynamics, Lanes, Level, Mask, Pose, StepInput, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
@@ -11,7 +12,8 @@ use crate::sums::{Reference, Sums};
 use crate::watch::StepWatch;
 use crate::{Camera, Setup};
 
-/// Best log-likelihood below which no particle explains the observation: the particles are redrawn around it.
+/// Best log-likelihood below which no particle explains the observation: the particles are redrawn
+/// around it.
 const COLLAPSED: f64 = -6.0;
 
 /// Whether the friction parameters take a random step.
@@ -41,7 +43,13 @@ pub struct StepPlan {
 impl StepPlan {
     /// No step at all.
     pub(crate) fn none(reference: Reference) -> Self {
-        Self { substeps: Vec::new(), driven: false, parameter_noise: ParameterNoise::Frozen, slot: 0, reference }
+        Self {
+            substeps: Vec::new(),
+            driven: false,
+            parameter_noise: ParameterNoise::Frozen,
+            slot: 0,
+            reference,
+        }
     }
 }
 
@@ -92,8 +100,17 @@ impl<'w> ContactModel<'w> {
     pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
         let columns = Columns::new(setup.scene.fixels.len(), history);
         let (missed, invented) = (setup.tactile.false_negative, setup.tactile.false_positive);
-        let reading = [[1.0 - invented, invented], [missed, 1.0 - missed]].map(|row| row.map(libm::log));
-        Self { dynamics: Dynamics::new(setup.scene.clone()), setup: setup.clone(), camera, reading, start, columns, watch: None }
+        let reading =
+            [[1.0 - invented, invented], [missed, 1.0 - missed]].map(|row| row.map(libm::log));
+        Self {
+            dynamics: Dynamics::new(setup.scene.clone()),
+            setup: setup.clone(),
+            camera,
+            reading,
+            start,
+            columns,
+            watch: None,
+        }
     }
 
     /// The same, with a `watch` that is shown every step solved.
@@ -105,22 +122,42 @@ impl<'w> ContactModel<'w> {
     /// x, y and θ of one chunk's particles where the camera sees them.
     #[inline(always)]
     fn seen(&self, lookback: Option<Lookback>, block: &Block<'_>, chunk: usize) -> [Column; 3] {
-        let Some(Lookback { earlier, later, fraction }) = lookback else { return pose(block, Columns::POSE, chunk) };
+        let Some(Lookback {
+            earlier,
+            later,
+            fraction,
+        }) = lookback
+        else {
+            return pose(block, Columns::POSE, chunk);
+        };
         let mut seen = pose(block, self.columns.past_pose(earlier), chunk);
-        for (seen, later) in seen.iter_mut().zip(pose(block, self.columns.past_pose(later), chunk)) {
+        for (seen, later) in seen
+            .iter_mut()
+            .zip(pose(block, self.columns.past_pose(later), chunk))
+        {
             *seen += (later - *seen) * fraction;
         }
         seen
     }
 
-    /// log of the camera's likelihood up to a constant: normal, its standard deviations widened by `likelihood_scale`; 0 where it saw
-    /// nothing.
+    /// log of the camera's likelihood up to a constant: normal, its standard deviations widened by
+    /// `likelihood_scale`; 0 where it saw nothing.
     #[inline(always)]
-    fn camera_log_likelihood(&self, observation: &Observation, block: &Block<'_>, chunk: usize) -> Column {
-        let Some(measured) = observation.pose else { return Column::ZERO };
+    fn camera_log_likelihood(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> Column {
+        let Some(measured) = observation.pose else {
+            return Column::ZERO;
+        };
         let [x, y, theta] = self.seen(observation.lookback, block, chunk);
         let scale = self.setup.filter.likelihood_scale;
-        let [per_metre, per_radian] = [1.0 / (scale * self.camera.position_std), 1.0 / (scale * self.camera.orientation_std)];
+        let [per_metre, per_radian] = [
+            1.0 / (scale * self.camera.position_std),
+            1.0 / (scale * self.camera.orientation_std),
+        ];
         let (dx, dy) = ((x - measured.x) * per_metre, (y - measured.y) * per_metre);
         let turn = nearest_zero(theta - measured.theta) * per_radian;
         (dx * dx + dy * dy + turn * turn) * -0.5
@@ -128,11 +165,17 @@ impl<'w> ContactModel<'w> {
 
     /// log-probability of the tactile readings given one chunk's contacts.
     ///
-    /// What a driven particle touches its impulses tell. An idle one stays where it is whether the pusher that stands behind it
-    /// presses on it or not, since the support's friction holds it: both are certified solutions of its step, and which of them a
-    /// step returns is an accident of the warm start and the tracking noise. The one that explains the readings counts.
+    /// What a driven particle touches its impulses tell. An idle one stays where it is whether the
+    /// pusher that stands behind it presses on it or not, since the support's friction holds it:
+    /// both are certified solutions of its step, and which of them a step returns is an accident of
+    /// the warm start and the tracking noise. The one that explains the readings counts.
     #[inline(always)]
-    fn tactile_log_likelihood(&self, readings: &[Option<bool>], block: &Block<'_>, chunk: usize) -> Column {
+    fn tactile_log_likelihood(
+        &self,
+        readings: &[Option<bool>],
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> Column {
         let driven = self.readings_log_probability(
             readings,
             #[inline(always)]
@@ -156,11 +199,16 @@ impl<'w> ContactModel<'w> {
     }
 
     #[inline(always)]
-    fn readings_log_probability(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> Mask<LANES>) -> Column {
+    fn readings_log_probability(
+        &self,
+        readings: &[Option<bool>],
+        touches: impl Fn(usize) -> Mask<LANES>,
+    ) -> Column {
         let mut sum = Column::ZERO;
         for (j, reading) in readings.iter().enumerate() {
             if let Some(reading) = reading {
-                let [free, touching] = [0, 1].map(|touches| self.reading[touches][usize::from(*reading)]);
+                let [free, touching] =
+                    [0, 1].map(|touches| self.reading[touches][usize::from(*reading)]);
                 sum += touches(j).select(Lanes::splat(touching), Lanes::splat(free));
             }
         }
@@ -173,7 +221,11 @@ impl<'w> ContactModel<'w> {
 fn pose(block: &Block<'_>, first_column: usize, chunk: usize) -> [Column; 3] {
     // an array made by a closure would be made by baseline code, and copied
     let [x, y, theta] = [first_column, first_column + 1, first_column + 2];
-    [part(block.column(x), chunk, 0.0), part(block.column(y), chunk, 0.0), part(block.column(theta), chunk, 0.0)]
+    [
+        part(block.column(x), chunk, 0.0),
+        part(block.column(y), chunk, 0.0),
+        part(block.column(theta), chunk, 0.0),
+    ]
 }
 
 /// Writes `value(chunk)` for every chunk of particles, on the widest instructions.
@@ -208,14 +260,25 @@ impl Model for ContactModel<'_> {
         for (i, particle) in block.particles() {
             let pose = self.drawn_around(&self.start, draw.normals::<3>(particle, 0));
             write(block, Columns::POSE, i, &pose);
-            write(block, Columns::FRICTION, i, &[nominal.mu_s, nominal.mu_p, nominal.mu_f, nominal.d_tri]);
+            write(
+                block,
+                Columns::FRICTION,
+                i,
+                &[nominal.mu_s, nominal.mu_p, nominal.mu_f, nominal.d_tri],
+            );
             for slot in 0..self.columns.history() {
                 write(block, self.columns.past_pose(slot), i, &pose);
             }
         }
     }
 
-    fn propagate(&self, plan: &StepPlan, draw: Draw, block: &mut BlockMut<'_>, scratch: &mut Propagation) {
+    fn propagate(
+        &self,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+        scratch: &mut Propagation,
+    ) {
         scratch.propagate(self, plan, draw, block);
     }
 
@@ -223,7 +286,10 @@ impl Model for ContactModel<'_> {
         by_chunk(
             out,
             #[inline(always)]
-            |chunk| self.camera_log_likelihood(observation, block, chunk) + self.tactile_log_likelihood(&observation.tactile, block, chunk),
+            |chunk| {
+                self.camera_log_likelihood(observation, block, chunk)
+                    + self.tactile_log_likelihood(&observation.tactile, block, chunk)
+            },
         );
     }
 
@@ -236,7 +302,12 @@ impl Model for ContactModel<'_> {
     }
 
     /// The camera's alone: a pose drawn anew makes no touch likelier.
-    fn redrawn_log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
+    fn redrawn_log_likelihood(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        out: &mut [f64],
+    ) {
         by_chunk(
             out,
             #[inline(always)]
@@ -248,11 +319,16 @@ impl Model for ContactModel<'_> {
         best_log_likelihood < COLLAPSED
     }
 
-    /// Moves every particle, its past included, so that what the camera sees is drawn around the measured pose.
+    /// Moves every particle, its past included, so that what the camera sees is drawn around the
+    /// measured pose.
     fn redraw(&self, observation: &Observation, draw: Draw, block: &mut BlockMut<'_>) {
-        let Some(measured) = observation.pose else { return };
+        let Some(measured) = observation.pose else {
+            return;
+        };
         for (i, particle) in block.particles() {
-            let seen = self.seen(observation.lookback, &block.as_block(), i / LANES).map(|column| column.0[i % LANES]);
+            let seen = self
+                .seen(observation.lookback, &block.as_block(), i / LANES)
+                .map(|column| column.0[i % LANES]);
             let [x, y, theta] = self.drawn_around(&measured, draw.normals::<3>(particle, 0));
             let shift = [x - seen[0], y - seen[1], wrapped(theta - seen[2])];
             let past = (0..self.columns.history()).map(|slot| self.columns.past_pose(slot));

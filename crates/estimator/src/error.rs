@@ -7,7 +7,9 @@ use stickslip_filter::{SeriesError, SettingsError};
 #[non_exhaustive]
 pub enum RunError {
     /// The log has no object pose at all (or all are hidden).
-    #[error("the log has no visible object pose in any of its {rows} rows; at least the first pose is needed to start from")]
+    #[error(
+        "the log has no visible object pose in any of its {rows} rows; at least the first pose is needed to start from"
+    )]
     NoObjectPose {
         /// Rows of the log.
         rows: usize,
@@ -26,7 +28,9 @@ pub enum RunError {
         to: f64,
     },
     /// The method weighs camera poses but the scene has no `[camera]`.
-    #[error("the scene has no [camera] table, which this method needs; add position_std and orientation_std")]
+    #[error(
+        "the scene has no [camera] table, which this method needs; add position_std and orientation_std"
+    )]
     NoCamera,
     /// The pusher's or the object's poses could not be filtered.
     #[error("tracking by the constant-velocity Kalman filter failed: {0}")]
@@ -35,7 +39,9 @@ pub enum RunError {
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// More sensors than fixels.
-    #[error("the log has {sensors} tactile columns but the scene has {fixels} fixels; sensor k is the k-th [[fixel]]")]
+    #[error(
+        "the log has {sensors} tactile columns but the scene has {fixels} fixels; sensor k is the k-th [[fixel]]"
+    )]
     Sensors {
         /// Tactile columns.
         sensors: usize,

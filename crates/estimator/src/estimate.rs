@@ -18,7 +18,8 @@ pub struct EstimateRow {
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,
-    /// Friction parameters; `d_tri` is NaN-free: it is ignored where the feet are known (see [`Estimate::has_tripod`]).
+    /// Friction parameters; `d_tri` is NaN-free: it is ignored where the feet are known (see
+    /// [`Estimate::has_tripod`]).
     pub friction: Option<Friction>,
     /// Posterior probability of contact with the pusher.
     pub contact_pusher: Option<f64>,

@@ -1,7 +1,9 @@
-//! The Kalman filter baseline: Newton's law with all contact forces as unknown disturbance, per axis.
+//! The Kalman filter baseline: Newton's law with all contact forces as unknown disturbance, per
+//! axis.
 //!
-//! Each of x, y, θ follows a white-noise acceleration whose level is the one of greatest likelihood on the visible part of the
-//! log, so that it is a fair rival. While the camera is dark it goes on at its last velocity.
+//! Each of x, y, θ follows a white-noise acceleration whose level is the one of greatest likelihood
+//! on the visible part of the log, so that it is a fair rival. While the camera is dark it goes on
+//! at its last velocity.
 
 use stickslip_dynamics::{Pose, Twist};
 use stickslip_filter::{AxisEstimate, ConstantVelocity};
@@ -11,20 +13,35 @@ use crate::run::Prepared;
 use crate::{Camera, Estimate, EstimateRow, RunError, Setup, Spread};
 
 /// Filters the visible object poses of `prepared`.
-pub(crate) fn track(setup: &Setup, camera: &Camera, prepared: &Prepared<'_>) -> Result<Estimate, RunError> {
+pub(crate) fn track(
+    setup: &Setup,
+    camera: &Camera,
+    prepared: &Prepared<'_>,
+) -> Result<Estimate, RunError> {
     let poses = unwrapped_poses(prepared);
-    let axis = |pick: fn(&Pose) -> f64, std: f64| track_axis(prepared, &poses, pick, std, camera.latency);
+    let axis =
+        |pick: fn(&Pose) -> f64, std: f64| track_axis(prepared, &poses, pick, std, camera.latency);
     let x = axis(|p| p.x, camera.position_std)?;
     let y = axis(|p| p.y, camera.position_std)?;
     let theta = axis(|p| p.theta, camera.orientation_std)?;
     let mut estimate = prepared.empty_estimate(setup);
     for row in prepared.first..prepared.log.len() {
-        let (Some(x), Some(y), Some(theta)) = (x[row], y[row], theta[row]) else { continue };
+        let (Some(x), Some(y), Some(theta)) = (x[row], y[row], theta[row]) else {
+            continue;
+        };
         estimate.rows[row] = EstimateRow {
             pose: Some(Pose::new(x.position, y.position, theta.position)),
-            twist: Some(Twist { vx: x.velocity, vy: y.velocity, omega: theta.velocity }),
+            twist: Some(Twist {
+                vx: x.velocity,
+                vy: y.velocity,
+                omega: theta.velocity,
+            }),
             spread: Some(Spread {
-                pose: Pose::new(x.position_variance.sqrt(), y.position_variance.sqrt(), theta.position_variance.sqrt()),
+                pose: Pose::new(
+                    x.position_variance.sqrt(),
+                    y.position_variance.sqrt(),
+                    theta.position_variance.sqrt(),
+                ),
                 friction: None,
             }),
             visual: prepared.visible(row).is_some(),
@@ -40,7 +57,10 @@ fn unwrapped_poses(prepared: &Prepared<'_>) -> Vec<Option<Pose>> {
     let rows = (0..prepared.log.len()).map(|row| {
         let pose = prepared.visible(row)?;
         near = unwrapped(pose.theta, near);
-        Some(Pose { theta: near, ..pose })
+        Some(Pose {
+            theta: near,
+            ..pose
+        })
     });
     rows.collect()
 }
@@ -54,7 +74,11 @@ fn track_axis(
 ) -> Result<Vec<Option<AxisEstimate>>, RunError> {
     let measured: Vec<Option<f64>> = poses.iter().map(|pose| pose.as_ref().map(pick)).collect();
     // Newton's first law from rest where too few poses tell a noise level
-    let mut model = ConstantVelocity { process_noise: 1e-6, measurement_std: std, initial_velocity_std: 0.1 };
+    let mut model = ConstantVelocity {
+        process_noise: 1e-6,
+        measurement_std: std,
+        initial_velocity_std: 0.1,
+    };
     let time = &prepared.log.time;
     if measured.iter().flatten().count() >= 3 {
         model.process_noise = model.fit_process_noise(time, &measured)?.process_noise;
@@ -62,11 +86,20 @@ fn track_axis(
         model.initial_velocity_std = 1e-9;
     }
     let rows = model.filter(time, &measured)?.rows;
-    // a pose in row k shows the object one latency earlier: the estimate of the present is predicted from it
-    Ok(rows.into_iter().map(|row| row.map(|at| ahead(&model, at, latency))).collect())
+    // a pose in row k shows the object one latency earlier: the estimate of the present is
+    // predicted from it
+    Ok(rows
+        .into_iter()
+        .map(|row| row.map(|at| ahead(&model, at, latency)))
+        .collect())
 }
 
 fn ahead(model: &ConstantVelocity, at: AxisEstimate, time: f64) -> AxisEstimate {
-    let spread = at.velocity_variance * time * time + model.process_noise * time * time * time / 3.0;
-    AxisEstimate { position: at.position + time * at.velocity, position_variance: at.position_variance + spread, ..at }
+    let spread =
+        at.velocity_variance * time * time + model.process_noise * time * time * time / 3.0;
+    AxisEstimate {
+        position: at.position + time * at.velocity,
+        position_variance: at.position_variance + spread,
+        ..at
+    }
 }

@@ -1,4 +1,5 @@
-//! Tracks a pushed object through contact and visual occlusion and learns the friction that governs it.
+//! Tracks a pushed object through contact and visual occlusion and learns the friction that governs
+//! it.
 
 mod angle;
 mod chunk;

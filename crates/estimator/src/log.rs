@@ -13,7 +13,8 @@ pub struct Log {
     pub pusher: Vec<Option<Pose>>,
     /// Tactile readings: one column per fixel sensor, over the interval that ends at the row.
     pub tactile: Vec<Vec<Option<bool>>>,
-    /// Force of the pusher on the object, world frame (N); empty where the log has no force columns.
+    /// Force of the pusher on the object, world frame (N); empty where the log has no force
+    /// columns.
     pub force: Vec<Option<[f64; 2]>>,
 }
 

@@ -1,4 +1,5 @@
-//! The nominal simulation: Γ with fixed nominal friction from the first observed pose, driven by the recorded pusher.
+//! The nominal simulation: Γ with fixed nominal friction from the first observed pose, driven by
+//! the recorded pusher.
 
 use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepWork};
 
@@ -7,16 +8,27 @@ use crate::watch::SolvedStep;
 use crate::{Estimate, EstimateRow, Setup};
 
 /// Simulates the rows of `prepared` once.
-pub(crate) fn simulate(setup: &Setup, prepared: &Prepared<'_>, progress: &mut dyn FnMut(usize)) -> Estimate {
+pub(crate) fn simulate(
+    setup: &Setup,
+    prepared: &Prepared<'_>,
+    progress: &mut dyn FnMut(usize),
+) -> Estimate {
     let dynamics = Dynamics::new(setup.scene.clone());
-    let mut particle = Particle { pose: prepared.start, ..Particle::default() };
+    let mut particle = Particle {
+        pose: prepared.start,
+        ..Particle::default()
+    };
     let mut work = StepWork::<1>::default();
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[prepared.first] = row(&particle, None, 0);
     for k in prepared.first..prepared.log.len() - 1 {
         particle.pusher_lag = particle.pusher_lag.min(setup.most_pusher_lag());
         let unsolved = advance(&dynamics, prepared, k, &mut particle, &mut work);
-        let touch = touch_flags(setup, &work, prepared.schedule.step(k).last().map_or(0.0, |s| s.h));
+        let touch = touch_flags(
+            setup,
+            &work,
+            prepared.schedule.step(k).last().map_or(0.0, |s| s.h),
+        );
         estimate.rows[k + 1] = row(&particle, Some(touch), u32::from(unsolved));
         progress(k + 1);
     }
@@ -24,7 +36,13 @@ pub(crate) fn simulate(setup: &Setup, prepared: &Prepared<'_>, progress: &mut dy
 }
 
 /// Runs the substeps from row `k` to the next; true where one of them had no certified solution.
-fn advance(dynamics: &Dynamics, prepared: &Prepared<'_>, k: usize, particle: &mut Particle, work: &mut StepWork<1>) -> bool {
+fn advance(
+    dynamics: &Dynamics,
+    prepared: &Prepared<'_>,
+    k: usize,
+    particle: &mut Particle,
+    work: &mut StepWork<1>,
+) -> bool {
     let friction = [dynamics.scene().nominal];
     let mut unsolved = false;
     for input in prepared.schedule.step(k) {
@@ -33,7 +51,11 @@ fn advance(dynamics: &Dynamics, prepared: &Prepared<'_>, k: usize, particle: &mu
         unsolved |= report.outcome != Outcome::Solved;
         [*particle] = one;
         if let Some(watch) = prepared.watch {
-            watch.see(&SolvedStep { problem: &work.problem(0), solution: &work.solution(0), report });
+            watch.see(&SolvedStep {
+                problem: &work.problem(0),
+                solution: &work.solution(0),
+                report,
+            });
         }
     }
     unsolved
@@ -44,7 +66,12 @@ fn touch_flags(setup: &Setup, work: &StepWork<1>, h: f64) -> (f64, Vec<f64>) {
     let fixels = 0..setup.scene.fixels.len();
     let touch_impulse = setup.tactile.touch_force * h;
     let pusher = flag(work.normal_impulse(0, Body::Pusher) > 0.0);
-    (pusher, fixels.map(|j| flag(work.normal_impulse(0, Body::Fixel(j)) > touch_impulse)).collect())
+    (
+        pusher,
+        fixels
+            .map(|j| flag(work.normal_impulse(0, Body::Fixel(j)) > touch_impulse))
+            .collect(),
+    )
 }
 
 fn row(particle: &Particle, touch: Option<(f64, Vec<f64>)>, unsolved: u32) -> EstimateRow {

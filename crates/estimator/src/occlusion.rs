@@ -31,7 +31,9 @@ impl Occlusion {
     /// assert_eq!(Occlusion::Rows { from: 1, to: Some(3) }.hidden(&log), [false, true, true, false]);
     /// ```
     pub fn hidden(&self, log: &Log) -> Vec<bool> {
-        let (Some(first), Some(last)) = (log.time.first(), log.time.last()) else { return Vec::new() };
+        let (Some(first), Some(last)) = (log.time.first(), log.time.last()) else {
+            return Vec::new();
+        };
         let middle = 0.5 * (first + last);
         let hides = |row: usize| match *self {
             Occlusion::None => false,

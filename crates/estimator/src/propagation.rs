@@ -1,4 +1,5 @@
-//! Γ' for a block of particles (eq. 6): noise, the step, and Φ, which keeps of the parameters what took part.
+//! Γ' for a block of particles (eq. 6): noise, the step, and Φ, which keeps of the parameters what
+//! took part.
 
 use stickslip_dynamics::{Body, Lanes, Level, Mask, Outcome, Particles, StepWork, on_widest};
 use stickslip_filter::{BLOCK, BlockMut, Draw};
@@ -18,7 +19,8 @@ const NOISE_STEP: f64 = 1.0 / 30.0;
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, Table I).
 const MOVING: f64 = 1e-9;
 
-/// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of which three numbers are used.
+/// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of
+/// which three numbers are used.
 const FORCE_PAIR: u32 = 2;
 
 /// Working memory for the particles of one block.
@@ -43,7 +45,12 @@ struct Touched {
 impl Touched {
     const NOTHING: Self = {
         let no = Mask::splat(false);
-        Self { pusher: no, fixel: no, moved: no, unsolved: no }
+        Self {
+            pusher: no,
+            fixel: no,
+            moved: no,
+            unsolved: no,
+        }
     };
 }
 
@@ -61,7 +68,13 @@ impl Default for Propagation {
 
 impl Propagation {
     /// Moves the particles of `block` over one step.
-    pub fn propagate(&mut self, model: &ContactModel<'_>, plan: &StepPlan, draw: Draw, block: &mut BlockMut<'_>) {
+    pub fn propagate(
+        &mut self,
+        model: &ContactModel<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+    ) {
         let (level, chunks) = (self.level, block.len().div_ceil(LANES));
         on_widest(
             level,
@@ -78,7 +91,9 @@ impl Propagation {
             if let Some(watch) = model.watch {
                 watch.before(input, &self.particles[..chunks]);
             }
-            model.dynamics.step_block(input, &mut self.particles[..chunks], &mut self.work);
+            model
+                .dynamics
+                .step_block(input, &mut self.particles[..chunks], &mut self.work);
             on_widest(
                 level,
                 #[inline(always)]
@@ -97,7 +112,13 @@ impl Propagation {
 
     /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen.
     #[inline(always)]
-    fn load(&mut self, model: &ContactModel<'_>, plan: &StepPlan, draw: Draw, block: &BlockMut<'_>) {
+    fn load(
+        &mut self,
+        model: &ContactModel<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &BlockMut<'_>,
+    ) {
         let drawn = plan.parameter_noise == ParameterNoise::Drawn;
         if drawn {
             self.draw_normals(draw, 0, block);
@@ -106,13 +127,23 @@ impl Propagation {
         let most_lag = Lanes::splat(model.setup.most_pusher_lag());
         let settings = &model.setup.filter;
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();
-        let limits = [&settings.mu_s, &settings.mu_p, &settings.mu_f, &settings.d_tri];
+        let limits = [
+            &settings.mu_s,
+            &settings.mu_p,
+            &settings.mu_f,
+            &settings.d_tri,
+        ];
         for chunk in 0..block.len().div_ceil(LANES) {
             let particles = &mut self.particles[chunk];
             load_columns(block, Columns::POSE, chunk, &mut particles.pose);
             load_columns(block, Columns::TWIST, chunk, &mut particles.twist);
             load_columns(block, Columns::FRICTION, chunk, &mut particles.friction);
-            load_columns(block, Columns::PUSHER_LAG, chunk, std::array::from_mut(&mut particles.pusher_lag));
+            load_columns(
+                block,
+                Columns::PUSHER_LAG,
+                chunk,
+                std::array::from_mut(&mut particles.pusher_lag),
+            );
             particles.pusher_lag = particles.pusher_lag.min(most_lag);
             load_columns(block, Columns::WARM_START, chunk, &mut particles.warm);
             self.touched[chunk] = Touched::NOTHING;
@@ -133,14 +164,31 @@ impl Propagation {
         draw.normal_columns(first, pair + 1, &mut c[..len], &mut d[..len]);
     }
 
-    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, its variance proportional to h.
+    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, its
+    /// variance proportional to h.
     #[inline(always)]
-    fn apply_force(&mut self, model: &ContactModel<'_>, h: f64, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+    fn apply_force(
+        &mut self,
+        model: &ContactModel<'_>,
+        h: f64,
+        draw: Draw,
+        pair: u32,
+        block: &BlockMut<'_>,
+    ) {
         self.draw_normals(draw, pair, block);
         let scene = &model.setup.scene;
-        let share = model.setup.filter.force_std * scene.object.mass * scene.gravity * NOISE_STEP * (h / NOISE_STEP).sqrt();
+        let share = model.setup.filter.force_std
+            * scene.object.mass
+            * scene.gravity
+            * NOISE_STEP
+            * (h / NOISE_STEP).sqrt();
         let rho = scene.object.gyration_radius();
-        for (chunk, particles) in self.particles.iter_mut().enumerate().take(block.len().div_ceil(LANES)) {
+        for (chunk, particles) in self
+            .particles
+            .iter_mut()
+            .enumerate()
+            .take(block.len().div_ceil(LANES))
+        {
             let std = particles.friction[0] * share;
             for (k, arm) in [1.0, 1.0, rho].into_iter().enumerate() {
                 particles.applied[k] = std * arm * part(&self.normals[k], chunk, 0.0);
@@ -153,7 +201,11 @@ impl Propagation {
     fn show(&self, watch: &dyn StepWatch, particles: usize) {
         let reports = self.work.reports().as_flattened();
         for (i, report) in reports.iter().enumerate().take(particles) {
-            watch.see(&SolvedStep { problem: &self.work.problem(i), solution: &self.work.solution(i), report: *report });
+            watch.see(&SolvedStep {
+                problem: &self.work.problem(i),
+                solution: &self.work.solution(i),
+                report: *report,
+            });
         }
     }
 
@@ -162,7 +214,8 @@ impl Propagation {
     fn note_contacts(&mut self, model: &ContactModel<'_>, chunks: usize) {
         let scene = &model.setup.scene;
         let rho = scene.object.gyration_radius();
-        let pressed = |work: &StepWork<LANES>, chunk, body| work.normal_impulses(chunk, body).gt(Lanes::ZERO);
+        let pressed =
+            |work: &StepWork<LANES>, chunk, body| work.normal_impulses(chunk, body).gt(Lanes::ZERO);
         for chunk in 0..chunks {
             let touched = &mut self.touched[chunk];
             touched.moved = touched.moved | moving(&self.particles[chunk].twist, rho);
@@ -195,16 +248,27 @@ impl Propagation {
             for (k, took_part) in took_part.into_iter().enumerate() {
                 let mut kept = [Lanes::ZERO];
                 load_columns(block, Columns::FRICTION + k, chunk, &mut kept);
-                store_columns(block, Columns::FRICTION + k, chunk, &[took_part.select(particles.friction[k], kept[0])]);
+                store_columns(
+                    block,
+                    Columns::FRICTION + k,
+                    chunk,
+                    &[took_part.select(particles.friction[k], kept[0])],
+                );
             }
             let mut flags = FlagsMut::new(block, chunk);
             flags.set(Columns::UNSOLVED, touched.unsolved);
-            let pusher = self.work.normal_impulses(chunk, Body::Pusher).gt(Lanes::ZERO);
+            let pusher = self
+                .work
+                .normal_impulses(chunk, Body::Pusher)
+                .gt(Lanes::ZERO);
             flags.set(Columns::CONTACT_PUSHER, pusher);
             let pressed = moving(&particles.twist, rho) | pusher;
             flags.set(Columns::IDLE, !(pressed & driven));
             for j in 0..model.setup.scene.fixels.len() {
-                let touches = self.work.normal_impulses(chunk, Body::Fixel(j)).gt(touch_impulse);
+                let touches = self
+                    .work
+                    .normal_impulses(chunk, Body::Fixel(j))
+                    .gt(touch_impulse);
                 flags.set(model.columns.contact_fixel(j), touches);
                 let against = model.columns.against_fixel(j);
                 let before = flags.get(against);
@@ -212,7 +276,12 @@ impl Propagation {
             }
             flags.write();
             if model.columns.history() > 0 {
-                store_columns(block, model.columns.past_pose(plan.slot), chunk, &particles.pose);
+                store_columns(
+                    block,
+                    model.columns.past_pose(plan.slot),
+                    chunk,
+                    &particles.pose,
+                );
             }
         }
     }
@@ -228,12 +297,19 @@ fn moving([vx, vy, omega]: &[Column; 3], rho: f64) -> Mask<LANES> {
 /// β + β w within the limits.
 #[inline(always)]
 fn disturbed(value: Column, w: Column, limits: &Limits) -> Column {
-    (value + value * w).max(Lanes::splat(limits.min)).min(Lanes::splat(limits.max))
+    (value + value * w)
+        .max(Lanes::splat(limits.min))
+        .min(Lanes::splat(limits.max))
 }
 
 /// Reads one chunk of neighbouring columns; lanes past the last particle repeat it.
 #[inline(always)]
-fn load_columns<const N: usize>(block: &BlockMut<'_>, first_column: usize, chunk: usize, to: &mut [Column; N]) {
+fn load_columns<const N: usize>(
+    block: &BlockMut<'_>,
+    first_column: usize,
+    chunk: usize,
+    to: &mut [Column; N],
+) {
     for (k, to) in to.iter_mut().enumerate() {
         let column = block.column(first_column + k);
         *to = part(column, chunk, column[column.len() - 1]);
@@ -242,7 +318,12 @@ fn load_columns<const N: usize>(block: &BlockMut<'_>, first_column: usize, chunk
 
 /// Writes one chunk of neighbouring columns.
 #[inline(always)]
-fn store_columns<const N: usize>(block: &mut BlockMut<'_>, first_column: usize, chunk: usize, from: &[Column; N]) {
+fn store_columns<const N: usize>(
+    block: &mut BlockMut<'_>,
+    first_column: usize,
+    chunk: usize,
+    from: &[Column; N],
+) {
     for (k, from) in from.iter().enumerate() {
         store_part(block.column_mut(first_column + k), chunk, from);
     }

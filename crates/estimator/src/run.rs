@@ -1,11 +1,15 @@
-//! Runs a method over a recorded log: [`run`], the particle filter and its baselines behind one door.
+//! Runs a method over a recorded log: [`run`], the particle filter and its baselines behind one
+//! door.
 
 use stickslip_dynamics::Pose;
 
 use crate::schedule::{LONGEST_PAUSE, Schedule};
 use crate::track::PusherTrack;
 use crate::watch::StepWatch;
-use crate::{Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal, particle_run};
+use crate::{
+    Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal,
+    particle_run,
+};
 
 /// How a log is turned into estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -76,9 +80,20 @@ pub struct Run {
 /// Runs a method over a log; `progress` is told every finished row.
 ///
 /// # Errors
-/// Where the log has no visible object pose, the scene lacks what the method needs, or options are out of range.
-pub fn run(setup: &Setup, log: &Log, options: &RunOptions, progress: &mut dyn FnMut(usize)) -> Result<Run, RunError> {
-    run_prepared(setup, &Prepared::new(setup, log, options)?, options, progress)
+/// Where the log has no visible object pose, the scene lacks what the method needs, or options are
+/// out of range.
+pub fn run(
+    setup: &Setup,
+    log: &Log,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Run, RunError> {
+    run_prepared(
+        setup,
+        &Prepared::new(setup, log, options)?,
+        options,
+        progress,
+    )
 }
 
 /// The same, with a `watch` that is shown every time step solved on the way; it changes no result.
@@ -92,25 +107,49 @@ pub fn run_watched(
     watch: &dyn StepWatch,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Run, RunError> {
-    let prepared = Prepared { watch: Some(watch), ..Prepared::new(setup, log, options)? };
+    let prepared = Prepared {
+        watch: Some(watch),
+        ..Prepared::new(setup, log, options)?
+    };
     run_prepared(setup, &prepared, options, progress)
 }
 
-fn run_prepared(setup: &Setup, prepared: &Prepared<'_>, options: &RunOptions, progress: &mut dyn FnMut(usize)) -> Result<Run, RunError> {
+fn run_prepared(
+    setup: &Setup,
+    prepared: &Prepared<'_>,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Run, RunError> {
     let camera = || setup.camera.ok_or(RunError::NoCamera);
     let (estimate, collapses) = match options.method {
         Method::Particle => particle_run::track(setup, camera()?, prepared, options, progress)?,
         Method::Kalman => (kalman_baseline::track(setup, &camera()?, prepared)?, 0),
         Method::Nominal => (nominal::simulate(setup, prepared, progress), 0),
     };
-    let unsolved = estimate.rows.iter().filter_map(|row| row.unsolved).map(u64::from).sum();
-    Ok(Run { estimate, unsolved, collapses })
+    let unsolved = estimate
+        .rows
+        .iter()
+        .filter_map(|row| row.unsolved)
+        .map(u64::from)
+        .sum();
+    Ok(Run {
+        estimate,
+        unsolved,
+        collapses,
+    })
 }
 
 /// Refuses a log whose steps no substeps can follow.
 fn check_pauses(time: &[f64]) -> Result<(), RunError> {
-    match time.array_windows().position(|[from, to]| to - from > LONGEST_PAUSE) {
-        Some(row) => Err(RunError::Pause { row: row + 1, from: time[row], to: time[row + 1] }),
+    match time
+        .array_windows()
+        .position(|[from, to]| to - from > LONGEST_PAUSE)
+    {
+        Some(row) => Err(RunError::Pause {
+            row: row + 1,
+            from: time[row],
+            to: time[row + 1],
+        }),
         None => Ok(()),
     }
 }
@@ -130,14 +169,28 @@ impl<'a> Prepared<'a> {
     fn new(setup: &Setup, log: &'a Log, options: &RunOptions) -> Result<Self, RunError> {
         let fixels = setup.scene.fixels.len();
         if log.tactile.len() > fixels {
-            return Err(RunError::Sensors { sensors: log.tactile.len(), fixels });
+            return Err(RunError::Sensors {
+                sensors: log.tactile.len(),
+                fixels,
+            });
         }
         check_pauses(&log.time)?;
         let hidden = options.occlusion.hidden(log);
-        let seen = (0..log.len()).find_map(|row| log.object[row].filter(|_| !hidden[row]).map(|pose| (row, pose)));
+        let seen = (0..log.len()).find_map(|row| {
+            log.object[row]
+                .filter(|_| !hidden[row])
+                .map(|pose| (row, pose))
+        });
         let (first, start) = seen.ok_or(RunError::NoObjectPose { rows: log.len() })?;
         let track = PusherTrack::new(log, setup.camera.as_ref(), options.tracking)?;
-        Ok(Self { log, hidden, first, start, schedule: Schedule::new(&log.time, &track, options.substeps), watch: None })
+        Ok(Self {
+            log,
+            hidden,
+            first,
+            start,
+            schedule: Schedule::new(&log.time, &track, options.substeps),
+            watch: None,
+        })
     }
 
     /// The object pose of a row, where it was measured and is not hidden.
@@ -155,7 +208,8 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// Most rows of the log that lie within `latency` of each other, and two more: the past poses a particle must keep.
+    /// Most rows of the log that lie within `latency` of each other, and two more: the past poses a
+    /// particle must keep.
     pub fn rows_within(&self, latency: f64) -> usize {
         if latency <= 0.0 {
             return 0;

@@ -10,8 +10,8 @@ const LONGEST_STEP: f64 = 0.055;
 /// Length that the parts of a split step do not exceed (s).
 const SPLIT_TO: f64 = 0.05;
 
-/// Longest time between two rows (s): a log that pauses longer mixes two clocks or two recordings, and its substeps would fill the
-/// memory.
+/// Longest time between two rows (s): a log that pauses longer mixes two clocks or two recordings,
+/// and its substeps would fill the memory.
 pub(crate) const LONGEST_PAUSE: f64 = 600.0;
 
 /// The substeps of every step of a log.
@@ -33,7 +33,12 @@ impl Schedule {
             }
             split(h, motion, substeps.unwrap_or_else(|| parts(h)))
         });
-        Self { steps: steps.collect(), driven: (1..time.len()).map(|row| track.moves_after(row - 1)).collect() }
+        Self {
+            steps: steps.collect(),
+            driven: (1..time.len())
+                .map(|row| track.moves_after(row - 1))
+                .collect(),
+        }
     }
 
     /// The substeps from `row` to the next.
@@ -41,18 +46,33 @@ impl Schedule {
         &self.steps[row]
     }
 
-    /// Whether the pusher moves on the way from `row` to the next; what is left of a standing pusher's motion is tracking noise.
+    /// Whether the pusher moves on the way from `row` to the next; what is left of a standing
+    /// pusher's motion is tracking noise.
     pub fn driven(&self, row: usize) -> bool {
         self.driven[row]
     }
 }
 
 fn parts(h: f64) -> u32 {
-    if h > LONGEST_STEP { (h / SPLIT_TO).ceil() as u32 } else { 1 }
+    if h > LONGEST_STEP {
+        (h / SPLIT_TO).ceil() as u32
+    } else {
+        1
+    }
 }
 
 fn split(h: f64, motion: Option<PusherMotion>, parts: u32) -> Vec<StepInput> {
     let h = h / f64::from(parts);
-    let at = |part: u32| motion.map(|m| PusherMotion { pose: m.pose.advance(m.twist, h * f64::from(part)), ..m });
-    (0..parts).map(|part| StepInput { h, pusher: at(part) }).collect()
+    let at = |part: u32| {
+        motion.map(|m| PusherMotion {
+            pose: m.pose.advance(m.twist, h * f64::from(part)),
+            ..m
+        })
+    };
+    (0..parts)
+        .map(|part| StepInput {
+            h,
+            pusher: at(part),
+        })
+        .collect()
 }

@@ -1,4 +1,5 @@
-//! How far an estimate is from a reference: [`Scores`] (WMSE and final errors, formats.md "Scoring").
+//! How far an estimate is from a reference: [`Scores`] (WMSE and final errors, formats.md
+//! "Scoring").
 
 use stickslip_dynamics::Pose;
 
@@ -18,7 +19,8 @@ pub struct Reference {
     pub time: Vec<f64>,
     /// Pose of each row, where there is one.
     pub pose: Vec<Option<Pose>>,
-    /// Time by which its poses lag (s): the camera's latency for a log's own poses, 0 for the truth.
+    /// Time by which its poses lag (s): the camera's latency for a log's own poses, 0 for the
+    /// truth.
     pub latency: f64,
     /// Row of the first contact with the pusher, where it is known.
     pub first_pusher_contact: Option<usize>,
@@ -42,7 +44,13 @@ impl Reference {
     /// The exact motion at the rows of a log; rows outside it have no pose.
     pub fn of_truth(log: &Log, truth: Trajectory<'_>) -> Self {
         let pose = log.time.iter().map(|time| truth.pose_at(*time)).collect();
-        Self { time: log.time.clone(), pose, latency: 0.0, first_pusher_contact: None, rest: REST }
+        Self {
+            time: log.time.clone(),
+            pose,
+            latency: 0.0,
+            first_pusher_contact: None,
+            rest: REST,
+        }
     }
 }
 
@@ -61,12 +69,24 @@ pub struct Scores {
     pub final_error_deg: Option<f64>,
 }
 
-/// Scores `estimate` against `reference`; `hidden` are the rows that were occluded, `virtual_radius` is r_v (m).
-pub fn score(estimate: &Estimate, reference: &Reference, hidden: &[bool], virtual_radius: f64) -> Scores {
-    let errors: Vec<Option<Error>> = (0..reference.time.len()).map(|row| error_at(estimate, reference, row)).collect();
+/// Scores `estimate` against `reference`; `hidden` are the rows that were occluded,
+/// `virtual_radius` is r_v (m).
+pub fn score(
+    estimate: &Estimate,
+    reference: &Reference,
+    hidden: &[bool],
+    virtual_radius: f64,
+) -> Scores {
+    let errors: Vec<Option<Error>> = (0..reference.time.len())
+        .map(|row| error_at(estimate, reference, row))
+        .collect();
     let moving = moving_rows(reference, virtual_radius);
     let over = |keep: &dyn Fn(usize) -> bool| {
-        let kept = errors.iter().enumerate().filter(|(row, _)| keep(*row)).filter_map(|(_, error)| *error);
+        let kept = errors
+            .iter()
+            .enumerate()
+            .filter(|(row, _)| keep(*row))
+            .filter_map(|(_, error)| *error);
         wmse(kept, virtual_radius)
     };
     let last = errors.iter().rev().flatten().next();
@@ -90,25 +110,51 @@ struct Error {
 fn error_at(estimate: &Estimate, reference: &Reference, row: usize) -> Option<Error> {
     let truth = reference.pose[row]?;
     let guess = estimate.pose_at(reference.time[row] - reference.latency)?;
-    Some(Error { dx: guess.x - truth.x, dy: guess.y - truth.y, turn: wrapped(guess.theta - truth.theta) })
+    Some(Error {
+        dx: guess.x - truth.x,
+        dy: guess.y - truth.y,
+        turn: wrapped(guess.theta - truth.theta),
+    })
 }
 
 /// sqrt of the mean of dx² + dy² + r_v² dθ² [mm]; `None` over no rows.
 fn wmse(errors: impl Iterator<Item = Error>, virtual_radius: f64) -> Option<f64> {
     let eta = virtual_radius * virtual_radius;
-    let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| (sum + e.dx * e.dx + e.dy * e.dy + eta * e.turn * e.turn, count + 1));
+    let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| {
+        (
+            sum + e.dx * e.dx + e.dy * e.dy + eta * e.turn * e.turn,
+            count + 1,
+        )
+    });
     (count > 0).then(|| 1e3 * (sum / f64::from(count)).sqrt())
 }
 
 /// Rows from the first pusher contact to the last motion of the reference.
 fn moving_rows(reference: &Reference, virtual_radius: f64) -> std::ops::Range<usize> {
-    let seen: Vec<(usize, Pose)> = reference.pose.iter().enumerate().filter_map(|(row, pose)| pose.map(|p| (row, p))).collect();
-    let (Some(&(_, first)), Some(&(_, last))) = (seen.first(), seen.last()) else { return 0..0 };
-    let away = |from: &Pose, pose: &Pose| {
-        (pose.x - from.x).hypot(pose.y - from.y).max(virtual_radius * wrapped(pose.theta - from.theta).abs()) > reference.rest
+    let seen: Vec<(usize, Pose)> = reference
+        .pose
+        .iter()
+        .enumerate()
+        .filter_map(|(row, pose)| pose.map(|p| (row, p)))
+        .collect();
+    let (Some(&(_, first)), Some(&(_, last))) = (seen.first(), seen.last()) else {
+        return 0..0;
     };
-    let starts = seen.iter().find(|(_, pose)| away(&first, pose)).map(|(row, _)| *row);
-    let ends = seen.iter().rev().find(|(_, pose)| away(&last, pose)).map_or(0, |(row, _)| row + 1);
+    let away = |from: &Pose, pose: &Pose| {
+        (pose.x - from.x)
+            .hypot(pose.y - from.y)
+            .max(virtual_radius * wrapped(pose.theta - from.theta).abs())
+            > reference.rest
+    };
+    let starts = seen
+        .iter()
+        .find(|(_, pose)| away(&first, pose))
+        .map(|(row, _)| *row);
+    let ends = seen
+        .iter()
+        .rev()
+        .find(|(_, pose)| away(&last, pose))
+        .map_or(0, |(row, _)| row + 1);
     let start = reference.first_pusher_contact.or(starts).unwrap_or(ends);
     start..(ends + 1).max(start)
 }
@@ -122,6 +168,10 @@ impl Estimate {
             return after.filter(|_| self.time[later] == time);
         }
         let (t0, t1) = (self.time[later - 1], self.time[later]);
-        Some(self.rows[later - 1].pose?.interpolate(after?, (time - t0) / (t1 - t0)))
+        Some(
+            self.rows[later - 1]
+                .pose?
+                .interpolate(after?, (time - t0) / (t1 - t0)),
+        )
     }
 }

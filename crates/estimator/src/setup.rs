@@ -1,4 +1,5 @@
-//! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as `scene.toml` holds it.
+//! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as
+//! `scene.toml` holds it.
 
 use stickslip_dynamics::{Feet, Scene, Start};
 
@@ -30,7 +31,11 @@ pub struct Tactile {
 
 impl Default for Tactile {
     fn default() -> Self {
-        Self { false_positive: 0.01, false_negative: 0.05, touch_force: 0.05 }
+        Self {
+            false_positive: 0.01,
+            false_negative: 0.05,
+            touch_force: 0.05,
+        }
     }
 }
 
@@ -46,7 +51,8 @@ pub struct Limits {
 /// `[filter]` of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterSettings {
-    /// w_app per step of 1/30 s, as a share of μ_s m g h per linear axis, times the radius of gyration for rotation.
+    /// w_app per step of 1/30 s, as a share of μ_s m g h per linear axis, times the radius of
+    /// gyration for rotation.
     pub force_std: f64,
     /// w_β per step of 1/30 s, multiplicative.
     pub parameter_std: f64,
@@ -71,10 +77,22 @@ impl Default for FilterSettings {
             parameter_std: 0.05,
             resample_below: 0.5,
             likelihood_scale: 1.5,
-            mu_s: Limits { min: 0.05, max: 1.0 },
-            mu_p: Limits { min: 0.02, max: 1.0 },
-            mu_f: Limits { min: 0.02, max: 1.0 },
-            d_tri: Limits { min: 0.003, max: 0.04 },
+            mu_s: Limits {
+                min: 0.05,
+                max: 1.0,
+            },
+            mu_p: Limits {
+                min: 0.02,
+                max: 1.0,
+            },
+            mu_f: Limits {
+                min: 0.02,
+                max: 1.0,
+            },
+            d_tri: Limits {
+                min: 0.003,
+                max: 0.04,
+            },
         }
     }
 }
@@ -98,13 +116,15 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`] standard deviations of that pose. What
-    /// stood farther behind the log contradicts: it is dragged to that distance.
+    /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`]
+    /// standard deviations of that pose. What stood farther behind the log contradicts: it is
+    /// dragged to that distance.
     pub(crate) fn most_pusher_lag(&self) -> f64 {
         PUSHER_SIGMAS * self.camera.map_or(0.0, |camera| camera.pusher_position_std)
     }
 
-    /// r_v, the weight of an angle in the scores, where no other is given: the object's radius of gyration (m).
+    /// r_v, the weight of an angle in the scores, where no other is given: the object's radius of
+    /// gyration (m).
     pub fn virtual_radius(&self) -> f64 {
         self.scene.object.gyration_radius()
     }

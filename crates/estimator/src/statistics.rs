@@ -1,7 +1,7 @@
 //! Scores over many seeds: quantiles, [`Band`] and [`PairedDifference`].
 
-/// The `q`-quantile of some numbers, `q` in [0, 1], linear between order statistics: position q (n - 1) from the smallest; `None` of
-/// nothing.
+/// The `q`-quantile of some numbers, `q` in [0, 1], linear between order statistics: position q (n
+/// - 1) from the smallest; `None` of nothing.
 ///
 /// ```
 /// # use stickslip::quantile;
@@ -35,19 +35,25 @@ impl Band {
     #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         let at = |q: f64| quantile(values, q);
-        Some(Self { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
+        Some(Self {
+            low: at(0.1)?,
+            median: at(0.5)?,
+            high: at(0.9)?,
+        })
     }
 }
 
 /// By how much one method's scores are above another's, seed by seed.
 ///
-/// Scores of methods that lose the object now and then have heavy tails, so that the median of the differences is told, not their mean.
+/// Scores of methods that lose the object now and then have heavy tails, so that the median of the
+/// differences is told, not their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairedDifference {
     /// Median of a - b over the pairs, in the scores' unit.
     pub median: f64,
-    /// Standard error of that median: its distribution-free 95 % interval, from one order statistic to another, over 2 · 1.96 (McKean &
-    /// Schrader 1984). Infinite for fewer than six pairs, which have no such interval.
+    /// Standard error of that median: its distribution-free 95 % interval, from one order statistic
+    /// to another, over 2 · 1.96 (McKean & Schrader 1984). Infinite for fewer than six pairs, which
+    /// have no such interval.
     pub standard_error: f64,
     /// Number of pairs.
     pub pairs: usize,
@@ -74,7 +80,11 @@ impl PairedDifference {
         assert_eq!(a.len(), b.len(), "scores come in pairs");
         let mut differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         differences.sort_by(f64::total_cmp);
-        Some(Self { median: quantile(&differences, 0.5)?, standard_error: error_of_median(&differences), pairs: a.len() })
+        Some(Self {
+            median: quantile(&differences, 0.5)?,
+            standard_error: error_of_median(&differences),
+            pairs: a.len(),
+        })
     }
 
     /// The direction of the difference, where it exceeds `errors` of its standard errors.
@@ -98,7 +108,9 @@ fn error_of_median(sorted: &[f64]) -> f64 {
         return f64::INFINITY;
     }
     // the interval from the c-th smallest to the c-th largest
-    let c = ((n + 1) as f64 / 2.0 - NORMAL_95 * (n as f64 / 4.0).sqrt()).round().max(1.0) as usize;
+    let c = ((n + 1) as f64 / 2.0 - NORMAL_95 * (n as f64 / 4.0).sqrt())
+        .round()
+        .max(1.0) as usize;
     (sorted[n - c] - sorted[c - 1]) / (2.0 * NORMAL_95)
 }
 
@@ -109,22 +121,45 @@ mod tests {
     #[test]
     fn band_of_the_numbers_0_to_10() {
         let numbers: Vec<f64> = (0..=10).rev().map(f64::from).collect();
-        assert_eq!(Band::of(&numbers), Some(Band { low: 1.0, median: 5.0, high: 9.0 }));
-        assert_eq!(Band::of(&[7.0]), Some(Band { low: 7.0, median: 7.0, high: 7.0 }));
+        assert_eq!(
+            Band::of(&numbers),
+            Some(Band {
+                low: 1.0,
+                median: 5.0,
+                high: 9.0
+            })
+        );
+        assert_eq!(
+            Band::of(&[7.0]),
+            Some(Band {
+                low: 7.0,
+                median: 7.0,
+                high: 7.0
+            })
+        );
         assert_eq!(Band::of(&[]), None);
     }
 
-    /// Evenly spread over (0, 1), n numbers have a median whose standard error tends to 1/(2 f √n) with the density f = 1.
+    /// Evenly spread over (0, 1), n numbers have a median whose standard error tends to 1/(2 f √n)
+    /// with the density f = 1.
     #[test]
     fn error_of_the_median_tends_to_its_closed_form() {
         for n in [400_u32, 10_000, 160_000] {
             let b: Vec<f64> = (0..n).map(|k| f64::from(k % 17)).collect();
-            let a: Vec<f64> = (0..n).map(|k| f64::from(k % 17) + (f64::from(k) + 0.5) / f64::from(n)).collect();
+            let a: Vec<f64> = (0..n)
+                .map(|k| f64::from(k % 17) + (f64::from(k) + 0.5) / f64::from(n))
+                .collect();
             let difference = PairedDifference::of(&a, &b).unwrap();
             assert!((difference.median - 0.5).abs() < 1e-9);
-            assert!((difference.standard_error * 2.0 * f64::from(n).sqrt() - 1.0).abs() < 0.05, "{difference:?}");
+            assert!(
+                (difference.standard_error * 2.0 * f64::from(n).sqrt() - 1.0).abs() < 0.05,
+                "{difference:?}"
+            );
             assert_eq!(difference.direction(2.0), Direction::Above);
-            assert_eq!(PairedDifference::of(&b, &a).unwrap().direction(2.0), Direction::Below);
+            assert_eq!(
+                PairedDifference::of(&b, &a).unwrap().direction(2.0),
+                Direction::Below
+            );
         }
     }
 
@@ -134,7 +169,10 @@ mod tests {
         let b = [0.0; 20];
         let mut a: Vec<f64> = (1..=20).map(f64::from).collect();
         let difference = PairedDifference::of(&a, &b).unwrap();
-        assert_eq!((difference.median, difference.standard_error), (10.5, 9.0 / 3.92));
+        assert_eq!(
+            (difference.median, difference.standard_error),
+            (10.5, 9.0 / 3.92)
+        );
         a[19] = 1e6;
         assert_eq!(PairedDifference::of(&a, &b), Some(difference));
     }
@@ -142,10 +180,27 @@ mod tests {
     #[test]
     fn equal_differences_have_no_error_and_few_say_nothing() {
         let difference = PairedDifference::of(&[1.0; 6], &[1.5; 6]).unwrap();
-        assert_eq!(difference, PairedDifference { median: -0.5, standard_error: 0.0, pairs: 6 });
+        assert_eq!(
+            difference,
+            PairedDifference {
+                median: -0.5,
+                standard_error: 0.0,
+                pairs: 6
+            }
+        );
         assert_eq!(difference.direction(2.0), Direction::Below);
-        assert_eq!(PairedDifference::of(&[1.0; 5], &[9.0; 5]).unwrap().direction(2.0), Direction::Unclear);
-        assert_eq!(PairedDifference::of(&[1.0; 7], &[1.0; 7]).unwrap().direction(2.0), Direction::Unclear);
+        assert_eq!(
+            PairedDifference::of(&[1.0; 5], &[9.0; 5])
+                .unwrap()
+                .direction(2.0),
+            Direction::Unclear
+        );
+        assert_eq!(
+            PairedDifference::of(&[1.0; 7], &[1.0; 7])
+                .unwrap()
+                .direction(2.0),
+            Direction::Unclear
+        );
         assert_eq!(PairedDifference::of(&[], &[]), None);
     }
 }

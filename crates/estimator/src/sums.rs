@@ -9,8 +9,14 @@ use crate::chunk::{Column, LANES, flag, part};
 use crate::columns::{Columns, Flag};
 
 /// Columns whose spread is told: x, y, μ_s, μ_p, μ_f, d_tri.
-const SPREAD: [usize; 6] =
-    [Columns::POSE, Columns::POSE + 1, Columns::FRICTION, Columns::FRICTION + 1, Columns::FRICTION + 2, Columns::FRICTION + 3];
+const SPREAD: [usize; 6] = [
+    Columns::POSE,
+    Columns::POSE + 1,
+    Columns::FRICTION,
+    Columns::FRICTION + 1,
+    Columns::FRICTION + 2,
+    Columns::FRICTION + 3,
+];
 
 /// θ.
 pub(crate) const ANGLE: usize = Columns::POSE + 2;
@@ -27,12 +33,25 @@ pub struct Reference {
 impl Reference {
     /// The means of a row.
     pub fn of(row: &EstimateRow) -> Option<Self> {
-        row.pose.zip(row.friction).map(|(pose, friction)| Self::new(pose, friction))
+        row.pose
+            .zip(row.friction)
+            .map(|(pose, friction)| Self::new(pose, friction))
     }
 
     /// A pose and friction values.
-    pub fn new(Pose { x, y, theta }: Pose, Friction { mu_s, mu_p, mu_f, d_tri }: Friction) -> Self {
-        Self { spread: [x, y, mu_s, mu_p, mu_f, d_tri], angle: theta }
+    pub fn new(
+        Pose { x, y, theta }: Pose,
+        Friction {
+            mu_s,
+            mu_p,
+            mu_f,
+            d_tri,
+        }: Friction,
+    ) -> Self {
+        Self {
+            spread: [x, y, mu_s, mu_p, mu_f, d_tri],
+            angle: theta,
+        }
     }
 }
 
@@ -60,7 +79,13 @@ pub struct Sums {
 impl Sums {
     /// Those over one block.
     #[inline(always)]
-    pub fn take(&mut self, block: &Block<'_>, weights: &[f64], reference: &Reference, columns: Columns) {
+    pub fn take(
+        &mut self,
+        block: &Block<'_>,
+        weights: &[f64],
+        reference: &Reference,
+        columns: Columns,
+    ) {
         let o = Column::ZERO;
         let (mut first, mut second, mut twist, mut angle) = ([o; 6], [o; 6], [o; 3], [o; 4]);
         let (mut widest, mut unsolved) = (o, o);
@@ -92,12 +117,13 @@ impl Sums {
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
         self.contact_fixels.clear();
         for j in 0..columns.fixels() {
-            self.contact_fixels.push(share(block, weights, columns.contact_fixel(j)));
+            self.contact_fixels
+                .push(share(block, weights, columns.contact_fixel(j)));
         }
     }
 
-    /// Standard deviation of the angles about their mean direction, `turn` from the reference, if none is on the other side of the
-    /// circle.
+    /// Standard deviation of the angles about their mean direction, `turn` from the reference, if
+    /// none is on the other side of the circle.
     pub fn angle_std_about(&self, turn: f64) -> f64 {
         let [_, _, d, square] = self.angle;
         (square - 2.0 * turn * d + turn * turn).max(0.0).sqrt()
@@ -123,7 +149,10 @@ impl WeightedSums for Sums {
     fn clear(&mut self) {
         let mut contact_fixels = std::mem::take(&mut self.contact_fixels);
         contact_fixels.clear();
-        *self = Self { contact_fixels, ..Self::default() };
+        *self = Self {
+            contact_fixels,
+            ..Self::default()
+        };
     }
 
     fn add(&mut self, other: &Self, share: f64) {
@@ -133,10 +162,15 @@ impl WeightedSums for Sums {
             (&mut self.second, &other.second),
             (&mut self.twist, &other.twist),
             (&mut self.angle, &other.angle),
-            (std::slice::from_mut(&mut self.contact_pusher), std::slice::from_ref(&other.contact_pusher)),
+            (
+                std::slice::from_mut(&mut self.contact_pusher),
+                std::slice::from_ref(&other.contact_pusher),
+            ),
             (&mut self.contact_fixels, &other.contact_fixels),
         ] {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to += share * from);
+            to.iter_mut()
+                .zip(from)
+                .for_each(|(to, from)| *to += share * from);
         }
         self.widest = self.widest.max(other.widest);
         self.unsolved += other.unsolved;

@@ -15,7 +15,8 @@ pub struct Trajectory<'a> {
 }
 
 impl Trajectory<'_> {
-    /// The pose at `time` (s), linear between instants, that of an instant within 0.1 ms as it stands; `None` outside them.
+    /// The pose at `time` (s), linear between instants, that of an instant within 0.1 ms as it
+    /// stands; `None` outside them.
     ///
     /// ```
     /// # use stickslip::{Trajectory, dynamics::Pose};

@@ -1,4 +1,5 @@
-//! Looking over a run's shoulder: a [`StepWatch`] is shown every time step that is solved, and the particles after every row.
+//! Looking over a run's shoulder: a [`StepWatch`] is shown every time step that is solved, and the
+//! particles after every row.
 
 use std::fmt::Debug;
 
@@ -18,21 +19,24 @@ pub struct SolvedStep<'a> {
     pub report: Report,
 }
 
-/// Is shown the time steps of a run, substeps included: those that count, with all contacts that could act.
+/// Is shown the time steps of a run, substeps included: those that count, with all contacts that
+/// could act.
 ///
-/// The steps of 64 particles that follow each other come in order from one thread; those of a larger set come from several threads
-/// at once, in no fixed order.
+/// The steps of 64 particles that follow each other come in order from one thread; those of a
+/// larger set come from several threads at once, in no fixed order.
 pub trait StepWatch: Debug + Sync {
     /// One step.
     fn see(&self, step: &SolvedStep<'_>);
 
-    /// What the coming step of up to 64 particles starts from, noise included; lanes past the last particle repeat it.
+    /// What the coming step of up to 64 particles starts from, noise included; lanes past the last
+    /// particle repeat it.
     fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let _ = (input, particles);
     }
 
-    /// The particles after a row, weighed by what was measured there; the first one is the row where the estimate begins. Rows come in
-    /// order, from one thread. Only the particle filter has any.
+    /// The particles after a row, weighed by what was measured there; the first one is the row
+    /// where the estimate begins. Rows come in order, from one thread. Only the particle filter has
+    /// any.
     fn after(&self, row: usize, cloud: &Cloud<'_>) {
         let _ = (row, cloud);
     }

@@ -1,14 +1,19 @@
-//! What a watch sees of the particles: all of them, with the weights that the estimate is made with; and it changes no bit of a run.
+//! What a watch sees of the particles: all of them, with the weights that the estimate is made
+//! with; and it changes no bit of a run.
 
 use std::sync::Mutex;
 
 use stickslip::dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape};
-use stickslip::{Camera, Cloud, FilterSettings, Log, Occlusion, Run, RunOptions, Setup, SolvedStep, StepWatch, Tactile, run, run_watched};
+use stickslip::{
+    Camera, Cloud, FilterSettings, Log, Occlusion, Run, RunOptions, Setup, SolvedStep, StepWatch,
+    Tactile, run, run_watched,
+};
 
 const ROWS: usize = 40;
 const FIRST: usize = 2;
 
-/// What the particles after one row come to, each weighted: sum of weights, means and standard deviations of x, y, θ and μ_s.
+/// What the particles after one row come to, each weighted: sum of weights, means and standard
+/// deviations of x, y, θ and μ_s.
 #[derive(Debug)]
 struct Moments {
     row: usize,
@@ -29,37 +34,82 @@ impl StepWatch for Sums {
             let (pose, friction) = (cloud.pose(particle), cloud.friction(particle));
             [pose.x, pose.y, pose.theta, friction.mu_s]
         };
-        let sum = |f: &dyn Fn([f64; 4]) -> f64| -> f64 { cloud.weights().iter().enumerate().map(|(i, w)| w * f(values(i))).sum() };
+        let sum = |f: &dyn Fn([f64; 4]) -> f64| -> f64 {
+            cloud
+                .weights()
+                .iter()
+                .enumerate()
+                .map(|(i, w)| w * f(values(i)))
+                .sum()
+        };
         let means = std::array::from_fn(|k| sum(&|x| x[k]));
         let stds = std::array::from_fn(|k| sum(&|x| (x[k] - means[k]).powi(2)).sqrt());
-        let moments = Moments { row, particles: cloud.len(), weight: sum(&|_| 1.0), means, stds };
+        let moments = Moments {
+            row,
+            particles: cloud.len(),
+            weight: sum(&|_| 1.0),
+            means,
+            stds,
+        };
         self.0.lock().expect("one thread").push(moments);
     }
 }
 
 /// A disc that a disc pushes.
 fn setup() -> Setup {
-    let disc = |radius| Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]).expect("a disc");
+    let disc = |radius| {
+        Shape::new(vec![Part::Disc {
+            radius,
+            centre: [0.0, 0.0],
+        }])
+        .expect("a disc")
+    };
     let scene = Scene {
         gravity: 9.81,
-        object: Object { mass: 0.5, inertia: 2e-4, shape: disc(0.03) },
+        object: Object {
+            mass: 0.5,
+            inertia: 2e-4,
+            shape: disc(0.03),
+        },
         feet: Feet::Tripod { angle: 0.0 },
-        pusher: Pusher { shape: disc(0.005), stall_force: None },
+        pusher: Pusher {
+            shape: disc(0.005),
+            stall_force: None,
+        },
         fixels: Vec::new(),
-        nominal: Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 },
+        nominal: Friction {
+            mu_s: 0.3,
+            mu_p: 0.3,
+            mu_f: 0.3,
+            d_tri: 0.02,
+        },
     };
-    let camera =
-        Camera { position_std: 3e-4, orientation_std: 5e-3, latency: 0.0, pusher_position_std: 1e-4, pusher_orientation_std: 2e-3 };
-    Setup { scene, camera: Some(camera), tactile: Tactile::default(), filter: FilterSettings::default(), start: None }
+    let camera = Camera {
+        position_std: 3e-4,
+        orientation_std: 5e-3,
+        latency: 0.0,
+        pusher_position_std: 1e-4,
+        pusher_orientation_std: 2e-3,
+    };
+    Setup {
+        scene,
+        camera: Some(camera),
+        tactile: Tactile::default(),
+        filter: FilterSettings::default(),
+        start: None,
+    }
 }
 
 /// The camera misses the first rows.
 fn log() -> Log {
-    let object = |row| (row >= FIRST).then(|| Pose::new(0.001 * (row as f64 - 20.0).max(0.0), 0.0, 0.0));
+    let object =
+        |row| (row >= FIRST).then(|| Pose::new(0.001 * (row as f64 - 20.0).max(0.0), 0.0, 0.0));
     Log {
         time: (0..ROWS).map(|row| row as f64 / 30.0).collect(),
         object: (0..ROWS).map(object).collect(),
-        pusher: (0..ROWS).map(|row| Some(Pose::new(-0.055 + 0.001 * row as f64, 0.001, 0.0))).collect(),
+        pusher: (0..ROWS)
+            .map(|row| Some(Pose::new(-0.055 + 0.001 * row as f64, 0.001, 0.0)))
+            .collect(),
         ..Log::default()
     }
 }
@@ -72,20 +122,54 @@ fn watched(options: &RunOptions) -> (Run, Vec<Moments>) {
 
 #[test]
 fn a_watch_sees_the_particles_that_the_estimate_is_made_of() {
-    let options = RunOptions { particles: 100, occlusion: Occlusion::Rows { from: 30, to: None }, ..RunOptions::default() };
+    let options = RunOptions {
+        particles: 100,
+        occlusion: Occlusion::Rows { from: 30, to: None },
+        ..RunOptions::default()
+    };
     let (run, sums) = watched(&options);
-    assert_eq!(sums.iter().map(|moments| moments.row).collect::<Vec<_>>(), (FIRST..ROWS).collect::<Vec<_>>());
-    for Moments { row, particles, weight, means, stds } in sums {
+    assert_eq!(
+        sums.iter().map(|moments| moments.row).collect::<Vec<_>>(),
+        (FIRST..ROWS).collect::<Vec<_>>()
+    );
+    for Moments {
+        row,
+        particles,
+        weight,
+        means,
+        stds,
+    } in sums
+    {
         let told = &run.estimate.rows[row];
-        let (pose, friction, spread) = (told.pose.expect("a pose"), told.friction.expect("friction"), told.spread.expect("a spread"));
+        let (pose, friction, spread) = (
+            told.pose.expect("a pose"),
+            told.friction.expect("friction"),
+            told.spread.expect("a spread"),
+        );
         assert!(particles == 100 && (weight - 1.0).abs() < 1e-12);
-        // the mean direction of angles some hundredths apart is their mean but for a third power of them
-        for ((mean, told), tolerance) in means.iter().zip([pose.x, pose.y, pose.theta, friction.mu_s]).zip([1e-12, 1e-12, 1e-5, 1e-12]) {
-            assert!((mean - told).abs() < tolerance, "row {row}: {mean} and {told}");
+        // the mean direction of angles some hundredths apart is their mean but for a third power of
+        // them
+        for ((mean, told), tolerance) in means
+            .iter()
+            .zip([pose.x, pose.y, pose.theta, friction.mu_s])
+            .zip([1e-12, 1e-12, 1e-5, 1e-12])
+        {
+            assert!(
+                (mean - told).abs() < tolerance,
+                "row {row}: {mean} and {told}"
+            );
         }
-        let told = [spread.pose.x, spread.pose.y, spread.pose.theta, spread.friction.expect("friction").mu_s];
+        let told = [
+            spread.pose.x,
+            spread.pose.y,
+            spread.pose.theta,
+            spread.friction.expect("friction").mu_s,
+        ];
         for (std, told) in stds.iter().zip(told) {
-            assert!((std - told).abs() < 1e-5 * std + 1e-10, "row {row}: {std} and {told}");
+            assert!(
+                (std - told).abs() < 1e-5 * std + 1e-10,
+                "row {row}: {std} and {told}"
+            );
         }
         assert!(stds[..3].iter().all(|std| *std > 1e-6), "{stds:?}");
     }
@@ -93,13 +177,19 @@ fn a_watch_sees_the_particles_that_the_estimate_is_made_of() {
 
 #[test]
 fn a_watch_changes_no_bit() {
-    let options = RunOptions { particles: 100, ..RunOptions::default() };
+    let options = RunOptions {
+        particles: 100,
+        ..RunOptions::default()
+    };
     let plain = run(&setup(), &log(), &options, &mut |_| ()).expect("a run");
     assert_eq!(watched(&options).0, plain);
 }
 
 #[test]
 fn methods_without_particles_show_none() {
-    let options = RunOptions { method: stickslip::Method::Kalman, ..RunOptions::default() };
+    let options = RunOptions {
+        method: stickslip::Method::Kalman,
+        ..RunOptions::default()
+    };
     assert!(watched(&options).1.is_empty());
 }

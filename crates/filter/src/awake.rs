@@ -3,10 +3,12 @@
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs `body` on the current pool while the pool's other threads look for work without ever going to sleep.
+/// Runs `body` on the current pool while the pool's other threads look for work without ever going
+/// to sleep.
 ///
-/// A filter step of some hundred particles is over in the time that a sleeping thread takes to wake up. No result depends on it; it
-/// costs the pool's processors for as long as `body` runs, which should therefore have the pool to itself.
+/// A filter step of some hundred particles is over in the time that a sleeping thread takes to wake
+/// up. No result depends on it; it costs the pool's processors for as long as `body` runs, which
+/// should therefore have the pool to itself.
 ///
 /// ```
 /// assert_eq!(stickslip_filter::keep_threads_awake(|| 6 * 7), 42);
@@ -16,7 +18,8 @@ pub fn keep_threads_awake<T: Send>(body: impl FnOnce() -> T + Send) -> T {
     rayon::scope(|scope| {
         let (home, over) = (rayon::current_thread_index(), &over);
         scope.spawn_broadcast(move |_, worker| {
-            // the thread of the body may look for work in one of the body's loops: it must come back to it
+            // the thread of the body may look for work in one of the body's loops: it must come
+            // back to it
             if Some(worker.index()) != home {
                 attend(over);
             }

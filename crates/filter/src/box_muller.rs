@@ -1,9 +1,10 @@
-//! Two uniform numbers to two normal ones (Box & Muller 1958), written so that a loop over particles vectorises.
+//! Two uniform numbers to two normal ones (Box & Muller 1958), written so that a loop over
+//! particles vectorises.
 //!
-//! radius = sqrt(-2 ln u), angle = 2 pi v: the pair (radius cos, radius sin). Logarithm, sine and cosine are the
-//! polynomials of fdlibm (Sun Microsystems 1993) without its branches and tables: plain arithmetic, no fused
-//! multiply-add, hence the same bits in scalar code, on SSE2, AVX2, AVX-512 and NEON. Errors are a few units in
-//! the last place.
+//! radius = sqrt(-2 ln u), angle = 2 pi v: the pair (radius cos, radius sin). Logarithm, sine and
+//! cosine are the polynomials of fdlibm (Sun Microsystems 1993) without its branches and tables:
+//! plain arithmetic, no fused multiply-add, hence the same bits in scalar code, on SSE2, AVX2,
+//! AVX-512 and NEON. Errors are a few units in the last place.
 
 /// ln 2 as a sum; the first number has so few digits that its multiples by exponents are exact.
 pub(crate) const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
@@ -28,8 +29,8 @@ fn small_integer(n: u64) -> f64 {
     f64::from_bits(n | TWO_52.to_bits()) - TWO_52
 }
 
-/// ln x of a positive normal x: x = 2^k (1 + f) with 1 + f in [sqrt 1/2, sqrt 2), then ln(1 + f) = 2 artanh s with
-/// s = f / (2 + f).
+/// ln x of a positive normal x: x = 2^k (1 + f) with 1 + f in [sqrt 1/2, sqrt 2), then ln(1 + f) =
+/// 2 artanh s with s = f / (2 + f).
 #[inline(always)]
 fn ln(x: f64) -> f64 {
     const SQRT_HALF_BITS: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
@@ -47,7 +48,8 @@ fn ln(x: f64) -> f64 {
     k * LN2_HIGH - ((half_square - (s * (half_square + tail) + k * LN2_LOW)) - f)
 }
 
-/// sin and cos of 2 pi v, v in [0, 1]: v less its nearest quarter turn is exact, the rest is in [-pi/4, pi/4].
+/// sin and cos of 2 pi v, v in [0, 1]: v less its nearest quarter turn is exact, the rest is in
+/// [-pi/4, pi/4].
 #[inline(always)]
 fn sin_cos_turns(v: f64) -> (f64, f64) {
     let rounded = 4.0 * v + ROUND;
@@ -55,7 +57,11 @@ fn sin_cos_turns(v: f64) -> (f64, f64) {
     let x = std::f64::consts::TAU * (v - 0.25 * (rounded - ROUND));
     let (sin, cos) = sin_cos_eighth(x);
 
-    let (s, c) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    let (s, c) = if quarter & 1 == 0 {
+        (sin, cos)
+    } else {
+        (cos, sin)
+    };
     (flip(s, quarter), flip(c, quarter.wrapping_add(1)))
 }
 
@@ -120,17 +126,34 @@ mod tests {
     /// Points of (0, 1), the ends and the borders of the reductions included.
     fn points() -> impl Iterator<Item = f64> {
         let cell = 1.0 / (1u64 << 53) as f64;
-        let borders = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, std::f64::consts::FRAC_1_SQRT_2];
-        let near = borders.into_iter().flat_map(move |b| [b - cell, b, b + cell]);
+        let borders = [
+            0.125,
+            0.25,
+            0.375,
+            0.5,
+            0.625,
+            0.75,
+            0.875,
+            std::f64::consts::FRAC_1_SQRT_2,
+        ];
+        let near = borders
+            .into_iter()
+            .flat_map(move |b| [b - cell, b, b + cell]);
         let small = (1..=53).map(|k| libm::pow(2.0, -f64::from(k)) * 1.3);
-        near.chain(small).chain([cell, 1.0 - cell]).chain((1..100_000).map(|i| f64::from(i) / 1e5))
+        near.chain(small)
+            .chain([cell, 1.0 - cell])
+            .chain((1..100_000).map(|i| f64::from(i) / 1e5))
     }
 
     #[test]
     fn ln_agrees_with_libm_to_two_units_in_the_last_place() {
         for x in points() {
             let exact = libm::log(x);
-            assert!((ln(x) - exact).abs() <= 2.0 * f64::EPSILON * exact.abs(), "ln {x}: {} not {exact}", ln(x));
+            assert!(
+                (ln(x) - exact).abs() <= 2.0 * f64::EPSILON * exact.abs(),
+                "ln {x}: {} not {exact}",
+                ln(x)
+            );
         }
     }
 
@@ -140,7 +163,10 @@ mod tests {
             let (sin, cos) = sin_cos_turns(v);
             // libm's own argument 2 pi v is rounded: up to half a unit in the last place of 2 pi
             let (s, c) = libm::sincos(std::f64::consts::TAU * v);
-            assert!((sin - s).abs() < 1e-15 && (cos - c).abs() < 1e-15, "{v}: {sin} {cos}, not {s} {c}");
+            assert!(
+                (sin - s).abs() < 1e-15 && (cos - c).abs() < 1e-15,
+                "{v}: {sin} {cos}, not {s} {c}"
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! One axis that moves at nearly constant velocity: Kalman filter and smoother.
 //!
-//! State (position, velocity); the acceleration is white noise of level q \[unit²/s³\]. Over a step h, exactly
-//! (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.2):
+//! State (position, velocity); the acceleration is white noise of level q \[unit²/s³\]. Over a step
+//! h, exactly (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.2):
 //!
 //! F = [1 h; 0 1],  Q = q [h³/3 h²/2; h²/2 h],  H = [1 0],  R = measurement_std².
 //!
@@ -55,12 +55,18 @@ struct Step {
 }
 
 impl ConstantVelocity {
-    /// The state at a first measurement: there, with its noise, and at rest give or take `initial_velocity_std`.
+    /// The state at a first measurement: there, with its noise, and at rest give or take
+    /// `initial_velocity_std`.
     #[must_use]
     pub fn start(&self, position: f64) -> Gaussian<2> {
         Gaussian {
             mean: Vector2::new(position, 0.0),
-            covariance: Matrix2::new(square(self.measurement_std), 0.0, 0.0, square(self.initial_velocity_std)),
+            covariance: Matrix2::new(
+                square(self.measurement_std),
+                0.0,
+                0.0,
+                square(self.initial_velocity_std),
+            ),
         }
     }
 
@@ -78,8 +84,13 @@ impl ConstantVelocity {
     #[must_use]
     pub fn update(&self, state: &Gaussian<2>, position: f64) -> (Gaussian<2>, f64) {
         let noise = Matrix1::new(square(self.measurement_std));
-        let Some(update) = state.update(&Vector1::new(position), &RowVector2::new(1.0, 0.0), &noise) else {
-            panic!("measurement_std is {}; it must be > 0", self.measurement_std);
+        let Some(update) =
+            state.update(&Vector1::new(position), &RowVector2::new(1.0, 0.0), &noise)
+        else {
+            panic!(
+                "measurement_std is {}; it must be > 0",
+                self.measurement_std
+            );
         };
         (update.posterior, update.log_likelihood)
     }
@@ -90,7 +101,11 @@ impl ConstantVelocity {
     ///
     /// # Errors
     /// If the model or the series is out of range.
-    pub fn filter(&self, times: &[f64], measurements: &[Option<f64>]) -> Result<Filtered, SeriesError> {
+    pub fn filter(
+        &self,
+        times: &[f64],
+        measurements: &[Option<f64>],
+    ) -> Result<Filtered, SeriesError> {
         self.check()?;
         let series = Series::new(times, measurements)?;
         let mut log_likelihood = 0.0;
@@ -99,10 +114,14 @@ impl ConstantVelocity {
             log_likelihood += step.log_likelihood;
             rows[row] = Some(AxisEstimate::from(step.filtered));
         });
-        Ok(Filtered { rows, log_likelihood })
+        Ok(Filtered {
+            rows,
+            log_likelihood,
+        })
     }
 
-    /// The fixed-interval smoother over a series (Rauch, Tung & Striebel 1965): each row is estimated from all rows.
+    /// The fixed-interval smoother over a series (Rauch, Tung & Striebel 1965): each row is
+    /// estimated from all rows.
     ///
     /// Rows before the first measurement are `None`, as in [`filter`](Self::filter).
     ///
@@ -116,7 +135,11 @@ impl ConstantVelocity {
     ///
     /// # Errors
     /// If the model or the series is out of range.
-    pub fn smooth(&self, times: &[f64], measurements: &[Option<f64>]) -> Result<Vec<Option<AxisEstimate>>, SeriesError> {
+    pub fn smooth(
+        &self,
+        times: &[f64],
+        measurements: &[Option<f64>],
+    ) -> Result<Vec<Option<AxisEstimate>>, SeriesError> {
         self.check()?;
         let series = Series::new(times, measurements)?;
         let mut steps = Vec::with_capacity(times.len());
@@ -129,7 +152,11 @@ impl ConstantVelocity {
                 None => step.filtered,
                 Some((predicted, smoothed)) => step
                     .filtered
-                    .smooth(&transition(times[row + 1] - times[row]), &predicted, &smoothed)
+                    .smooth(
+                        &transition(times[row + 1] - times[row]),
+                        &predicted,
+                        &smoothed,
+                    )
                     .ok_or(SeriesError::Singular { row: row + 1 })?,
             };
             rows[row] = Some(AxisEstimate::from(smoothed));
@@ -143,7 +170,9 @@ impl ConstantVelocity {
         let mut before: Option<(f64, Gaussian<2>)> = None;
         for (row, time, measurement) in series.rows() {
             let step = match (before, measurement) {
-                (Some((then, state)), _) => self.step(&self.predict(&state, time - then), measurement),
+                (Some((then, state)), _) => {
+                    self.step(&self.predict(&state, time - then), measurement)
+                }
                 (None, Some(position)) => Step::at_start(self.start(position)),
                 (None, None) => continue,
             };
@@ -157,19 +186,31 @@ impl ConstantVelocity {
             Some(position) => self.update(predicted, position),
             None => (*predicted, 0.0),
         };
-        Step { predicted: *predicted, filtered, log_likelihood }
+        Step {
+            predicted: *predicted,
+            filtered,
+            log_likelihood,
+        }
     }
 
     pub(crate) fn check(&self) -> Result<(), SeriesError> {
         let positive = |name, value: f64| match value {
             v if square(v).is_normal() && v > 0.0 => Ok(()),
-            _ => Err(SeriesError::Parameter { name, value, rule: "> 0" }),
+            _ => Err(SeriesError::Parameter {
+                name,
+                value,
+                rule: "> 0",
+            }),
         };
         positive("measurement_std", self.measurement_std)?;
         positive("initial_velocity_std", self.initial_velocity_std)?;
         let value = self.process_noise;
         if !(value.is_finite() && value >= 0.0) {
-            return Err(SeriesError::Parameter { name: "process_noise", value, rule: ">= 0" });
+            return Err(SeriesError::Parameter {
+                name: "process_noise",
+                value,
+                rule: ">= 0",
+            });
         }
         Ok(())
     }
@@ -177,7 +218,11 @@ impl ConstantVelocity {
 
 impl Step {
     fn at_start(state: Gaussian<2>) -> Self {
-        Step { predicted: state, filtered: state, log_likelihood: 0.0 }
+        Step {
+            predicted: state,
+            filtered: state,
+            log_likelihood: 0.0,
+        }
     }
 }
 

@@ -59,7 +59,13 @@ mod tests {
         let steps = (0..1_000_000).map(|i| -746.5 * f64::from(i) / 1e6);
         let small = (0..400).map(|i| -libm::exp2(-f64::from(i)));
         for x in steps.chain(small).chain([-1e300, f64::NEG_INFINITY]) {
-            assert_eq!(exp(x).to_bits(), libm::exp(x).to_bits(), "e^{x}: {:e}, not {:e}", exp(x), libm::exp(x));
+            assert_eq!(
+                exp(x).to_bits(),
+                libm::exp(x).to_bits(),
+                "e^{x}: {:e}, not {:e}",
+                exp(x),
+                libm::exp(x)
+            );
         }
     }
 

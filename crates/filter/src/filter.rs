@@ -1,9 +1,11 @@
-//! The particle filter: sampling, importance weighting, resampling (Gordon, Salmond & Smith 1993; Doucet & Johansen
-//! 2009, algorithm "SMC" with adaptive resampling), over any [`Model`].
+//! The particle filter: sampling, importance weighting, resampling (Gordon, Salmond & Smith 1993;
+//! Doucet & Johansen 2009, algorithm "SMC" with adaptive resampling), over any [`Model`].
 
 use crate::parallel::PerThread;
 use crate::update::{BlockUpdate, Update};
-use crate::{BLOCK, Block, Draw, LogWeights, Model, ParticleSet, Purpose, Resampling, Streams, WeightedSums};
+use crate::{
+    BLOCK, Block, Draw, LogWeights, Model, ParticleSet, Purpose, Resampling, Streams, WeightedSums,
+};
 
 /// How a filter runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +14,8 @@ pub struct Settings {
     pub particles: usize,
     /// The seed of all random numbers.
     pub seed: u64,
-    /// A step begins with resampling if the effective sample size is below this share of N; in [0, 1].
+    /// A step begins with resampling if the effective sample size is below this share of N; in [0,
+    /// 1].
     pub resample_below: f64,
     /// The resampling scheme.
     pub resampling: Resampling,
@@ -21,7 +24,12 @@ pub struct Settings {
 impl Default for Settings {
     /// 500 particles, seed 0, systematic resampling below N/2.
     fn default() -> Self {
-        Settings { particles: 500, seed: 0, resample_below: 0.5, resampling: Resampling::Systematic }
+        Settings {
+            particles: 500,
+            seed: 0,
+            resample_below: 0.5,
+            resampling: Resampling::Systematic,
+        }
     }
 }
 
@@ -45,7 +53,11 @@ pub enum SettingsError {
 
 impl Settings {
     fn check(&self) -> Result<(), SettingsError> {
-        let Settings { particles, resample_below: share, .. } = *self;
+        let Settings {
+            particles,
+            resample_below: share,
+            ..
+        } = *self;
         if particles == 0 || u32::try_from(particles).is_err() {
             return Err(SettingsError::Particles { particles });
         }
@@ -128,7 +140,9 @@ impl<M: Model> ParticleFilter<M> {
             redrawn_log_likelihood: vec![0.0; settings.particles],
             ancestors: vec![0; settings.particles],
             update: Update::new(settings.particles),
-            block_sums: (0..particles.block_count()).map(|_| M::Sums::default()).collect(),
+            block_sums: (0..particles.block_count())
+                .map(|_| M::Sums::default())
+                .collect(),
             sums: M::Sums::default(),
             particles,
             model,
@@ -152,16 +166,22 @@ impl<M: Model> ParticleFilter<M> {
             Weighing::Weighed { .. } => self.add_up(BlockUpdate::share),
             Weighing::Collapsed { .. } => self.sum_anew(input),
         }
-        StepReport { effective_sample_size: self.weights.effective_sample_size(), resampled, weighing }
+        StepReport {
+            effective_sample_size: self.weights.effective_sample_size(),
+            resampled,
+            weighing,
+        }
     }
 
     fn is_degenerate(&self) -> bool {
-        self.weights.effective_sample_size() < self.settings.resample_below * self.settings.particles as f64
+        self.weights.effective_sample_size()
+            < self.settings.resample_below * self.settings.particles as f64
     }
 
     fn initialise(&mut self) {
         let (model, draw) = (&self.model, self.draw(Purpose::Initialise));
-        self.particles.for_each_block(|block| model.initialise(draw, block));
+        self.particles
+            .for_each_block(|block| model.initialise(draw, block));
     }
 
     /// Resamples where asked to, propagates, weighs and sums, all of it block by block.
@@ -169,19 +189,32 @@ impl<M: Model> ParticleFilter<M> {
         if resample {
             self.choose_ancestors(Purpose::Resample);
         }
-        let (model, scratch, weights, draw) = (&self.model, &self.scratch, &self.weights, self.draw(Purpose::Propagate));
+        let (model, scratch, weights, draw) = (
+            &self.model,
+            &self.scratch,
+            &self.weights,
+            self.draw(Purpose::Propagate),
+        );
         let ancestors = resample.then_some(&*self.ancestors);
-        let with = self.log_likelihood.chunks_mut(BLOCK).zip(self.update.blocks_mut()).zip(&mut self.block_sums);
-        self.particles.advance(ancestors, with, |block, ((log_likelihood, (products, update)), sums)| {
-            scratch.lend(|scratch| model.propagate(input, draw, block, scratch));
-            let block = &block.as_block();
-            let Some(observation) = observation else {
-                return model.sum(input, block, &weights.weights()[block.range()], sums);
-            };
-            model.log_likelihood(observation, block, log_likelihood);
-            *update = weights.weigh_block(block.range(), log_likelihood, products);
-            model.sum(input, block, products, sums);
-        });
+        let with = self
+            .log_likelihood
+            .chunks_mut(BLOCK)
+            .zip(self.update.blocks_mut())
+            .zip(&mut self.block_sums);
+        self.particles.advance(
+            ancestors,
+            with,
+            |block, ((log_likelihood, (products, update)), sums)| {
+                scratch.lend(|scratch| model.propagate(input, draw, block, scratch));
+                let block = &block.as_block();
+                let Some(observation) = observation else {
+                    return model.sum(input, block, &weights.weights()[block.range()], sums);
+                };
+                model.log_likelihood(observation, block, log_likelihood);
+                *update = weights.weigh_block(block.range(), log_likelihood, products);
+                model.sum(input, block, products, sums);
+            },
+        );
     }
 
     /// Multiplies the weights by the likelihoods just taken.
@@ -190,7 +223,9 @@ impl<M: Model> ParticleFilter<M> {
         let mut best_log_likelihood = self.update.best_log_likelihood();
         if model.collapsed(best_log_likelihood) {
             let part = &mut self.redrawn_log_likelihood;
-            self.particles.visit(part.chunks_mut(BLOCK), |block, out| model.redrawn_log_likelihood(observation, block, out));
+            self.particles.visit(part.chunks_mut(BLOCK), |block, out| {
+                model.redrawn_log_likelihood(observation, block, out)
+            });
             best_log_likelihood = self.weights.best(part);
         }
         if !model.collapsed(best_log_likelihood)
@@ -199,7 +234,9 @@ impl<M: Model> ParticleFilter<M> {
             return Weighing::Weighed { log_evidence };
         }
         self.recover(observation);
-        Weighing::Collapsed { best_log_likelihood }
+        Weighing::Collapsed {
+            best_log_likelihood,
+        }
     }
 
     /// After a collapse: resample by the weights before the observation, then draw anew around it.
@@ -207,13 +244,19 @@ impl<M: Model> ParticleFilter<M> {
         self.choose_ancestors(Purpose::Recover);
         let (model, draw) = (&self.model, self.draw(Purpose::Redraw));
         let blocks = 0..self.particles.block_count();
-        self.particles.advance(Some(&self.ancestors), blocks, |block, _| model.redraw(observation, draw, block));
+        self.particles
+            .advance(Some(&self.ancestors), blocks, |block, _| {
+                model.redraw(observation, draw, block)
+            });
     }
 
     /// Takes the sums over the particles as they are now.
     pub fn sum_anew(&mut self, input: &M::Input) {
         let (model, weights) = (&self.model, self.weights.weights());
-        self.particles.visit(self.block_sums.iter_mut(), |block, sums| model.sum(input, block, &weights[block.range()], sums));
+        self.particles
+            .visit(self.block_sums.iter_mut(), |block, sums| {
+                model.sum(input, block, &weights[block.range()], sums)
+            });
         self.add_up(|_| 1.0);
     }
 
@@ -233,7 +276,9 @@ impl<M: Model> ParticleFilter<M> {
     /// Draws the ancestors by the weights, which become equal.
     fn choose_ancestors(&mut self, purpose: Purpose) {
         let draw = self.draw(purpose);
-        self.settings.resampling.ancestors(self.weights.weights(), draw, &mut self.ancestors);
+        self.settings
+            .resampling
+            .ancestors(self.weights.weights(), draw, &mut self.ancestors);
         self.weights.reset();
     }
 
@@ -266,9 +311,15 @@ impl<M: Model> ParticleFilter<M> {
         &self.weights
     }
 
-    /// `map(block, its weights)` of every block, combined over a fixed tree: the same bits on any number of threads.
-    pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>, &[f64]) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
+    /// `map(block, its weights)` of every block, combined over a fixed tree: the same bits on any
+    /// number of threads.
+    pub fn reduce<A: Send>(
+        &self,
+        map: impl Fn(&Block<'_>, &[f64]) -> A + Sync,
+        combine: impl Fn(A, A) -> A + Sync,
+    ) -> A {
         let weights = self.weights.weights();
-        self.particles.reduce(|block| map(block, &weights[block.range()]), combine)
+        self.particles
+            .reduce(|block| map(block, &weights[block.range()]), combine)
     }
 }

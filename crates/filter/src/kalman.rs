@@ -1,6 +1,7 @@
 //! The Kalman filter and the Rauch–Tung–Striebel smoother on small fixed-size matrices.
 //!
-//! With x' = F x + w, w ~ N(0, Q) and z = H x + r, r ~ N(0, R) (Kalman 1960; Rauch, Tung & Striebel 1965):
+//! With x' = F x + w, w ~ N(0, Q) and z = H x + r, r ~ N(0, R) (Kalman 1960; Rauch, Tung & Striebel
+//! 1965):
 //!
 //! | | mean | covariance |
 //! | --- | --- | --- |
@@ -37,7 +38,10 @@ impl<const N: usize> Gaussian<N> {
     /// The state one step later: `transition` is F, `noise` is Q.
     #[must_use]
     pub fn predict(&self, transition: &SMatrix<f64, N, N>, noise: &SMatrix<f64, N, N>) -> Self {
-        Gaussian { mean: transition * self.mean, covariance: symmetric(transition * self.covariance * transition.transpose() + noise) }
+        Gaussian {
+            mean: transition * self.mean,
+            covariance: symmetric(transition * self.covariance * transition.transpose() + noise),
+        }
     }
 
     /// The state given a measurement z: `sensor` is H, `noise` is R.
@@ -61,26 +65,46 @@ impl<const N: usize> Gaussian<N> {
         let keep = SMatrix::<f64, N, N>::identity() - gain * sensor;
         let posterior = Gaussian {
             mean: self.mean + gain * innovation.mean,
-            covariance: symmetric(keep * self.covariance * keep.transpose() + gain * noise * gain.transpose()),
+            covariance: symmetric(
+                keep * self.covariance * keep.transpose() + gain * noise * gain.transpose(),
+            ),
         };
 
-        let log_determinant: f64 = s.l_dirty().diagonal().iter().map(|l| 2.0 * libm::log(*l)).sum();
+        let log_determinant: f64 = s
+            .l_dirty()
+            .diagonal()
+            .iter()
+            .map(|l| 2.0 * libm::log(*l))
+            .sum();
         let distance = innovation.mean.dot(&s.solve(&innovation.mean));
         let log_likelihood = -0.5 * (distance + log_determinant + M as f64 * LN_TAU);
-        Some(Update { posterior, innovation, log_likelihood })
+        Some(Update {
+            posterior,
+            innovation,
+            log_likelihood,
+        })
     }
 
-    /// The state given all rows, those after it included: `self` is the filtered state, `transition` is F to the next
-    /// row, `predicted` the state there before its measurement, `next` the smoothed state there.
+    /// The state given all rows, those after it included: `self` is the filtered state,
+    /// `transition` is F to the next row, `predicted` the state there before its measurement,
+    /// `next` the smoothed state there.
     ///
     /// `None` if the predicted covariance is not positive definite.
     #[must_use]
-    pub fn smooth(&self, transition: &SMatrix<f64, N, N>, predicted: &Self, next: &Self) -> Option<Self> {
+    pub fn smooth(
+        &self,
+        transition: &SMatrix<f64, N, N>,
+        predicted: &Self,
+        next: &Self,
+    ) -> Option<Self> {
         let p = predicted.covariance.cholesky()?;
         let gain = p.solve(&(transition * self.covariance)).transpose();
         Some(Gaussian {
             mean: self.mean + gain * (next.mean - predicted.mean),
-            covariance: symmetric(self.covariance + gain * (next.covariance - predicted.covariance) * gain.transpose()),
+            covariance: symmetric(
+                self.covariance
+                    + gain * (next.covariance - predicted.covariance) * gain.transpose(),
+            ),
         })
     }
 }

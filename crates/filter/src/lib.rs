@@ -1,16 +1,19 @@
 //! Particle filtering over any [`Model`], and the Kalman filter and smoother.
 //!
-//! A [`ParticleFilter`] owns a [`ParticleSet`] (columns of f64 in blocks of [`BLOCK`] particles), its
-//! [`LogWeights`] and counter-based random [`Streams`]; what a particle means is the model's business.
+//! A [`ParticleFilter`] owns a [`ParticleSet`] (columns of f64 in blocks of [`BLOCK`] particles),
+//! its [`LogWeights`] and counter-based random [`Streams`]; what a particle means is the model's
+//! business.
 //!
 //! Invariants:
-//! - every result is a function of (model, inputs, seed, number of particles): random numbers are a pure function
-//!   of (seed, purpose, step, particle, draw), and every sum runs in one fixed order, whatever the threads;
-//! - a weight is never NaN; a set that no longer explains its observation is a counted outcome, [`Weighing::Collapsed`];
+//! - every result is a function of (model, inputs, seed, number of particles): random numbers are a
+//!   pure function of (seed, purpose, step, particle, draw), and every sum runs in one fixed order,
+//!   whatever the threads;
+//! - a weight is never NaN; a set that no longer explains its observation is a counted outcome,
+//!   [`Weighing::Collapsed`];
 //! - after the first steps, a step on one thread allocates nothing.
 //!
-//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them, and inside [`keep_threads_awake`] where
-//! one filter has them to itself.
+//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them, and
+//! inside [`keep_threads_awake`] where one filter has them to itself.
 
 mod awake;
 mod box_muller;

@@ -1,8 +1,8 @@
 //! The particle set: N particles of C columns, in blocks of [`BLOCK`] particles.
 //!
-//! Storage is `[block][column][lane]`: a block is contiguous, so that a thread takes whole blocks, and inside it
-//! every column is a contiguous slice, so that SIMD lanes are neighbouring particles. The last block is padded;
-//! padding is never seen from outside.
+//! Storage is `[block][column][lane]`: a block is contiguous, so that a thread takes whole blocks,
+//! and inside it every column is a contiguous slice, so that SIMD lanes are neighbouring particles.
+//! The last block is padded; padding is never seen from outside.
 
 use crate::parallel;
 
@@ -22,10 +22,21 @@ pub struct ParticleSet {
 impl ParticleSet {
     /// `particles` x `columns` zeros. Both are at least 1.
     pub fn zeros(particles: usize, columns: usize) -> Self {
-        assert!(particles > 0 && columns > 0, "a particle set of {particles} particles x {columns} columns is empty");
-        assert!(u32::try_from(particles).is_ok(), "particles are numbered in u32");
+        assert!(
+            particles > 0 && columns > 0,
+            "a particle set of {particles} particles x {columns} columns is empty"
+        );
+        assert!(
+            u32::try_from(particles).is_ok(),
+            "particles are numbered in u32"
+        );
         let data = vec![0.0; particles.div_ceil(BLOCK) * BLOCK * columns];
-        ParticleSet { particles, columns, spare: data.clone(), data }
+        ParticleSet {
+            particles,
+            columns,
+            spare: data.clone(),
+            data,
+        }
     }
 
     /// The number N of particles.
@@ -47,7 +58,10 @@ impl ParticleSet {
     /// Block `index`.
     pub fn block(&self, index: usize) -> Block<'_> {
         let stride = self.columns * BLOCK;
-        Block { data: &self.data[index * stride..][..stride], span: Span::of(index, self.particles) }
+        Block {
+            data: &self.data[index * stride..][..stride],
+            span: Span::of(index, self.particles),
+        }
     }
 
     /// The blocks in order.
@@ -57,12 +71,17 @@ impl ParticleSet {
 
     /// Column `column` of all particles in order, N values.
     pub fn column(&self, column: usize) -> impl Iterator<Item = f64> + '_ {
-        self.blocks().flat_map(move |block| block.column(column).iter().copied())
+        self.blocks()
+            .flat_map(move |block| block.column(column).iter().copied())
     }
 
     /// One number of one particle.
     pub fn value(&self, particle: usize, column: usize) -> f64 {
-        assert!(particle < self.particles, "particle {particle} of {}", self.particles);
+        assert!(
+            particle < self.particles,
+            "particle {particle} of {}",
+            self.particles
+        );
         self.block(particle / BLOCK).column(column)[particle % BLOCK]
     }
 
@@ -73,7 +92,8 @@ impl ParticleSet {
 
     /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
     ///
-    /// Where there are `ancestors`, particle i becomes a copy of particle `ancestors[i]` first, while its block is at hand.
+    /// Where there are `ancestors`, particle i becomes a copy of particle `ancestors[i]` first,
+    /// while its block is at hand.
     pub fn advance<T>(
         &mut self,
         ancestors: Option<&[u32]>,
@@ -84,27 +104,52 @@ impl ParticleSet {
         let (particles, stride) = (self.particles, self.columns * BLOCK);
         let Some(ancestors) = ancestors else {
             let blocks = self.data.chunks_mut(stride).zip(with).enumerate();
-            return parallel::for_all(blocks, |(index, (data, item))| body(&mut BlockMut { data, span: Span::of(index, particles) }, item));
+            return parallel::for_all(blocks, |(index, (data, item))| {
+                body(
+                    &mut BlockMut {
+                        data,
+                        span: Span::of(index, particles),
+                    },
+                    item,
+                )
+            });
         };
         assert_eq!(ancestors.len(), particles);
         let source = &self.data;
-        parallel::for_all(self.spare.chunks_mut(stride).zip(with).enumerate(), |(index, (target, item))| {
-            let span = Span::of(index, particles);
-            gather_block(source, &ancestors[span.range()], target);
-            body(&mut BlockMut { data: target, span }, item);
-        });
+        parallel::for_all(
+            self.spare.chunks_mut(stride).zip(with).enumerate(),
+            |(index, (target, item))| {
+                let span = Span::of(index, particles);
+                gather_block(source, &ancestors[span.range()], target);
+                body(&mut BlockMut { data: target, span }, item);
+            },
+        );
         std::mem::swap(&mut self.data, &mut self.spare);
     }
 
     /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
-    pub fn visit<T>(&self, with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send, body: impl Fn(&Block<'_>, T) + Sync) {
+    pub fn visit<T>(
+        &self,
+        with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send,
+        body: impl Fn(&Block<'_>, T) + Sync,
+    ) {
         assert_eq!(with.len(), self.block_count(), "an item for every block");
-        parallel::for_all(with.enumerate(), |(index, item)| body(&self.block(index), item));
+        parallel::for_all(with.enumerate(), |(index, item)| {
+            body(&self.block(index), item)
+        });
     }
 
     /// `map` of every block, combined over a fixed tree: the same bits on any number of threads.
-    pub fn reduce<A: Send>(&self, map: impl Fn(&Block<'_>) -> A + Sync, combine: impl Fn(A, A) -> A + Sync) -> A {
-        parallel::tree_reduce(0..self.block_count(), &|index| map(&self.block(index)), &combine)
+    pub fn reduce<A: Send>(
+        &self,
+        map: impl Fn(&Block<'_>) -> A + Sync,
+        combine: impl Fn(A, A) -> A + Sync,
+    ) -> A {
+        parallel::tree_reduce(
+            0..self.block_count(),
+            &|index| map(&self.block(index)),
+            &combine,
+        )
     }
 }
 
@@ -128,7 +173,10 @@ struct Span {
 impl Span {
     fn of(block: usize, particles: usize) -> Self {
         let first = block * BLOCK;
-        Span { first, len: BLOCK.min(particles - first) }
+        Span {
+            first,
+            len: BLOCK.min(particles - first),
+        }
     }
 
     fn range(self) -> std::ops::Range<usize> {
@@ -185,7 +233,8 @@ impl BlockMut<'_> {
         self.span.first as u32
     }
 
-    /// (lane, index in the set) of the block's particles; the index is the random streams' `particle`.
+    /// (lane, index in the set) of the block's particles; the index is the random streams'
+    /// `particle`.
     pub fn particles(&self) -> impl ExactSizeIterator<Item = (usize, u32)> + use<> {
         let first = self.first_particle();
         (0..self.span.len).map(move |lane| (lane, first + lane as u32))
@@ -193,7 +242,10 @@ impl BlockMut<'_> {
 
     /// The block, to read.
     pub fn as_block(&self) -> Block<'_> {
-        Block { data: self.data, span: self.span }
+        Block {
+            data: self.data,
+            span: self.span,
+        }
     }
 
     /// One column, to read.
@@ -212,7 +264,10 @@ impl BlockMut<'_> {
     /// If a column is named twice or does not exist.
     pub fn columns_mut<const K: usize>(&mut self, columns: [usize; K]) -> [&mut [f64]; K] {
         let len = self.span.len;
-        match self.data.get_disjoint_mut(columns.map(|c| c * BLOCK..c * BLOCK + len)) {
+        match self
+            .data
+            .get_disjoint_mut(columns.map(|c| c * BLOCK..c * BLOCK + len))
+        {
             Ok(slices) => slices,
             Err(error) => panic!("columns {columns:?}: {error}"),
         }
@@ -221,6 +276,8 @@ impl BlockMut<'_> {
     /// All columns in order, to change at once.
     pub fn all_columns_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [f64]> {
         let len = self.span.len;
-        self.data.chunks_exact_mut(BLOCK).map(move |column| &mut column[..len])
+        self.data
+            .chunks_exact_mut(BLOCK)
+            .map(move |column| &mut column[..len])
     }
 }

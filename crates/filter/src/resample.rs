@@ -1,7 +1,7 @@
 //! Resampling: N ancestors drawn so that particle i is the ancestor of N w_i particles on average.
 //!
-//! The schemes differ in their noise (Douc, Cappé & Moulines 2005): systematic gives every particle either the
-//! integer below N w_i or the one above, from one random number.
+//! The schemes differ in their noise (Douc, Cappé & Moulines 2005): systematic gives every particle
+//! either the integer below N w_i or the one above, from one random number.
 
 use crate::Draw;
 
@@ -22,7 +22,8 @@ pub enum Resampling {
 impl Resampling {
     /// Writes the ancestors, indices into `weights` (which sum to 1); `draw` is used as particle 0.
     ///
-    /// A particle of weight zero is never an ancestor. The number of ancestors need not be that of the weights.
+    /// A particle of weight zero is never an ancestor. The number of ancestors need not be that of
+    /// the weights.
     pub fn ancestors(self, weights: &[f64], draw: Draw, ancestors: &mut [u32]) {
         let n = ancestors.len() as f64;
         let weight = |i: usize| weights[i];
@@ -32,7 +33,12 @@ impl Resampling {
                 invert(weights.len(), weight, |i| (i as f64 + u) / n, ancestors);
             }
             Resampling::Stratified => {
-                invert(weights.len(), weight, |i| (i as f64 + draw.uniform(0, i as u32)) / n, ancestors);
+                invert(
+                    weights.len(),
+                    weight,
+                    |i| (i as f64 + draw.uniform(0, i as u32)) / n,
+                    ancestors,
+                );
             }
             Resampling::Residual => residual(weights, draw, ancestors),
             Resampling::Multinomial => multinomial(weights.len(), weight, draw, ancestors),
@@ -53,8 +59,8 @@ fn residual(weights: &[f64], draw: Draw, ancestors: &mut [u32]) {
     multinomial(weights.len(), remainder, draw, rest);
 }
 
-/// Sorted uniform points in one pass without a sort: the partial sums of K + 1 exponential spacings over their total
-/// (Devroye 1986, V.3.1). The spacings are evaluated twice rather than stored.
+/// Sorted uniform points in one pass without a sort: the partial sums of K + 1 exponential spacings
+/// over their total (Devroye 1986, V.3.1). The spacings are evaluated twice rather than stored.
 fn multinomial(particles: usize, weight: impl Fn(usize) -> f64, draw: Draw, ancestors: &mut [u32]) {
     if ancestors.is_empty() {
         return;
@@ -69,8 +75,14 @@ fn multinomial(particles: usize, weight: impl Fn(usize) -> f64, draw: Draw, ance
     invert(particles, weight, point, ancestors);
 }
 
-/// Ancestor i is where the cumulated weights pass `point(i)` of their total; the points rise within (0, 1).
-fn invert(particles: usize, weight: impl Fn(usize) -> f64, mut point: impl FnMut(usize) -> f64, ancestors: &mut [u32]) {
+/// Ancestor i is where the cumulated weights pass `point(i)` of their total; the points rise within
+/// (0, 1).
+fn invert(
+    particles: usize,
+    weight: impl Fn(usize) -> f64,
+    mut point: impl FnMut(usize) -> f64,
+    ancestors: &mut [u32],
+) {
     let total: f64 = (0..particles).map(&weight).sum();
     let last = (0..particles).rev().find(|&i| weight(i) > 0.0);
     let Some(last) = last.filter(|_| total.is_finite()) else {
@@ -79,7 +91,8 @@ fn invert(particles: usize, weight: impl Fn(usize) -> f64, mut point: impl FnMut
     let (mut particle, mut reached) = (0, weight(0));
     for (i, ancestor) in ancestors.iter_mut().enumerate() {
         let goal = point(i) * total;
-        // rounding may leave the cumulated sum short of the total: stop at the last weight that counts
+        // rounding may leave the cumulated sum short of the total: stop at the last weight that
+        // counts
         while reached <= goal && particle < last {
             particle += 1;
             reached += weight(particle);

@@ -19,7 +19,9 @@ pub enum SeriesError {
         time: f64,
     },
     /// Times do not rise.
-    #[error("row {row}: time {time} s does not rise above {before} s of the row before; sort the rows")]
+    #[error(
+        "row {row}: time {time} s does not rise above {before} s of the row before; sort the rows"
+    )]
     Time {
         /// The later row.
         row: usize,
@@ -29,7 +31,9 @@ pub enum SeriesError {
         before: f64,
     },
     /// A measurement is NaN or infinite.
-    #[error("row {row}: the measurement is {value}; it must be finite; give None where there is none")]
+    #[error(
+        "row {row}: the measurement is {value}; it must be finite; give None where there is none"
+    )]
     Measurement {
         /// The row.
         row: usize,
@@ -47,7 +51,9 @@ pub enum SeriesError {
         rule: &'static str,
     },
     /// Rounding made a predicted covariance singular.
-    #[error("row {row}: the predicted covariance is singular to rounding; `initial_velocity_std` must be nearer the speeds that occur")]
+    #[error(
+        "row {row}: the predicted covariance is singular to rounding; `initial_velocity_std` must be nearer the speeds that occur"
+    )]
     Singular {
         /// The row.
         row: usize,
@@ -67,18 +73,31 @@ pub(crate) struct Series<'a> {
 }
 
 impl<'a> Series<'a> {
-    pub(crate) fn new(times: &'a [f64], measurements: &'a [Option<f64>]) -> Result<Self, SeriesError> {
+    pub(crate) fn new(
+        times: &'a [f64],
+        measurements: &'a [Option<f64>],
+    ) -> Result<Self, SeriesError> {
         if times.len() != measurements.len() {
-            return Err(SeriesError::Length { times: times.len(), measurements: measurements.len() });
+            return Err(SeriesError::Length {
+                times: times.len(),
+                measurements: measurements.len(),
+            });
         }
         check_times(times)?;
         check_measurements(measurements)?;
-        Ok(Series { times, measurements })
+        Ok(Series {
+            times,
+            measurements,
+        })
     }
 
     /// (row, time, measurement) of every row in order.
     pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, f64, Option<f64>)> {
-        self.times.iter().zip(self.measurements).enumerate().map(|(row, (&time, &measurement))| (row, time, measurement))
+        self.times
+            .iter()
+            .zip(self.measurements)
+            .enumerate()
+            .map(|(row, (&time, &measurement))| (row, time, measurement))
     }
 
     /// The number of measurements.
@@ -88,7 +107,11 @@ impl<'a> Series<'a> {
 
     /// The median time from row to row; there are at least two rows.
     pub(crate) fn median_step(&self) -> f64 {
-        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let mut steps: Vec<f64> = self
+            .times
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
         steps.sort_by(f64::total_cmp);
         steps[steps.len() / 2]
     }
@@ -101,7 +124,11 @@ fn check_times(times: &[f64]) -> Result<(), SeriesError> {
     for (row, pair) in times.windows(2).enumerate() {
         let h = pair[1] - pair[0];
         if !(h.is_finite() && h > 0.0) {
-            return Err(SeriesError::Time { row: row + 1, time: pair[1], before: pair[0] });
+            return Err(SeriesError::Time {
+                row: row + 1,
+                time: pair[1],
+                before: pair[0],
+            });
         }
     }
     Ok(())

@@ -1,15 +1,16 @@
 //! Counter-based random numbers: Philox4x32-10 and Box–Muller.
 //!
-//! A random number is a pure function of (seed, purpose, step, particle, draw): no generator has a state, so
-//! neither the order of evaluation nor the number of threads can matter (Salmon, Moraes, Dror & Shaw, "Parallel
-//! random numbers: as easy as 1, 2, 3", SC 2011). The seed is Philox's key; the counter's 128 bits are
+//! A random number is a pure function of (seed, purpose, step, particle, draw): no generator has a
+//! state, so neither the order of evaluation nor the number of threads can matter (Salmon, Moraes,
+//! Dror & Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011). The seed is Philox's key;
+//! the counter's 128 bits are
 //!
 //! | word | 0 | 1 | 2 | 3 |
 //! | --- | --- | --- | --- | --- |
 //! | holds | draw / 2 | particle | step, low 32 bits | step, next 24 bits; kind, 1 bit; purpose, 7 bits |
 //!
-//! so different arguments never share a counter. One counter gives 128 bits: two uniform numbers, or by
-//! Box–Muller two independent normal ones; the kind keeps the two families apart.
+//! so different arguments never share a counter. One counter gives 128 bits: two uniform numbers,
+//! or by Box–Muller two independent normal ones; the kind keeps the two families apart.
 
 use crate::box_muller::box_muller;
 
@@ -63,7 +64,10 @@ pub struct Streams {
 impl Streams {
     /// The streams of `seed`, for [`Purpose::General`].
     pub fn new(seed: u64) -> Self {
-        Streams { seed, purpose: Purpose::General }
+        Streams {
+            seed,
+            purpose: Purpose::General,
+        }
     }
 
     /// The same seed's streams for another purpose.
@@ -73,8 +77,14 @@ impl Streams {
 
     /// The streams at one step, below 2^56.
     pub fn at(self, step: u64) -> Draw {
-        assert!(step >> STEP_BITS == 0, "step {step} does not fit {STEP_BITS} bits");
-        Draw { streams: self, step }
+        assert!(
+            step >> STEP_BITS == 0,
+            "step {step} does not fit {STEP_BITS} bits"
+        );
+        Draw {
+            streams: self,
+            step,
+        }
     }
 
     /// A standard normal number; even and odd draws (2k, 2k + 1) come in pairs from one evaluation.
@@ -87,7 +97,8 @@ impl Streams {
         self.at(step).normals(particle, first_draw)
     }
 
-    /// A number uniform in the open interval (0, 1), independent of the normal one of the same draw.
+    /// A number uniform in the open interval (0, 1), independent of the normal one of the same
+    /// draw.
     pub fn uniform(self, step: u64, particle: u32, draw: u32) -> f64 {
         self.at(step).uniform(particle, draw)
     }
@@ -112,7 +123,8 @@ impl Draw {
         self.normal_pair(particle, draw / 2)[(draw % 2) as usize]
     }
 
-    /// The standard normal numbers `first_draw`, ..., `first_draw + K - 1`; cheapest where `first_draw` is even.
+    /// The standard normal numbers `first_draw`, ..., `first_draw + K - 1`; cheapest where
+    /// `first_draw` is even.
     #[inline]
     pub fn normals<const K: usize>(self, particle: u32, first_draw: u32) -> [f64; K] {
         let mut out = [0.0; K];
@@ -133,9 +145,9 @@ impl Draw {
         self.uniform_lanes::<1>(Kind::Uniform, particle, draw / 2)[(draw % 2) as usize][0]
     }
 
-    /// The standard normal numbers `2 * pair` and `2 * pair + 1` of neighbouring particles, a column of each: the
-    /// same numbers as [`normal`](Self::normal), faster, and inlined, so that a caller that
-    /// dispatches on the instruction set has it compiled for that set.
+    /// The standard normal numbers `2 * pair` and `2 * pair + 1` of neighbouring particles, a
+    /// column of each: the same numbers as [`normal`](Self::normal), faster, and inlined, so that a
+    /// caller that dispatches on the instruction set has it compiled for that set.
     ///
     /// # Panics
     /// If the columns differ in length.
@@ -163,11 +175,22 @@ impl Draw {
 
     /// The uniform numbers `2 * pair` and `2 * pair + 1` of L neighbouring particles.
     #[inline(always)]
-    fn uniform_lanes<const L: usize>(self, kind: Kind, first_particle: u32, pair: u32) -> [[f64; L]; 2] {
+    fn uniform_lanes<const L: usize>(
+        self,
+        kind: Kind,
+        first_particle: u32,
+        pair: u32,
+    ) -> [[f64; L]; 2] {
         let Streams { seed, purpose } = self.streams;
         let tag = (purpose as u64) << 25 | (kind as u64) << 24;
-        let particles = std::array::from_fn(|lane| u64::from(first_particle.wrapping_add(lane as u32)));
-        let counter = [[u64::from(pair); L], particles, [self.step & LOW_WORD; L], [self.step >> 32 | tag; L]];
+        let particles =
+            std::array::from_fn(|lane| u64::from(first_particle.wrapping_add(lane as u32)));
+        let counter = [
+            [u64::from(pair); L],
+            particles,
+            [self.step & LOW_WORD; L],
+            [self.step >> 32 | tag; L],
+        ];
         let [a, b, c, d] = philox4x32_10(counter, [seed as u32, (seed >> 32) as u32]);
         [open_unit(a, b), open_unit(c, d)]
     }
@@ -201,18 +224,25 @@ fn open_unit<const L: usize>(low: [u64; L], high: [u64; L]) -> [f64; L] {
 
 /// Philox4x32 with 10 rounds (Salmon et al. 2011, section 3.3) on L counters side by side.
 ///
-/// The 32-bit words are the low halves of u64, whose products SIMD has; what the high halves hold does not matter.
+/// The 32-bit words are the low halves of u64, whose products SIMD has; what the high halves hold
+/// does not matter.
 #[inline(always)]
 fn philox4x32_10<const L: usize>(mut counter: [[u64; L]; 4], mut key: [u32; 2]) -> [[u64; L]; 4] {
     for _ in 0..ROUNDS {
         counter = philox_round(counter, key.map(u64::from));
-        key = [key[0].wrapping_add(0x9E37_79B9), key[1].wrapping_add(0xBB67_AE85)];
+        key = [
+            key[0].wrapping_add(0x9E37_79B9),
+            key[1].wrapping_add(0xBB67_AE85),
+        ];
     }
     counter
 }
 
 #[inline(always)]
-fn philox_round<const L: usize>([c0, c1, c2, c3]: [[u64; L]; 4], [k0, k1]: [u64; 2]) -> [[u64; L]; 4] {
+fn philox_round<const L: usize>(
+    [c0, c1, c2, c3]: [[u64; L]; 4],
+    [k0, k1]: [u64; 2],
+) -> [[u64; L]; 4] {
     let mut out = [[0; L]; 4];
     for i in 0..L {
         let a = (c0[i] & LOW_WORD) * 0xD251_1F53;
@@ -234,8 +264,16 @@ mod tests {
     fn philox_gives_the_published_known_answers() {
         let ones = u32::MAX;
         for (counter, key, answer) in [
-            ([0; 4], [0; 2], [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]),
-            ([ones; 4], [ones; 2], [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]),
+            (
+                [0; 4],
+                [0; 2],
+                [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8],
+            ),
+            (
+                [ones; 4],
+                [ones; 2],
+                [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd],
+            ),
             (
                 [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344],
                 [0xa409_3822, 0x299f_31d0],
@@ -243,7 +281,10 @@ mod tests {
             ),
         ] {
             let words = philox4x32_10(counter.map(|c: u32| [u64::from(c); 3]), key);
-            assert_eq!(words.map(|word| word.map(|w| w as u32)), answer.map(|a: u32| [a; 3]));
+            assert_eq!(
+                words.map(|word| word.map(|w| w as u32)),
+                answer.map(|a: u32| [a; 3])
+            );
         }
     }
 

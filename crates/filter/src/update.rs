@@ -3,10 +3,12 @@
 use crate::BLOCK;
 use crate::exponential::exponentials;
 
-/// Numbers that are compared or added up side by side: one after the other, each would wait for the one before.
+/// Numbers that are compared or added up side by side: one after the other, each would wait for the
+/// one before.
 const PARTIAL: usize = 8;
 
-/// The products w L of a set, w the weights before and L the likelihoods, up to one factor in each block.
+/// The products w L of a set, w the weights before and L the likelihoods, up to one factor in each
+/// block.
 #[derive(Clone, Debug)]
 pub(crate) struct Update {
     products: Vec<f64>,
@@ -18,7 +20,8 @@ pub(crate) struct Update {
 pub(crate) struct BlockUpdate {
     /// Largest ln L of a particle of positive weight.
     best_log_likelihood: f64,
-    /// Largest ln w L; the block's products are relative to its exponential, which cannot overflow then.
+    /// Largest ln w L; the block's products are relative to its exponential, which cannot overflow
+    /// then.
     best: f64,
     sum: f64,
     sum_of_squares: f64,
@@ -38,17 +41,28 @@ pub(crate) struct Normaliser {
 impl Update {
     /// Of as many weights, to be filled block by block.
     pub fn new(particles: usize) -> Self {
-        Self { products: vec![0.0; particles], blocks: vec![BlockUpdate::NOTHING; particles.div_ceil(BLOCK)] }
+        Self {
+            products: vec![0.0; particles],
+            blocks: vec![BlockUpdate::NOTHING; particles.div_ceil(BLOCK)],
+        }
     }
 
     /// Products and sums of every block.
-    pub fn blocks_mut(&mut self) -> impl ExactSizeIterator<Item = (&mut [f64], &mut BlockUpdate)> + DoubleEndedIterator + Send {
+    pub fn blocks_mut(
+        &mut self,
+    ) -> impl ExactSizeIterator<Item = (&mut [f64], &mut BlockUpdate)> + DoubleEndedIterator + Send
+    {
         self.products.chunks_mut(BLOCK).zip(&mut self.blocks)
     }
 
     /// The same of `grain` blocks at a time.
-    pub fn grains(&self, grain: usize) -> impl ExactSizeIterator<Item = (&[f64], &[BlockUpdate])> + DoubleEndedIterator + Send {
-        self.products.chunks(grain * BLOCK).zip(self.blocks.chunks(grain))
+    pub fn grains(
+        &self,
+        grain: usize,
+    ) -> impl ExactSizeIterator<Item = (&[f64], &[BlockUpdate])> + DoubleEndedIterator + Send {
+        self.products
+            .chunks(grain * BLOCK)
+            .zip(self.blocks.chunks(grain))
     }
 
     /// The sums of every block.
@@ -58,12 +72,17 @@ impl Update {
 
     /// Largest ln L of a particle of positive weight.
     pub fn best_log_likelihood(&self) -> f64 {
-        self.blocks.iter().fold(f64::NEG_INFINITY, |best, block| larger(best, block.best_log_likelihood))
+        self.blocks.iter().fold(f64::NEG_INFINITY, |best, block| {
+            larger(best, block.best_log_likelihood)
+        })
     }
 
     /// Settles every block's share; `None` if all products are zero.
     pub fn normalise(&mut self) -> Option<Normaliser> {
-        let best = self.blocks.iter().fold(f64::NEG_INFINITY, |best, block| larger(best, block.best));
+        let best = self
+            .blocks
+            .iter()
+            .fold(f64::NEG_INFINITY, |best, block| larger(best, block.best));
         if best == f64::NEG_INFINITY {
             return None;
         }
@@ -76,42 +95,75 @@ impl Update {
         for block in &mut self.blocks {
             block.share /= sum;
         }
-        Some(Normaliser { log_sum: best + libm::log(sum), effective_sample_size: sum * sum / sum_of_squares })
+        Some(Normaliser {
+            log_sum: best + libm::log(sum),
+            effective_sample_size: sum * sum / sum_of_squares,
+        })
     }
 }
 
 impl BlockUpdate {
-    const NOTHING: Self =
-        Self { best_log_likelihood: f64::NEG_INFINITY, best: f64::NEG_INFINITY, sum: 0.0, sum_of_squares: 0.0, share: 0.0 };
+    const NOTHING: Self = Self {
+        best_log_likelihood: f64::NEG_INFINITY,
+        best: f64::NEG_INFINITY,
+        sum: 0.0,
+        sum_of_squares: 0.0,
+        share: 0.0,
+    };
 
     /// Writes the products of a block whose first particle is number `first` of its set.
-    pub fn of(first: usize, log_weights: &[f64], log_likelihood: &[f64], products: &mut [f64]) -> Self {
+    pub fn of(
+        first: usize,
+        log_weights: &[f64],
+        log_likelihood: &[f64],
+        products: &mut [f64],
+    ) -> Self {
         let best_log_likelihood = best_alive(first, log_weights, log_likelihood);
         for ((product, w), l) in products.iter_mut().zip(log_weights).zip(log_likelihood) {
             *product = w + l;
         }
         let best = largest(products, products, |x, _| x);
         exponentials(products, best);
-        Self { best_log_likelihood, best, sum: sum(products, |x| x), sum_of_squares: sum(products, |x| x * x), share: 0.0 }
+        Self {
+            best_log_likelihood,
+            best,
+            sum: sum(products, |x| x),
+            sum_of_squares: sum(products, |x| x * x),
+            share: 0.0,
+        }
     }
 
-    /// The factor that makes normalised weights of the block's products, once [`Update::normalise`] has settled it.
+    /// The factor that makes normalised weights of the block's products, once [`Update::normalise`]
+    /// has settled it.
     pub fn share(&self) -> f64 {
         self.share
     }
 }
 
-/// The largest log-likelihood of a particle of positive weight; the first particle is number `first`.
+/// The largest log-likelihood of a particle of positive weight; the first particle is number
+/// `first`.
 ///
 /// # Panics
 /// If a likelihood is NaN or +inf: then the model is broken.
 pub(crate) fn best_alive(first: usize, log_weights: &[f64], log_likelihood: &[f64]) -> f64 {
     // up to the end: a loop that may stop early does not vectorise
-    let broken = log_likelihood.iter().fold(false, |broken, &l| broken | is_broken(l));
+    let broken = log_likelihood
+        .iter()
+        .fold(false, |broken, &l| broken | is_broken(l));
     if broken && let Some(i) = log_likelihood.iter().position(|&l| is_broken(l)) {
-        panic!("the log-likelihood of particle {} is {}; it must be finite or -inf", first + i, log_likelihood[i]);
+        panic!(
+            "the log-likelihood of particle {} is {}; it must be finite or -inf",
+            first + i,
+            log_likelihood[i]
+        );
     }
-    largest(log_weights, log_likelihood, |w, l| if w > f64::NEG_INFINITY { l } else { f64::NEG_INFINITY })
+    largest(log_weights, log_likelihood, |w, l| {
+        if w > f64::NEG_INFINITY {
+            l
+        } else {
+            f64::NEG_INFINITY
+        }
+    })
 }
 
 /// Whether the logarithm of a weight or likelihood is none.

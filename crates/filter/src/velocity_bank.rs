@@ -1,7 +1,9 @@
-//! One axis whose liveliness is not known and changes: several constant-velocity filters of different process noise that interact.
+//! One axis whose liveliness is not known and changes: several constant-velocity filters of
+//! different process noise that interact.
 //!
-//! The interacting multiple model filter (Blom & Bar-Shalom 1988; Bar-Shalom, Li & Kirubarajan 2001, section 11.6.6). Between two
-//! rows h apart a mode lasts with probability exp(−h/dwell), else it changes to any other one with equal probability. Each row:
+//! The interacting multiple model filter (Blom & Bar-Shalom 1988; Bar-Shalom, Li & Kirubarajan
+//! 2001, section 11.6.6). Between two rows h apart a mode lasts with probability exp(−h/dwell),
+//! else it changes to any other one with equal probability. Each row:
 //!
 //! | | |
 //! | --- | --- |
@@ -21,7 +23,8 @@ use crate::{AxisEstimate, ConstantVelocity, Filtered, Gaussian};
 pub struct VelocityBank {
     /// The modes, at least one.
     pub modes: Vec<ConstantVelocity>,
-    /// Mean time for which one mode holds (s), > 0; infinite where the mode is unknown but never changes.
+    /// Mean time for which one mode holds (s), > 0; infinite where the mode is unknown but never
+    /// changes.
     pub dwell: f64,
 }
 
@@ -36,16 +39,33 @@ impl VelocityBank {
     #[must_use]
     pub fn start(&self, position: f64) -> BankState {
         let weight = 1.0 / self.modes.len() as f64;
-        BankState { modes: self.modes.iter().map(|mode| (weight, mode.start(position))).collect() }
+        BankState {
+            modes: self
+                .modes
+                .iter()
+                .map(|mode| (weight, mode.start(position)))
+                .collect(),
+        }
     }
 
-    /// The state `h` (s) later given a measurement there, if there is one, and ln p(measurement | before), 0 without.
+    /// The state `h` (s) later given a measurement there, if there is one, and ln p(measurement |
+    /// before), 0 without.
     #[must_use]
     pub fn step(&self, state: &BankState, h: f64, measurement: Option<f64>) -> (BankState, f64) {
         let interacted = self.interact(state, h);
-        let predicted = interacted.into_iter().zip(&self.modes).map(|((weight, state), mode)| (weight, mode.predict(&state, h), mode));
+        let predicted = interacted
+            .into_iter()
+            .zip(&self.modes)
+            .map(|((weight, state), mode)| (weight, mode.predict(&state, h), mode));
         let Some(position) = measurement else {
-            return (BankState { modes: predicted.map(|(weight, state, _)| (weight, state)).collect() }, 0.0);
+            return (
+                BankState {
+                    modes: predicted
+                        .map(|(weight, state, _)| (weight, state))
+                        .collect(),
+                },
+                0.0,
+            );
         };
         let updated: Vec<(f64, Gaussian<2>)> = predicted
             .map(|(weight, state, mode)| {
@@ -53,28 +73,59 @@ impl VelocityBank {
                 (libm::log(weight) + log_likelihood, state)
             })
             .collect();
-        let best = updated.iter().map(|(log_weight, _)| *log_weight).fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = updated.iter().map(|(log_weight, _)| libm::exp(log_weight - best)).sum();
-        let modes = updated.into_iter().map(|(log_weight, state)| (libm::exp(log_weight - best) / sum, state));
-        (BankState { modes: modes.collect() }, best + libm::log(sum))
+        let best = updated
+            .iter()
+            .map(|(log_weight, _)| *log_weight)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = updated
+            .iter()
+            .map(|(log_weight, _)| libm::exp(log_weight - best))
+            .sum();
+        let modes = updated
+            .into_iter()
+            .map(|(log_weight, state)| (libm::exp(log_weight - best) / sum, state));
+        (
+            BankState {
+                modes: modes.collect(),
+            },
+            best + libm::log(sum),
+        )
     }
 
     /// Each mode's weight c_j and state after modes may have changed.
     fn interact(&self, state: &BankState, h: f64) -> Vec<(f64, Gaussian<2>)> {
         let count = state.modes.len();
-        let stay = if count == 1 { 1.0 } else { libm::exp(-h / self.dwell) };
-        let change = if count == 1 { 0.0 } else { (1.0 - stay) / (count - 1) as f64 };
+        let stay = if count == 1 {
+            1.0
+        } else {
+            libm::exp(-h / self.dwell)
+        };
+        let change = if count == 1 {
+            0.0
+        } else {
+            (1.0 - stay) / (count - 1) as f64
+        };
         let into = |j: usize| {
             let from = |i: usize| if i == j { stay } else { change };
-            let parts: Vec<(f64, Gaussian<2>)> = state.modes.iter().enumerate().map(|(i, (w, s))| (from(i) * w, *s)).collect();
+            let parts: Vec<(f64, Gaussian<2>)> = state
+                .modes
+                .iter()
+                .enumerate()
+                .map(|(i, (w, s))| (from(i) * w, *s))
+                .collect();
             let weight: f64 = parts.iter().map(|(w, _)| w).sum();
             // a mode that nothing leads to keeps its state
-            if weight > 0.0 { (weight, mixture(&parts, weight)) } else { (0.0, state.modes[j].1) }
+            if weight > 0.0 {
+                (weight, mixture(&parts, weight))
+            } else {
+                (0.0, state.modes[j].1)
+            }
         };
         (0..count).map(into).collect()
     }
 
-    /// The filter over a series: `times` (s) rise, a measurement may be missing; missing rows are extrapolated.
+    /// The filter over a series: `times` (s) rise, a measurement may be missing; missing rows are
+    /// extrapolated.
     ///
     /// ```
     /// # use stickslip_filter::{ConstantVelocity, VelocityBank};
@@ -87,10 +138,17 @@ impl VelocityBank {
     ///
     /// # Errors
     /// If a mode, the dwell time or the series is out of range, or there is no mode.
-    pub fn filter(&self, times: &[f64], measurements: &[Option<f64>]) -> Result<Filtered, SeriesError> {
+    pub fn filter(
+        &self,
+        times: &[f64],
+        measurements: &[Option<f64>],
+    ) -> Result<Filtered, SeriesError> {
         self.check()?;
         let series = Series::new(times, measurements)?;
-        let mut filtered = Filtered { rows: vec![None; times.len()], log_likelihood: 0.0 };
+        let mut filtered = Filtered {
+            rows: vec![None; times.len()],
+            log_likelihood: 0.0,
+        };
         let mut before: Option<(f64, BankState)> = None;
         for (row, time, measurement) in series.rows() {
             let (state, log_likelihood) = match (before.take(), measurement) {
@@ -129,9 +187,21 @@ impl BankState {
     }
 }
 
-/// The normal distribution with the mean and the covariance of a mixture whose weights sum to `total`.
+/// The normal distribution with the mean and the covariance of a mixture whose weights sum to
+/// `total`.
 fn mixture(parts: &[(f64, Gaussian<2>)], total: f64) -> Gaussian<2> {
-    let mean: Vector2<f64> = parts.iter().map(|(weight, state)| state.mean * (weight / total)).sum();
-    let about = |state: &Gaussian<2>| state.covariance + (state.mean - mean) * (state.mean - mean).transpose();
-    Gaussian { mean, covariance: parts.iter().map(|(weight, state)| about(state) * (weight / total)).sum() }
+    let mean: Vector2<f64> = parts
+        .iter()
+        .map(|(weight, state)| state.mean * (weight / total))
+        .sum();
+    let about = |state: &Gaussian<2>| {
+        state.covariance + (state.mean - mean) * (state.mean - mean).transpose()
+    };
+    Gaussian {
+        mean,
+        covariance: parts
+            .iter()
+            .map(|(weight, state)| about(state) * (weight / total))
+            .sum(),
+    }
 }

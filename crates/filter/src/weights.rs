@@ -1,8 +1,8 @@
 //! Importance weights of a particle set, as natural logarithms.
 //!
-//! Logarithms, because a product of many sensors' likelihoods underflows. Weights are kept normalised: the linear
-//! weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is positive, none is NaN. Sums run in a
-//! fixed order, so they do not depend on threads.
+//! Logarithms, because a product of many sensors' likelihoods underflows. Weights are kept
+//! normalised: the linear weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is
+//! positive, none is NaN. Sums run in a fixed order, so they do not depend on threads.
 
 use std::ops::Range;
 
@@ -20,7 +20,9 @@ pub enum WeightError {
     #[error("there are 0 weights; at least 1 is needed")]
     Empty,
     /// A weight is NaN or positive infinity.
-    #[error("the log-weight of particle {particle} is NaN or +inf; it must be finite or -inf; check the likelihood")]
+    #[error(
+        "the log-weight of particle {particle} is NaN or +inf; it must be finite or -inf; check the likelihood"
+    )]
     NotANumber {
         /// Index of the first such weight.
         particle: usize,
@@ -50,7 +52,11 @@ impl LogWeights {
     /// N equal weights, N >= 1.
     pub fn equal(particles: usize) -> Self {
         assert!(particles > 0, "a particle set is never empty");
-        let mut weights = LogWeights { log: vec![0.0; particles], linear: vec![0.0; particles], effective_sample_size: 0.0 };
+        let mut weights = LogWeights {
+            log: vec![0.0; particles],
+            linear: vec![0.0; particles],
+            effective_sample_size: 0.0,
+        };
         weights.reset();
         weights
     }
@@ -67,7 +73,11 @@ impl LogWeights {
             return Err(WeightError::NotANumber { particle });
         }
         let certain = vec![0.0; log.len()];
-        let mut weights = LogWeights { linear: certain.clone(), log, effective_sample_size: 0.0 };
+        let mut weights = LogWeights {
+            linear: certain.clone(),
+            log,
+            effective_sample_size: 0.0,
+        };
         weights.multiply(&certain).ok_or(WeightError::AllZero)?;
         Ok(weights)
     }
@@ -82,8 +92,8 @@ impl LogWeights {
 
     /// Bayes' rule: `w_i <- w_i L_i / sum_j w_j L_j`. `log_likelihood` holds (N,) ln L.
     ///
-    /// Returns `ln sum_j w_j L_j`, the observation's log-evidence given those before it; or `None`, and leaves the
-    /// weights as they were, if that sum is zero.
+    /// Returns `ln sum_j w_j L_j`, the observation's log-evidence given those before it; or `None`,
+    /// and leaves the weights as they were, if that sum is zero.
     ///
     /// # Panics
     /// If a likelihood is NaN or +inf: then the model is broken.
@@ -98,23 +108,48 @@ impl LogWeights {
     }
 
     /// Writes what Bayes' rule makes of one block's weights, up to a factor.
-    pub(crate) fn weigh_block(&self, range: Range<usize>, log_likelihood: &[f64], products: &mut [f64]) -> BlockUpdate {
+    pub(crate) fn weigh_block(
+        &self,
+        range: Range<usize>,
+        log_likelihood: &[f64],
+        products: &mut [f64],
+    ) -> BlockUpdate {
         BlockUpdate::of(range.start, &self.log[range], log_likelihood, products)
     }
 
     /// [`LogWeights::multiply`] where every block of `update` has been weighed.
     pub(crate) fn apply(&mut self, update: &mut Update, log_likelihood: &[f64]) -> Option<f64> {
-        let Normaliser { log_sum, effective_sample_size } = update.normalise()?;
+        let Normaliser {
+            log_sum,
+            effective_sample_size,
+        } = update.normalise()?;
         self.effective_sample_size = effective_sample_size;
-        let log = self.log.chunks_mut(GRAIN * BLOCK).zip(log_likelihood.chunks(GRAIN * BLOCK));
+        let log = self
+            .log
+            .chunks_mut(GRAIN * BLOCK)
+            .zip(log_likelihood.chunks(GRAIN * BLOCK));
         parallel::for_all(log, |(log, log_likelihood)| {
-            log.iter_mut().zip(log_likelihood).for_each(|(w, l)| *w = *w + l - log_sum);
+            log.iter_mut()
+                .zip(log_likelihood)
+                .for_each(|(w, l)| *w = *w + l - log_sum);
         });
-        parallel::for_all(self.linear.chunks_mut(GRAIN * BLOCK).zip(update.grains(GRAIN)), |(linear, (products, blocks))| {
-            for ((linear, products), block) in linear.chunks_mut(BLOCK).zip(products.chunks(BLOCK)).zip(blocks) {
-                linear.iter_mut().zip(products).for_each(|(w, product)| *w = product * block.share());
-            }
-        });
+        parallel::for_all(
+            self.linear
+                .chunks_mut(GRAIN * BLOCK)
+                .zip(update.grains(GRAIN)),
+            |(linear, (products, blocks))| {
+                for ((linear, products), block) in linear
+                    .chunks_mut(BLOCK)
+                    .zip(products.chunks(BLOCK))
+                    .zip(blocks)
+                {
+                    linear
+                        .iter_mut()
+                        .zip(products)
+                        .for_each(|(w, product)| *w = product * block.share());
+                }
+            },
+        );
         Some(log_sum)
     }
 
@@ -127,8 +162,8 @@ impl LogWeights {
         best_alive(0, &self.log, log_likelihood)
     }
 
-    /// The effective sample size `(sum w)^2 / sum w^2` (Kong, Liu & Wong 1994): N for equal weights, 1 when one
-    /// particle holds all the mass.
+    /// The effective sample size `(sum w)^2 / sum w^2` (Kong, Liu & Wong 1994): N for equal
+    /// weights, 1 when one particle holds all the mass.
     pub fn effective_sample_size(&self) -> f64 {
         self.effective_sample_size
     }

@@ -9,7 +9,12 @@ use stickslip_filter::{Block, BlockMut, Draw, Model, ParticleFilter, Weighing};
 fn step_with_an_impossible_observation_collapses_and_is_redrawn_around_it() {
     let mut filter = ParticleFilter::new(Axis::GATED, settings(1000, 3)).unwrap();
     let report = filter.step(&0.1, Some(&50.0));
-    assert_eq!(report.weighing, Weighing::Collapsed { best_log_likelihood: f64::NEG_INFINITY });
+    assert_eq!(
+        report.weighing,
+        Weighing::Collapsed {
+            best_log_likelihood: f64::NEG_INFINITY
+        }
+    );
     assert!(report.collapsed());
     assert_eq!(report.effective_sample_size, 1000.0);
 
@@ -24,7 +29,10 @@ fn step_with_an_impossible_observation_collapses_and_is_redrawn_around_it() {
 
 #[test]
 fn collapse_resamples_by_the_weights_of_the_row_before() {
-    let settings = stickslip_filter::Settings { resample_below: 0.0, ..settings(1000, 3) };
+    let settings = stickslip_filter::Settings {
+        resample_below: 0.0,
+        ..settings(1000, 3)
+    };
     let mut filter = ParticleFilter::new(Axis::GATED, settings).unwrap();
     let _ = filter.step(&0.5, Some(&0.5));
     let mean = filter.weighted_mean(VELOCITY);
@@ -32,9 +40,13 @@ fn collapse_resamples_by_the_weights_of_the_row_before() {
     let report = filter.step(&1e-9, Some(&50.0));
     assert!(report.collapsed() && !report.resampled);
     let after = filter.weighted_mean(VELOCITY);
-    // velocities are not redrawn by this model; systematic resampling keeps their weighted mean to about 1/sqrt(N)
+    // velocities are not redrawn by this model; systematic resampling keeps their weighted mean to
+    // about 1/sqrt(N)
     assert!((after - mean).abs() < 0.02, "{after} not {mean}");
-    assert!((after - unweighted).abs() > 0.1, "{after} is {unweighted}: the weights took no part");
+    assert!(
+        (after - unweighted).abs() > 0.1,
+        "{after} is {unweighted}: the weights took no part"
+    );
 }
 
 /// A model of one column whose likelihood is the observation itself.
@@ -68,14 +80,32 @@ impl Model for Given {
 
 #[test]
 fn collapsed_is_the_models_choice_but_zero_likelihood_always_collapses() {
-    let never = Given { collapse_below: f64::NEG_INFINITY };
+    let never = Given {
+        collapse_below: f64::NEG_INFINITY,
+    };
     let mut filter = ParticleFilter::new(never, settings(70, 0)).unwrap();
-    assert_eq!(filter.step(&(), Some(&-1e300)).weighing, Weighing::Weighed { log_evidence: -1e300 });
+    assert_eq!(
+        filter.step(&(), Some(&-1e300)).weighing,
+        Weighing::Weighed {
+            log_evidence: -1e300
+        }
+    );
     assert!(filter.step(&(), Some(&f64::NEG_INFINITY)).collapsed());
 
-    let mut filter = ParticleFilter::new(Given { collapse_below: -50.0 }, settings(70, 0)).unwrap();
+    let mut filter = ParticleFilter::new(
+        Given {
+            collapse_below: -50.0,
+        },
+        settings(70, 0),
+    )
+    .unwrap();
     assert!(!filter.step(&(), Some(&-49.0)).collapsed());
-    assert_eq!(filter.step(&(), Some(&-51.0)).weighing, Weighing::Collapsed { best_log_likelihood: -51.0 });
+    assert_eq!(
+        filter.step(&(), Some(&-51.0)).weighing,
+        Weighing::Collapsed {
+            best_log_likelihood: -51.0
+        }
+    );
     assert_eq!(filter.particles().value(69, 0), -51.0);
     assert_eq!(filter.step(&(), None).weighing, Weighing::Unobserved);
 }
@@ -83,6 +113,12 @@ fn collapsed_is_the_models_choice_but_zero_likelihood_always_collapses() {
 #[test]
 #[should_panic(expected = "NaN")]
 fn step_with_a_likelihood_that_is_nan_panics() {
-    let mut filter = ParticleFilter::new(Given { collapse_below: -50.0 }, settings(70, 0)).unwrap();
+    let mut filter = ParticleFilter::new(
+        Given {
+            collapse_below: -50.0,
+        },
+        settings(70, 0),
+    )
+    .unwrap();
     let _ = filter.step(&(), Some(&f64::NAN));
 }

@@ -1,9 +1,10 @@
 //! The particle filter against the exact Kalman filter on a linear-Gaussian model.
 //!
-//! Each comparison is of an average over `SEEDS` independent filters with the exact value, in units of the average's
-//! own standard error. Under the exact algorithm such a z is nearly standard normal, so |z| < 4.5 over some hundred
-//! comparisons; the standard errors are themselves asserted to be small, so that the test can fail. A filter of N
-//! particles is biased by O(1/N), well below the standard error here.
+//! Each comparison is of an average over `SEEDS` independent filters with the exact value, in units
+//! of the average's own standard error. Under the exact algorithm such a z is nearly standard
+//! normal, so |z| < 4.5 over some hundred comparisons; the standard errors are themselves asserted
+//! to be small, so that the test can fail. A filter of N particles is biased by O(1/N), well below
+//! the standard error here.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod common;
@@ -31,9 +32,16 @@ struct Run {
 
 fn run(resampling: Resampling, seed: u64) -> Run {
     let (times, measurements) = series(ROWS, 1);
-    let settings = Settings { resampling, ..settings(PARTICLES, seed) };
+    let settings = Settings {
+        resampling,
+        ..settings(PARTICLES, seed)
+    };
     let mut filter = ParticleFilter::new(Axis::OPEN, settings).unwrap();
-    let mut run = Run { rows: vec![moments(&filter)], log_evidence: 0.0, resampled: 0 };
+    let mut run = Run {
+        rows: vec![moments(&filter)],
+        log_evidence: 0.0,
+        resampled: 0,
+    };
     for row in 1..ROWS {
         let report = filter.step(&(times[row] - times[row - 1]), measurements[row].as_ref());
         if let Weighing::Weighed { log_evidence } = report.weighing {
@@ -65,27 +73,61 @@ fn mean_and_error(x: &[f64]) -> (f64, f64) {
 
 fn check(what: &str, estimates: &[f64], exact: f64, scale: f64) {
     let (mean, error) = mean_and_error(estimates);
-    assert!(error < 0.03 * scale, "{what}: standard error {error} is too large to test anything");
-    assert!((mean - exact).abs() < 4.5 * error, "{what}: {mean} +- {error}, exactly {exact}");
+    assert!(
+        error < 0.03 * scale,
+        "{what}: standard error {error} is too large to test anything"
+    );
+    assert!(
+        (mean - exact).abs() < 4.5 * error,
+        "{what}: {mean} +- {error}, exactly {exact}"
+    );
 }
 
 fn agrees_with_kalman(resampling: Resampling) {
     let (times, measurements) = series(ROWS, 1);
     let exact = AXIS.filter(&times, &measurements).unwrap();
     let runs: Vec<Run> = (0..SEEDS).map(|seed| run(resampling, seed)).collect();
-    assert!(runs.iter().all(|run| run.resampled >= 3), "resampling takes part");
+    assert!(
+        runs.iter().all(|run| run.resampled >= 3),
+        "resampling takes part"
+    );
     for (row, exact) in exact.rows.iter().enumerate() {
         let exact = exact.unwrap();
-        let all = |f: fn(&Row) -> f64| -> Vec<f64> { runs.iter().map(|run| f(&run.rows[row])).collect() };
+        let all =
+            |f: fn(&Row) -> f64| -> Vec<f64> { runs.iter().map(|run| f(&run.rows[row])).collect() };
         let (x, v) = (exact.position_variance, exact.velocity_variance);
-        check(&format!("row {row} position"), &all(|r| r.position), exact.position, x.sqrt());
-        check(&format!("row {row} velocity"), &all(|r| r.velocity), exact.velocity, v.sqrt());
-        check(&format!("row {row} position variance"), &all(|r| r.position_variance), x, x);
-        check(&format!("row {row} velocity variance"), &all(|r| r.velocity_variance), v, v);
+        check(
+            &format!("row {row} position"),
+            &all(|r| r.position),
+            exact.position,
+            x.sqrt(),
+        );
+        check(
+            &format!("row {row} velocity"),
+            &all(|r| r.velocity),
+            exact.velocity,
+            v.sqrt(),
+        );
+        check(
+            &format!("row {row} position variance"),
+            &all(|r| r.position_variance),
+            x,
+            x,
+        );
+        check(
+            &format!("row {row} velocity variance"),
+            &all(|r| r.velocity_variance),
+            v,
+            v,
+        );
     }
 
-    // the estimate of the evidence itself (not of its logarithm) is unbiased (Del Moral 2004, theorem 7.4.2)
-    let ratios: Vec<f64> = runs.iter().map(|run| libm::exp(run.log_evidence - exact.log_likelihood)).collect();
+    // the estimate of the evidence itself (not of its logarithm) is unbiased (Del Moral 2004,
+    // theorem 7.4.2)
+    let ratios: Vec<f64> = runs
+        .iter()
+        .map(|run| libm::exp(run.log_evidence - exact.log_likelihood))
+        .collect();
     check("evidence / exact evidence", &ratios, 1.0, 1.0);
 }
 

@@ -25,7 +25,12 @@ fn blocks_cover_every_particle_once_and_hide_the_padding() {
         let covered: Vec<usize> = set.blocks().flat_map(|block| block.range()).collect();
         assert_eq!(covered, (0..particles).collect::<Vec<_>>());
         let column: Vec<f64> = set.column(1).collect();
-        assert_eq!(column, (0..particles).map(|i| (1000 + i) as f64).collect::<Vec<_>>());
+        assert_eq!(
+            column,
+            (0..particles)
+                .map(|i| (1000 + i) as f64)
+                .collect::<Vec<_>>()
+        );
         assert_eq!(set.value(particles - 1, 1), (1000 + particles - 1) as f64);
     }
 }
@@ -99,11 +104,21 @@ fn weighted_moments_are_the_sums_over_all_particles() {
     assert!(!filter.step(&0.1, Some(&0.2)).collapsed());
     let weights = filter.weights().weights();
     for column in [VELOCITY, POSITION] {
-        let sum = |f: &dyn Fn(f64) -> f64| -> f64 { filter.particles().column(column).zip(weights).map(|(x, w)| w * f(x)).sum() };
+        let sum = |f: &dyn Fn(f64) -> f64| -> f64 {
+            filter
+                .particles()
+                .column(column)
+                .zip(weights)
+                .map(|(x, w)| w * f(x))
+                .sum()
+        };
         let mean = sum(&|x| x);
         assert!((filter.weighted_mean(column) - mean).abs() < 1e-12);
         let std = sum(&|x| (x - mean).powi(2)).sqrt();
-        assert!((filter.weighted_std(column) - std).abs() < 1e-12 && std > 0.0, "{std}");
+        assert!(
+            (filter.weighted_std(column) - std).abs() < 1e-12 && std > 0.0,
+            "{std}"
+        );
     }
     assert!(weights.iter().any(|w| *w != weights[0]));
 }
@@ -116,7 +131,10 @@ fn sums_are_those_of_the_weighted_particles_however_the_step_ends() {
         let mut check = |observation: Option<&f64>, collapses: bool| {
             assert_eq!(filter.step(&0.1, observation).collapsed(), collapses);
             let (sums, mean) = (filter.sums(), filter.weighted_mean(POSITION));
-            assert!((sums.weight - 1.0).abs() < 1e-12 && (sums.position - mean).abs() < 1e-12, "{sums:?}, mean {mean}");
+            assert!(
+                (sums.weight - 1.0).abs() < 1e-12 && (sums.position - mean).abs() < 1e-12,
+                "{sums:?}, mean {mean}"
+            );
         };
         check(Some(&0.2), false);
         check(None, false);
@@ -128,10 +146,31 @@ fn sums_are_those_of_the_weighted_particles_however_the_step_ends() {
 #[test]
 fn new_with_settings_out_of_range_is_refused() {
     let refuse = |settings| ParticleFilter::new(common::Axis::OPEN, settings).err();
-    let none = Settings { particles: 0, ..Settings::default() };
-    assert_eq!(refuse(none), Some(SettingsError::Particles { particles: 0 }));
-    let above = Settings { resample_below: 1.5, ..Settings::default() };
-    assert_eq!(refuse(above), Some(SettingsError::ResampleBelow { share: 1.5 }));
-    assert!(refuse(Settings { resample_below: f64::NAN, ..Settings::default() }).is_some());
-    assert_eq!(SettingsError::Particles { particles: 0 }.to_string(), "`particles` is 0; it must be at least 1 and below 2^32; try 500");
+    let none = Settings {
+        particles: 0,
+        ..Settings::default()
+    };
+    assert_eq!(
+        refuse(none),
+        Some(SettingsError::Particles { particles: 0 })
+    );
+    let above = Settings {
+        resample_below: 1.5,
+        ..Settings::default()
+    };
+    assert_eq!(
+        refuse(above),
+        Some(SettingsError::ResampleBelow { share: 1.5 })
+    );
+    assert!(
+        refuse(Settings {
+            resample_below: f64::NAN,
+            ..Settings::default()
+        })
+        .is_some()
+    );
+    assert_eq!(
+        SettingsError::Particles { particles: 0 }.to_string(),
+        "`particles` is 0; it must be at least 1 and below 2^32; try 500"
+    );
 }

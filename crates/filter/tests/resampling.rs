@@ -1,8 +1,14 @@
-//! Resampling schemes: counts average to N w, weight zero is never drawn, noise is bounded as the schemes promise.
+//! Resampling schemes: counts average to N w, weight zero is never drawn, noise is bounded as the
+//! schemes promise.
 
 use stickslip_filter::{Resampling, Streams};
 
-const SCHEMES: [Resampling; 4] = [Resampling::Systematic, Resampling::Stratified, Resampling::Residual, Resampling::Multinomial];
+const SCHEMES: [Resampling; 4] = [
+    Resampling::Systematic,
+    Resampling::Stratified,
+    Resampling::Residual,
+    Resampling::Multinomial,
+];
 
 fn counts(scheme: Resampling, weights: &[f64], ancestors: usize, step: u64) -> Vec<f64> {
     let mut drawn = vec![u32::MAX; ancestors];
@@ -15,7 +21,15 @@ fn counts(scheme: Resampling, weights: &[f64], ancestors: usize, step: u64) -> V
 }
 
 fn uneven_weights(n: usize) -> Vec<f64> {
-    let raw: Vec<f64> = (0..n).map(|i| if i % 7 == 0 { 0.0 } else { ((i * 31) % 17) as f64 + 0.25 }).collect();
+    let raw: Vec<f64> = (0..n)
+        .map(|i| {
+            if i % 7 == 0 {
+                0.0
+            } else {
+                ((i * 31) % 17) as f64 + 0.25
+            }
+        })
+        .collect();
     let sum: f64 = raw.iter().sum();
     raw.iter().map(|w| w / sum).collect()
 }
@@ -29,13 +43,18 @@ fn counts_average_to_n_times_weight() {
             let mut mean = vec![0.0; weights.len()];
             for step in 0..DRAWS {
                 let counts = counts(scheme, &weights, ancestors, step);
-                mean.iter_mut().zip(counts).for_each(|(m, c)| *m += c / DRAWS as f64);
+                mean.iter_mut()
+                    .zip(counts)
+                    .for_each(|(m, c)| *m += c / DRAWS as f64);
             }
             for (w, mean) in weights.iter().zip(mean) {
                 // no scheme is noisier than the multinomial: variance N w (1 - w)
                 let expected = ancestors as f64 * w;
                 let error = (expected * (1.0 - w) / DRAWS as f64).sqrt();
-                assert!((mean - expected).abs() <= 4.5 * error, "{scheme:?}: {mean}, expected {expected} +- {error}");
+                assert!(
+                    (mean - expected).abs() <= 4.5 * error,
+                    "{scheme:?}: {mean}, expected {expected} +- {error}"
+                );
             }
         }
     }
@@ -45,8 +64,15 @@ fn counts_average_to_n_times_weight() {
 fn systematic_counts_are_the_integers_next_to_n_w() {
     let weights = uneven_weights(200);
     for step in 0..200 {
-        for (w, count) in weights.iter().zip(counts(Resampling::Systematic, &weights, 200, step)) {
-            assert!((count - 200.0 * w).abs() < 1.0 + 1e-9, "{count} for {}", 200.0 * w);
+        for (w, count) in weights
+            .iter()
+            .zip(counts(Resampling::Systematic, &weights, 200, step))
+        {
+            assert!(
+                (count - 200.0 * w).abs() < 1.0 + 1e-9,
+                "{count} for {}",
+                200.0 * w
+            );
         }
     }
 }
@@ -55,10 +81,16 @@ fn systematic_counts_are_the_integers_next_to_n_w() {
 fn stratified_counts_are_within_two_and_residual_at_least_the_floor() {
     let weights = uneven_weights(200);
     for step in 0..200 {
-        for (w, count) in weights.iter().zip(counts(Resampling::Stratified, &weights, 200, step)) {
+        for (w, count) in weights
+            .iter()
+            .zip(counts(Resampling::Stratified, &weights, 200, step))
+        {
             assert!((count - 200.0 * w).abs() < 2.0);
         }
-        for (w, count) in weights.iter().zip(counts(Resampling::Residual, &weights, 200, step)) {
+        for (w, count) in weights
+            .iter()
+            .zip(counts(Resampling::Residual, &weights, 200, step))
+        {
             assert!(count >= (200.0 * w).floor());
         }
     }
@@ -68,7 +100,10 @@ fn stratified_counts_are_within_two_and_residual_at_least_the_floor() {
 fn systematic_with_equal_weights_keeps_every_particle() {
     for n in [1, 3, 49, 1000] {
         let kept = counts(Resampling::Systematic, &vec![1.0 / n as f64; n], n, 1);
-        assert!(kept.iter().filter(|&&c| c != 1.0).count() <= 2, "rounding may move a point over an edge");
+        assert!(
+            kept.iter().filter(|&&c| c != 1.0).count() <= 2,
+            "rounding may move a point over an edge"
+        );
     }
 }
 
@@ -79,7 +114,11 @@ fn one_particle_with_all_the_mass_is_every_ancestor() {
             let mut weights = [0.0; 10];
             weights[heavy] = 1.0;
             for step in 0..100 {
-                assert_eq!(counts(scheme, &weights, 10, step)[heavy], 10.0, "{scheme:?}");
+                assert_eq!(
+                    counts(scheme, &weights, 10, step)[heavy],
+                    10.0,
+                    "{scheme:?}"
+                );
             }
         }
     }

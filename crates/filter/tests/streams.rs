@@ -1,4 +1,5 @@
-//! Random streams: pure functions of their arguments, standard normal, uniform, and independent of each other.
+//! Random streams: pure functions of their arguments, standard normal, uniform, and independent of
+//! each other.
 
 use stickslip_filter::{Purpose, Streams};
 
@@ -23,7 +24,10 @@ fn normal_columns_of_any_length_are_the_single_numbers_bit_for_bit() {
         draw.normal_columns(100, 3, &mut even, &mut odd);
         for (lane, particle) in (0..len).zip(100..) {
             let [a, b] = draw.normals(particle, 6);
-            assert_eq!([even[lane].to_bits(), odd[lane].to_bits()], [a.to_bits(), b.to_bits()]);
+            assert_eq!(
+                [even[lane].to_bits(), odd[lane].to_bits()],
+                [a.to_bits(), b.to_bits()]
+            );
         }
     }
 }
@@ -47,7 +51,12 @@ fn normal_has_the_moments_of_the_standard_normal() {
 #[test]
 fn normal_tails_have_the_probability_of_the_standard_normal() {
     let draw = Streams::new(2).at(0);
-    for (bound, tail) in [(0.5, 0.308_537_538_7), (1.0, 0.158_655_253_9), (2.0, 0.022_750_131_9), (3.0, 0.001_349_898_0)] {
+    for (bound, tail) in [
+        (0.5, 0.308_537_538_7),
+        (1.0, 0.158_655_253_9),
+        (2.0, 0.022_750_131_9),
+        (3.0, 0.001_349_898_0),
+    ] {
         let above = (0..N).map(|i| f64::from(u8::from(draw.normal(i, 0) > bound)));
         assert!(z(above, tail, tail * (1.0 - tail)) < 4.0, "above {bound}");
     }
@@ -71,19 +80,32 @@ fn streams_that_differ_in_one_argument_are_uncorrelated() {
     let base = |i: u32| streams.normal(step, i, draw);
     let others: [(&str, &dyn Fn(u32) -> f64); 7] = [
         ("seed", &|i| Streams::new(9).normal(step, i, draw)),
-        ("high seed", &|i| Streams::new(8 | 1 << 40).normal(step, i, draw)),
-        ("purpose", &|i| streams.of(Purpose::Redraw).normal(step, i, draw)),
+        ("high seed", &|i| {
+            Streams::new(8 | 1 << 40).normal(step, i, draw)
+        }),
+        ("purpose", &|i| {
+            streams.of(Purpose::Redraw).normal(step, i, draw)
+        }),
         ("step", &|i| streams.normal(step + 1, i, draw)),
         ("high step", &|i| streams.normal(step | 1 << 50, i, draw)),
         ("particle", &|i| streams.normal(step, i + 1, draw)),
         ("pair partner", &|i| streams.normal(step, i, draw + 1)),
     ];
     for (name, other) in others {
-        assert!(z((0..N).map(|i| base(i) * other(i)), 0.0, 1.0) < 4.0, "{name}");
-        assert!(z((0..N).map(|i| base(i).powi(2) * other(i).powi(2)), 1.0, 8.0) < 4.0, "{name}, squares");
+        assert!(
+            z((0..N).map(|i| base(i) * other(i)), 0.0, 1.0) < 4.0,
+            "{name}"
+        );
+        assert!(
+            z((0..N).map(|i| base(i).powi(2) * other(i).powi(2)), 1.0, 8.0) < 4.0,
+            "{name}, squares"
+        );
     }
     let uniform = |i| streams.uniform(step, i, draw) - 0.5;
-    assert!(z((0..N).map(|i| base(i) * uniform(i)), 0.0, 1.0 / 12.0) < 4.0, "kind");
+    assert!(
+        z((0..N).map(|i| base(i) * uniform(i)), 0.0, 1.0 / 12.0) < 4.0,
+        "kind"
+    );
 }
 
 #[test]

@@ -1,26 +1,37 @@
-//! The bank of constant-velocity filters against exact answers: a single filter, weights from whole likelihoods where modes do not
-//! change, and the sum over all histories of modes where they do.
+//! The bank of constant-velocity filters against exact answers: a single filter, weights from whole
+//! likelihoods where modes do not change, and the sum over all histories of modes where they do.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod common;
 
 use common::{AXIS, series};
-use stickslip_filter::{AxisEstimate, ConstantVelocity, Gaussian, Purpose, SeriesError, Streams, VelocityBank};
+use stickslip_filter::{
+    AxisEstimate, ConstantVelocity, Gaussian, Purpose, SeriesError, Streams, VelocityBank,
+};
 
 fn mode(process_noise: f64) -> ConstantVelocity {
-    ConstantVelocity { process_noise, ..AXIS }
+    ConstantVelocity {
+        process_noise,
+        ..AXIS
+    }
 }
 
 fn bank(dwell: f64) -> VelocityBank {
-    VelocityBank { modes: [0.005, 0.5, 5.0].map(mode).to_vec(), dwell }
+    VelocityBank {
+        modes: [0.005, 0.5, 5.0].map(mode).to_vec(),
+        dwell,
+    }
 }
 
 /// Mean and variances of a mixture of normal distributions.
 fn mixture(parts: &[(f64, AxisEstimate)]) -> AxisEstimate {
     let total: f64 = parts.iter().map(|(w, _)| w).sum();
-    let mean = |of: fn(&AxisEstimate) -> f64| parts.iter().map(|(w, e)| w * of(e)).sum::<f64>() / total;
+    let mean =
+        |of: fn(&AxisEstimate) -> f64| parts.iter().map(|(w, e)| w * of(e)).sum::<f64>() / total;
     let (position, velocity) = (mean(|e| e.position), mean(|e| e.velocity));
-    let variance = |part: &dyn Fn(&AxisEstimate) -> f64| parts.iter().map(|(w, e)| w * part(e)).sum::<f64>() / total;
+    let variance = |part: &dyn Fn(&AxisEstimate) -> f64| {
+        parts.iter().map(|(w, e)| w * part(e)).sum::<f64>() / total
+    };
     AxisEstimate {
         position,
         velocity,
@@ -43,9 +54,16 @@ fn distance(got: AxisEstimate, exact: AxisEstimate) -> f64 {
 fn filter_with_one_mode_is_its_kalman_filter() {
     let (times, measurements) = series(60, 4);
     for dwell in [0.1, f64::INFINITY] {
-        let got = VelocityBank { modes: vec![AXIS], dwell }.filter(&times, &measurements).unwrap();
+        let got = VelocityBank {
+            modes: vec![AXIS],
+            dwell,
+        }
+        .filter(&times, &measurements)
+        .unwrap();
         let exact = AXIS.filter(&times, &measurements).unwrap();
-        assert!((got.log_likelihood - exact.log_likelihood).abs() < 1e-9 * exact.log_likelihood.abs());
+        assert!(
+            (got.log_likelihood - exact.log_likelihood).abs() < 1e-9 * exact.log_likelihood.abs()
+        );
         for (got, exact) in got.rows.iter().zip(&exact.rows) {
             assert!(distance(got.unwrap(), exact.unwrap()) < 1e-9);
         }
@@ -64,7 +82,10 @@ fn filter_whose_modes_last_is_the_average_over_them_by_likelihood() {
             (libm::exp(so_far.log_likelihood), so_far.rows[row].unwrap())
         };
         let parts: Vec<(f64, AxisEstimate)> = bank.modes.iter().map(part).collect();
-        assert!(distance(got.rows[row].unwrap(), mixture(&parts)) < 1e-9, "row {row}");
+        assert!(
+            distance(got.rows[row].unwrap(), mixture(&parts)) < 1e-9,
+            "row {row}"
+        );
         if row + 1 == times.len() {
             let evidence = libm::log(parts.iter().map(|(w, _)| w / 3.0).sum());
             assert!((got.log_likelihood - evidence).abs() < 1e-9 * evidence.abs());
@@ -73,10 +94,18 @@ fn filter_whose_modes_last_is_the_average_over_them_by_likelihood() {
 }
 
 /// Exact by brute force: every history of modes with its own Kalman filter, 3⁷ of them.
-fn all_histories(bank: &VelocityBank, times: &[f64], measurements: &[Option<f64>]) -> (AxisEstimate, f64) {
+fn all_histories(
+    bank: &VelocityBank,
+    times: &[f64],
+    measurements: &[Option<f64>],
+) -> (AxisEstimate, f64) {
     let start = |mode: &ConstantVelocity| mode.start(measurements[0].unwrap());
-    let mut histories: Vec<(f64, usize, Gaussian<2>)> =
-        bank.modes.iter().enumerate().map(|(j, mode)| (1.0 / 3.0, j, start(mode))).collect();
+    let mut histories: Vec<(f64, usize, Gaussian<2>)> = bank
+        .modes
+        .iter()
+        .enumerate()
+        .map(|(j, mode)| (1.0 / 3.0, j, start(mode)))
+        .collect();
     for row in 1..times.len() {
         let h = times[row] - times[row - 1];
         let stay = libm::exp(-h / bank.dwell);
@@ -84,14 +113,21 @@ fn all_histories(bank: &VelocityBank, times: &[f64], measurements: &[Option<f64>
             bank.modes.iter().enumerate().map(move |(to, mode)| {
                 let change = if to == from { stay } else { (1.0 - stay) / 2.0 };
                 let predicted = mode.predict(&state, h);
-                let (state, log_likelihood) = measurements[row].map_or((predicted, 0.0), |z| mode.update(&predicted, z));
+                let (state, log_likelihood) =
+                    measurements[row].map_or((predicted, 0.0), |z| mode.update(&predicted, z));
                 (weight * change * libm::exp(log_likelihood), to, state)
             })
         };
         histories = histories.iter().flat_map(next).collect();
     }
-    let parts: Vec<(f64, AxisEstimate)> = histories.iter().map(|(w, _, state)| (*w, estimate(state))).collect();
-    (mixture(&parts), libm::log(parts.iter().map(|(w, _)| w).sum()))
+    let parts: Vec<(f64, AxisEstimate)> = histories
+        .iter()
+        .map(|(w, _, state)| (*w, estimate(state)))
+        .collect();
+    (
+        mixture(&parts),
+        libm::log(parts.iter().map(|(w, _)| w).sum()),
+    )
 }
 
 fn estimate(state: &Gaussian<2>) -> AxisEstimate {
@@ -103,7 +139,8 @@ fn estimate(state: &Gaussian<2>) -> AxisEstimate {
     }
 }
 
-/// As long as no mode starts a row with a measurement from a true mixture, moments are all that count, and they are exact.
+/// As long as no mode starts a row with a measurement from a true mixture, moments are all that
+/// count, and they are exact.
 #[test]
 fn filter_is_the_sum_over_all_histories_of_modes_until_a_second_measurement_follows_a_change() {
     let bank = bank(2.0);
@@ -117,7 +154,8 @@ fn filter_is_the_sum_over_all_histories_of_modes_until_a_second_measurement_foll
     }
 }
 
-/// After that a mixture counts as the normal distribution of its moments: near the exact answer, not on it.
+/// After that a mixture counts as the normal distribution of its moments: near the exact answer,
+/// not on it.
 #[test]
 fn filter_is_near_the_sum_over_all_histories_of_modes() {
     let bank = bank(2.0);
@@ -132,22 +170,39 @@ fn filter_is_near_the_sum_over_all_histories_of_modes() {
         sums[2] += distance(single, exact);
     }
     let [error, evidence, single] = sums.map(|sum| sum / 50.0);
-    assert!(error < 0.1 && evidence < 0.1, "{error} standard deviations, {evidence} in the evidence");
-    assert!(single > 3.0 * error, "the middle mode alone is {single} off, the bank {error}");
+    assert!(
+        error < 0.1 && evidence < 0.1,
+        "{error} standard deviations, {evidence} in the evidence"
+    );
+    assert!(
+        single > 3.0 * error,
+        "the middle mode alone is {single} off, the bank {error}"
+    );
 }
 
-/// Rests, runs off, stops: no single liveliness tells all of it as well as the bank, which must find it on the way.
+/// Rests, runs off, stops: no single liveliness tells all of it as well as the bank, which must
+/// find it on the way.
 #[test]
 fn filter_predicts_a_start_and_a_stop_better_than_any_of_its_modes() {
     let draw = Streams::new(1).of(Purpose::Measure);
     let times: Vec<f64> = (0..360).map(|row| f64::from(row) / 30.0).collect();
     let noise = |row: usize| AXIS.measurement_std * draw.at(row as u64).normal(0, 0);
-    let measurements: Vec<Option<f64>> =
-        times.iter().enumerate().map(|(row, t)| Some(20.0 * (t.clamp(4.0, 6.0) - 4.0) + noise(row))).collect();
-    let bank = VelocityBank { modes: [1e-5, 0.5, 1e3].map(mode).to_vec(), dwell: 30.0 };
+    let measurements: Vec<Option<f64>> = times
+        .iter()
+        .enumerate()
+        .map(|(row, t)| Some(20.0 * (t.clamp(4.0, 6.0) - 4.0) + noise(row)))
+        .collect();
+    let bank = VelocityBank {
+        modes: [1e-5, 0.5, 1e3].map(mode).to_vec(),
+        dwell: 30.0,
+    };
     let together = bank.filter(&times, &measurements).unwrap().log_likelihood;
     let best = AXIS.fit_process_noise(&times, &measurements).unwrap();
-    assert!(together > best.log_likelihood + 10.0, "{together}, the best single one with hindsight {}", best.log_likelihood);
+    assert!(
+        together > best.log_likelihood + 10.0,
+        "{together}, the best single one with hindsight {}",
+        best.log_likelihood
+    );
 }
 
 #[test]
@@ -155,18 +210,36 @@ fn filter_row_is_a_function_of_the_rows_up_to_it() {
     let (times, measurements) = series(50, 5);
     let all = bank(3.0).filter(&times, &measurements).unwrap().rows;
     for row in 0..times.len() {
-        assert_eq!(bank(3.0).filter(&times[..=row], &measurements[..=row]).unwrap().rows, all[..=row]);
+        assert_eq!(
+            bank(3.0)
+                .filter(&times[..=row], &measurements[..=row])
+                .unwrap()
+                .rows,
+            all[..=row]
+        );
     }
 }
 
 #[test]
 fn bank_out_of_range_is_refused() {
     let refuse = |bank: VelocityBank| bank.filter(&[], &[]).unwrap_err().to_string();
-    assert_eq!(refuse(VelocityBank { modes: vec![], dwell: 1.0 }), "`modes` is 0; it must be finite and at least 1");
+    assert_eq!(
+        refuse(VelocityBank {
+            modes: vec![],
+            dwell: 1.0
+        }),
+        "`modes` is 0; it must be finite and at least 1"
+    );
     for dwell in [0.0, -1.0, f64::NAN] {
         assert!(refuse(bank(dwell)).starts_with("`dwell` is "));
     }
-    assert!(refuse(VelocityBank { modes: vec![mode(-1.0)], dwell: 1.0 }).starts_with("`process_noise` is -1"));
+    assert!(
+        refuse(VelocityBank {
+            modes: vec![mode(-1.0)],
+            dwell: 1.0
+        })
+        .starts_with("`process_noise` is -1")
+    );
     let series = bank(1.0).filter(&[0.0, 0.0], &[None, None]).unwrap_err();
     assert!(matches!(series, SeriesError::Time { row: 1, .. }));
 }

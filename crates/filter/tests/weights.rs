@@ -4,7 +4,9 @@
 use stickslip_filter::{LogWeights, WeightError};
 
 fn ess(log: &[f64]) -> f64 {
-    LogWeights::new(log.to_vec()).unwrap().effective_sample_size()
+    LogWeights::new(log.to_vec())
+        .unwrap()
+        .effective_sample_size()
 }
 
 #[test]
@@ -49,7 +51,10 @@ fn multiply_by_tiny_likelihoods_does_not_underflow() {
 fn multiply_by_zero_likelihood_is_none_and_changes_nothing() {
     let mut weights = LogWeights::new(vec![0.0, -1.0, f64::NEG_INFINITY]).unwrap();
     let before = weights.clone();
-    assert_eq!(weights.multiply(&[f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0]), None);
+    assert_eq!(
+        weights.multiply(&[f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0]),
+        None
+    );
     assert_eq!(weights, before);
     assert_eq!(weights.best(&[1.0, 2.0, 3.0]), 2.0);
 }
@@ -57,7 +62,16 @@ fn multiply_by_zero_likelihood_is_none_and_changes_nothing() {
 #[test]
 fn new_refuses_what_is_no_set_of_weights() {
     assert_eq!(LogWeights::new(vec![]), Err(WeightError::Empty));
-    assert_eq!(LogWeights::new(vec![0.0, f64::NAN]), Err(WeightError::NotANumber { particle: 1 }));
-    assert_eq!(LogWeights::new(vec![f64::INFINITY]), Err(WeightError::NotANumber { particle: 0 }));
-    assert_eq!(LogWeights::new(vec![f64::NEG_INFINITY; 3]), Err(WeightError::AllZero));
+    assert_eq!(
+        LogWeights::new(vec![0.0, f64::NAN]),
+        Err(WeightError::NotANumber { particle: 1 })
+    );
+    assert_eq!(
+        LogWeights::new(vec![f64::INFINITY]),
+        Err(WeightError::NotANumber { particle: 0 })
+    );
+    assert_eq!(
+        LogWeights::new(vec![f64::NEG_INFINITY; 3]),
+        Err(WeightError::AllZero)
+    );
 }

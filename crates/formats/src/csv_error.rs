@@ -54,7 +54,9 @@ pub enum CsvProblem {
     #[error("the file has a header and no rows; at least one row is needed")]
     NoRows,
     /// A column that must be there is not.
-    #[error("the column `{column}` is missing{hint}. Name the columns in the first line, separated by commas")]
+    #[error(
+        "the column `{column}` is missing{hint}. Name the columns in the first line, separated by commas"
+    )]
     MissingColumn {
         /// Its name.
         column: String,
@@ -62,7 +64,9 @@ pub enum CsvProblem {
         hint: String,
     },
     /// Two columns have the same name.
-    #[error("the name is that of column {first} too; each column is given once. Remove or rename one of them")]
+    #[error(
+        "the name is that of column {first} too; each column is given once. Remove or rename one of them"
+    )]
     DuplicateColumn {
         /// Number of the first one.
         first: usize,
@@ -88,7 +92,9 @@ pub enum CsvProblem {
         missing: String,
     },
     /// A number of cells that is not the header's.
-    #[error("the line has {found} cells, the header {expected}. Give every column a cell, an empty one where nothing was measured")]
+    #[error(
+        "the line has {found} cells, the header {expected}. Give every column a cell, an empty one where nothing was measured"
+    )]
     CellCount {
         /// Cells in the line.
         found: usize,
@@ -96,7 +102,9 @@ pub enum CsvProblem {
         expected: usize,
     },
     /// Text that is no number.
-    #[error("`{found}` is not a number; write digits with a decimal point, or leave the cell empty where nothing was measured")]
+    #[error(
+        "`{found}` is not a number; write digits with a decimal point, or leave the cell empty where nothing was measured"
+    )]
     NotANumber {
         /// The cell.
         found: String,
@@ -125,7 +133,9 @@ pub enum CsvProblem {
         found: String,
     },
     /// Time does not rise.
-    #[error("time {found} s comes after {before} s; it must rise strictly from row to row. Sort the rows and remove repeated ones")]
+    #[error(
+        "time {found} s comes after {before} s; it must rise strictly from row to row. Sort the rows and remove repeated ones"
+    )]
     TimeNotRising {
         /// Time of this row \[s\].
         found: f64,
@@ -133,7 +143,9 @@ pub enum CsvProblem {
         before: f64,
     },
     /// Some cells of one measurement are filled and others not.
-    #[error("the cell is empty but `{filled}` is not; a measurement is complete or absent. Fill this cell or empty all of {all}")]
+    #[error(
+        "the cell is empty but `{filled}` is not; a measurement is complete or absent. Fill this cell or empty all of {all}"
+    )]
     Partial {
         /// A filled cell's column.
         filled: String,

@@ -1,7 +1,8 @@
 //! A CSV file as a header and rows of cells: [`CsvTable`], [`Row`].
 //!
-//! Comma-separated, one record per line (`\n` or `\r\n`), a byte-order mark is skipped, cells may stand in double quotes and be
-//! padded with blanks, blank lines only at the end. Lines and columns are counted from 1 in errors, columns from 0 in code.
+//! Comma-separated, one record per line (`\n` or `\r\n`), a byte-order mark is skipped, cells may
+//! stand in double quotes and be padded with blanks, blank lines only at the end. Lines and columns
+//! are counted from 1 in errors, columns from 0 in code.
 
 use std::io::Read;
 
@@ -28,8 +29,17 @@ impl CsvTable {
     /// # Errors
     /// The bytes cannot be read, are not UTF-8, hold no header or no row, or name a column twice.
     pub(crate) fn read(reader: impl Read, file: &str) -> Result<Self, CsvError> {
-        let text = read_text(reader).map_err(|(line, problem)| CsvError { file: file.to_owned(), line, column: None, problem })?;
-        let mut table = Self { file: file.to_owned(), text, columns: Vec::new() };
+        let text = read_text(reader).map_err(|(line, problem)| CsvError {
+            file: file.to_owned(),
+            line,
+            column: None,
+            problem,
+        })?;
+        let mut table = Self {
+            file: file.to_owned(),
+            text,
+            columns: Vec::new(),
+        };
         let header = table.lines().next().map(|(_, header)| split(header));
         table.columns = header.ok_or_else(|| table.error(1, None, CsvProblem::Empty))?;
         table.check_unique()?;
@@ -54,7 +64,10 @@ impl CsvTable {
         if self.lines().nth(1).is_none() {
             return Err(self.error(1, None, CsvProblem::NoRows));
         }
-        Ok(self.lines().skip(1).map(|(line, text)| self.row(line, text)))
+        Ok(self
+            .lines()
+            .skip(1)
+            .map(|(line, text)| self.row(line, text)))
     }
 
     /// Index of a column.
@@ -65,13 +78,19 @@ impl CsvTable {
     /// Index of a column that must be there.
     pub(crate) fn require(&self, column: &str) -> Result<usize, CsvError> {
         self.find(column).ok_or_else(|| {
-            let problem = CsvProblem::MissingColumn { column: column.to_owned(), hint: self.missing_hint(column) };
+            let problem = CsvProblem::MissingColumn {
+                column: column.to_owned(),
+                hint: self.missing_hint(column),
+            };
             self.error(1, None, problem)
         })
     }
 
     /// Indices of columns that must be there.
-    pub(crate) fn require_all<const N: usize>(&self, columns: [&str; N]) -> Result<[usize; N], CsvError> {
+    pub(crate) fn require_all<const N: usize>(
+        &self,
+        columns: [&str; N],
+    ) -> Result<[usize; N], CsvError> {
         let mut indices = [0; N];
         for (index, column) in indices.iter_mut().zip(columns) {
             *index = self.require(column)?;
@@ -80,31 +99,66 @@ impl CsvTable {
     }
 
     /// An error at a line (from 1) and a column (index, from 0).
-    pub(crate) fn error(&self, line: usize, column: Option<usize>, problem: CsvProblem) -> CsvError {
-        let column = column.map(|index| CsvColumn { number: index + 1, name: self.columns[index].clone() });
-        CsvError { file: self.file.clone(), line, column, problem }
+    pub(crate) fn error(
+        &self,
+        line: usize,
+        column: Option<usize>,
+        problem: CsvProblem,
+    ) -> CsvError {
+        let column = column.map(|index| CsvColumn {
+            number: index + 1,
+            name: self.columns[index].clone(),
+        });
+        CsvError {
+            file: self.file.clone(),
+            line,
+            column,
+            problem,
+        }
     }
 
     /// Numbered lines up to the last one that is not blank.
     fn lines(&self) -> impl Iterator<Item = (usize, &str)> {
         let text = self.text.trim_end();
-        let lines = text.split('\n').map(|line| line.strip_suffix('\r').unwrap_or(line));
-        (1..).zip(lines).take(if text.is_empty() { 0 } else { usize::MAX })
+        let lines = text
+            .split('\n')
+            .map(|line| line.strip_suffix('\r').unwrap_or(line));
+        (1..)
+            .zip(lines)
+            .take(if text.is_empty() { 0 } else { usize::MAX })
     }
 
     fn row<'t>(&'t self, line: usize, text: &str) -> Result<Row<'t>, CsvError> {
         let cells = split(text);
-        let (found, expected) = (if text.trim().is_empty() { 0 } else { cells.len() }, self.columns.len());
+        let (found, expected) = (
+            if text.trim().is_empty() {
+                0
+            } else {
+                cells.len()
+            },
+            self.columns.len(),
+        );
         if found != expected {
             return Err(self.error(line, None, CsvProblem::CellCount { found, expected }));
         }
-        Ok(Row { table: self, line, cells })
+        Ok(Row {
+            table: self,
+            line,
+            cells,
+        })
     }
 
     fn check_unique(&self) -> Result<(), CsvError> {
         for (index, name) in self.columns.iter().enumerate() {
-            if let Some(first) = self.find(name).filter(|first| *first < index && !name.is_empty()) {
-                return Err(self.error(1, Some(index), CsvProblem::DuplicateColumn { first: first + 1 }));
+            if let Some(first) = self
+                .find(name)
+                .filter(|first| *first < index && !name.is_empty())
+            {
+                return Err(self.error(
+                    1,
+                    Some(index),
+                    CsvProblem::DuplicateColumn { first: first + 1 },
+                ));
             }
         }
         Ok(())
@@ -133,32 +187,70 @@ impl Row<'_> {
         if found.is_empty() {
             return Ok(None);
         }
-        let value: f64 = found.parse().map_err(|_| self.error(column, CsvProblem::NotANumber { found: found.clone() }))?;
+        let value: f64 = found.parse().map_err(|_| {
+            self.error(
+                column,
+                CsvProblem::NotANumber {
+                    found: found.clone(),
+                },
+            )
+        })?;
         if !value.is_finite() {
-            return Err(self.error(column, CsvProblem::NotFinite { found: found.clone() }));
+            return Err(self.error(
+                column,
+                CsvProblem::NotFinite {
+                    found: found.clone(),
+                },
+            ));
         }
         Ok(Some(value))
     }
 
     /// The number in a cell that must be filled.
     pub(crate) fn required(&self, column: usize) -> Result<f64, CsvError> {
-        self.number(column)?.ok_or_else(|| self.error(column, CsvProblem::EmptyCell))
+        self.number(column)?
+            .ok_or_else(|| self.error(column, CsvProblem::EmptyCell))
     }
 
     /// The numbers of one measurement: all of its cells are filled or, for `None`, all are empty.
     pub(crate) fn group(&self, columns: &[usize]) -> Result<Option<Vec<f64>>, CsvError> {
-        let Some(filled) = columns.iter().find(|&&column| !self.cells[column].is_empty()) else { return Ok(None) };
+        let Some(filled) = columns
+            .iter()
+            .find(|&&column| !self.cells[column].is_empty())
+        else {
+            return Ok(None);
+        };
         let value = |column: usize| {
             let name = |column: &usize| self.table.columns[*column].clone();
             let all = || columns.iter().map(name).collect::<Vec<_>>().join(", ");
-            self.number(column)?.ok_or_else(|| self.error(column, CsvProblem::Partial { filled: name(filled), all: all() }))
+            self.number(column)?.ok_or_else(|| {
+                self.error(
+                    column,
+                    CsvProblem::Partial {
+                        filled: name(filled),
+                        all: all(),
+                    },
+                )
+            })
         };
-        columns.iter().map(|column| value(*column)).collect::<Result<Vec<f64>, _>>().map(Some)
+        columns
+            .iter()
+            .map(|column| value(*column))
+            .collect::<Result<Vec<f64>, _>>()
+            .map(Some)
     }
 
     /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them.
     pub(crate) fn binary(&self, column: usize) -> Result<Option<bool>, CsvError> {
-        let wrong = || self.error(column, CsvProblem::NotBinary { found: self.cells[column].clone(), may_be_empty: true });
+        let wrong = || {
+            self.error(
+                column,
+                CsvProblem::NotBinary {
+                    found: self.cells[column].clone(),
+                    may_be_empty: true,
+                },
+            )
+        };
         match self.number(column).map_err(|_| wrong())? {
             None => Ok(None),
             Some(0.0) => Ok(Some(false)),
@@ -170,7 +262,11 @@ impl Row<'_> {
     /// The text in a cell that must be filled.
     pub(crate) fn text(&self, column: usize) -> Result<&str, CsvError> {
         let found = self.cells[column].as_str();
-        if found.is_empty() { Err(self.error(column, CsvProblem::EmptyCell)) } else { Ok(found) }
+        if found.is_empty() {
+            Err(self.error(column, CsvProblem::EmptyCell))
+        } else {
+            Ok(found)
+        }
     }
 
     /// A whole number from 0 up, or empty.
@@ -179,14 +275,23 @@ impl Row<'_> {
         if found.is_empty() {
             return Ok(None);
         }
-        found.parse().map(Some).map_err(|_| self.error(column, CsvProblem::NotACount { found: found.clone() }))
+        found.parse().map(Some).map_err(|_| {
+            self.error(
+                column,
+                CsvProblem::NotACount {
+                    found: found.clone(),
+                },
+            )
+        })
     }
 
     /// The time in a column that must be filled and rise above `before`.
     pub(crate) fn time(&self, column: usize, before: Option<f64>) -> Result<f64, CsvError> {
         let found = self.required(column)?;
         match before {
-            Some(before) if found <= before => Err(self.error(column, CsvProblem::TimeNotRising { found, before })),
+            Some(before) if found <= before => {
+                Err(self.error(column, CsvProblem::TimeNotRising { found, before }))
+            }
             _ => Ok(found),
         }
     }
@@ -200,12 +305,20 @@ impl Row<'_> {
 /// All of the bytes as text without a byte-order mark; the error carries its line.
 fn read_text(mut reader: impl Read) -> Result<String, (usize, CsvProblem)> {
     let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|error| (1, CsvProblem::Unreadable(error.to_string())))?;
+    reader
+        .read_to_end(&mut bytes)
+        .map_err(|error| (1, CsvProblem::Unreadable(error.to_string())))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        (1 + good.iter().filter(|byte| **byte == b'\n').count(), CsvProblem::NotText)
+        (
+            1 + good.iter().filter(|byte| **byte == b'\n').count(),
+            CsvProblem::NotText,
+        )
     })?;
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+    Ok(text
+        .strip_prefix('\u{feff}')
+        .map(str::to_owned)
+        .unwrap_or(text))
 }
 
 /// The cells of one line; a comma between double quotes does not separate, `""` is a quote.
@@ -225,7 +338,10 @@ fn split(line: &str) -> Vec<String> {
 }
 
 fn unquote(cell: &str) -> String {
-    match cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
+    match cell
+        .strip_prefix('"')
+        .and_then(|rest| rest.strip_suffix('"'))
+    {
         Some(inside) => inside.replace("\"\"", "\"").trim().to_owned(),
         None => cell.to_owned(),
     }
@@ -237,14 +353,22 @@ mod tests {
 
     #[test]
     fn split_takes_quotes_and_blanks_off() {
-        assert_eq!(split("a, b ,\"c,d\",\"\"\"e\"\"\","), ["a", "b", "c,d", "\"e\"", ""]);
+        assert_eq!(
+            split("a, b ,\"c,d\",\"\"\"e\"\"\","),
+            ["a", "b", "c,d", "\"e\"", ""]
+        );
         assert_eq!(split(""), [""]);
         assert_eq!(split("\""), ["\""]);
     }
 
     #[test]
     fn bytes_that_are_not_utf_8_are_refused_with_their_line() {
-        let error = CsvTable::read(&b"time\n0\n\xff\n"[..], "log.csv").err().unwrap();
-        assert_eq!(error.to_string(), "log.csv:3: the line is not UTF-8 text. Save the file as plain text in UTF-8");
+        let error = CsvTable::read(&b"time\n0\n\xff\n"[..], "log.csv")
+            .err()
+            .unwrap();
+        assert_eq!(
+            error.to_string(),
+            "log.csv:3: the line is not UTF-8 text. Save the file as plain text in UTF-8"
+        );
     }
 }

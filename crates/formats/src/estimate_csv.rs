@@ -1,8 +1,9 @@
-//! `estimate.csv`, what a filter writes, one row per log row: [`write_estimate`], [`read_estimate`].
+//! `estimate.csv`, what a filter writes, one row per log row: [`write_estimate`],
+//! [`read_estimate`].
 //!
 //! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,
-//! std_d_tri,ess,resampled,visual,unsolved`, in this order. A cell is empty where the method has no value; `d_tri` and `std_d_tri`
-//! are empty throughout where the feet are known.
+//! std_d_tri,ess,resampled,visual,unsolved`, in this order. A cell is empty where the method has no
+//! value; `d_tri` and `std_d_tri` are empty throughout where the feet are known.
 
 use std::io::{Read, Write};
 
@@ -13,9 +14,33 @@ use crate::csv_error::{CsvError, CsvProblem};
 use crate::csv_table::{CsvTable, Row};
 use crate::number;
 
-const BEFORE_FIXELS: [&str; 12] = ["time", "x", "y", "theta", "vx", "vy", "omega", "mu_s", "mu_p", "mu_f", "d_tri", "contact_pusher"];
-const AFTER_FIXELS: [&str; 11] =
-    ["std_x", "std_y", "std_theta", "std_mu_s", "std_mu_p", "std_mu_f", "std_d_tri", "ess", "resampled", "visual", "unsolved"];
+const BEFORE_FIXELS: [&str; 12] = [
+    "time",
+    "x",
+    "y",
+    "theta",
+    "vx",
+    "vy",
+    "omega",
+    "mu_s",
+    "mu_p",
+    "mu_f",
+    "d_tri",
+    "contact_pusher",
+];
+const AFTER_FIXELS: [&str; 11] = [
+    "std_x",
+    "std_y",
+    "std_theta",
+    "std_mu_s",
+    "std_mu_p",
+    "std_mu_f",
+    "std_d_tri",
+    "ess",
+    "resampled",
+    "visual",
+    "unsolved",
+];
 
 /// Column numbers; those after the fixels' contacts count from the first one after them.
 const TIME: usize = 0;
@@ -43,18 +68,29 @@ pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::R
 
 /// Reads an estimate; `name` is shown in errors.
 ///
-/// `has_tripod` is true unless a row has friction values and an empty `d_tri`; `d_tri` then reads as 0.
+/// `has_tripod` is true unless a row has friction values and an empty `d_tri`; `d_tri` then reads
+/// as 0.
 ///
 /// # Errors
-/// The header is not that of an estimate, a row has a wrong number of cells, a cell is no finite number, time does not rise, a
-/// pose, twist or set of friction values is given in part, or there is no row.
+/// The header is not that of an estimate, a row has a wrong number of cells, a cell is no finite
+/// number, time does not rise, a pose, twist or set of friction values is given in part, or there
+/// is no row.
 pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError> {
     let table = CsvTable::read(reader, name)?;
-    let mut estimate = Estimate { fixels: check_header(&table)?, has_tripod: true, ..Estimate::default() };
+    let mut estimate = Estimate {
+        fixels: check_header(&table)?,
+        has_tripod: true,
+        ..Estimate::default()
+    };
     let mut tripod = None;
     for row in table.rows()? {
-        let reader = RowReader { row: &row?, fixels: estimate.fixels };
-        estimate.time.push(reader.row.time(TIME, estimate.time.last().copied())?);
+        let reader = RowReader {
+            row: &row?,
+            fixels: estimate.fixels,
+        };
+        estimate
+            .time
+            .push(reader.row.time(TIME, estimate.time.last().copied())?);
         estimate.rows.push(reader.read(&mut tripod)?);
     }
     estimate.has_tripod = tripod.unwrap_or(true);
@@ -63,13 +99,25 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
 
 fn header(fixels: usize) -> Vec<String> {
     let contacts = (1..=fixels).map(|k| format!("contact_{k}"));
-    BEFORE_FIXELS.map(str::to_owned).into_iter().chain(contacts).chain(AFTER_FIXELS.map(str::to_owned)).collect()
+    BEFORE_FIXELS
+        .map(str::to_owned)
+        .into_iter()
+        .chain(contacts)
+        .chain(AFTER_FIXELS.map(str::to_owned))
+        .collect()
 }
 
 /// The number of fixels, if the header is that of an estimate.
 fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
-    let is_contact = |name: &String| name.strip_prefix("contact_").is_some_and(|k| k.bytes().all(|c| c.is_ascii_digit()));
-    let fixels = table.columns().iter().filter(|name| is_contact(name)).count();
+    let is_contact = |name: &String| {
+        name.strip_prefix("contact_")
+            .is_some_and(|k| k.bytes().all(|c| c.is_ascii_digit()))
+    };
+    let fixels = table
+        .columns()
+        .iter()
+        .filter(|name| is_contact(name))
+        .count();
     let expected = header(fixels);
     for name in &expected {
         table.require(name)?;
@@ -77,7 +125,15 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
     for (index, name) in table.columns().iter().enumerate() {
         match expected.get(index) {
             Some(expected) if expected == name => {}
-            Some(expected) => return Err(table.error(1, Some(index), CsvProblem::ColumnOrder { expected: expected.clone() })),
+            Some(expected) => {
+                return Err(table.error(
+                    1,
+                    Some(index),
+                    CsvProblem::ColumnOrder {
+                        expected: expected.clone(),
+                    },
+                ));
+            }
             None => {
                 let last = AFTER_FIXELS[AFTER_FIXELS.len() - 1].to_owned();
                 return Err(table.error(1, Some(index), CsvProblem::ColumnTooMany { last }));
@@ -88,22 +144,43 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
 }
 
 fn cells(time: f64, row: &EstimateRow, estimate: &Estimate) -> Vec<String> {
-    assert!(row.contact_fixels.as_ref().is_none_or(|contacts| contacts.len() == estimate.fixels), "one contact probability per fixel");
+    assert!(
+        row.contact_fixels
+            .as_ref()
+            .is_none_or(|contacts| contacts.len() == estimate.fixels),
+        "one contact probability per fixel"
+    );
     let mut cells = vec![number::text(time)];
     push(&mut cells, row.pose.map(pose_numbers));
-    push(&mut cells, row.twist.map(|twist| [twist.vx, twist.vy, twist.omega]));
+    push(
+        &mut cells,
+        row.twist.map(|twist| [twist.vx, twist.vy, twist.omega]),
+    );
     push_friction(&mut cells, row.friction, estimate.has_tripod);
     push(&mut cells, row.contact_pusher.map(|contact| [contact]));
     match &row.contact_fixels {
         Some(contacts) => cells.extend(contacts.iter().copied().map(number::text)),
         None => cells.extend(vec![String::new(); estimate.fixels]),
     }
-    push(&mut cells, row.spread.map(|spread| pose_numbers(spread.pose)));
-    push_friction(&mut cells, row.spread.and_then(|spread| spread.friction), estimate.has_tripod);
+    push(
+        &mut cells,
+        row.spread.map(|spread| pose_numbers(spread.pose)),
+    );
+    push_friction(
+        &mut cells,
+        row.spread.and_then(|spread| spread.friction),
+        estimate.has_tripod,
+    );
     push(&mut cells, row.ess.map(|ess| [ess]));
-    cells.push(row.resampled.map_or(String::new(), |resampled| u8::from(resampled).to_string()));
+    cells.push(
+        row.resampled
+            .map_or(String::new(), |resampled| u8::from(resampled).to_string()),
+    );
     cells.push(u8::from(row.visual).to_string());
-    cells.push(row.unsolved.map_or(String::new(), |count| count.to_string()));
+    cells.push(
+        row.unsolved
+            .map_or(String::new(), |count| count.to_string()),
+    );
     cells
 }
 
@@ -135,17 +212,27 @@ impl RowReader<'_, '_> {
         let row = self.row;
         let contacts: Vec<usize> = (1..=self.fixels).map(|k| CONTACT_PUSHER + k).collect();
         let contact_pusher = row.number(CONTACT_PUSHER)?;
-        let contact_fixels = if self.fixels == 0 { contact_pusher.map(|_| Vec::new()) } else { row.group(&contacts)? };
+        let contact_fixels = if self.fixels == 0 {
+            contact_pusher.map(|_| Vec::new())
+        } else {
+            row.group(&contacts)?
+        };
         Ok(EstimateRow {
             pose: self.pose(POSE)?,
-            twist: row.group(&TWIST)?.map(|v| Twist { vx: v[0], vy: v[1], omega: v[2] }),
+            twist: row.group(&TWIST)?.map(|v| Twist {
+                vx: v[0],
+                vy: v[1],
+                omega: v[2],
+            }),
             friction: self.friction(FRICTION, D_TRI, tripod)?,
             contact_pusher,
             contact_fixels,
             spread: self.spread(tripod)?,
             ess: row.number(self.after(7))?,
             resampled: row.binary(self.after(8))?,
-            visual: row.binary(self.after(9))?.ok_or_else(|| row.error(self.after(9), CsvProblem::EmptyCell))?,
+            visual: row
+                .binary(self.after(9))?
+                .ok_or_else(|| row.error(self.after(9), CsvProblem::EmptyCell))?,
             unsolved: row.count(self.after(10))?,
         })
     }
@@ -156,11 +243,18 @@ impl RowReader<'_, '_> {
     }
 
     fn pose(&self, columns: [usize; 3]) -> Result<Option<Pose>, CsvError> {
-        Ok(self.row.group(&columns)?.map(|v| Pose::new(v[0], v[1], v[2])))
+        Ok(self
+            .row
+            .group(&columns)?
+            .map(|v| Pose::new(v[0], v[1], v[2])))
     }
 
     fn spread(&self, tripod: &mut Option<bool>) -> Result<Option<Spread>, CsvError> {
-        let friction = self.friction([3, 4, 5].map(|index| self.after(index)), self.after(6), tripod)?;
+        let friction = self.friction(
+            [3, 4, 5].map(|index| self.after(index)),
+            self.after(6),
+            tripod,
+        )?;
         match self.pose([0, 1, 2].map(|index| self.after(index)))? {
             Some(pose) => Ok(Some(Spread { pose, friction })),
             None if friction.is_none() => Ok(None),
@@ -168,14 +262,33 @@ impl RowReader<'_, '_> {
         }
     }
 
-    fn friction(&self, columns: [usize; 3], d_tri: usize, tripod: &mut Option<bool>) -> Result<Option<Friction>, CsvError> {
+    fn friction(
+        &self,
+        columns: [usize; 3],
+        d_tri: usize,
+        tripod: &mut Option<bool>,
+    ) -> Result<Option<Friction>, CsvError> {
         let radius = self.row.number(d_tri)?;
         let Some(mu) = self.row.group(&columns)? else {
-            return if radius.is_some() { Err(self.row.error(columns[0], CsvProblem::EmptyCell)) } else { Ok(None) };
+            return if radius.is_some() {
+                Err(self.row.error(columns[0], CsvProblem::EmptyCell))
+            } else {
+                Ok(None)
+            };
         };
         if *tripod.get_or_insert(radius.is_some()) != radius.is_some() {
-            return Err(self.row.error(d_tri, CsvProblem::Uneven { filled: radius.is_some() }));
+            return Err(self.row.error(
+                d_tri,
+                CsvProblem::Uneven {
+                    filled: radius.is_some(),
+                },
+            ));
         }
-        Ok(Some(Friction { mu_s: mu[0], mu_p: mu[1], mu_f: mu[2], d_tri: radius.unwrap_or(0.0) }))
+        Ok(Some(Friction {
+            mu_s: mu[0],
+            mu_p: mu[1],
+            mu_f: mu[2],
+            d_tri: radius.unwrap_or(0.0),
+        }))
     }
 }

@@ -22,18 +22,32 @@ impl Experiment {
     ///
     /// # Errors
     /// The log has more sensors than the scene has fixels.
-    pub fn new(setup: Setup, log: Log, truth: Option<Truth>, facts: TruthFacts) -> Result<Self, SensorError> {
+    pub fn new(
+        setup: Setup,
+        log: Log,
+        truth: Option<Truth>,
+        facts: TruthFacts,
+    ) -> Result<Self, SensorError> {
         check_sensors(&log, &setup)?;
-        Ok(Self { setup, log, truth, facts })
+        Ok(Self {
+            setup,
+            log,
+            truth,
+            facts,
+        })
     }
 
-    /// What estimates are scored against: the truth at the log's times, else the log's own poses, hidden ones included.
+    /// What estimates are scored against: the truth at the log's times, else the log's own poses,
+    /// hidden ones included.
     #[must_use]
     pub fn reference(&self) -> Reference {
         let reference = match &self.truth {
             Some(truth) => Reference::of_truth(&self.log, truth.trajectory()),
             None => Reference::of_log(&self.log, self.setup.camera.as_ref()),
         };
-        Reference { first_pusher_contact: self.facts.first_pusher_contact, ..reference }
+        Reference {
+            first_pusher_contact: self.facts.first_pusher_contact,
+            ..reference
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! `frames.csv`, the images of a recording and their times: [`FrameList`], [`read_frames`], [`write_frames`].
+//! `frames.csv`, the images of a recording and their times: [`FrameList`], [`read_frames`],
+//! [`write_frames`].
 
 use std::io::{Read, Write};
 
@@ -18,7 +19,8 @@ pub struct FrameList {
 /// Reads the columns time and file; other columns are ignored. `name` is shown in errors.
 ///
 /// # Errors
-/// One of the two is missing or has an empty cell, a time is no finite number or does not rise, or there is no row.
+/// One of the two is missing or has an empty cell, a time is no finite number or does not rise, or
+/// there is no row.
 ///
 /// ```
 /// let frames = stickslip_formats::read_frames("time,file\n0,a.png\n0.033,b.png\n".as_bytes(), "frames.csv")?;
@@ -31,7 +33,9 @@ pub fn read_frames(reader: impl Read, name: &str) -> Result<FrameList, CsvError>
     let mut frames = FrameList::default();
     for row in table.rows()? {
         let row = row?;
-        frames.time.push(row.time(time, frames.time.last().copied())?);
+        frames
+            .time
+            .push(row.time(time, frames.time.last().copied())?);
         frames.file.push(row.text(file)?.to_owned());
     }
     Ok(frames)
@@ -45,10 +49,24 @@ pub fn read_frames(reader: impl Read, name: &str) -> Result<FrameList, CsvError>
 /// # Panics
 /// If the columns differ in length.
 pub fn write_frames(mut writer: impl Write, frames: &FrameList) -> std::io::Result<()> {
-    assert_eq!(frames.time.len(), frames.file.len(), "columns of equal length");
+    assert_eq!(
+        frames.time.len(),
+        frames.file.len(),
+        "columns of equal length"
+    );
     writeln!(writer, "time,file")?;
-    let quoted = |file: &str| if file.contains([',', '"']) { format!("\"{}\"", file.replace('"', "\"\"")) } else { file.to_owned() };
-    frames.time.iter().zip(&frames.file).try_for_each(|(time, file)| writeln!(writer, "{},{}", number::text(*time), quoted(file)))
+    let quoted = |file: &str| {
+        if file.contains([',', '"']) {
+            format!("\"{}\"", file.replace('"', "\"\""))
+        } else {
+            file.to_owned()
+        }
+    };
+    frames
+        .time
+        .iter()
+        .zip(&frames.file)
+        .try_for_each(|(time, file)| writeln!(writer, "{},{}", number::text(*time), quoted(file)))
 }
 
 #[cfg(test)]
@@ -57,8 +75,13 @@ mod tests {
 
     #[test]
     fn write_frames_reads_back() {
-        let files = ["a.png", "run 1, take 2.png", "say \"x\".png"].map(str::to_owned).to_vec();
-        let frames = FrameList { time: vec![0.0, 1.0 / 30.0, 2.0 / 30.0], file: files };
+        let files = ["a.png", "run 1, take 2.png", "say \"x\".png"]
+            .map(str::to_owned)
+            .to_vec();
+        let frames = FrameList {
+            time: vec![0.0, 1.0 / 30.0, 2.0 / 30.0],
+            file: files,
+        };
         let mut bytes = Vec::new();
         write_frames(&mut bytes, &frames).unwrap();
         assert_eq!(read_frames(bytes.as_slice(), "f").unwrap(), frames);
@@ -68,10 +91,19 @@ mod tests {
     fn read_frames_names_line_column_rule_and_next_step() {
         for (text, words) in [
             ("time,image\n0,a.png\n", "f:1: the column `file` is missing"),
-            ("time,file\n0,a.png\n0,b.png\n", "f:3: column 1 (time): time 0 s comes after 0 s; it must rise strictly"),
-            ("time,file\n0,\n", "f:2: column 2 (file): the cell is empty; every row needs a value here"),
+            (
+                "time,file\n0,a.png\n0,b.png\n",
+                "f:3: column 1 (time): time 0 s comes after 0 s; it must rise strictly",
+            ),
+            (
+                "time,file\n0,\n",
+                "f:2: column 2 (file): the cell is empty; every row needs a value here",
+            ),
             ("time,file\n", "f:1: the file has a header and no rows"),
-            ("time,file\nnow,a.png\n", "f:2: column 1 (time): `now` is not a number"),
+            (
+                "time,file\nnow,a.png\n",
+                "f:2: column 1 (time): `now` is not a number",
+            ),
         ] {
             let error = read_frames(text.as_bytes(), "f").unwrap_err().to_string();
             assert!(error.starts_with(words), "{error}");

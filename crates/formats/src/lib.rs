@@ -1,9 +1,10 @@
-//! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`, `truth.csv`, `truth.json` and
-//! `frames.csv`; logs as MCAP recordings of ROS 2 messages too.
+//! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`,
+//! `truth.csv`, `truth.json` and `frames.csv`; logs as MCAP recordings of ROS 2 messages too.
 //!
-//! Nothing here opens a file: readers take text, bytes or an [`std::io::Read`] with the name to show in errors, writers an
-//! [`std::io::Write`]. Every refusal names the file, the line, the place in the line, the value found, the rule and what to do.
-//! Input is never repaired: a file is read as it stands or refused.
+//! Nothing here opens a file: readers take text, bytes or an [`std::io::Read`] with the name to
+//! show in errors, writers an [`std::io::Write`]. Every refusal names the file, the line, the place
+//! in the line, the value found, the rule and what to do. Input is never repaired: a file is read
+//! as it stands or refused.
 
 mod csv_error;
 mod csv_table;
@@ -25,7 +26,8 @@ pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
-    McapError, McapPlace, McapProblem, McapWriteError, Topic, TopicError, TopicMapping, Topics, read_log_mcap, write_log_mcap,
+    McapError, McapPlace, McapProblem, McapWriteError, Topic, TopicError, TopicMapping, Topics,
+    read_log_mcap, write_log_mcap,
 };
 pub use log_warning::LogWarning;
 pub use scene::{SceneError, SceneProblem, read_scene};

@@ -1,7 +1,8 @@
-//! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and its sensors against the scene's fixels: [`check_sensors`].
+//! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and its sensors against the
+//! scene's fixels: [`check_sensors`].
 //!
-//! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y]`, the
-//! columns found by name, in any order. An empty cell is a missing measurement.
+//! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y]`,
+//! the columns found by name, in any order. An empty cell is a missing measurement.
 
 use std::io::{Read, Write};
 
@@ -43,8 +44,9 @@ struct Columns {
 /// Reads a log; `name` is shown in errors and warnings.
 ///
 /// # Errors
-/// A required column is missing or named twice, a row has a wrong number of cells, a cell is no finite number, time does not rise,
-/// a pose or force is given in part, a tactile cell is neither 0 nor 1, or there is no row.
+/// A required column is missing or named twice, a row has a wrong number of cells, a cell is no
+/// finite number, time does not rise, a pose or force is given in part, a tactile cell is neither 0
+/// nor 1, or there is no row.
 ///
 /// ```
 /// let text = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta\n0,0.1,0,0,0,0,0\n0.03,,,,0.01,0,0\n";
@@ -55,7 +57,10 @@ struct Columns {
 pub fn read_log(reader: impl Read, name: &str) -> Result<(Log, Vec<LogWarning>), LogError> {
     let table = CsvTable::read(reader, name)?;
     let columns = Columns::find(&table)?;
-    let mut log = Log { tactile: vec![Vec::new(); columns.tactile.len()], ..Log::default() };
+    let mut log = Log {
+        tactile: vec![Vec::new(); columns.tactile.len()],
+        ..Log::default()
+    };
     for row in table.rows()? {
         columns.read_row(&row?, &mut log)?;
     }
@@ -68,7 +73,11 @@ pub fn read_log(reader: impl Read, name: &str) -> Result<(Log, Vec<LogWarning>),
 /// [`SensorError`] with both numbers.
 pub fn check_sensors(log: &Log, setup: &Setup) -> Result<(), SensorError> {
     let (sensors, fixels) = (log.tactile.len(), setup.scene.fixels.len());
-    if sensors > fixels { Err(SensorError { sensors, fixels }) } else { Ok(()) }
+    if sensors > fixels {
+        Err(SensorError { sensors, fixels })
+    } else {
+        Ok(())
+    }
 }
 
 /// Writes a log; every number reads back to the same bits.
@@ -88,9 +97,18 @@ pub fn write_log(mut writer: impl Write, log: &Log) -> std::io::Result<()> {
 /// Our own logs have columns of equal length.
 pub(crate) fn assert_equal_columns(log: &Log) {
     let rows = log.len();
-    assert!(log.object.len() == rows && log.pusher.len() == rows, "columns of equal length");
-    assert!(log.tactile.iter().all(|column| column.len() == rows), "columns of equal length");
-    assert!(log.force.is_empty() || log.force.len() == rows, "columns of equal length");
+    assert!(
+        log.object.len() == rows && log.pusher.len() == rows,
+        "columns of equal length"
+    );
+    assert!(
+        log.tactile.iter().all(|column| column.len() == rows),
+        "columns of equal length"
+    );
+    assert!(
+        log.force.is_empty() || log.force.len() == rows,
+        "columns of equal length"
+    );
 }
 
 impl Columns {
@@ -105,7 +123,8 @@ impl Columns {
     }
 
     fn read_row(&self, row: &Row<'_>, log: &mut Log) -> Result<(), LogError> {
-        log.time.push(row.time(self.time, log.time.last().copied())?);
+        log.time
+            .push(row.time(self.time, log.time.last().copied())?);
         log.object.push(pose(row, self.object)?);
         log.pusher.push(pose(row, self.pusher)?);
         for (readings, column) in log.tactile.iter_mut().zip(&self.tactile) {
@@ -119,32 +138,70 @@ impl Columns {
 
     fn warnings(&self, table: &CsvTable) -> Vec<LogWarning> {
         let force = self.force.iter().flatten();
-        let used: Vec<usize> =
-            self.object.iter().chain(&self.pusher).chain(&self.tactile).chain(force).copied().chain([self.time]).collect();
+        let used: Vec<usize> = self
+            .object
+            .iter()
+            .chain(&self.pusher)
+            .chain(&self.tactile)
+            .chain(force)
+            .copied()
+            .chain([self.time])
+            .collect();
         let shown = |index: usize| match table.columns()[index].as_str() {
             "" => format!("(number {}, without a name)", index + 1),
             name => name.to_owned(),
         };
-        let columns: Vec<String> = (0..table.columns().len()).filter(|index| !used.contains(index)).map(shown).collect();
-        if columns.is_empty() { Vec::new() } else { vec![LogWarning::ExtraColumns { file: table.file().to_owned(), columns }] }
+        let columns: Vec<String> = (0..table.columns().len())
+            .filter(|index| !used.contains(index))
+            .map(shown)
+            .collect();
+        if columns.is_empty() {
+            Vec::new()
+        } else {
+            vec![LogWarning::ExtraColumns {
+                file: table.file().to_owned(),
+                columns,
+            }]
+        }
     }
 }
 
 /// The columns tactile_1 ... tactile_n; a gap in the numbers, a zero or a leading zero is an error.
 fn tactile_columns(table: &CsvTable) -> Result<Vec<usize>, LogError> {
-    let numbered = |name: &String| name.strip_prefix(TACTILE).is_some_and(|k| !k.is_empty() && k.bytes().all(|c| c.is_ascii_digit()));
-    let sensors: Vec<usize> = (0..table.columns().len()).filter(|index| numbered(&table.columns()[*index])).collect();
-    let names: Vec<String> = (1..=sensors.len()).map(|k| format!("{TACTILE}{k}")).collect();
-    let wrong = sensors.iter().find(|index| !names.contains(&table.columns()[**index]));
-    let in_order = names
+    let numbered = |name: &String| {
+        name.strip_prefix(TACTILE)
+            .is_some_and(|k| !k.is_empty() && k.bytes().all(|c| c.is_ascii_digit()))
+    };
+    let sensors: Vec<usize> = (0..table.columns().len())
+        .filter(|index| numbered(&table.columns()[*index]))
+        .collect();
+    let names: Vec<String> = (1..=sensors.len())
+        .map(|k| format!("{TACTILE}{k}"))
+        .collect();
+    let wrong = sensors
         .iter()
-        .map(|name| table.find(name).ok_or_else(|| table.error(1, wrong.copied(), CsvProblem::SensorNumber { missing: name.clone() })));
+        .find(|index| !names.contains(&table.columns()[**index]));
+    let in_order = names.iter().map(|name| {
+        table.find(name).ok_or_else(|| {
+            table.error(
+                1,
+                wrong.copied(),
+                CsvProblem::SensorNumber {
+                    missing: name.clone(),
+                },
+            )
+        })
+    });
     in_order.collect()
 }
 
 /// The two force columns, or none where neither is there.
 fn force_columns(table: &CsvTable) -> Result<Option<[usize; 2]>, LogError> {
-    if FORCE.iter().any(|name| table.find(name).is_some()) { table.require_all(FORCE).map(Some) } else { Ok(None) }
+    if FORCE.iter().any(|name| table.find(name).is_some()) {
+        table.require_all(FORCE).map(Some)
+    } else {
+        Ok(None)
+    }
 }
 
 fn pose(row: &Row<'_>, columns: [usize; 3]) -> Result<Option<Pose>, LogError> {
@@ -155,7 +212,11 @@ fn header(log: &Log) -> Vec<String> {
     let tactile = (1..=log.tactile.len()).map(|k| format!("{TACTILE}{k}"));
     let force = FORCE.into_iter().filter(|_| !log.force.is_empty());
     let poses = ["time"].into_iter().chain(OBJECT).chain(PUSHER);
-    poses.map(str::to_owned).chain(tactile).chain(force.map(str::to_owned)).collect()
+    poses
+        .map(str::to_owned)
+        .chain(tactile)
+        .chain(force.map(str::to_owned))
+        .collect()
 }
 
 fn cells(log: &Log, row: usize) -> Vec<String> {
@@ -163,8 +224,20 @@ fn cells(log: &Log, row: usize) -> Vec<String> {
         Some(pose) => [pose.x, pose.y, pose.theta].map(number::text),
         None => Default::default(),
     };
-    let tactile = log.tactile.iter().map(|column| column[row].map_or(String::new(), |touch| u8::from(touch).to_string()));
-    let force = log.force.get(row).map(|force| force.map_or(Default::default(), |f| f.map(number::text)));
-    let poses = [number::text(log.time[row])].into_iter().chain(pose_cells(log.object[row])).chain(pose_cells(log.pusher[row]));
-    poses.chain(tactile).chain(force.into_iter().flatten()).collect()
+    let tactile = log
+        .tactile
+        .iter()
+        .map(|column| column[row].map_or(String::new(), |touch| u8::from(touch).to_string()));
+    let force = log
+        .force
+        .get(row)
+        .map(|force| force.map_or(Default::default(), |f| f.map(number::text)));
+    let poses = [number::text(log.time[row])]
+        .into_iter()
+        .chain(pose_cells(log.object[row]))
+        .chain(pose_cells(log.pusher[row]));
+    poses
+        .chain(tactile)
+        .chain(force.into_iter().flatten())
+        .collect()
 }

@@ -61,16 +61,39 @@ impl LogWarning {
 impl fmt::Display for LogWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::ExtraColumns { file, columns } => write!(f, "{file}:1: extra columns are ignored: {}", columns.join(", ")),
-            Self::CutOff { file, at, size, why } => {
-                write!(f, "{file}: the recording is cut off or damaged after {at} of {size} bytes ({why}); what follows is lost")
+            Self::ExtraColumns { file, columns } => write!(
+                f,
+                "{file}:1: extra columns are ignored: {}",
+                columns.join(", ")
+            ),
+            Self::CutOff {
+                file,
+                at,
+                size,
+                why,
+            } => {
+                write!(
+                    f,
+                    "{file}: the recording is cut off or damaged after {at} of {size} bytes ({why}); what follows is lost"
+                )
             }
-            Self::Tilted { file, topic, count, of, largest } => write!(
+            Self::Tilted {
+                file,
+                topic,
+                count,
+                of,
+                largest,
+            } => write!(
                 f,
                 "{file}: {topic}: {count} of {of} poses are tilted by more than 5 deg, the most by {:.1} deg; only their turn about z is read. Look whether the z-axis points up from the table",
                 largest.to_degrees()
             ),
-            Self::Elsewhere { file, topic, at, rows } => write!(
+            Self::Elsewhere {
+                file,
+                topic,
+                at,
+                rows,
+            } => write!(
                 f,
                 "{file}: {topic}: all messages are at {at} and the poses at {rows}, so its cells are empty. Record all topics by one clock"
             ),

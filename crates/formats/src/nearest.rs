@@ -1,8 +1,15 @@
 //! The known name closest to a mistyped one, by edit distance.
 
-/// The candidate with the fewest edits to `name`, and that number; the first of equals; `None` without candidates.
-pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<(&'a str, usize)> {
-    candidates.into_iter().map(|candidate| (candidate, edit_distance(name, candidate))).min_by_key(|(_, distance)| *distance)
+/// The candidate with the fewest edits to `name`, and that number; the first of equals; `None`
+/// without candidates.
+pub(crate) fn nearest<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<(&'a str, usize)> {
+    candidates
+        .into_iter()
+        .map(|candidate| (candidate, edit_distance(name, candidate)))
+        .min_by_key(|(_, distance)| *distance)
 }
 
 /// Levenshtein distance in characters, capital letters equal to small ones.
@@ -36,7 +43,10 @@ mod tests {
 
     #[test]
     fn nearest_is_the_closest_and_none_of_none() {
-        assert_eq!(nearest("mas", ["inertia", "mass", "shape"]), Some(("mass", 1)));
+        assert_eq!(
+            nearest("mas", ["inertia", "mass", "shape"]),
+            Some(("mass", 1))
+        );
         assert_eq!(nearest("mas", []), None);
     }
 }

@@ -1,9 +1,14 @@
 //! Numbers as text: short, and read back to the same bits.
 
-/// The shortest decimal that reads back to the same bits; with an exponent only where plain digits would be long.
+/// The shortest decimal that reads back to the same bits; with an exponent only where plain digits
+/// would be long.
 pub(crate) fn text(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || (1e-5..1e16).contains(&size) || !size.is_finite() { format!("{value}") } else { format!("{value:e}") }
+    if size == 0.0 || (1e-5..1e16).contains(&size) || !size.is_finite() {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! `truth.csv`, the object's exact motion: [`Truth`], [`read_truth_csv`], [`write_truth_csv`]. For scoring only, never for a filter.
+//! `truth.csv`, the object's exact motion: [`Truth`], [`read_truth_csv`], [`write_truth_csv`]. For
+//! scoring only, never for a filter.
 
 use std::io::{Read, Write};
 
@@ -26,9 +27,11 @@ pub struct Truth {
     pub twist: Vec<Twist>,
     /// The pusher's pose at each time; empty where the file has none.
     pub pusher: Vec<Pose>,
-    /// Size of the pusher's force, mean over the interval that ends at the row (N); empty where the file has none.
+    /// Size of the pusher's force, mean over the interval that ends at the row (N); empty where the
+    /// file has none.
     pub pusher_force: Vec<f64>,
-    /// Normal force of each fixel, a column per fixel, mean over the interval that ends at the row (N).
+    /// Normal force of each fixel, a column per fixel, mean over the interval that ends at the row
+    /// (N).
     pub fixel_forces: Vec<Vec<f64>>,
 }
 
@@ -36,7 +39,10 @@ impl Truth {
     /// The motion between the rows.
     #[must_use]
     pub fn trajectory(&self) -> Trajectory<'_> {
-        Trajectory { time: &self.time, pose: &self.pose }
+        Trajectory {
+            time: &self.time,
+            pose: &self.pose,
+        }
     }
 }
 
@@ -49,15 +55,20 @@ struct Columns {
     fixel_forces: Vec<usize>,
 }
 
-/// Reads the columns time, x, y, theta and, where they are there, vx, vy, omega, the pusher's pose pusher_x, pusher_y, pusher_theta,
-/// and the forces force_pusher, force_1, ...; other columns are ignored. `name` is shown in errors.
+/// Reads the columns time, x, y, theta and, where they are there, vx, vy, omega, the pusher's pose
+/// pusher_x, pusher_y, pusher_theta, and the forces force_pusher, force_1, ...; other columns are
+/// ignored. `name` is shown in errors.
 ///
 /// # Errors
-/// One of the first four is missing, a cell of a read column is empty or no finite number, time does not rise, or there is no row.
+/// One of the first four is missing, a cell of a read column is empty or no finite number, time
+/// does not rise, or there is no row.
 pub fn read_truth_csv(reader: impl Read, name: &str) -> Result<Truth, CsvError> {
     let table = CsvTable::read(reader, name)?;
     let columns = Columns::find(&table)?;
-    let mut truth = Truth { fixel_forces: vec![Vec::new(); columns.fixel_forces.len()], ..Truth::default() };
+    let mut truth = Truth {
+        fixel_forces: vec![Vec::new(); columns.fixel_forces.len()],
+        ..Truth::default()
+    };
     for row in table.rows()? {
         columns.read_row(&row?, &mut truth)?;
     }
@@ -73,28 +84,71 @@ pub fn read_truth_csv(reader: impl Read, name: &str) -> Result<Truth, CsvError> 
 /// If columns that are not empty differ in length.
 pub fn write_truth_csv(mut writer: impl Write, truth: &Truth) -> std::io::Result<()> {
     let columns = columns(truth);
-    assert!(columns.iter().all(|(_, values)| values.len() == truth.time.len()), "columns of equal length");
+    assert!(
+        columns
+            .iter()
+            .all(|(_, values)| values.len() == truth.time.len()),
+        "columns of equal length"
+    );
     let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
     writeln!(writer, "{}", names.join(","))?;
     (0..truth.time.len()).try_for_each(|row| {
-        let cells: Vec<String> = columns.iter().map(|(_, values)| number::text(values[row])).collect();
+        let cells: Vec<String> = columns
+            .iter()
+            .map(|(_, values)| number::text(values[row]))
+            .collect();
         writeln!(writer, "{}", cells.join(","))
     })
 }
 
 /// The columns that are not empty, with their names.
 fn columns(truth: &Truth) -> Vec<(String, Vec<f64>)> {
-    let Truth { time, pose, twist, pusher, pusher_force, fixel_forces } = truth;
+    let Truth {
+        time,
+        pose,
+        twist,
+        pusher,
+        pusher_force,
+        fixel_forces,
+    } = truth;
     let of_pose = |poses: &[Pose], pick: fn(&Pose) -> f64| poses.iter().map(pick).collect();
     let of_twist = |pick: fn(&Twist) -> f64| twist.iter().map(pick).collect();
-    let own = [time.clone(), of_pose(pose, |p| p.x), of_pose(pose, |p| p.y), of_pose(pose, |p| p.theta)];
-    let twists = [of_twist(|v| v.vx), of_twist(|v| v.vy), of_twist(|v| v.omega)];
-    let pushers = [of_pose(pusher, |p| p.x), of_pose(pusher, |p| p.y), of_pose(pusher, |p| p.theta)];
-    let names = POSE.into_iter().chain(TWIST).chain(PUSHER).chain([PUSHER_FORCE]).map(str::to_owned);
+    let own = [
+        time.clone(),
+        of_pose(pose, |p| p.x),
+        of_pose(pose, |p| p.y),
+        of_pose(pose, |p| p.theta),
+    ];
+    let twists = [
+        of_twist(|v| v.vx),
+        of_twist(|v| v.vy),
+        of_twist(|v| v.omega),
+    ];
+    let pushers = [
+        of_pose(pusher, |p| p.x),
+        of_pose(pusher, |p| p.y),
+        of_pose(pusher, |p| p.theta),
+    ];
+    let names = POSE
+        .into_iter()
+        .chain(TWIST)
+        .chain(PUSHER)
+        .chain([PUSHER_FORCE])
+        .map(str::to_owned);
     let names = names.chain((1..=fixel_forces.len()).map(|k| format!("{FIXEL_FORCE}{k}")));
-    let values = own.into_iter().chain(twists).chain(pushers).chain([pusher_force.clone()]).chain(fixel_forces.iter().cloned());
+    let values = own
+        .into_iter()
+        .chain(twists)
+        .chain(pushers)
+        .chain([pusher_force.clone()])
+        .chain(fixel_forces.iter().cloned());
     let required = POSE.len();
-    names.zip(values).enumerate().filter(|(k, (_, values))| *k < required || !values.is_empty()).map(|(_, column)| column).collect()
+    names
+        .zip(values)
+        .enumerate()
+        .filter(|(k, (_, values))| *k < required || !values.is_empty())
+        .map(|(_, column)| column)
+        .collect()
 }
 
 impl Columns {
@@ -112,12 +166,24 @@ impl Columns {
     fn read_row(&self, row: &Row<'_>, truth: &mut Truth) -> Result<(), CsvError> {
         let [time, x, y, theta] = self.pose;
         truth.time.push(row.time(time, truth.time.last().copied())?);
-        truth.pose.push(Pose::new(row.required(x)?, row.required(y)?, row.required(theta)?));
+        truth.pose.push(Pose::new(
+            row.required(x)?,
+            row.required(y)?,
+            row.required(theta)?,
+        ));
         if let Some([vx, vy, omega]) = self.twist {
-            truth.twist.push(Twist { vx: row.required(vx)?, vy: row.required(vy)?, omega: row.required(omega)? });
+            truth.twist.push(Twist {
+                vx: row.required(vx)?,
+                vy: row.required(vy)?,
+                omega: row.required(omega)?,
+            });
         }
         if let Some([x, y, theta]) = self.pusher {
-            truth.pusher.push(Pose::new(row.required(x)?, row.required(y)?, row.required(theta)?));
+            truth.pusher.push(Pose::new(
+                row.required(x)?,
+                row.required(y)?,
+                row.required(theta)?,
+            ));
         }
         if let Some(force) = self.pusher_force {
             truth.pusher_force.push(row.required(force)?);

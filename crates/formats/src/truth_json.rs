@@ -1,5 +1,5 @@
-//! `truth.json`, the true friction values and what happened when: [`TruthFacts`], [`read_truth_json`], [`write_truth_json`]. For
-//! scoring only.
+//! `truth.json`, the true friction values and what happened when: [`TruthFacts`],
+//! [`read_truth_json`], [`write_truth_json`]. For scoring only.
 
 use std::io::Write;
 
@@ -59,7 +59,8 @@ struct Document {
     final_pose: Option<[f64; 3]>,
 }
 
-/// Reads the known keys; others are ignored, missing ones and `null` are `None`. `name` is shown in errors.
+/// Reads the known keys; others are ignored, missing ones and `null` are `None`. `name` is shown in
+/// errors.
 ///
 /// # Errors
 /// The text is no JSON object, or a known key has a value of another type.
@@ -73,13 +74,16 @@ pub fn read_truth_json(text: &str, name: &str) -> Result<TruthFacts, TruthFactsE
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     check_object(text, name)?;
     let mut deserializer = serde_json::Deserializer::from_str(text);
-    let document: Document =
-        serde_path_to_error::deserialize(&mut deserializer).map_err(|error| error_at(name, error.path().to_string(), error.inner()))?;
-    deserializer.end().map_err(|error| error_at(name, String::new(), &error))?;
+    let document: Document = serde_path_to_error::deserialize(&mut deserializer)
+        .map_err(|error| error_at(name, error.path().to_string(), error.inner()))?;
+    deserializer
+        .end()
+        .map_err(|error| error_at(name, String::new(), &error))?;
     Ok(document.into())
 }
 
-/// The text begins as an object: serde would also take the values as a list, in the order of the fields.
+/// The text begins as an object: serde would also take the values as a list, in the order of the
+/// fields.
 fn check_object(text: &str, file: &str) -> Result<(), TruthFactsError> {
     let blank = text.len() - text.trim_start().len();
     let problem = match text[blank..].chars().next() {
@@ -87,16 +91,39 @@ fn check_object(text: &str, file: &str) -> Result<(), TruthFactsError> {
         Some(found) => format!("the text begins with `{found}`, an object with `{{`"),
         None => "the file is empty".to_owned(),
     };
-    let (line, column) = (1 + text[..blank].matches('\n').count(), 1 + text[..blank].chars().rev().take_while(|c| *c != '\n').count());
-    Err(TruthFactsError { file: file.to_owned(), line, column, key: String::new(), problem })
+    let (line, column) = (
+        1 + text[..blank].matches('\n').count(),
+        1 + text[..blank]
+            .chars()
+            .rev()
+            .take_while(|c| *c != '\n')
+            .count(),
+    );
+    Err(TruthFactsError {
+        file: file.to_owned(),
+        line,
+        column,
+        key: String::new(),
+        problem,
+    })
 }
 
 fn error_at(file: &str, path: String, error: &serde_json::Error) -> TruthFactsError {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     let problem = text.strip_suffix(&place).unwrap_or(&text).to_owned();
-    let key = if path == "." || path == "?" { String::new() } else { path };
-    TruthFactsError { file: file.to_owned(), line: error.line().max(1), column: error.column().max(1), key, problem }
+    let key = if path == "." || path == "?" {
+        String::new()
+    } else {
+        path
+    };
+    TruthFactsError {
+        file: file.to_owned(),
+        line: error.line().max(1),
+        column: error.column().max(1),
+        key,
+        problem,
+    }
 }
 
 /// Writes all keys, `null` where nothing is known; reads back to the same facts.
@@ -135,7 +162,9 @@ impl From<Document> for TruthFacts {
             first_pusher_contact: document.first_pusher_contact,
             first_fixel_contacts: document.first_fixel_contacts.unwrap_or_default(),
             occlude_from: document.occlude_from,
-            final_pose: document.final_pose.map(|[x, y, theta]| Pose::new(x, y, theta)),
+            final_pose: document
+                .final_pose
+                .map(|[x, y, theta]| Pose::new(x, y, theta)),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Every file of the data folder reads without an error: `STICKSLIP_DATA`, by default `../shared/data` beside the workspace.
+//! Every file of the data folder reads without an error: `STICKSLIP_DATA`, by default
+//! `../shared/data` beside the workspace.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +11,11 @@ fn data_folder() -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }
-    assert!(std::env::var_os("STICKSLIP_REQUIRE_DATA").is_none_or(|value| value != "1"), "no data at {}", folder.display());
+    assert!(
+        std::env::var_os("STICKSLIP_REQUIRE_DATA").is_none_or(|value| value != "1"),
+        "no data at {}",
+        folder.display()
+    );
     println!("ignored: no data at {}", folder.display());
     None
 }
@@ -24,7 +29,11 @@ fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
             let path = entry.expect("a readable folder").path();
             if path.is_dir() {
                 open.push(path);
-            } else if path.file_name().and_then(|name| name.to_str()).is_some_and(wanted) {
+            } else if path
+                .file_name()
+                .and_then(|name| name.to_str())
+                .is_some_and(wanted)
+            {
                 found.push(path);
             }
         }
@@ -44,10 +53,13 @@ fn bytes(path: &Path) -> std::fs::File {
 #[test]
 fn every_scene_of_the_data_folder_reads() {
     let Some(folder) = data_folder() else { return };
-    let scenes = files(&folder, &|name| name.starts_with("scene") && name.ends_with(".toml"));
+    let scenes = files(&folder, &|name| {
+        name.starts_with("scene") && name.ends_with(".toml")
+    });
     assert!(!scenes.is_empty());
     for path in scenes {
-        read_scene(&text(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+        read_scene(&text(&path), &path.display().to_string())
+            .unwrap_or_else(|error| panic!("{error}"));
     }
 }
 
@@ -57,7 +69,8 @@ fn every_log_of_the_data_folder_reads_and_fits_its_scene() {
     let logs = files(&folder, &|name| name == "log.csv");
     assert!(!logs.is_empty());
     for path in logs {
-        let (log, warnings) = read_log(bytes(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+        let (log, warnings) = read_log(bytes(&path), &path.display().to_string())
+            .unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(warnings, []);
         let setup = read_scene(&text(&path.with_file_name("scene.toml")), "scene.toml").unwrap();
         check_sensors(&log, &setup).unwrap();
@@ -69,10 +82,12 @@ fn every_log_of_the_data_folder_reads_and_fits_its_scene() {
 fn every_truth_of_the_data_folder_reads() {
     let Some(folder) = data_folder() else { return };
     for path in files(&folder, &|name| name == "truth.csv") {
-        let truth = read_truth_csv(bytes(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+        let truth = read_truth_csv(bytes(&path), &path.display().to_string())
+            .unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(truth.time.len(), truth.pose.len());
     }
     for path in files(&folder, &|name| name == "truth.json") {
-        read_truth_json(&text(&path), &path.display().to_string()).unwrap_or_else(|error| panic!("{error}"));
+        read_truth_json(&text(&path), &path.display().to_string())
+            .unwrap_or_else(|error| panic!("{error}"));
     }
 }

@@ -11,11 +11,28 @@ const HEADER: &str = "time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pu
 fn full_row() -> EstimateRow {
     EstimateRow {
         pose: Some(Pose::new(1.0, 2.0, 3.0)),
-        twist: Some(Twist { vx: 4.0, vy: 5.0, omega: 6.0 }),
-        friction: Some(Friction { mu_s: 0.1, mu_p: 0.2, mu_f: 0.3, d_tri: 0.4 }),
+        twist: Some(Twist {
+            vx: 4.0,
+            vy: 5.0,
+            omega: 6.0,
+        }),
+        friction: Some(Friction {
+            mu_s: 0.1,
+            mu_p: 0.2,
+            mu_f: 0.3,
+            d_tri: 0.4,
+        }),
         contact_pusher: Some(0.5),
         contact_fixels: Some(vec![0.25, 0.75]),
-        spread: Some(Spread { pose: Pose::new(7.0, 8.0, 9.0), friction: Some(Friction { mu_s: 0.5, mu_p: 0.6, mu_f: 0.7, d_tri: 0.8 }) }),
+        spread: Some(Spread {
+            pose: Pose::new(7.0, 8.0, 9.0),
+            friction: Some(Friction {
+                mu_s: 0.5,
+                mu_p: 0.6,
+                mu_f: 0.7,
+                d_tri: 0.8,
+            }),
+        }),
         ess: Some(250.5),
         resampled: Some(true),
         visual: false,
@@ -24,7 +41,12 @@ fn full_row() -> EstimateRow {
 }
 
 fn estimate(rows: Vec<EstimateRow>, has_tripod: bool) -> Estimate {
-    Estimate { time: (0..rows.len()).map(|row| row as f64).collect(), rows, fixels: 2, has_tripod }
+    Estimate {
+        time: (0..rows.len()).map(|row| row as f64).collect(),
+        rows,
+        fixels: 2,
+        has_tripod,
+    }
 }
 
 fn written(estimate: &Estimate) -> String {
@@ -35,8 +57,13 @@ fn written(estimate: &Estimate) -> String {
 
 #[track_caller]
 fn refused(text: &str, place: &str, words: &[&str]) {
-    let message = read_estimate(text.as_bytes(), "estimate.csv").expect_err("must be refused").to_string();
-    assert!(message.starts_with(&format!("estimate.csv:{place}: ")), "expected place {place}: {message}");
+    let message = read_estimate(text.as_bytes(), "estimate.csv")
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        message.starts_with(&format!("estimate.csv:{place}: ")),
+        "expected place {place}: {message}"
+    );
     for word in words {
         assert!(message.contains(word), "expected `{word}`: {message}");
     }
@@ -45,35 +72,74 @@ fn refused(text: &str, place: &str, words: &[&str]) {
 #[test]
 fn write_estimate_writes_the_contract() {
     let rows = vec![EstimateRow::default(), full_row()];
-    let expected =
-        format!("{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3\n");
+    let expected = format!(
+        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3\n"
+    );
     assert_eq!(written(&estimate(rows, true)), expected);
 }
 
 #[test]
 fn known_feet_leave_the_d_tri_columns_empty() {
     let text = written(&estimate(vec![full_row()], false));
-    assert_eq!(text.lines().nth(1), Some("0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3"));
+    assert_eq!(
+        text.lines().nth(1),
+        Some("0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3")
+    );
     let back = read_estimate(text.as_bytes(), "estimate.csv").expect("an estimate");
     assert!(!back.has_tripod);
-    assert_eq!(back.rows[0].friction, Some(Friction { mu_s: 0.1, mu_p: 0.2, mu_f: 0.3, d_tri: 0.0 }));
+    assert_eq!(
+        back.rows[0].friction,
+        Some(Friction {
+            mu_s: 0.1,
+            mu_p: 0.2,
+            mu_f: 0.3,
+            d_tri: 0.0
+        })
+    );
 }
 
 #[test]
 fn estimate_without_fixels_has_no_contact_columns() {
-    let none = Estimate { time: vec![0.0], rows: vec![EstimateRow::default()], fixels: 0, has_tripod: true };
+    let none = Estimate {
+        time: vec![0.0],
+        rows: vec![EstimateRow::default()],
+        fixels: 0,
+        has_tripod: true,
+    };
     let text = written(&none);
-    assert_eq!(text.lines().next(), Some(HEADER.replace("contact_1,contact_2,", "").as_str()));
+    assert_eq!(
+        text.lines().next(),
+        Some(HEADER.replace("contact_1,contact_2,", "").as_str())
+    );
     assert_eq!(read_estimate(text.as_bytes(), "estimate.csv"), Ok(none));
 }
 
 #[test]
 fn header_of_another_order_or_kind_is_refused() {
     let row = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3";
-    refused(&format!("{}\n{row}\n", HEADER.replace("x,y,theta,vx", "y,x,theta,vx")), "1: column 2 (y)", &["`x` belongs here"]);
-    refused(&format!("{}\n{row}\n", HEADER.replace(",ess", ",esss")), "1", &["`ess`", "missing", "`esss`"]);
-    refused(&format!("{HEADER},more\n{row},0\n"), "1: column 26 (more)", &["no such column", "`unsolved`"]);
-    refused(&format!("{}\n{row}\n", HEADER.replace("contact_2", "contact_3")), "1", &["`contact_2`", "missing"]);
+    refused(
+        &format!(
+            "{}\n{row}\n",
+            HEADER.replace("x,y,theta,vx", "y,x,theta,vx")
+        ),
+        "1: column 2 (y)",
+        &["`x` belongs here"],
+    );
+    refused(
+        &format!("{}\n{row}\n", HEADER.replace(",ess", ",esss")),
+        "1",
+        &["`ess`", "missing", "`esss`"],
+    );
+    refused(
+        &format!("{HEADER},more\n{row},0\n"),
+        "1: column 26 (more)",
+        &["no such column", "`unsolved`"],
+    );
+    refused(
+        &format!("{}\n{row}\n", HEADER.replace("contact_2", "contact_3")),
+        "1",
+        &["`contact_2`", "missing"],
+    );
 }
 
 #[test]
@@ -81,14 +147,34 @@ fn bad_cells_are_refused() {
     let good = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3";
     let with = |from: &str, to: &str| format!("{HEADER}\n{}\n", good.replacen(from, to, 1));
     refused(&with("1,2,3", "1,,3"), "2: column 3 (y)", &["empty", "`x`"]);
-    refused(&with("0.25", "nan"), "2: column 13 (contact_1)", &["`nan`", "not finite"]);
-    refused(&with("1,0,3", "2,0,3"), "2: column 23 (resampled)", &["`2`", "neither 0 nor 1"]);
+    refused(
+        &with("0.25", "nan"),
+        "2: column 13 (contact_1)",
+        &["`nan`", "not finite"],
+    );
+    refused(
+        &with("1,0,3", "2,0,3"),
+        "2: column 23 (resampled)",
+        &["`2`", "neither 0 nor 1"],
+    );
     refused(&with("1,0,3", "1,,3"), "2: column 24 (visual)", &["empty"]);
-    refused(&with("1,0,3", "1,0,-3"), "2: column 25 (unsolved)", &["`-3`", "whole number"]);
-    refused(&with(",0.8,", ",,"), "2: column 21 (std_d_tri)", &["empty", "known"]);
+    refused(
+        &with("1,0,3", "1,0,-3"),
+        "2: column 25 (unsolved)",
+        &["`-3`", "whole number"],
+    );
+    refused(
+        &with(",0.8,", ",,"),
+        "2: column 21 (std_d_tri)",
+        &["empty", "known"],
+    );
     refused(&with("7,8,9", ",,"), "2: column 15 (std_x)", &["empty"]);
     refused(&with("0.1,0.2,0.3", ",,"), "2: column 8 (mu_s)", &["empty"]);
-    refused(&format!("{HEADER}\n{good}\n{good}\n"), "3: column 1 (time)", &["rise"]);
+    refused(
+        &format!("{HEADER}\n{good}\n{good}\n"),
+        "3: column 1 (time)",
+        &["rise"],
+    );
     refused(&format!("{HEADER}\n"), "1", &["no rows"]);
 }
 
@@ -101,7 +187,14 @@ fn any_pose() -> impl Strategy<Value = Pose> {
 }
 
 fn any_friction() -> impl Strategy<Value = Option<Friction>> {
-    prop::option::of((number(), number(), number(), number()).prop_map(|(mu_s, mu_p, mu_f, d_tri)| Friction { mu_s, mu_p, mu_f, d_tri }))
+    prop::option::of((number(), number(), number(), number()).prop_map(
+        |(mu_s, mu_p, mu_f, d_tri)| Friction {
+            mu_s,
+            mu_p,
+            mu_f,
+            d_tri,
+        },
+    ))
 }
 
 prop_compose! {

@@ -1,4 +1,5 @@
-//! `log.csv`: columns by name, missing measurements, every kind of bad input at its place, and the way there and back.
+//! `log.csv`: columns by name, missing measurements, every kind of bad input at its place, and the
+//! way there and back.
 
 use proptest::prelude::*;
 use stickslip::Log;
@@ -22,8 +23,13 @@ fn read(text: &str) -> (Log, Vec<LogWarning>) {
 /// The text must be refused at `place` with all of `words`.
 #[track_caller]
 fn refused(text: &str, place: &str, words: &[&str]) {
-    let message = read_log(text.as_bytes(), "log.csv").expect_err("must be refused").to_string();
-    assert!(message.starts_with(&format!("log.csv:{place}: ")), "expected place {place}: {message}");
+    let message = read_log(text.as_bytes(), "log.csv")
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        message.starts_with(&format!("log.csv:{place}: ")),
+        "expected place {place}: {message}"
+    );
     for word in words {
         assert!(message.contains(word), "expected `{word}`: {message}");
     }
@@ -37,9 +43,29 @@ fn full_log_arrives() {
     let (log, warnings) = read(&text);
     assert_eq!(warnings, []);
     assert_eq!(log.time, [0.0, 0.03, 0.07]);
-    assert_eq!(log.object, [Some(Pose::new(1.0, 2.0, 3.0)), None, Some(Pose::new(0.001, -2.5, 3.0))]);
-    assert_eq!(log.pusher, [Some(Pose::new(4.0, 5.0, 6.0)), None, Some(Pose::new(0.5, 5.0, 6.0))]);
-    assert_eq!(log.tactile, [[Some(false), None, Some(true)], [Some(true), None, Some(false)]]);
+    assert_eq!(
+        log.object,
+        [
+            Some(Pose::new(1.0, 2.0, 3.0)),
+            None,
+            Some(Pose::new(0.001, -2.5, 3.0))
+        ]
+    );
+    assert_eq!(
+        log.pusher,
+        [
+            Some(Pose::new(4.0, 5.0, 6.0)),
+            None,
+            Some(Pose::new(0.5, 5.0, 6.0))
+        ]
+    );
+    assert_eq!(
+        log.tactile,
+        [
+            [Some(false), None, Some(true)],
+            [Some(true), None, Some(false)]
+        ]
+    );
     assert_eq!(log.force, [Some([7.0, 8.0]), None, Some([-7.0, 0.0])]);
 }
 
@@ -47,19 +73,33 @@ fn full_log_arrives() {
 fn columns_are_found_by_name_in_any_order() {
     let text = "tactile_2,pusher_theta,object_y,time,tactile_1,object_theta,pusher_x,object_x,pusher_y\n1,6,2,0,0,3,4,1,5\n";
     let (log, _) = read(text);
-    assert_eq!((log.object[0], log.pusher[0]), (Some(Pose::new(1.0, 2.0, 3.0)), Some(Pose::new(4.0, 5.0, 6.0))));
+    assert_eq!(
+        (log.object[0], log.pusher[0]),
+        (
+            Some(Pose::new(1.0, 2.0, 3.0)),
+            Some(Pose::new(4.0, 5.0, 6.0))
+        )
+    );
     assert_eq!(log.tactile, [[Some(false)], [Some(true)]]);
     assert!(log.force.is_empty());
 }
 
 #[test]
 fn extra_columns_are_ignored_with_a_warning_that_names_them() {
-    let (log, warnings) = read(&format!("frame,{HEADER},tactile_left\n17,0,1,2,3,4,5,6,\"a, b\"\n"));
+    let (log, warnings) = read(&format!(
+        "frame,{HEADER},tactile_left\n17,0,1,2,3,4,5,6,\"a, b\"\n"
+    ));
     assert_eq!((log.len(), log.tactile.len()), (1, 0));
     assert_eq!(warnings.len(), 1);
-    assert_eq!(warnings[0].to_string(), "log.csv:1: extra columns are ignored: frame, tactile_left");
+    assert_eq!(
+        warnings[0].to_string(),
+        "log.csv:1: extra columns are ignored: frame, tactile_left"
+    );
     let (_, warnings) = read(&format!(",{HEADER}\n17,0,1,2,3,4,5,6\n"));
-    assert_eq!(warnings[0].to_string(), "log.csv:1: extra columns are ignored: (number 1, without a name)");
+    assert_eq!(
+        warnings[0].to_string(),
+        "log.csv:1: extra columns are ignored: (number 1, without a name)"
+    );
 }
 
 #[test]
@@ -71,7 +111,15 @@ fn line_endings_byte_order_mark_blanks_and_quotes_are_read() {
     assert_eq!(read(&format!("{plain}\n  \r\n\n")).0, expected);
     assert_eq!(read(plain.trim_end()).0, expected);
     assert_eq!(read(&plain.replace(',', " , ")).0, expected);
-    assert_eq!(read(&plain.replace("object_x", "\"object_x\"").replace("0.1", "\"0.1\"")).0, expected);
+    assert_eq!(
+        read(
+            &plain
+                .replace("object_x", "\"object_x\"")
+                .replace("0.1", "\"0.1\"")
+        )
+        .0,
+        expected
+    );
 }
 
 #[test]
@@ -91,91 +139,216 @@ fn empty_file_and_header_alone_are_refused() {
 #[test]
 fn missing_column_is_refused_with_the_nearest() {
     for name in HEADER.split(',') {
-        let header = HEADER.split(',').map(|other| if other == name { "elsewhere_0" } else { other }).collect::<Vec<_>>().join(",");
-        refused(&format!("{header}\n0,1,2,3,4,5,6\n"), "1", &[&format!("`{name}`"), "missing"]);
+        let header = HEADER
+            .split(',')
+            .map(|other| if other == name { "elsewhere_0" } else { other })
+            .collect::<Vec<_>>()
+            .join(",");
+        refused(
+            &format!("{header}\n0,1,2,3,4,5,6\n"),
+            "1",
+            &[&format!("`{name}`"), "missing"],
+        );
     }
-    refused(&format!("{}\n0,1,2,3,4,5,6\n", HEADER.replace("object_theta", "object_tetha")), "1", &["`object_theta`", "`object_tetha`"]);
+    refused(
+        &format!(
+            "{}\n0,1,2,3,4,5,6\n",
+            HEADER.replace("object_theta", "object_tetha")
+        ),
+        "1",
+        &["`object_theta`", "`object_tetha`"],
+    );
     refused("0,1,2,3,4,5,6\n", "1", &["`time`", "missing", "first line"]);
-    refused(&format!("{}\n0;1;2;3;4;5;6\n", HEADER.replace(',', ";")), "1", &["`time`", "';'", "commas"]);
+    refused(
+        &format!("{}\n0;1;2;3;4;5;6\n", HEADER.replace(',', ";")),
+        "1",
+        &["`time`", "';'", "commas"],
+    );
 }
 
 #[test]
 fn column_named_twice_is_refused() {
-    refused(&format!("{HEADER},object_y\n0,1,2,3,4,5,6,7\n"), "1: column 8 (object_y)", &["column 3"]);
+    refused(
+        &format!("{HEADER},object_y\n0,1,2,3,4,5,6,7\n"),
+        "1: column 8 (object_y)",
+        &["column 3"],
+    );
 }
 
 #[test]
 fn wrong_column_count_is_refused() {
-    refused(&format!("{HEADER}\n0,1,2,3,4,5,6\n0.1,1,2,3,4,5\n"), "3", &["6 cells", "7"]);
-    refused(&format!("{HEADER}\n0,1,2,3,4,5,6,7\n"), "2", &["8 cells", "7"]);
-    refused(&format!("{HEADER}\n0,1,2,3,4,5,6\n\n0.1,1,2,3,4,5,6\n"), "3", &["0 cells", "7"]);
-    refused(&format!("{HEADER}\n# a comment\n0.1,1,2,3,4,5,6\n"), "2", &["1 cells", "7"]);
+    refused(
+        &format!("{HEADER}\n0,1,2,3,4,5,6\n0.1,1,2,3,4,5\n"),
+        "3",
+        &["6 cells", "7"],
+    );
+    refused(
+        &format!("{HEADER}\n0,1,2,3,4,5,6,7\n"),
+        "2",
+        &["8 cells", "7"],
+    );
+    refused(
+        &format!("{HEADER}\n0,1,2,3,4,5,6\n\n0.1,1,2,3,4,5,6\n"),
+        "3",
+        &["0 cells", "7"],
+    );
+    refused(
+        &format!("{HEADER}\n# a comment\n0.1,1,2,3,4,5,6\n"),
+        "2",
+        &["1 cells", "7"],
+    );
 }
 
 #[test]
 fn bad_number_is_refused() {
-    refused(&format!("{HEADER}\n0,1,2,3,4,5,6\n0.1,1,abc,3,4,5,6\n"), "3: column 3 (object_y)", &["`abc`", "not a number"]);
-    refused(&format!("{HEADER}\n0 s,1,2,3,4,5,6\n"), "2: column 1 (time)", &["`0 s`", "not a number"]);
-    refused(&format!("{HEADER}\n0,1,2,3,4,5,\"6,5\"\n"), "2: column 7 (pusher_theta)", &["`6,5`", "not a number"]);
-    refused(&format!("{HEADER},pusher_force_x,pusher_force_y\n0,1,2,3,4,5,6,-,-\n"), "2: column 8 (pusher_force_x)", &["`-`"]);
+    refused(
+        &format!("{HEADER}\n0,1,2,3,4,5,6\n0.1,1,abc,3,4,5,6\n"),
+        "3: column 3 (object_y)",
+        &["`abc`", "not a number"],
+    );
+    refused(
+        &format!("{HEADER}\n0 s,1,2,3,4,5,6\n"),
+        "2: column 1 (time)",
+        &["`0 s`", "not a number"],
+    );
+    refused(
+        &format!("{HEADER}\n0,1,2,3,4,5,\"6,5\"\n"),
+        "2: column 7 (pusher_theta)",
+        &["`6,5`", "not a number"],
+    );
+    refused(
+        &format!("{HEADER},pusher_force_x,pusher_force_y\n0,1,2,3,4,5,6,-,-\n"),
+        "2: column 8 (pusher_force_x)",
+        &["`-`"],
+    );
 }
 
 #[test]
 fn number_that_is_not_finite_is_refused() {
     for value in ["NaN", "nan", "inf", "-inf", "infinity", "1e999"] {
         let text = format!("{HEADER}\n0,1,2,3,{value},5,6\n");
-        refused(&text, "2: column 5 (pusher_x)", &[&format!("`{value}`"), "not finite", "empty"]);
+        refused(
+            &text,
+            "2: column 5 (pusher_x)",
+            &[&format!("`{value}`"), "not finite", "empty"],
+        );
     }
 }
 
 #[test]
 fn time_must_be_there_and_rise() {
-    refused(&format!("{HEADER}\n0,1,2,3,4,5,6\n,1,2,3,4,5,6\n"), "3: column 1 (time)", &["empty"]);
-    refused(&format!("{HEADER}\n0.5,1,2,3,4,5,6\n0.5,1,2,3,4,5,6\n"), "3: column 1 (time)", &["0.5 s comes after 0.5 s", "rise"]);
-    refused(&format!("{HEADER}\n0.5,1,2,3,4,5,6\n0.25,1,2,3,4,5,6\n"), "3: column 1 (time)", &["0.25 s comes after 0.5 s"]);
+    refused(
+        &format!("{HEADER}\n0,1,2,3,4,5,6\n,1,2,3,4,5,6\n"),
+        "3: column 1 (time)",
+        &["empty"],
+    );
+    refused(
+        &format!("{HEADER}\n0.5,1,2,3,4,5,6\n0.5,1,2,3,4,5,6\n"),
+        "3: column 1 (time)",
+        &["0.5 s comes after 0.5 s", "rise"],
+    );
+    refused(
+        &format!("{HEADER}\n0.5,1,2,3,4,5,6\n0.25,1,2,3,4,5,6\n"),
+        "3: column 1 (time)",
+        &["0.25 s comes after 0.5 s"],
+    );
 }
 
 #[test]
 fn measurement_in_part_is_refused() {
-    refused(&format!("{HEADER}\n0,1,,3,4,5,6\n"), "2: column 3 (object_y)", &["empty", "`object_x`", "object_x, object_y, object_theta"]);
-    refused(&format!("{HEADER}\n0,1,2,3,,5,6\n"), "2: column 5 (pusher_x)", &["empty", "`pusher_y`"]);
+    refused(
+        &format!("{HEADER}\n0,1,,3,4,5,6\n"),
+        "2: column 3 (object_y)",
+        &["empty", "`object_x`", "object_x, object_y, object_theta"],
+    );
+    refused(
+        &format!("{HEADER}\n0,1,2,3,,5,6\n"),
+        "2: column 5 (pusher_x)",
+        &["empty", "`pusher_y`"],
+    );
     let text = format!("{HEADER},pusher_force_x,pusher_force_y\n0,1,2,3,4,5,6,1,\n");
-    refused(&text, "2: column 9 (pusher_force_y)", &["empty", "`pusher_force_x`"]);
+    refused(
+        &text,
+        "2: column 9 (pusher_force_y)",
+        &["empty", "`pusher_force_x`"],
+    );
 }
 
 #[test]
 fn one_force_column_alone_is_refused() {
-    refused(&format!("{HEADER},pusher_force_x\n0,1,2,3,4,5,6,7\n"), "1", &["`pusher_force_y`", "missing"]);
-    refused(&format!("{HEADER},pusher_force_y\n0,1,2,3,4,5,6,7\n"), "1", &["`pusher_force_x`", "missing"]);
+    refused(
+        &format!("{HEADER},pusher_force_x\n0,1,2,3,4,5,6,7\n"),
+        "1",
+        &["`pusher_force_y`", "missing"],
+    );
+    refused(
+        &format!("{HEADER},pusher_force_y\n0,1,2,3,4,5,6,7\n"),
+        "1",
+        &["`pusher_force_x`", "missing"],
+    );
 }
 
 #[test]
 fn tactile_cell_that_is_neither_0_nor_1_is_refused() {
     for value in ["2", "-1", "0.5", "true", "nan"] {
         let text = format!("{HEADER},tactile_1\n0,1,2,3,4,5,6,{value}\n");
-        refused(&text, "2: column 8 (tactile_1)", &[&format!("`{value}`"), "neither 0 nor 1"]);
+        refused(
+            &text,
+            "2: column 8 (tactile_1)",
+            &[&format!("`{value}`"), "neither 0 nor 1"],
+        );
     }
-    assert_eq!(read(&format!("{HEADER},tactile_1\n0,1,2,3,4,5,6,1.0\n")).0.tactile, [[Some(true)]]);
+    assert_eq!(
+        read(&format!("{HEADER},tactile_1\n0,1,2,3,4,5,6,1.0\n"))
+            .0
+            .tactile,
+        [[Some(true)]]
+    );
 }
 
 #[test]
 fn sensor_numbers_with_a_gap_are_refused() {
-    refused(&format!("{HEADER},tactile_1,tactile_3\n0,1,2,3,4,5,6,0,0\n"), "1: column 9 (tactile_3)", &["`tactile_2`", "[[fixel]]"]);
-    refused(&format!("{HEADER},tactile_0\n0,1,2,3,4,5,6,0\n"), "1: column 8 (tactile_0)", &["`tactile_1`"]);
-    refused(&format!("{HEADER},tactile_01\n0,1,2,3,4,5,6,0\n"), "1: column 8 (tactile_01)", &["`tactile_1`"]);
+    refused(
+        &format!("{HEADER},tactile_1,tactile_3\n0,1,2,3,4,5,6,0,0\n"),
+        "1: column 9 (tactile_3)",
+        &["`tactile_2`", "[[fixel]]"],
+    );
+    refused(
+        &format!("{HEADER},tactile_0\n0,1,2,3,4,5,6,0\n"),
+        "1: column 8 (tactile_0)",
+        &["`tactile_1`"],
+    );
+    refused(
+        &format!("{HEADER},tactile_01\n0,1,2,3,4,5,6,0\n"),
+        "1: column 8 (tactile_01)",
+        &["`tactile_1`"],
+    );
     let huge = "tactile_99999999999999999999999999";
-    refused(&format!("{HEADER},{huge}\n0,1,2,3,4,5,6,0\n"), &format!("1: column 8 ({huge})"), &["`tactile_1`"]);
+    refused(
+        &format!("{HEADER},{huge}\n0,1,2,3,4,5,6,0\n"),
+        &format!("1: column 8 ({huge})"),
+        &["`tactile_1`"],
+    );
 }
 
 #[test]
 fn more_sensors_than_fixels_are_refused_and_fewer_are_not() {
     let setup = read_scene(SCENE, "scene.toml").expect("a scene with two fixels");
-    let with_sensors = |sensors: usize| Log { tactile: vec![Vec::new(); sensors], ..Log::default() };
+    let with_sensors = |sensors: usize| Log {
+        tactile: vec![Vec::new(); sensors],
+        ..Log::default()
+    };
     for sensors in 0..=2 {
         assert_eq!(check_sensors(&with_sensors(sensors), &setup), Ok(()));
     }
     let error = check_sensors(&with_sensors(3), &setup).expect_err("one too many");
-    assert_eq!(error, SensorError { sensors: 3, fixels: 2 });
+    assert_eq!(
+        error,
+        SensorError {
+            sensors: 3,
+            fixels: 2
+        }
+    );
     for word in ["3 tactile sensors", "2 fixels", "tactile_3", "[[fixel]]"] {
         assert!(error.to_string().contains(word), "{error}");
     }
@@ -190,8 +363,9 @@ fn write_log_writes_the_contract() {
         tactile: vec![vec![Some(true), None], vec![Some(false), Some(false)]],
         force: vec![None, Some([1.5, 0.0])],
     };
-    let expected =
-        format!("{HEADER},tactile_1,tactile_2,pusher_force_x,pusher_force_y\n0,0.5,-0.25,1e-9,,,,1,0,,\n0.04,,,,1,2,-0,,0,1.5,0\n");
+    let expected = format!(
+        "{HEADER},tactile_1,tactile_2,pusher_force_x,pusher_force_y\n0,0.5,-0.25,1e-9,,,,1,0,,\n0.04,,,,1,2,-0,,0,1.5,0\n"
+    );
     assert_eq!(String::from_utf8(written(&log)).expect("text"), expected);
 }
 
@@ -203,24 +377,36 @@ fn written(log: &Log) -> Vec<u8> {
 
 /// Every bit, the sign of zero included.
 fn bits(log: &Log) -> Vec<Option<Vec<u64>>> {
-    let poses = log.object.iter().chain(&log.pusher).map(|pose| pose.map(|p| vec![p.x.to_bits(), p.y.to_bits(), p.theta.to_bits()]));
-    let force = log.force.iter().map(|force| force.map(|f| f.map(f64::to_bits).to_vec()));
+    let poses = log
+        .object
+        .iter()
+        .chain(&log.pusher)
+        .map(|pose| pose.map(|p| vec![p.x.to_bits(), p.y.to_bits(), p.theta.to_bits()]));
+    let force = log
+        .force
+        .iter()
+        .map(|force| force.map(|f| f.map(f64::to_bits).to_vec()));
     let time = log.time.iter().map(|time| Some(vec![time.to_bits()]));
     poses.chain(force).chain(time).collect()
 }
 
 fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![any::<f64>().prop_filter("finite", |value| value.is_finite()), -1.0..1.0_f64]
+    prop_oneof![
+        any::<f64>().prop_filter("finite", |value| value.is_finite()),
+        -1.0..1.0_f64
+    ]
 }
 
 fn any_pose() -> impl Strategy<Value = Option<Pose>> {
-    prop::option::of((number(), number(), number()).prop_map(|(x, y, theta)| Pose::new(x, y, theta)))
+    prop::option::of(
+        (number(), number(), number()).prop_map(|(x, y, theta)| Pose::new(x, y, theta)),
+    )
 }
 
 fn any_log() -> impl Strategy<Value = Log> {
     (1..20_usize, 0..4_usize, any::<bool>()).prop_flat_map(|(rows, sensors, has_force)| {
-        let time =
-            prop::collection::btree_set(-1_000_000..1_000_000_i64, rows).prop_map(|set| set.iter().map(|t| *t as f64 / 30.0).collect());
+        let time = prop::collection::btree_set(-1_000_000..1_000_000_i64, rows)
+            .prop_map(|set| set.iter().map(|t| *t as f64 / 30.0).collect());
         let force = prop::option::of((number(), number()).prop_map(|(x, y)| [x, y]));
         (
             time,
@@ -229,7 +415,13 @@ fn any_log() -> impl Strategy<Value = Log> {
             prop::collection::vec(prop::collection::vec(any::<Option<bool>>(), rows), sensors),
             prop::collection::vec(force, if has_force { rows } else { 0 }),
         )
-            .prop_map(|(time, object, pusher, tactile, force)| Log { time, object, pusher, tactile, force })
+            .prop_map(|(time, object, pusher, tactile, force)| Log {
+                time,
+                object,
+                pusher,
+                tactile,
+                force,
+            })
     })
 }
 

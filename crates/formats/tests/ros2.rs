@@ -1,7 +1,8 @@
-//! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written here, and what rosbags writes
-//! is read here.
+//! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written
+//! here, and what rosbags writes is read here.
 //!
-//! `cargo test -p stickslip-formats --test ros2 -- --ignored`, with both Python packages where `python3` finds them.
+//! `cargo test -p stickslip-formats --test ros2 -- --ignored`, with both Python packages where
+//! `python3` finds them.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -15,20 +16,33 @@ use stickslip_dynamics::Pose;
 use stickslip_formats::{Topics, read_log, read_log_mcap, write_log_mcap};
 
 /// Recorded experiments; the last one has forces, and poses of a real camera.
-const LOGS: [&str; 3] =
-    ["mujoco/stop-square50-bar-000", "mujoco/slide-ell-disc-110", "real/zhou-tripod-push/hardboard_3pts_10-10_10-130_130-10_03"];
+const LOGS: [&str; 3] = [
+    "mujoco/stop-square50-bar-000",
+    "mujoco/slide-ell-disc-110",
+    "real/zhou-tripod-push/hardboard_3pts_10-10_10-130_130-10_03",
+];
 
 /// What Python prints.
 fn peer(arguments: &[&Path]) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
-    let run = Command::new("python3").arg(script).args(arguments).output().unwrap();
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let run = Command::new("python3")
+        .arg(script)
+        .args(arguments)
+        .output()
+        .unwrap();
+    assert!(
+        run.status.success(),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
     String::from_utf8(run.stdout).unwrap()
 }
 
 /// An empty folder of this test.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ros2").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("ros2")
+        .join(name);
     if folder.exists() {
         fs::remove_dir_all(&folder).unwrap();
     }
@@ -38,8 +52,15 @@ fn folder(name: &str) -> PathBuf {
 
 fn recorded(name: &str) -> (PathBuf, Log) {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let path = std::env::var_os("STICKSLIP_DATA").map_or_else(beside, PathBuf::from).join(name).join("log.csv");
-    let (log, _) = read_log(File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())), "log.csv").unwrap();
+    let path = std::env::var_os("STICKSLIP_DATA")
+        .map_or_else(beside, PathBuf::from)
+        .join(name)
+        .join("log.csv");
+    let (log, _) = read_log(
+        File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())),
+        "log.csv",
+    )
+    .unwrap();
     (path, log)
 }
 
@@ -47,9 +68,21 @@ fn recorded(name: &str) -> (PathBuf, Log) {
 fn with_gaps(log: Log) -> Log {
     let rows = log.len();
     let time = log.time.iter().map(|time| time + 1_700_000_000.0).collect();
-    let force = (0..rows).map(|row| (row % 3 == 0).then_some([0.1 * row as f64, -1.0 / (1.0 + row as f64)])).collect();
-    let object = log.object.iter().enumerate().map(|(row, pose)| pose.filter(|_| row % 7 != 5)).collect();
-    Log { time, force, object, ..log }
+    let force = (0..rows)
+        .map(|row| (row % 3 == 0).then_some([0.1 * row as f64, -1.0 / (1.0 + row as f64)]))
+        .collect();
+    let object = log
+        .object
+        .iter()
+        .enumerate()
+        .map(|(row, pose)| pose.filter(|_| row % 7 != 5))
+        .collect();
+    Log {
+        time,
+        force,
+        object,
+        ..log
+    }
 }
 
 /// A message as both programs must read it.
@@ -65,16 +98,45 @@ fn expected(log: &Log) -> Vec<Line> {
     let mut lines = Vec::new();
     for row in 0..log.len() {
         let time = (log.time[row] * 1e9).round() as i64;
-        let mut line = |topic: String, stamped: bool, numbers: Vec<f64>| lines.push(Line { topic, time, stamped, numbers });
-        let pose = |pose: Pose| vec![pose.x, pose.y, 0.0, 0.0, 0.0, libm::sin(pose.theta / 2.0), libm::cos(pose.theta / 2.0)];
+        let mut line = |topic: String, stamped: bool, numbers: Vec<f64>| {
+            lines.push(Line {
+                topic,
+                time,
+                stamped,
+                numbers,
+            })
+        };
+        let pose = |pose: Pose| {
+            vec![
+                pose.x,
+                pose.y,
+                0.0,
+                0.0,
+                0.0,
+                libm::sin(pose.theta / 2.0),
+                libm::cos(pose.theta / 2.0),
+            ]
+        };
         for (name, poses) in [("/object/pose", &log.object), ("/pusher/pose", &log.pusher)] {
-            poses[row].into_iter().for_each(|at| line(name.to_owned(), true, pose(at)));
+            poses[row]
+                .into_iter()
+                .for_each(|at| line(name.to_owned(), true, pose(at)));
         }
         for (k, column) in (1..).zip(&log.tactile) {
-            column[row].into_iter().for_each(|on| line(format!("/fixel_{k}/contact"), false, vec![f64::from(u8::from(on))]));
+            column[row].into_iter().for_each(|on| {
+                line(
+                    format!("/fixel_{k}/contact"),
+                    false,
+                    vec![f64::from(u8::from(on))],
+                )
+            });
         }
         if let Some(force) = log.force.get(row).copied().flatten() {
-            line("/pusher/wrench".to_owned(), true, vec![force[0], force[1], 0.0, 0.0, 0.0, 0.0]);
+            line(
+                "/pusher/wrench".to_owned(),
+                true,
+                vec![force[0], force[1], 0.0, 0.0, 0.0, 0.0],
+            );
         }
     }
     lines
@@ -82,11 +144,28 @@ fn expected(log: &Log) -> Vec<Line> {
 
 /// A line of `peer.py decode` without the program's name; the stamp and the frame are checked here.
 fn parsed(words: &[&str]) -> Line {
-    let [topic, time, stamp, frame, numbers @ ..] = words else { panic!("{words:?}") };
+    let [topic, time, stamp, frame, numbers @ ..] = words else {
+        panic!("{words:?}")
+    };
     let stamped = *stamp != "-";
-    assert!(if stamped { (stamp, *frame) == (time, "world") } else { *frame == "-" }, "{words:?}");
-    let numbers = numbers.iter().map(|number| number.parse().unwrap()).collect();
-    Line { topic: (*topic).to_owned(), time: time.parse().unwrap(), stamped, numbers }
+    assert!(
+        if stamped {
+            (stamp, *frame) == (time, "world")
+        } else {
+            *frame == "-"
+        },
+        "{words:?}"
+    );
+    let numbers = numbers
+        .iter()
+        .map(|number| number.parse().unwrap())
+        .collect();
+    Line {
+        topic: (*topic).to_owned(),
+        time: time.parse().unwrap(),
+        stamped,
+        numbers,
+    }
 }
 
 fn sorted(mut lines: Vec<Line>) -> Vec<Line> {
@@ -104,7 +183,10 @@ fn others_read_what_is_written() {
         let told = peer(&[Path::new("decode"), &path]);
         let expected = sorted(expected(&log));
         for program in ["mcap-ros2", "rosbags"] {
-            let lines = told.lines().map(|line| line.split(' ').collect::<Vec<_>>()).filter(|words| words[0] == program);
+            let lines = told
+                .lines()
+                .map(|line| line.split(' ').collect::<Vec<_>>())
+                .filter(|words| words[0] == program);
             let found = sorted(lines.map(|words| parsed(&words[1..])).collect());
             assert_eq!(found.len(), expected.len(), "{program}");
             for (found, expected) in found.iter().zip(&expected) {
@@ -122,19 +204,40 @@ fn what_others_write_is_read() {
         let bag = folder(&format!("read/{name}")).join("bag");
         peer(&[Path::new("record"), &csv, &bag]);
         let bytes = fs::read(bag.join("bag.mcap")).unwrap();
-        assert!(bytes.windows(4).any(|window| window == [0x28, 0xb5, 0x2f, 0xfd]), "not packed with zstd");
+        assert!(
+            bytes
+                .windows(4)
+                .any(|window| window == [0x28, 0xb5, 0x2f, 0xfd]),
+            "not packed with zstd"
+        );
         let (read, warnings) = read_log_mcap(&bytes, "bag.mcap", &Topics::default()).unwrap();
         assert_eq!(warnings, []);
-        assert_eq!((read.len(), &read.tactile, &read.force), (log.len(), &log.tactile, &log.force));
-        assert!(read.time.iter().zip(&log.time).all(|(read, log)| (read - log).abs() <= 0.5e-9));
-        assert!(read.object.iter().zip(&log.object).all(|(read, log)| read.is_some() == log.is_some()));
+        assert_eq!(
+            (read.len(), &read.tactile, &read.force),
+            (log.len(), &log.tactile, &log.force)
+        );
+        assert!(
+            read.time
+                .iter()
+                .zip(&log.time)
+                .all(|(read, log)| (read - log).abs() <= 0.5e-9)
+        );
+        assert!(
+            read.object
+                .iter()
+                .zip(&log.object)
+                .all(|(read, log)| read.is_some() == log.is_some())
+        );
         for (read, log) in [(&read.object, &log.object), (&read.pusher, &log.pusher)] {
             for (read, log) in read.iter().zip(log) {
                 // a pusher that is missing for a moment is bridged
                 let Some(log) = log else { continue };
                 let read = read.unwrap();
                 let turn = (read.theta - log.theta) / TAU;
-                assert!((read.x, read.y) == (log.x, log.y) && (turn - turn.round()).abs() < 1e-12, "{read:?} {log:?}");
+                assert!(
+                    (read.x, read.y) == (log.x, log.y) && (turn - turn.round()).abs() < 1e-12,
+                    "{read:?} {log:?}"
+                );
             }
         }
     }

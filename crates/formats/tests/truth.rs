@@ -2,12 +2,19 @@
 
 use proptest::prelude::*;
 use stickslip_dynamics::{Pose, Twist};
-use stickslip_formats::{Truth, TruthFacts, read_truth_csv, read_truth_json, write_truth_csv, write_truth_json};
+use stickslip_formats::{
+    Truth, TruthFacts, read_truth_csv, read_truth_json, write_truth_csv, write_truth_json,
+};
 
 #[track_caller]
 fn refused_csv(text: &str, place: &str, words: &[&str]) {
-    let message = read_truth_csv(text.as_bytes(), "truth.csv").expect_err("must be refused").to_string();
-    assert!(message.starts_with(&format!("truth.csv:{place}: ")), "expected place {place}: {message}");
+    let message = read_truth_csv(text.as_bytes(), "truth.csv")
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        message.starts_with(&format!("truth.csv:{place}: ")),
+        "expected place {place}: {message}"
+    );
     for word in words {
         assert!(message.contains(word), "expected `{word}`: {message}");
     }
@@ -15,8 +22,13 @@ fn refused_csv(text: &str, place: &str, words: &[&str]) {
 
 #[track_caller]
 fn refused_json(text: &str, place: &str, words: &[&str]) {
-    let message = read_truth_json(text, "truth.json").expect_err("must be refused").to_string();
-    assert!(message.starts_with(&format!("truth.json:{place}: ")), "expected place {place}: {message}");
+    let message = read_truth_json(text, "truth.json")
+        .expect_err("must be refused")
+        .to_string();
+    assert!(
+        message.starts_with(&format!("truth.json:{place}: ")),
+        "expected place {place}: {message}"
+    );
     for word in words {
         assert!(message.contains(word), "expected `{word}`: {message}");
     }
@@ -24,44 +36,91 @@ fn refused_json(text: &str, place: &str, words: &[&str]) {
 
 #[test]
 fn truth_csv_takes_time_and_pose_by_name() {
-    let truth = read_truth_csv(&b"force,theta,time,y,x\n,3,0,2,1\nabc,6,0.5,5,4\n"[..], "truth.csv").unwrap();
+    let truth = read_truth_csv(
+        &b"force,theta,time,y,x\n,3,0,2,1\nabc,6,0.5,5,4\n"[..],
+        "truth.csv",
+    )
+    .unwrap();
     assert_eq!(truth.time, [0.0, 0.5]);
-    assert_eq!(truth.pose, [Pose::new(1.0, 2.0, 3.0), Pose::new(4.0, 5.0, 6.0)]);
+    assert_eq!(
+        truth.pose,
+        [Pose::new(1.0, 2.0, 3.0), Pose::new(4.0, 5.0, 6.0)]
+    );
 }
 
 #[test]
 fn truth_csv_with_holes_or_bad_cells_is_refused() {
     refused_csv("time,x,y\n0,1,2\n", "1", &["`theta`", "missing"]);
     refused_csv("time,x,y,theta\n0,1,,3\n", "2: column 3 (y)", &["empty"]);
-    refused_csv("time,x,y,theta\n0,1,b,3\n", "2: column 3 (y)", &["`b`", "not a number"]);
-    refused_csv("time,x,y,theta\n0,1,2,inf\n", "2: column 4 (theta)", &["`inf`", "not finite"]);
-    refused_csv("time,x,y,theta\n0,1,2,3\n0,1,2,3\n", "3: column 1 (time)", &["rise"]);
+    refused_csv(
+        "time,x,y,theta\n0,1,b,3\n",
+        "2: column 3 (y)",
+        &["`b`", "not a number"],
+    );
+    refused_csv(
+        "time,x,y,theta\n0,1,2,inf\n",
+        "2: column 4 (theta)",
+        &["`inf`", "not finite"],
+    );
+    refused_csv(
+        "time,x,y,theta\n0,1,2,3\n0,1,2,3\n",
+        "3: column 1 (time)",
+        &["rise"],
+    );
     refused_csv("time,x,y,theta\n0,1,2\n", "2", &["3 cells", "4"]);
     refused_csv("time,x,y,theta\n", "1", &["no rows"]);
 }
 
 #[test]
 fn truth_csv_takes_twist_pusher_and_forces_where_they_are_complete() {
-    let text =
-        "time,x,y,theta,vx,vy,omega,pusher_x,pusher_y,pusher_theta,force_pusher,force_1,force_2,force_4\n0,1,2,3,4,5,6,7,8,9,10,11,12,14\n";
+    let text = "time,x,y,theta,vx,vy,omega,pusher_x,pusher_y,pusher_theta,force_pusher,force_1,force_2,force_4\n0,1,2,3,4,5,6,7,8,9,10,11,12,14\n";
     let truth = read_truth_csv(text.as_bytes(), "truth.csv").unwrap();
-    assert_eq!(truth.twist, [Twist { vx: 4.0, vy: 5.0, omega: 6.0 }]);
+    assert_eq!(
+        truth.twist,
+        [Twist {
+            vx: 4.0,
+            vy: 5.0,
+            omega: 6.0
+        }]
+    );
     assert_eq!(truth.pusher, [Pose::new(7.0, 8.0, 9.0)]);
-    assert_eq!((truth.pusher_force, truth.fixel_forces), (vec![10.0], vec![vec![11.0], vec![12.0]]));
+    assert_eq!(
+        (truth.pusher_force, truth.fixel_forces),
+        (vec![10.0], vec![vec![11.0], vec![12.0]])
+    );
 
     let text = "time,x,y,theta,vx,vy,pusher_x,pusher_y\n0,1,2,3,4,5,6,7\n";
     let truth = read_truth_csv(text.as_bytes(), "truth.csv").unwrap();
     assert!(truth.twist.is_empty() && truth.pusher.is_empty());
-    refused_csv("time,x,y,theta,force_pusher\n0,1,2,3,\n", "2: column 5 (force_pusher)", &["empty"]);
-    refused_csv("time,x,y,theta,vx,vy,omega\n0,1,2,3,4,a,6\n", "2: column 6 (vy)", &["`a`", "not a number"]);
+    refused_csv(
+        "time,x,y,theta,force_pusher\n0,1,2,3,\n",
+        "2: column 5 (force_pusher)",
+        &["empty"],
+    );
+    refused_csv(
+        "time,x,y,theta,vx,vy,omega\n0,1,2,3,4,a,6\n",
+        "2: column 6 (vy)",
+        &["`a`", "not a number"],
+    );
 }
 
 #[test]
 fn written_truth_has_the_columns_that_are_known() {
-    let truth = Truth { time: vec![0.0, 0.5], pose: vec![Pose::new(1.0, 2.0, 3.0); 2], ..Truth::default() };
+    let truth = Truth {
+        time: vec![0.0, 0.5],
+        pose: vec![Pose::new(1.0, 2.0, 3.0); 2],
+        ..Truth::default()
+    };
     assert_eq!(csv_of(&truth), "time,x,y,theta\n0,1,2,3\n0.5,1,2,3\n");
-    let truth = Truth { twist: vec![Twist::default(); 2], fixel_forces: vec![vec![0.25, 0.0]; 2], ..truth };
-    assert!(csv_of(&truth).starts_with("time,x,y,theta,vx,vy,omega,force_1,force_2\n0,1,2,3,0,0,0,0.25,0.25\n"));
+    let truth = Truth {
+        twist: vec![Twist::default(); 2],
+        fixel_forces: vec![vec![0.25, 0.0]; 2],
+        ..truth
+    };
+    assert!(
+        csv_of(&truth)
+            .starts_with("time,x,y,theta,vx,vy,omega,force_1,force_2\n0,1,2,3,0,0,0,0.25,0.25\n")
+    );
 }
 
 fn csv_of(truth: &Truth) -> String {
@@ -89,7 +148,11 @@ fn written_facts_read_back_and_are_null_where_nothing_is_known() {
     };
     assert_eq!(read_truth_json(&json_of(&facts), "truth.json"), Ok(facts));
     let nothing = json_of(&TruthFacts::default());
-    for line in ["\"mu_p\": null,", "\"first_fixel_contacts\": [],", "\"final_pose\": null"] {
+    for line in [
+        "\"mu_p\": null,",
+        "\"first_fixel_contacts\": [],",
+        "\"final_pose\": null",
+    ] {
         assert!(nothing.contains(line), "{nothing}");
     }
 }
@@ -133,14 +196,25 @@ fn truth_json_takes_known_keys_and_ignores_others() {
         final_pose: Some(Pose::new(0.5, -0.25, 3.0)),
     };
     assert_eq!(read_truth_json(text, "truth.json"), Ok(expected));
-    assert_eq!(read_truth_json("{}", "truth.json"), Ok(TruthFacts::default()));
+    assert_eq!(
+        read_truth_json("{}", "truth.json"),
+        Ok(TruthFacts::default())
+    );
 }
 
 #[test]
 fn truth_json_of_wrong_types_is_refused_with_its_key() {
     refused_json("{\n  \"mu_s\": \"low\"\n}", "2:15", &["`mu_s`", "\"low\""]);
-    refused_json("{ \"occlude_from\": -3 }", "1:20", &["`occlude_from`", "-3"]);
-    refused_json("{ \"first_fixel_contacts\": [1, 2.5] }", "1:33", &["`first_fixel_contacts[1]`", "2.5"]);
+    refused_json(
+        "{ \"occlude_from\": -3 }",
+        "1:20",
+        &["`occlude_from`", "-3"],
+    );
+    refused_json(
+        "{ \"first_fixel_contacts\": [1, 2.5] }",
+        "1:33",
+        &["`first_fixel_contacts[1]`", "2.5"],
+    );
     refused_json("{ \"final_pose\": [1, 2] }", "1:22", &["`final_pose`", "3"]);
 }
 

@@ -32,14 +32,21 @@ pub(crate) struct Tick {
 impl Scale {
     /// Limits that hold all finite `values`, with some room.
     pub(crate) fn limits(self, values: impl Iterator<Item = f64>) -> [f64; 2] {
-        let range = values.filter(|value| value.is_finite()).fold(None, |range: Option<[f64; 2]>, value| {
-            let [low, high] = range.unwrap_or([value, value]);
-            Some([low.min(value), high.max(value)])
-        });
+        let range = values.filter(|value| value.is_finite()).fold(
+            None,
+            |range: Option<[f64; 2]>, value| {
+                let [low, high] = range.unwrap_or([value, value]);
+                Some([low.min(value), high.max(value)])
+            },
+        );
         match (self, range) {
             (Self::Linear, None) => [0.0, 1.0],
             (Self::Linear, Some([low, high])) => {
-                let room = if high > low { 0.06 * (high - low) } else { 0.5 * low.abs().max(1e-9) };
+                let room = if high > low {
+                    0.06 * (high - low)
+                } else {
+                    0.5 * low.abs().max(1e-9)
+                };
                 [low - room, high + room]
             }
             (Self::Log { floor }, None) => [floor, 10.0 * floor],
@@ -83,20 +90,38 @@ impl Axis {
         }
         let decimals = (-libm::log10(step).floor()).clamp(0.0, 9.0) as usize;
         let (first, last) = ((low / step).ceil(), (high / step).floor());
-        let values = (0..=(last - first).clamp(0.0, 200.0) as u32).map(|k| (first + f64::from(k)) * step);
-        values.map(|value| Tick { value, label: number(value, decimals) }).collect()
+        let values =
+            (0..=(last - first).clamp(0.0, 200.0) as u32).map(|k| (first + f64::from(k)) * step);
+        values
+            .map(|value| Tick {
+                value,
+                label: number(value, decimals),
+            })
+            .collect()
     }
 
-    /// 1, 10, 100 with numbers; where those are few, 2 and 5 as well; the rest between them without.
+    /// 1, 10, 100 with numbers; where those are few, 2 and 5 as well; the rest between them
+    /// without.
     fn decade_ticks(&self) -> Vec<Tick> {
         let [low, high] = self.limits;
-        let (first, last) = (libm::log10(low).floor() as i32, libm::log10(high).floor() as i32);
+        let (first, last) = (
+            libm::log10(low).floor() as i32,
+            libm::log10(high).floor() as i32,
+        );
         let few = last - first < 2;
-        let all = (first..=last.min(first + 30)).flat_map(|decade| (1..10).map(move |digit| (decade, digit)));
+        let all = (first..=last.min(first + 30))
+            .flat_map(|decade| (1..10).map(move |digit| (decade, digit)));
         let ticks = all.map(|(decade, digit)| {
             let value = f64::from(digit) * libm::exp10(f64::from(decade));
             let named = digit == 1 || few && (digit == 2 || digit == 5);
-            Tick { value, label: if named { number(value, (-decade).max(0) as usize) } else { String::new() } }
+            Tick {
+                value,
+                label: if named {
+                    number(value, (-decade).max(0) as usize)
+                } else {
+                    String::new()
+                },
+            }
         });
         let within = (1.0 - 1e-9) * low..=(1.0 + 1e-9) * high;
         ticks.filter(|tick| within.contains(&tick.value)).collect()
@@ -106,7 +131,9 @@ impl Axis {
 /// The number 1, 2 or 5 times a power of ten that comes next.
 fn round_step(step: f64) -> f64 {
     let power = libm::exp10(libm::log10(step).floor());
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= step * (1.0 - 1e-9));
+    let factor = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|factor| factor * power >= step * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * power
 }
 
@@ -114,7 +141,11 @@ fn round_step(step: f64) -> f64 {
 fn number(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     let zero = text.bytes().all(|byte| matches!(byte, b'0' | b'.'));
-    if value < 0.0 && !zero { format!("\u{2212}{text}") } else { text }
+    if value < 0.0 && !zero {
+        format!("\u{2212}{text}")
+    } else {
+        text
+    }
 }
 
 #[cfg(test)]
@@ -122,25 +153,61 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis, spacing: f64) -> Vec<String> {
-        axis.ticks(spacing).into_iter().map(|tick| tick.label).filter(|label| !label.is_empty()).collect()
+        axis.ticks(spacing)
+            .into_iter()
+            .map(|tick| tick.label)
+            .filter(|label| !label.is_empty())
+            .collect()
     }
 
     #[test]
     fn at_maps_limits_to_pixels_and_decades_evenly() {
-        let axis = Axis { scale: Scale::Log { floor: 0.01 }, limits: [0.01, 100.0], pixels: [400.0, 0.0] };
-        assert_eq!([0.01, 1.0, 100.0, 0.0].map(|value| axis.at(value)), [400.0, 200.0, 0.0, 400.0]);
-        let axis = Axis { scale: Scale::Linear, limits: [-1.0, 1.0], pixels: [0.0, 100.0] };
+        let axis = Axis {
+            scale: Scale::Log { floor: 0.01 },
+            limits: [0.01, 100.0],
+            pixels: [400.0, 0.0],
+        };
+        assert_eq!(
+            [0.01, 1.0, 100.0, 0.0].map(|value| axis.at(value)),
+            [400.0, 200.0, 0.0, 400.0]
+        );
+        let axis = Axis {
+            scale: Scale::Linear,
+            limits: [-1.0, 1.0],
+            pixels: [0.0, 100.0],
+        };
         assert_eq!(axis.at(0.5), 75.0);
     }
 
     #[test]
     fn ticks_are_round_numbers_within_the_limits() {
-        let axis = Axis { scale: Scale::Linear, limits: [-0.31, 0.28], pixels: [0.0, 300.0] };
-        assert_eq!(labels(&axis, 50.0), ["\u{2212}0.3", "\u{2212}0.2", "\u{2212}0.1", "0.0", "0.1", "0.2"]);
-        let axis = Axis { limits: [2.1, 11.0], ..axis };
+        let axis = Axis {
+            scale: Scale::Linear,
+            limits: [-0.31, 0.28],
+            pixels: [0.0, 300.0],
+        };
+        assert_eq!(
+            labels(&axis, 50.0),
+            [
+                "\u{2212}0.3",
+                "\u{2212}0.2",
+                "\u{2212}0.1",
+                "0.0",
+                "0.1",
+                "0.2"
+            ]
+        );
+        let axis = Axis {
+            limits: [2.1, 11.0],
+            ..axis
+        };
         assert_eq!(labels(&axis, 60.0), ["4", "6", "8", "10"]);
         assert_eq!(labels(&axis, 75.0), ["5", "10"]);
-        let axis = Axis { scale: Scale::Log { floor: 0.01 }, limits: [0.01, 130.0], ..axis };
+        let axis = Axis {
+            scale: Scale::Log { floor: 0.01 },
+            limits: [0.01, 130.0],
+            ..axis
+        };
         assert_eq!(labels(&axis, 75.0), ["0.01", "0.1", "1", "10", "100"]);
     }
 
@@ -152,7 +219,11 @@ mod tests {
         let [low, high] = Scale::Linear.limits([5.0].into_iter());
         assert!(low < 5.0 && high > 5.0);
         assert_eq!(Scale::Linear.limits([].into_iter()), [0.0, 1.0]);
-        let broken = Axis { scale: Scale::Linear, limits: [f64::NAN, 1.0], pixels: [0.0, 100.0] };
+        let broken = Axis {
+            scale: Scale::Linear,
+            limits: [f64::NAN, 1.0],
+            pixels: [0.0, 100.0],
+        };
         assert!(broken.ticks(10.0).is_empty());
     }
 }

@@ -5,7 +5,8 @@ use std::sync::{Mutex, PoisonError};
 use stickslip::dynamics::Pose;
 use stickslip::{Cloud, SolvedStep, StepWatch};
 
-/// Watches a run and keeps the poses of some particles after every row, drawn by their weights, so that all kept ones count the same.
+/// Watches a run and keeps the poses of some particles after every row, drawn by their weights, so
+/// that all kept ones count the same.
 #[derive(Debug)]
 pub struct CloudSample {
     kept: usize,
@@ -16,14 +17,21 @@ impl CloudSample {
     /// Keeps this number of particles in every row.
     #[must_use]
     pub fn new(kept: usize) -> Self {
-        Self { kept, rows: Mutex::default() }
+        Self {
+            kept,
+            rows: Mutex::default(),
+        }
     }
 
     /// The poses kept after each row of a log of this length; none where the run has no particles.
     #[must_use]
     pub fn into_rows(self, rows: usize) -> Vec<Vec<Pose>> {
         let mut all = vec![Vec::new(); rows];
-        for (row, poses) in self.rows.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        for (row, poses) in self
+            .rows
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+        {
             if let Some(place) = all.get_mut(row) {
                 *place = poses;
             }
@@ -36,12 +44,19 @@ impl StepWatch for CloudSample {
     fn see(&self, _: &SolvedStep<'_>) {}
 
     fn after(&self, row: usize, cloud: &Cloud<'_>) {
-        let poses = systematic(cloud.weights(), self.kept).into_iter().map(|particle| cloud.pose(particle)).collect();
-        self.rows.lock().unwrap_or_else(PoisonError::into_inner).push((row, poses));
+        let poses = systematic(cloud.weights(), self.kept)
+            .into_iter()
+            .map(|particle| cloud.pose(particle))
+            .collect();
+        self.rows
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push((row, poses));
     }
 }
 
-/// The particles at which the running sum of weights passes (k + 1/2) / `count`: systematic resampling without chance.
+/// The particles at which the running sum of weights passes (k + 1/2) / `count`: systematic
+/// resampling without chance.
 fn systematic(weights: &[f64], count: usize) -> Vec<usize> {
     let (mut particle, mut sum) = (0, weights.first().copied().unwrap_or(0.0));
     let mut drawn = Vec::with_capacity(count);

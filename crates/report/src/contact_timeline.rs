@@ -71,17 +71,28 @@ impl ContactTimeline {
     /// The figure, to be put beside others.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
-        let names = self.bodies.iter().map(|body| width(&body.name, LABEL, Weight::Regular));
+        let names = self
+            .bodies
+            .iter()
+            .map(|body| width(&body.name, LABEL, Weight::Regular));
         let left = names.fold(56.0, f64::max) + 20.0;
         let title = if self.title.is_empty() { 6.0 } else { 32.0 };
         let (legend, legend_height) = self.legend().draw([left, title], WIDTH - left - RIGHT);
         let top = title + legend_height + 8.0;
         let lanes: f64 = self.bodies.iter().map(ContactLane::height).sum();
         let bottom = top + lanes.max(BAR) + 4.0;
-        let x = Axis { scale: Scale::Linear, limits: self.span, pixels: [left, WIDTH - RIGHT] };
+        let x = Axis {
+            scale: Scale::Linear,
+            limits: self.span,
+            pixels: [left, WIDTH - RIGHT],
+        };
         let plot = |[bottom, top]: [f64; 2]| Plot {
             x,
-            y: Axis { scale: Scale::Linear, limits: [0.0, 1.0], pixels: [bottom, top] },
+            y: Axis {
+                scale: Scale::Linear,
+                limits: [0.0, 1.0],
+                pixels: [bottom, top],
+            },
             x_label: "time (s)",
             y_label: "",
         };
@@ -93,7 +104,12 @@ impl ContactTimeline {
             (whole.time_axis())
             @for (body, at) in self.bodies.iter().zip(self.tops(top + 8.0)) { (body.draw(at, &plot)) }
         };
-        Drawing { width: WIDTH, height: bottom + 48.0, label: self.title.clone(), body }
+        Drawing {
+            width: WIDTH,
+            height: bottom + 48.0,
+            label: self.title.clone(),
+            body,
+        }
     }
 
     /// The upper end of each lane (px).
@@ -116,7 +132,10 @@ impl ContactTimeline {
             legend.push(Swatch::Bar(Colour::GREY), "sensor says so");
         }
         for estimate in self.bodies.iter().flat_map(|body| &body.estimates) {
-            legend.push(Swatch::Area(estimate.colour), &format!("{}: probability, 0 to 1", estimate.name));
+            legend.push(
+                Swatch::Area(estimate.colour),
+                &format!("{}: probability, 0 to 1", estimate.name),
+            );
         }
         if !self.dark.is_empty() {
             legend.push(Swatch::Dark, "camera dark");
@@ -128,7 +147,9 @@ impl ContactTimeline {
 impl ContactLane {
     fn draw<'p>(&self, top: f64, plot: &dyn Fn([f64; 2]) -> Plot<'p>) -> Markup {
         let bars = [(&self.truth, Colour::INK), (&self.sensed, Colour::GREY)];
-        let bars = bars.into_iter().filter_map(|(times, colour)| times.as_ref().map(|times| (times, colour)));
+        let bars = bars
+            .into_iter()
+            .filter_map(|(times, colour)| times.as_ref().map(|times| (times, colour)));
         let mut next = top;
         let mut place = |height: f64| {
             let at = next;
@@ -155,7 +176,11 @@ fn intervals(plot: &Plot<'_>, times: &[[f64; 2]], colour: Colour) -> Markup {
 }
 
 fn probability(plot: &Plot<'_>, estimate: &ContactEstimate) -> Markup {
-    let band: Vec<[f64; 3]> = estimate.points.iter().map(|[time, p]| [*time, 0.0, *p]).collect();
+    let band: Vec<[f64; 3]> = estimate
+        .points
+        .iter()
+        .map(|[time, p]| [*time, 0.0, *p])
+        .collect();
     html! {
         (plot.level(0.0, Colour::GREY, Line::Dotted))
         (plot.clipped(html! { (plot.band(&band, estimate.colour)) (plot.curve(&estimate.points, estimate.colour, Line::Solid)) }))

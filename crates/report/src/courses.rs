@@ -1,4 +1,5 @@
-//! From estimates to curves: [`pose_errors`], [`friction_panels`], and [`Curve::over_runs`] for many seeds.
+//! From estimates to curves: [`pose_errors`], [`friction_panels`], and [`Curve::over_runs`] for
+//! many seeds.
 
 use stickslip::dynamics::Friction;
 use stickslip::{Estimate, Reference, quantile};
@@ -27,16 +28,26 @@ impl PoseError {
     }
 }
 
-/// The errors of an estimate at every row of the reference, as scores have them; NaN where either has no pose.
+/// The errors of an estimate at every row of the reference, as scores have them; NaN where either
+/// has no pose.
 #[must_use]
 pub fn pose_errors(estimate: &Estimate, reference: &Reference) -> Vec<PoseError> {
     let rows = reference.time.iter().zip(&reference.pose);
     let error = |(time, truth): (&f64, &Option<stickslip::dynamics::Pose>)| {
         let pair = truth.zip(estimate.pose_at(time - reference.latency));
         let [x_mm, y_mm, turn_deg] = pair.map_or([f64::NAN; 3], |(truth, guess)| {
-            [1e3 * (guess.x - truth.x), 1e3 * (guess.y - truth.y), on_circle((guess.theta - truth.theta).to_degrees())]
+            [
+                1e3 * (guess.x - truth.x),
+                1e3 * (guess.y - truth.y),
+                on_circle((guess.theta - truth.theta).to_degrees()),
+            ]
         });
-        PoseError { time: *time, x_mm, y_mm, turn_deg }
+        PoseError {
+            time: *time,
+            x_mm,
+            y_mm,
+            turn_deg,
+        }
     };
     rows.map(error).collect()
 }
@@ -50,53 +61,113 @@ impl Curve {
     /// A solid line without a band.
     #[must_use]
     pub fn new(name: &str, colour: Colour, points: Vec<[f64; 2]>) -> Self {
-        Self { name: name.to_owned(), colour, points, ..Self::default() }
+        Self {
+            name: name.to_owned(),
+            colour,
+            points,
+            ..Self::default()
+        }
     }
 
     /// The median of several runs at each row with the band from their 10 % to their 90 % quantile.
     ///
-    /// Rows are taken together by their number; a row at which some run has no finite value has none.
+    /// Rows are taken together by their number; a row at which some run has no finite value has
+    /// none.
     #[must_use]
     pub fn over_runs(name: &str, colour: Colour, runs: &[Vec<[f64; 2]>]) -> Self {
         let rows = runs.iter().map(Vec::len).min().unwrap_or(0);
         let at = |row: usize, q: f64| {
             let values: Vec<f64> = runs.iter().map(|run| run[row][1]).collect();
-            if values.iter().all(|value| value.is_finite()) { quantile(&values, q).unwrap_or(f64::NAN) } else { f64::NAN }
+            if values.iter().all(|value| value.is_finite()) {
+                quantile(&values, q).unwrap_or(f64::NAN)
+            } else {
+                f64::NAN
+            }
         };
         let time = |row: usize| runs[0][row][0];
         let points = (0..rows).map(|row| [time(row), at(row, 0.5)]).collect();
-        let band = if runs.len() > 1 { (0..rows).map(|row| [time(row), at(row, 0.1), at(row, 0.9)]).collect() } else { Vec::new() };
-        Self { band, ..Self::new(name, colour, points) }
+        let band = if runs.len() > 1 {
+            (0..rows)
+                .map(|row| [time(row), at(row, 0.1), at(row, 0.9)])
+                .collect()
+        } else {
+            Vec::new()
+        };
+        Self {
+            band,
+            ..Self::new(name, colour, points)
+        }
     }
 }
 
-/// The friction parameters of one estimate, a panel each with a band of one standard deviation to either side: μ_s, μ_p, μ_f and,
-/// where it is a parameter, d_tri (mm); beside what the method was told and, where it is known, the truth (m).
+/// The friction parameters of one estimate, a panel each with a band of one standard deviation to
+/// either side: μ_s, μ_p, μ_f and, where it is a parameter, d_tri (mm); beside what the method was
+/// told and, where it is known, the truth (m).
 #[must_use]
-pub fn friction_panels(name: &str, colour: Colour, estimate: &Estimate, told: &Friction, truth: &[Option<f64>; 4]) -> Vec<Panel> {
+pub fn friction_panels(
+    name: &str,
+    colour: Colour,
+    estimate: &Estimate,
+    told: &Friction,
+    truth: &[Option<f64>; 4],
+) -> Vec<Panel> {
     let parameter = |index: usize| {
         let (label, unit) = PARAMETERS[index];
         let rows = estimate.time.iter().zip(&estimate.rows);
         let values = rows.map(|(time, row)| {
-            let value = |friction: Option<Friction>| friction.map_or(f64::NAN, |friction| unit * of(&friction)[index]);
-            [*time, value(row.friction), value(row.spread.and_then(|spread| spread.friction))]
+            let value = |friction: Option<Friction>| {
+                friction.map_or(f64::NAN, |friction| unit * of(&friction)[index])
+            };
+            [
+                *time,
+                value(row.friction),
+                value(row.spread.and_then(|spread| spread.friction)),
+            ]
         });
         let values: Vec<[f64; 3]> = values.collect();
-        let level = |name: &str, value: f64, line| Level { name: name.to_owned(), value: unit * value, colour: Colour::INK, line };
+        let level = |name: &str, value: f64, line| Level {
+            name: name.to_owned(),
+            value: unit * value,
+            colour: Colour::INK,
+            line,
+        };
         let truth = truth[index].map(|value| level("truth", value, Line::Solid));
-        let band = values.iter().map(|[time, mean, std]| [*time, mean - std, mean + std]).collect();
+        let band = values
+            .iter()
+            .map(|[time, mean, std]| [*time, mean - std, mean + std])
+            .collect();
         Panel {
             label: label.to_owned(),
-            curves: vec![Curve { band, ..Curve::new(name, colour, values.iter().map(|[time, mean, _]| [*time, *mean]).collect()) }],
-            levels: truth.into_iter().chain([level("told", of(told)[index], Line::Dashed)]).collect(),
+            curves: vec![Curve {
+                band,
+                ..Curve::new(
+                    name,
+                    colour,
+                    values
+                        .iter()
+                        .map(|[time, mean, _]| [*time, *mean])
+                        .collect(),
+                )
+            }],
+            levels: truth
+                .into_iter()
+                .chain([level("told", of(told)[index], Line::Dashed)])
+                .collect(),
             ..Panel::default()
         }
     };
-    (0..if estimate.has_tripod { 4 } else { 3 }).map(parameter).collect()
+    (0..if estimate.has_tripod { 4 } else { 3 })
+        .map(parameter)
+        .collect()
 }
 
 /// Names of the parameters and the factor to the units that they are shown in.
-const PARAMETERS: [(&str, f64); 4] = [("μ_s", 1.0), ("μ_p", 1.0), ("μ_f", 1.0), ("d_tri (mm)", 1e3)];
+const PARAMETERS: [(&str, f64); 4] = [
+    ("μ_s", 1.0),
+    ("μ_p", 1.0),
+    ("μ_f", 1.0),
+    ("d_tri (mm)", 1e3),
+];
 
 fn of(friction: &Friction) -> [f64; 4] {
     [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri]
@@ -111,22 +182,52 @@ mod tests {
     #[test]
     fn pose_errors_are_in_mm_and_on_the_circle() {
         let at = |x: f64, y: f64, theta: f64| Some(Pose::new(x, y, theta));
-        let row = |pose| EstimateRow { pose, ..EstimateRow::default() };
-        let estimate = Estimate { time: vec![0.0, 1.0], rows: vec![row(at(0.003, 0.004, 3.1)), row(None)], ..Estimate::default() };
-        let reference = Reference { time: vec![0.0, 1.0], pose: vec![at(0.0, 0.0, -3.1), at(0.0, 0.0, 0.0)], ..Reference::default() };
+        let row = |pose| EstimateRow {
+            pose,
+            ..EstimateRow::default()
+        };
+        let estimate = Estimate {
+            time: vec![0.0, 1.0],
+            rows: vec![row(at(0.003, 0.004, 3.1)), row(None)],
+            ..Estimate::default()
+        };
+        let reference = Reference {
+            time: vec![0.0, 1.0],
+            pose: vec![at(0.0, 0.0, -3.1), at(0.0, 0.0, 0.0)],
+            ..Reference::default()
+        };
         let errors = pose_errors(&estimate, &reference);
-        assert!((errors[0].distance_mm() - 5.0).abs() < 1e-12 && (errors[0].x_mm - 3.0).abs() < 1e-12);
-        assert!((errors[0].turn_deg - (6.2_f64.to_degrees() - 360.0)).abs() < 1e-9, "{errors:?}");
+        assert!(
+            (errors[0].distance_mm() - 5.0).abs() < 1e-12 && (errors[0].x_mm - 3.0).abs() < 1e-12
+        );
+        assert!(
+            (errors[0].turn_deg - (6.2_f64.to_degrees() - 360.0)).abs() < 1e-9,
+            "{errors:?}"
+        );
         assert!(errors[1].turn_deg.is_nan() && errors[1].time == 1.0);
     }
 
     #[test]
     fn over_runs_is_the_median_with_its_band() {
-        let runs: Vec<Vec<[f64; 2]>> = (0..=10).map(|k| vec![[0.0, f64::from(k)], [1.0, if k == 3 { f64::NAN } else { 1.0 }]]).collect();
+        let runs: Vec<Vec<[f64; 2]>> = (0..=10)
+            .map(|k| {
+                vec![
+                    [0.0, f64::from(k)],
+                    [1.0, if k == 3 { f64::NAN } else { 1.0 }],
+                ]
+            })
+            .collect();
         let curve = Curve::over_runs("particle", Colour::SKY, &runs);
-        assert_eq!((curve.points[0], curve.band[0]), ([0.0, 5.0], [0.0, 1.0, 9.0]));
+        assert_eq!(
+            (curve.points[0], curve.band[0]),
+            ([0.0, 5.0], [0.0, 1.0, 9.0])
+        );
         assert!(curve.points[1][1].is_nan());
-        assert!(Curve::over_runs("one", Colour::SKY, &runs[..1]).band.is_empty());
+        assert!(
+            Curve::over_runs("one", Colour::SKY, &runs[..1])
+                .band
+                .is_empty()
+        );
         assert!(Curve::over_runs("none", Colour::SKY, &[]).points.is_empty());
     }
 }

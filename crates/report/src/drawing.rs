@@ -1,7 +1,9 @@
-//! A finished picture: [`Drawing`], with what all pictures share: text, paper, numbers as SVG writes them.
+//! A finished picture: [`Drawing`], with what all pictures share: text, paper, numbers as SVG
+//! writes them.
 //!
-//! Presentation attributes give the look on white paper; the classes `ink`, `grid`, `axis`, `paper` and `dark` let a page give another
-//! one, as its dark mode does. Nothing has an `id`, so any number of drawings can stand in one page.
+//! Presentation attributes give the look on white paper; the classes `ink`, `grid`, `axis`, `paper`
+//! and `dark` let a page give another one, as its dark mode does. Nothing has an `id`, so any
+//! number of drawings can stand in one page.
 
 use maud::{Markup, html};
 
@@ -37,7 +39,12 @@ impl Drawing {
     /// The picture as a text of SVG 1.1 that stands alone.
     #[must_use]
     pub fn to_svg(&self) -> String {
-        let Self { width, height, label, body } = self;
+        let Self {
+            width,
+            height,
+            label,
+            body,
+        } = self;
         let markup = html! {
             svg xmlns="http://www.w3.org/2000/svg" class="figure" width=(px(*width)) height=(px(*height)) viewBox={ "0 0 " (px(*width)) " " (px(*height)) }
                 font-family=(FAMILY) font-size=(px(LABEL)) role="img" aria-label=[(!label.is_empty()).then_some(label)] {
@@ -52,16 +59,31 @@ impl Drawing {
     #[must_use]
     pub fn grid(drawings: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, drawings.len().max(1));
-        let width = drawings.iter().map(|drawing| drawing.width).fold(1.0, f64::max);
-        let height = drawings.iter().map(|drawing| drawing.height).fold(1.0, f64::max);
+        let width = drawings
+            .iter()
+            .map(|drawing| drawing.width)
+            .fold(1.0, f64::max);
+        let height = drawings
+            .iter()
+            .map(|drawing| drawing.height)
+            .fold(1.0, f64::max);
         let body = html! {
             @for (index, drawing) in drawings.iter().enumerate() {
                 g transform={ "translate(" (px((index % columns) as f64 * width)) " " (px((index / columns) as f64 * height)) ")" } { (drawing.body) }
             }
         };
-        let labels: Vec<&str> = drawings.iter().map(|drawing| drawing.label.as_str()).filter(|label| !label.is_empty()).collect();
+        let labels: Vec<&str> = drawings
+            .iter()
+            .map(|drawing| drawing.label.as_str())
+            .filter(|label| !label.is_empty())
+            .collect();
         let rows = drawings.len().div_ceil(columns).max(1);
-        Self { width: columns as f64 * width, height: rows as f64 * height, label: labels.join("; "), body }
+        Self {
+            width: columns as f64 * width,
+            height: rows as f64 * height,
+            label: labels.join("; "),
+            body,
+        }
     }
 
     /// The same under a title.
@@ -72,7 +94,11 @@ impl Drawing {
             (Text { weight: Weight::Bold, ..Text::at([12.0, 21.0], title) }.sized(TITLE))
             g transform={ "translate(0 " (px(head)) ")" } { (self.body) }
         };
-        Self { height: self.height + head, body, ..self }
+        Self {
+            height: self.height + head,
+            body,
+            ..self
+        }
     }
 }
 
@@ -98,7 +124,13 @@ pub(crate) struct Text<'a> {
 impl<'a> Text<'a> {
     /// Text that begins at a point (px).
     pub fn at(at: [f64; 2], text: &'a str) -> Self {
-        Self { at, text, anchor: Anchor::Start, weight: Weight::Regular, upright: false }
+        Self {
+            at,
+            text,
+            anchor: Anchor::Start,
+            weight: Weight::Regular,
+            upright: false,
+        }
     }
 
     /// As an element, in a font size (px).
@@ -111,7 +143,10 @@ impl<'a> Text<'a> {
         let mut parts = self.text.split('_');
         let first = parts.next().unwrap_or_default();
         let drop = px(0.22 * size);
-        let index = |part: &str| part.find(|letter: char| !letter.is_alphanumeric()).unwrap_or(part.len());
+        let index = |part: &str| {
+            part.find(|letter: char| !letter.is_alphanumeric())
+                .unwrap_or(part.len())
+        };
         let content = html! {
             (first)
             @for (index, rest) in parts.map(|part| part.split_at(index(part))) {
@@ -143,7 +178,11 @@ impl<'a> Text<'a> {
 pub(crate) fn px(value: f64) -> String {
     let text = format!("{:.2}", if value.is_finite() { value } else { 0.0 });
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
 }
 
 /// The path through points (px), closed or open; broken where a number is not finite.
@@ -174,21 +213,38 @@ mod tests {
 
     #[test]
     fn px_is_short_and_always_a_number() {
-        assert_eq!([1.0, -0.001, 2.345_1, f64::NAN, -12.5, 100.0].map(px), ["1", "0", "2.35", "0", "-12.5", "100"]);
+        assert_eq!(
+            [1.0, -0.001, 2.345_1, f64::NAN, -12.5, 100.0].map(px),
+            ["1", "0", "2.35", "0", "-12.5", "100"]
+        );
     }
 
     #[test]
     fn path_breaks_where_a_number_is_missing() {
-        let points = [[0.0, 0.0], [1.0, 1.0], [2.0, f64::NAN], [3.0, 1.0], [4.0, 0.0]];
+        let points = [
+            [0.0, 0.0],
+            [1.0, 1.0],
+            [2.0, f64::NAN],
+            [3.0, 1.0],
+            [4.0, 0.0],
+        ];
         assert_eq!(path(points, false), "M0 0L1 1M3 1L4 0");
         assert_eq!(path([], true), "");
     }
 
     #[test]
     fn grid_puts_drawings_row_by_row() {
-        let cell = |label: &str| Drawing { width: 10.0, height: 20.0, label: label.to_owned(), body: html! {} };
+        let cell = |label: &str| Drawing {
+            width: 10.0,
+            height: 20.0,
+            label: label.to_owned(),
+            body: html! {},
+        };
         let grid = Drawing::grid(&[cell("a"), cell("b"), cell("c")], 2);
-        assert_eq!((grid.width, grid.height, grid.label.as_str()), (20.0, 40.0, "a; b; c"));
+        assert_eq!(
+            (grid.width, grid.height, grid.label.as_str()),
+            (20.0, 40.0, "a; b; c")
+        );
         assert!(grid.to_svg().contains(r#"<g transform="translate(0 20)">"#));
     }
 }

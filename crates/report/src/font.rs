@@ -1,4 +1,5 @@
-//! The fonts of every figure, Roboto in two weights (`crates/report/fonts/`), and how wide text is in them.
+//! The fonts of every figure, Roboto in two weights (`crates/report/fonts/`), and how wide text is
+//! in them.
 
 use std::sync::LazyLock;
 
@@ -20,9 +21,11 @@ pub(crate) enum Weight {
     Bold,
 }
 
-static FACES: LazyLock<[Option<Face<'static>>; 2]> = LazyLock::new(|| [REGULAR, BOLD].map(|font| Face::parse(font, 0).ok()));
+static FACES: LazyLock<[Option<Face<'static>>; 2]> =
+    LazyLock::new(|| [REGULAR, BOLD].map(|font| Face::parse(font, 0).ok()));
 
-/// Width of a line of text (px) at a font size (px); letters that the font lacks count as half the size.
+/// Width of a line of text (px) at a font size (px); letters that the font lacks count as half the
+/// size.
 pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
     let face = FACES[weight as usize].as_ref();
     let advance = |letter: char| {
@@ -30,7 +33,9 @@ pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
         let units = face.glyph_hor_advance(face.glyph_index(letter)?)?;
         Some(f64::from(units) / f64::from(face.units_per_em()))
     };
-    size * text.chars().fold(0.0, |sum, letter| sum + advance(letter).unwrap_or(0.5))
+    size * text
+        .chars()
+        .fold(0.0, |sum, letter| sum + advance(letter).unwrap_or(0.5))
 }
 
 #[cfg(test)]

@@ -47,7 +47,11 @@ impl Legend {
             placed.push(([left + at[0], top + at[1]], swatch, name));
             at[0] += needed + GAP;
         }
-        let height = if placed.is_empty() { 0.0 } else { at[1] + LINE_HEIGHT };
+        let height = if placed.is_empty() {
+            0.0
+        } else {
+            at[1] + LINE_HEIGHT
+        };
         (
             html! { @for ([x, y], swatch, name) in placed { (swatch.draw([x, y])) (Text::at([x + SWATCH + 8.0, y + 15.0], name).sized(LABEL)) } },
             height,

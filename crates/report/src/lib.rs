@@ -1,7 +1,9 @@
-//! Figures, tables and the self-contained HTML report of pushing experiments. Nothing here computes an estimate or opens a file.
+//! Figures, tables and the self-contained HTML report of pushing experiments. Nothing here computes
+//! an estimate or opens a file.
 //!
-//! Figures are drawn as SVG straight from the numbers: they are small, keep their text, take on the colours of the page that holds
-//! them, and the same code draws bodies on camera images. [`png_of`] turns them into pixels.
+//! Figures are drawn as SVG straight from the numbers: they are small, keep their text, take on the
+//! colours of the page that holds them, and the same code draws bodies on camera images. [`png_of`]
+//! turns them into pixels.
 
 mod axis;
 mod cloud_sample;

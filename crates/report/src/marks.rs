@@ -37,22 +37,44 @@ struct Name {
     line: usize,
 }
 
-/// Centres each name over its event as far as the axis has room, on the lowest line where it covers no other one.
+/// Centres each name over its event as far as the axis has room, on the lowest line where it covers
+/// no other one.
 pub(crate) fn place(marks: &[Mark], axis: &Axis) -> Names {
     let [from, to] = axis.limits;
-    let mut shown: Vec<&Mark> = marks.iter().filter(|mark| (from..=to).contains(&mark.time) && !mark.name.is_empty()).collect();
+    let mut shown: Vec<&Mark> = marks
+        .iter()
+        .filter(|mark| (from..=to).contains(&mark.time) && !mark.name.is_empty())
+        .collect();
     shown.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut placed: Vec<Name> = Vec::new();
     for mark in shown {
         let half_width = 0.5 * 1.06 * width(&mark.name, SIZE, Weight::Regular);
         let [left, right] = axis.pixels;
-        let centre = axis.at(mark.time).min(right - half_width).max(left + half_width);
-        let covers = |other: &Name| (other.centre - centre).abs() < other.half_width + half_width + GAP;
-        let line = (0..).find(|line| !placed.iter().any(|other| other.line == *line && covers(other))).unwrap_or(0);
-        placed.push(Name { text: mark.name.clone(), centre, half_width, line });
+        let centre = axis
+            .at(mark.time)
+            .min(right - half_width)
+            .max(left + half_width);
+        let covers =
+            |other: &Name| (other.centre - centre).abs() < other.half_width + half_width + GAP;
+        let line = (0..)
+            .find(|line| {
+                !placed
+                    .iter()
+                    .any(|other| other.line == *line && covers(other))
+            })
+            .unwrap_or(0);
+        placed.push(Name {
+            text: mark.name.clone(),
+            centre,
+            half_width,
+            line,
+        });
     }
     let lines = placed.iter().map(|name| name.line + 1).max().unwrap_or(0);
-    Names { placed, height: lines as f64 * MARK_LINE }
+    Names {
+        placed,
+        height: lines as f64 * MARK_LINE,
+    }
 }
 
 impl Names {
@@ -74,13 +96,35 @@ mod tests {
 
     #[test]
     fn place_keeps_names_apart_and_on_the_axis() {
-        let axis = Axis { scale: Scale::Linear, limits: [0.0, 10.0], pixels: [50.0, 650.0] };
-        let mark = |time: f64, name: &str| Mark { time, name: name.to_owned() };
-        let marks = [mark(9.99, "fixel 3"), mark(5.0, "pusher"), mark(5.1, "fixel 1"), mark(5.2, "fixel 2"), mark(11.0, "later")];
+        let axis = Axis {
+            scale: Scale::Linear,
+            limits: [0.0, 10.0],
+            pixels: [50.0, 650.0],
+        };
+        let mark = |time: f64, name: &str| Mark {
+            time,
+            name: name.to_owned(),
+        };
+        let marks = [
+            mark(9.99, "fixel 3"),
+            mark(5.0, "pusher"),
+            mark(5.1, "fixel 1"),
+            mark(5.2, "fixel 2"),
+            mark(11.0, "later"),
+        ];
         let names = place(&marks, &axis);
         assert_eq!(
-            names.placed.iter().map(|name| (name.text.as_str(), name.line)).collect::<Vec<_>>(),
-            [("pusher", 0), ("fixel 1", 1), ("fixel 2", 2), ("fixel 3", 0)]
+            names
+                .placed
+                .iter()
+                .map(|name| (name.text.as_str(), name.line))
+                .collect::<Vec<_>>(),
+            [
+                ("pusher", 0),
+                ("fixel 1", 1),
+                ("fixel 2", 2),
+                ("fixel 3", 0)
+            ]
         );
         assert_eq!(names.height, 3.0 * MARK_LINE);
         let last = &names.placed[3];

@@ -18,14 +18,32 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The outline of a shape in its own frame; no piece of a line is longer than `piece` (m), which may be infinite.
+    /// The outline of a shape in its own frame; no piece of a line is longer than `piece` (m),
+    /// which may be infinite.
     #[must_use]
     pub fn new(shape: &Shape, piece: f64) -> Self {
         let seamless = shape.parts().len() == 1;
-        let longest = if seamless { piece } else { piece.min(0.02 * shape.bounding_radius()) };
-        let areas: Vec<Vec<[f64; 2]>> = shape.parts().iter().map(|part| split(&corners(part), longest)).collect();
-        let lines = areas.iter().enumerate().flat_map(|(own, area)| if seamless { vec![closed(area)] } else { visible(shape, own, area) });
-        Self { lines: lines.collect(), areas: areas.clone() }
+        let longest = if seamless {
+            piece
+        } else {
+            piece.min(0.02 * shape.bounding_radius())
+        };
+        let areas: Vec<Vec<[f64; 2]>> = shape
+            .parts()
+            .iter()
+            .map(|part| split(&corners(part), longest))
+            .collect();
+        let lines = areas.iter().enumerate().flat_map(|(own, area)| {
+            if seamless {
+                vec![closed(area)]
+            } else {
+                visible(shape, own, area)
+            }
+        });
+        Self {
+            lines: lines.collect(),
+            areas: areas.clone(),
+        }
     }
 
     /// The outline of a body at a pose.
@@ -37,8 +55,16 @@ impl Outline {
     /// Every point mapped; those that have no image are left out.
     #[must_use]
     pub fn mapped(&self, map: &dyn Fn([f64; 2]) -> Option<[f64; 2]>) -> Self {
-        let each = |lines: &[Vec<[f64; 2]>]| lines.iter().map(|line| line.iter().filter_map(|point| map(*point)).collect()).collect();
-        Self { areas: each(&self.areas), lines: each(&self.lines) }
+        let each = |lines: &[Vec<[f64; 2]>]| {
+            lines
+                .iter()
+                .map(|line| line.iter().filter_map(|point| map(*point)).collect())
+                .collect()
+        };
+        Self {
+            areas: each(&self.areas),
+            lines: each(&self.lines),
+        }
     }
 
     /// Corners of a box that holds it; `None` of nothing.
@@ -60,8 +86,14 @@ pub(crate) fn bounds(points: impl Iterator<Item = [f64; 2]>) -> Option<[[f64; 2]
 fn corners(part: &Part) -> Vec<[f64; 2]> {
     match part {
         Part::Polygon { vertices } => vertices.clone(),
-        Part::Disc { radius, centre } => ellipse([*radius; 2], &Pose::new(centre[0], centre[1], 0.0)),
-        Part::Ellipse { semi_axes, centre, angle } => ellipse(*semi_axes, &Pose::new(centre[0], centre[1], *angle)),
+        Part::Disc { radius, centre } => {
+            ellipse([*radius; 2], &Pose::new(centre[0], centre[1], 0.0))
+        }
+        Part::Ellipse {
+            semi_axes,
+            centre,
+            angle,
+        } => ellipse(*semi_axes, &Pose::new(centre[0], centre[1], *angle)),
     }
 }
 
@@ -77,7 +109,9 @@ fn ellipse([a, b]: [f64; 2], pose: &Pose) -> Vec<[f64; 2]> {
 fn split(corners: &[[f64; 2]], longest: f64) -> Vec<[f64; 2]> {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
     let points = edges.flat_map(|([x0, y0], [x1, y1])| {
-        let pieces = ((x1 - x0).hypot(y1 - y0) / longest).ceil().clamp(1.0, 1000.0);
+        let pieces = ((x1 - x0).hypot(y1 - y0) / longest)
+            .ceil()
+            .clamp(1.0, 1000.0);
         (0..pieces as u32).map(move |k| {
             let share = f64::from(k) / pieces;
             [x0 + share * (x1 - x0), y0 + share * (y1 - y0)]
@@ -97,8 +131,16 @@ fn visible(shape: &Shape, own: usize, area: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     for (start, end) in area.iter().zip(area.iter().cycle().skip(1)) {
         let (dx, dy) = (end[0] - start[0], end[1] - start[1]);
         let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
-        let outside = [0.5 * (start[0] + end[0]) + beside * dy / length, 0.5 * (start[1] + end[1]) - beside * dx / length];
-        if shape.parts().iter().enumerate().any(|(part, other)| part != own && holds(other, outside)) {
+        let outside = [
+            0.5 * (start[0] + end[0]) + beside * dy / length,
+            0.5 * (start[1] + end[1]) - beside * dx / length,
+        ];
+        if shape
+            .parts()
+            .iter()
+            .enumerate()
+            .any(|(part, other)| part != own && holds(other, outside))
+        {
             continue;
         }
         match lines.last_mut() {
@@ -114,10 +156,16 @@ fn holds(part: &Part, [x, y]: [f64; 2]) -> bool {
     match part {
         Part::Polygon { vertices } => {
             let edges = vertices.iter().zip(vertices.iter().cycle().skip(1));
-            edges.into_iter().all(|([x0, y0], [x1, y1])| (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) >= 0.0)
+            edges
+                .into_iter()
+                .all(|([x0, y0], [x1, y1])| (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) >= 0.0)
         }
         Part::Disc { radius, centre } => (x - centre[0]).hypot(y - centre[1]) <= *radius,
-        Part::Ellipse { semi_axes: [a, b], centre, angle } => {
+        Part::Ellipse {
+            semi_axes: [a, b],
+            centre,
+            angle,
+        } => {
             let [u, v] = Pose::new(0.0, 0.0, -angle).rotate([x - centre[0], y - centre[1]]);
             (u / a).hypot(v / b) <= 1.0
         }
@@ -129,18 +177,41 @@ mod tests {
     use super::*;
 
     fn length(lines: &[Vec<[f64; 2]>]) -> f64 {
-        lines.iter().flat_map(|line| line.windows(2)).map(|ends| (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1])).sum()
+        lines
+            .iter()
+            .flat_map(|line| line.windows(2))
+            .map(|ends| (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]))
+            .sum()
     }
 
     fn box_at(left: f64, width: f64) -> Part {
-        Part::Polygon { vertices: vec![[left, 0.0], [left + width, 0.0], [left + width, 1.0], [left, 1.0]] }
+        Part::Polygon {
+            vertices: vec![
+                [left, 0.0],
+                [left + width, 0.0],
+                [left + width, 1.0],
+                [left, 1.0],
+            ],
+        }
     }
 
     #[test]
     fn outline_of_one_part_is_its_boundary() {
         let square = Outline::new(&Shape::new(vec![box_at(0.0, 1.0)]).unwrap(), f64::INFINITY);
-        assert_eq!(square.lines, [vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]]]);
-        let disc = Part::Disc { radius: 2.0, centre: [1.0, 0.0] };
+        assert_eq!(
+            square.lines,
+            [vec![
+                [0.0, 0.0],
+                [1.0, 0.0],
+                [1.0, 1.0],
+                [0.0, 1.0],
+                [0.0, 0.0]
+            ]]
+        );
+        let disc = Part::Disc {
+            radius: 2.0,
+            centre: [1.0, 0.0],
+        };
         let disc = Outline::new(&Shape::new(vec![disc]).unwrap(), f64::INFINITY);
         assert_eq!(disc.bounds().unwrap()[1][0], 3.0);
         assert!((length(&disc.lines) / (4.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3);
@@ -148,11 +219,19 @@ mod tests {
 
     #[test]
     fn outline_leaves_seams_out() {
-        // two squares side by side: the circumference of a 2 x 1 box, without the edge that they share
+        // two squares side by side: the circumference of a 2 x 1 box, without the edge that they
+        // share
         let boxes = Shape::new(vec![box_at(0.0, 1.0), box_at(1.0, 1.0)]).unwrap();
         assert!((length(&Outline::new(&boxes, f64::INFINITY).lines) - 6.0).abs() < 1e-9);
         // a disc half sunk into a square: the square less its diameter, and half of the disc
-        let sunk = Shape::new(vec![box_at(0.0, 1.0), Part::Disc { radius: 0.25, centre: [1.0, 0.5] }]).unwrap();
+        let sunk = Shape::new(vec![
+            box_at(0.0, 1.0),
+            Part::Disc {
+                radius: 0.25,
+                centre: [1.0, 0.5],
+            },
+        ])
+        .unwrap();
         let expected = 4.0 - 0.5 + 0.25 * std::f64::consts::PI;
         assert!((length(&Outline::new(&sunk, f64::INFINITY).lines) - expected).abs() < 0.03);
     }
@@ -163,7 +242,12 @@ mod tests {
         assert_eq!(square.areas[0].len(), 8);
         let turned = square.at(&Pose::new(10.0, 0.0, std::f64::consts::FRAC_PI_2));
         let [[left, low], [right, high]] = turned.bounds().unwrap();
-        assert!((left - 9.0).abs() < 1e-12 && low.abs() < 1e-12 && (right - 10.0).abs() < 1e-12 && (high - 1.0).abs() < 1e-12);
+        assert!(
+            (left - 9.0).abs() < 1e-12
+                && low.abs() < 1e-12
+                && (right - 10.0).abs() < 1e-12
+                && (high - 1.0).abs() < 1e-12
+        );
         assert!(square.mapped(&|_| None).bounds().is_none());
     }
 }

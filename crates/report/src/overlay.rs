@@ -1,4 +1,5 @@
-//! Poses over each other: [`Overlay`], bodies of one or several estimates in the plane or on a camera image.
+//! Poses over each other: [`Overlay`], bodies of one or several estimates in the plane or on a
+//! camera image.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -24,7 +25,8 @@ pub struct Overlay {
     pub title: String,
     /// Bodies, the lowest one first.
     pub bodies: Vec<Body>,
-    /// What is shown of the plane: two corners (m); `None`: all bodies. On an image: what is shown of the image, in its pixels.
+    /// What is shown of the plane: two corners (m); `None`: all bodies. On an image: what is shown
+    /// of the image, in its pixels.
     pub view: Option<[[f64; 2]; 2]>,
     /// Width of the picture (px).
     pub width: f64,
@@ -51,7 +53,8 @@ pub struct Body {
 pub struct CameraImage<'a> {
     /// The image as PNG.
     pub png: &'a [u8],
-    /// The pixel at which a point of the plane (m) is seen: right of the left edge, down from the top edge; `None` where it is not.
+    /// The pixel at which a point of the plane (m) is seen: right of the left edge, down from the
+    /// top edge; `None` where it is not.
     pub pixel: &'a dyn Fn([f64; 2]) -> Option<[f64; 2]>,
 }
 
@@ -62,13 +65,20 @@ pub struct ImageError;
 
 impl std::fmt::Debug for CameraImage<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CameraImage").field("png", &self.png.len()).finish_non_exhaustive()
+        f.debug_struct("CameraImage")
+            .field("png", &self.png.len())
+            .finish_non_exhaustive()
     }
 }
 
 impl Default for Overlay {
     fn default() -> Self {
-        Self { title: String::new(), bodies: Vec::new(), view: None, width: 480.0 }
+        Self {
+            title: String::new(),
+            bodies: Vec::new(),
+            view: None,
+            width: 480.0,
+        }
     }
 }
 
@@ -77,7 +87,14 @@ impl Body {
     #[must_use]
     pub fn new(name: &str, shape: &Shape, pose: &Pose, colour: Colour) -> Self {
         let outline = Outline::new(shape, PIECE).at(pose);
-        Self { name: name.to_owned(), tag: String::new(), outline, colour, line: Line::Solid, opacity: 0.0 }
+        Self {
+            name: name.to_owned(),
+            tag: String::new(),
+            outline,
+            colour,
+            line: Line::Solid,
+            opacity: 0.0,
+        }
     }
 
     /// The same, drawn with this line.
@@ -99,8 +116,15 @@ impl Body {
             tag: (k + 1).to_string(),
             ..Self::new("", &fixel.shape, &fixel.pose, Colour::INK).filled(0.25)
         };
-        let pusher = pusher.map(|pose| Self::new("", &scene.pusher.shape, pose, Colour::INK).filled(0.45));
-        scene.fixels.iter().enumerate().map(fixel).chain(pusher).collect()
+        let pusher =
+            pusher.map(|pose| Self::new("", &scene.pusher.shape, pose, Colour::INK).filled(0.45));
+        scene
+            .fixels
+            .iter()
+            .enumerate()
+            .map(fixel)
+            .chain(pusher)
+            .collect()
     }
 }
 
@@ -133,7 +157,12 @@ impl Overlay {
     /// Corners of what holds all bodies, with some room (m).
     #[must_use]
     pub fn whole_view(&self) -> [[f64; 2]; 2] {
-        let all = bounds(self.bodies.iter().filter_map(|body| body.outline.bounds()).flatten());
+        let all = bounds(
+            self.bodies
+                .iter()
+                .filter_map(|body| body.outline.bounds())
+                .flatten(),
+        );
         with_room(all.unwrap_or([[-0.05, -0.05], [0.05, 0.05]]))
     }
 
@@ -146,19 +175,34 @@ impl Overlay {
         let [[left, top], [right, bottom]] = self.view.unwrap_or([[0.0, 0.0], [columns, rows]]);
         let inner = self.width - 2.0 * MARGIN;
         let scale = inner / (right - left).max(1e-9);
-        let map = |point| (image.pixel)(point).map(|[x, y]| [scale * (x - left), scale * (y - top)]);
-        let href = format!("data:image/png;base64,{}", BASE64_STANDARD.encode(image.png));
+        let map =
+            |point| (image.pixel)(point).map(|[x, y]| [scale * (x - left), scale * (y - top)]);
+        let href = format!(
+            "data:image/png;base64,{}",
+            BASE64_STANDARD.encode(image.png)
+        );
         let background = html! {
             image x=(px(-scale * left)) y=(px(-scale * top)) width=(px(scale * columns)) height=(px(scale * rows)) href=(href) {}
         };
         Ok(self.framed([inner, scale * (bottom - top)], background, 0.0, &map))
     }
 
-    /// Title, the picture in its frame, legend. `scale` is that of the plane (px/m), 0 where there is none.
-    fn framed(&self, [width, height]: [f64; 2], background: Markup, scale: f64, map: &dyn Fn([f64; 2]) -> Option<[f64; 2]>) -> Drawing {
+    /// Title, the picture in its frame, legend. `scale` is that of the plane (px/m), 0 where there
+    /// is none.
+    fn framed(
+        &self,
+        [width, height]: [f64; 2],
+        background: Markup,
+        scale: f64,
+        map: &dyn Fn([f64; 2]) -> Option<[f64; 2]>,
+    ) -> Drawing {
         let head = if self.title.is_empty() { MARGIN } else { 34.0 };
         let foot = head + height + 8.0;
-        let (bar, room) = if scale > 0.0 { scale_bar(scale, [MARGIN + width, foot], width) } else { (html! {}, 0.0) };
+        let (bar, room) = if scale > 0.0 {
+            scale_bar(scale, [MARGIN + width, foot], width)
+        } else {
+            (html! {}, 0.0)
+        };
         let (legend, legend_height) = self.legend().draw([MARGIN, foot], width - room);
         let body = html! {
             (Text { weight: Weight::Bold, ..Text::at([MARGIN, 23.0], &self.title) }.sized(TITLE))
@@ -170,12 +214,19 @@ impl Overlay {
             (legend)
             (bar)
         };
-        Drawing { width: self.width, height: foot + legend_height.max(24.0), label: self.title.clone(), body }
+        Drawing {
+            width: self.width,
+            height: foot + legend_height.max(24.0),
+            label: self.title.clone(),
+            body,
+        }
     }
 
     fn legend(&self) -> Legend {
         let mut legend = Legend::default();
-        self.bodies.iter().for_each(|body| legend.push(Swatch::Line(body.colour, body.line), &body.name));
+        self.bodies
+            .iter()
+            .for_each(|body| legend.push(Swatch::Line(body.colour, body.line), &body.name));
         legend
     }
 }
@@ -183,9 +234,22 @@ impl Overlay {
 impl Body {
     /// It drawn with an outline in pixels.
     fn draw(&self, outline: &Outline) -> Markup {
-        let area: String = outline.areas.iter().map(|area| path(area.iter().copied(), true)).collect();
-        let boundary: String = outline.lines.iter().map(|line| path(line.iter().copied(), false)).collect();
-        let middle = outline.bounds().map(|[low, high]| [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]) + 0.35 * LABEL]);
+        let area: String = outline
+            .areas
+            .iter()
+            .map(|area| path(area.iter().copied(), true))
+            .collect();
+        let boundary: String = outline
+            .lines
+            .iter()
+            .map(|line| path(line.iter().copied(), false))
+            .collect();
+        let middle = outline.bounds().map(|[low, high]| {
+            [
+                0.5 * (low[0] + high[0]),
+                0.5 * (low[1] + high[1]) + 0.35 * LABEL,
+            ]
+        });
         html! {
             path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
             path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round"
@@ -207,19 +271,29 @@ fn with_room([[left, low], [right, high]]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
 fn grid(left: f64, high: f64, scale: f64, [width, height]: [f64; 2]) -> Markup {
     let step = 0.01;
     let count = (width.max(height) / (scale * step)).min(500.0) as u32;
-    let [first_x, first_y] = [(left / step).ceil() * step - left, high - (high / step).floor() * step];
+    let [first_x, first_y] = [
+        (left / step).ceil() * step - left,
+        high - (high / step).floor() * step,
+    ];
     let across = (0..=count).map(|k| scale * (first_x + step * f64::from(k)));
     let down = (0..=count).map(|k| scale * (first_y + step * f64::from(k)));
-    let lines: String =
-        across.map(|x| path([[x, 0.0], [x, height]], false)).chain(down.map(|y| path([[0.0, y], [width, y]], false))).collect();
+    let lines: String = across
+        .map(|x| path([[x, 0.0], [x, height]], false))
+        .chain(down.map(|y| path([[0.0, y], [width, y]], false)))
+        .collect();
     html! { path class="grid" d=(lines) stroke=(GRID.hex()) fill="none" {} }
 }
 
-/// A bar of a round length that ends below the picture's right corner (px), with the length; and the width that it takes.
+/// A bar of a round length that ends below the picture's right corner (px), with the length; and
+/// the width that it takes.
 fn scale_bar(scale: f64, [right, top]: [f64; 2], width: f64) -> (Markup, f64) {
     let longest = 0.25 * 1e3 * width / scale;
     let power = libm::exp10(libm::log10(longest).floor());
-    let length = [5.0, 2.0, 1.0].into_iter().find(|factor| factor * power <= longest).unwrap_or(1.0) * power;
+    let length = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|factor| factor * power <= longest)
+        .unwrap_or(1.0)
+        * power;
     let (left, y) = (right - 1e-3 * length * scale, top + 6.0);
     let bar = html! {
         path class="axis" d=(path([[left, y], [right, y]], false)) stroke=(Colour::INK.hex()) stroke-width="3" {}
@@ -230,7 +304,11 @@ fn scale_bar(scale: f64, [right, top]: [f64; 2], width: f64) -> (Markup, f64) {
 
 /// Width and height in the header of a PNG file.
 fn png_size(png: &[u8]) -> Option<[f64; 2]> {
-    let header = png.strip_prefix(b"\x89PNG\r\n\x1a\n")?.strip_prefix(&[0, 0, 0, 13])?.strip_prefix(b"IHDR")?;
+    let header = png
+        .strip_prefix(b"\x89PNG\r\n\x1a\n")?
+        .strip_prefix(&[0, 0, 0, 13])?
+        .strip_prefix(b"IHDR")?;
     let number = |at: usize| Some(u32::from_be_bytes(header.get(at..at + 4)?.try_into().ok()?));
-    Some([f64::from(number(0)?), f64::from(number(4)?)]).filter(|size| size.iter().all(|length| *length > 0.0))
+    Some([f64::from(number(0)?), f64::from(number(4)?)])
+        .filter(|size| size.iter().all(|length| *length > 0.0))
 }

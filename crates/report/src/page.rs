@@ -54,7 +54,11 @@ impl Report {
     /// The page as HTML text, with styles, fonts, figures, data and script in it.
     #[must_use]
     pub fn to_html(&self) -> String {
-        let plays = self.sections.iter().flat_map(|section| &section.blocks).any(|block| matches!(block, Block::Playback(_)));
+        let plays = self
+            .sections
+            .iter()
+            .flat_map(|section| &section.blocks)
+            .any(|block| matches!(block, Block::Playback(_)));
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -118,5 +122,7 @@ fn fates(story: &Story) -> Markup {
 /// The style rule by which a font comes from the page itself.
 fn font_face(font: &[u8], weight: &str) -> String {
     let data = BASE64_STANDARD.encode(font);
-    format!("@font-face{{font-family:Roboto;font-weight:{weight};src:url(data:font/ttf;base64,{data}) format('truetype')}}\n")
+    format!(
+        "@font-face{{font-family:Roboto;font-weight:{weight};src:url(data:font/ttf;base64,{data}) format('truetype')}}\n"
+    )
 }

@@ -1,4 +1,5 @@
-//! A particle set at one instant: [`ParticleCloud`], each particle a point with a stroke along its heading.
+//! A particle set at one instant: [`ParticleCloud`], each particle a point with a stroke along its
+//! heading.
 
 use maud::{Markup, html};
 use stickslip_dynamics::Pose;
@@ -55,8 +56,16 @@ impl ParticleCloud {
         let top = title + legend_height + 8.0;
         let (x_limits, y_limits) = self.limits();
         let plot = Plot {
-            x: Axis { scale: Scale::Linear, limits: x_limits, pixels: [LEFT, LEFT + side] },
-            y: Axis { scale: Scale::Linear, limits: y_limits, pixels: [top + side, top] },
+            x: Axis {
+                scale: Scale::Linear,
+                limits: x_limits,
+                pixels: [LEFT, LEFT + side],
+            },
+            y: Axis {
+                scale: Scale::Linear,
+                limits: y_limits,
+                pixels: [top + side, top],
+            },
             x_label: "x \u{2212} estimate (mm)",
             y_label: "y \u{2212} estimate (mm)",
         };
@@ -70,18 +79,30 @@ impl ParticleCloud {
             (plot.axes())
             (plot.clipped(points))
         };
-        Drawing { width, height: top + side + BOTTOM, label: self.title.clone(), body }
+        Drawing {
+            width,
+            height: top + side + BOTTOM,
+            label: self.title.clone(),
+            body,
+        }
     }
 
     /// A pose from the centre (mm).
     fn relative(&self, pose: &Pose) -> [f64; 2] {
-        [1e3 * (pose.x - self.centre.x), 1e3 * (pose.y - self.centre.y)]
+        [
+            1e3 * (pose.x - self.centre.x),
+            1e3 * (pose.y - self.centre.y),
+        ]
     }
 
     /// The same length on both axes.
     fn limits(&self) -> ([f64; 2], [f64; 2]) {
-        let all = self.particles.iter().chain(self.compared.iter().map(|(.., pose)| pose));
-        let [[left, low], [right, high]] = bounds(all.map(|pose| self.relative(pose))).unwrap_or([[-1.0; 2], [1.0; 2]]);
+        let all = self
+            .particles
+            .iter()
+            .chain(self.compared.iter().map(|(.., pose)| pose));
+        let [[left, low], [right, high]] =
+            bounds(all.map(|pose| self.relative(pose))).unwrap_or([[-1.0; 2], [1.0; 2]]);
         let half = (0.6 * (right - left).max(high - low)).max(1e-3);
         let about = |low: f64, high: f64| [0.5 * (low + high) - half, 0.5 * (low + high) + half];
         (about(left, right), about(low, high))
@@ -102,8 +123,17 @@ impl ParticleCloud {
     fn legend(&self) -> Legend {
         let mut legend = Legend::default();
         let factor = self.turn_factor.max(1.0);
-        legend.push(Swatch::Bar(self.colour), &format!("{} particles (stroke: turn \u{d7} {})", self.particles.len(), px(factor)));
-        self.compared.iter().for_each(|(name, colour, _)| legend.push(Swatch::Bar(*colour), name));
+        legend.push(
+            Swatch::Bar(self.colour),
+            &format!(
+                "{} particles (stroke: turn \u{d7} {})",
+                self.particles.len(),
+                px(factor)
+            ),
+        );
+        self.compared
+            .iter()
+            .for_each(|(name, colour, _)| legend.push(Swatch::Bar(*colour), name));
         legend
     }
 }

@@ -41,7 +41,8 @@ pub struct Playback {
     pub marks: Vec<Mark>,
     /// Methods.
     pub methods: Vec<MethodTrack>,
-    /// In which order they are drawn, by number; those that agree cover each other. Methods that are not here follow.
+    /// In which order they are drawn, by number; those that agree cover each other. Methods that
+    /// are not here follow.
     pub lowest_first: Vec<usize>,
 }
 
@@ -69,17 +70,29 @@ pub struct MethodTrack {
     pub errors: Vec<PoseError>,
     /// Some of its particles, all of the same weight; empty for methods without.
     pub cloud: Vec<Vec<Pose>>,
-    /// Probabilities of contact with the pusher, then with each fixel (0 to 1); `None` where there are none.
+    /// Probabilities of contact with the pusher, then with each fixel (0 to 1); `None` where there
+    /// are none.
     pub contacts: Vec<Option<Vec<f64>>>,
 }
 
 impl MethodTrack {
-    /// The track of an estimate, beside the reference that it is scored against; `cloud` as [`crate::CloudSample::into_rows`] gives it.
+    /// The track of an estimate, beside the reference that it is scored against; `cloud` as
+    /// [`crate::CloudSample::into_rows`] gives it.
     #[must_use]
-    pub fn new(name: &str, colour: Colour, estimate: &Estimate, reference: &Reference, cloud: Vec<Vec<Pose>>) -> Self {
+    pub fn new(
+        name: &str,
+        colour: Colour,
+        estimate: &Estimate,
+        reference: &Reference,
+        cloud: Vec<Vec<Pose>>,
+    ) -> Self {
         let contacts = estimate.rows.iter().map(|row| {
             let fixels = row.contact_fixels.as_ref()?;
-            Some(std::iter::once(row.contact_pusher?).chain(fixels.iter().copied()).collect())
+            Some(
+                std::iter::once(row.contact_pusher?)
+                    .chain(fixels.iter().copied())
+                    .collect(),
+            )
         });
         Self {
             name: name.to_owned(),
@@ -93,11 +106,17 @@ impl MethodTrack {
 }
 
 impl Playback {
-    /// A log with what it is compared to; methods, true contacts, and marks are to be added. All rows are played back.
+    /// A log with what it is compared to; methods, true contacts, and marks are to be added. All
+    /// rows are played back.
     #[must_use]
     pub fn new(scene: &Scene, log: &Log, reference: &Reference, hidden: Vec<bool>) -> Self {
-        let touch = |name: String, sensed: Option<&Vec<Option<bool>>>| Touch { name, truth: None, sensed: sensed.cloned() };
-        let fixels = (0..scene.fixels.len()).map(|k| touch(format!("fixel {}", k + 1), log.tactile.get(k)));
+        let touch = |name: String, sensed: Option<&Vec<Option<bool>>>| Touch {
+            name,
+            truth: None,
+            sensed: sensed.cloned(),
+        };
+        let fixels =
+            (0..scene.fixels.len()).map(|k| touch(format!("fixel {}", k + 1), log.tactile.get(k)));
         Self {
             name: "the experiment".to_owned(),
             time: log.time.clone(),
@@ -105,12 +124,18 @@ impl Playback {
             poster: log.len().saturating_sub(1),
             object: Outline::new(&scene.object.shape, f64::INFINITY),
             pusher: Outline::new(&scene.pusher.shape, f64::INFINITY),
-            fixels: scene.fixels.iter().map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose)).collect(),
+            fixels: scene
+                .fixels
+                .iter()
+                .map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose))
+                .collect(),
             reference: reference.pose.clone(),
             reference_name: "truth".to_owned(),
             pusher_poses: log.pusher.clone(),
             hidden,
-            touches: std::iter::once(touch("pusher".to_owned(), None)).chain(fixels).collect(),
+            touches: std::iter::once(touch("pusher".to_owned(), None))
+                .chain(fixels)
+                .collect(),
             marks: Vec::new(),
             methods: Vec::new(),
             lowest_first: Vec::new(),

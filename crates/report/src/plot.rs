@@ -32,7 +32,10 @@ impl Plot<'_> {
     pub fn shades(&self, dark: &[[f64; 2]]) -> Markup {
         let [_, top, _, height] = self.frame();
         let [low, high] = self.x.limits;
-        let shown = dark.iter().map(|[from, to]| [from.max(low), to.min(high)]).filter(|[from, to]| from < to);
+        let shown = dark
+            .iter()
+            .map(|[from, to]| [from.max(low), to.min(high)])
+            .filter(|[from, to]| from < to);
         html! {
             @for [from, to] in shown {
                 @let (left, right) = (self.x.at(from), self.x.at(to));
@@ -73,21 +76,46 @@ impl Plot<'_> {
         }
     }
 
-    /// How far left of the axis its label stands: the same in every panel, unless the numbers need more.
+    /// How far left of the axis its label stands: the same in every panel, unless the numbers need
+    /// more.
     fn label_distance(&self, ticks: &[Tick]) -> f64 {
-        let widest = ticks.iter().map(|tick| width(&tick.label, LABEL, Weight::Regular)).fold(0.0, f64::max);
+        let widest = ticks
+            .iter()
+            .map(|tick| width(&tick.label, LABEL, Weight::Regular))
+            .fold(0.0, f64::max);
         (widest + 20.0).max(50.0)
     }
 
     fn grid(&self, ticks: &[Tick]) -> String {
         let [left, right] = self.x.pixels;
         let lines = ticks.iter().filter(|tick| !tick.label.is_empty());
-        lines.map(|tick| path([[left, self.y.at(tick.value)], [right, self.y.at(tick.value)]], false)).collect()
+        lines
+            .map(|tick| {
+                path(
+                    [
+                        [left, self.y.at(tick.value)],
+                        [right, self.y.at(tick.value)],
+                    ],
+                    false,
+                )
+            })
+            .collect()
     }
 
     fn tick_strokes(&self, ticks: &[Tick]) -> String {
         let bottom = self.y.pixels[0];
-        ticks.iter().map(|tick| path([[self.x.at(tick.value), bottom], [self.x.at(tick.value), bottom + 5.0]], false)).collect()
+        ticks
+            .iter()
+            .map(|tick| {
+                path(
+                    [
+                        [self.x.at(tick.value), bottom],
+                        [self.x.at(tick.value), bottom + 5.0],
+                    ],
+                    false,
+                )
+            })
+            .collect()
     }
 
     /// What is drawn in pixels of the whole drawing, cut off at the rectangle.
@@ -113,7 +141,11 @@ impl Plot<'_> {
 
     /// The area between a lower and an upper curve: (x, low, high) each.
     pub fn band(&self, band: &[[f64; 3]], colour: Colour) -> Markup {
-        let whole: Vec<[f64; 3]> = band.iter().copied().filter(|point| point.iter().all(|value| value.is_finite())).collect();
+        let whole: Vec<[f64; 3]> = band
+            .iter()
+            .copied()
+            .filter(|point| point.iter().all(|value| value.is_finite()))
+            .collect();
         let upper = whole.iter().map(|[x, _, high]| self.at([*x, *high]));
         let lower = whole.iter().rev().map(|[x, low, _]| self.at([*x, *low]));
         html! {

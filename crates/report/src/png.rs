@@ -15,7 +15,9 @@ pub enum PngError {
     #[error("the picture is no SVG: {0}; give the text of a whole SVG document")]
     NoSvg(String),
     /// The picture is too large.
-    #[error("a picture of {width} x {height} pixels cannot be held; draw it smaller or with a smaller scale")]
+    #[error(
+        "a picture of {width} x {height} pixels cannot be held; draw it smaller or with a smaller scale"
+    )]
     TooLarge {
         /// Width (px).
         width: u32,
@@ -38,20 +40,30 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// A figure as a PNG with twice as many pixels each way as the SVG has, in the program's own fonts on any machine.
+/// A figure as a PNG with twice as many pixels each way as the SVG has, in the program's own fonts
+/// on any machine.
 ///
 /// # Errors
 /// The text is no SVG, or its pixels could not be held.
 pub fn png_of(svg: &str) -> Result<Vec<u8>, PngError> {
-    let options = Options { fontdb: Arc::clone(&FONTS), font_family: "Roboto".to_owned(), ..Options::default() };
+    let options = Options {
+        fontdb: Arc::clone(&FONTS),
+        font_family: "Roboto".to_owned(),
+        ..Options::default()
+    };
     let tree = Tree::from_str(svg, &options).map_err(|error| PngError::NoSvg(error.to_string()))?;
     let size = tree.size();
-    let [width, height] = [size.width(), size.height()].map(|length| (SCALE * length).ceil() as u32);
+    let [width, height] =
+        [size.width(), size.height()].map(|length| (SCALE * length).ceil() as u32);
     let too_large = PngError::TooLarge { width, height };
     if u64::from(width) * u64::from(height) > LARGEST {
         return Err(too_large);
     }
     let mut pixels = Pixmap::new(width, height).ok_or_else(|| too_large.clone())?;
-    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    resvg::render(
+        &tree,
+        Transform::from_scale(SCALE, SCALE),
+        &mut pixels.as_mut(),
+    );
     pixels.encode_png().map_err(|_| too_large)
 }

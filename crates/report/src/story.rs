@@ -1,6 +1,7 @@
 //! An experiment in a few plain sentences, made from numbers: [`Story`].
 
-/// WMSE up to which a method kept track of an object (mm): twice the resolution of the paper's camera.
+/// WMSE up to which a method kept track of an object (mm): twice the resolution of the paper's
+/// camera.
 pub const KEPT_MM: f64 = 2.0;
 
 /// WMSE from which it lost the object (mm).
@@ -67,7 +68,9 @@ impl Fate {
     /// The rule behind the words.
     #[must_use]
     pub fn rule() -> String {
-        format!("Kept track: WMSE of at most {KEPT_MM:.0} mm; lost it: more than {LOST_MM:.0} mm; drifted: between.")
+        format!(
+            "Kept track: WMSE of at most {KEPT_MM:.0} mm; lost it: more than {LOST_MM:.0} mm; drifted: between."
+        )
     }
 }
 
@@ -76,8 +79,15 @@ impl Story {
     #[must_use]
     pub fn sentences(&self) -> Vec<String> {
         let what = (!self.what.is_empty()).then(|| format!("{}.", self.title()));
-        let fates = self.fates().into_iter().map(|(fate, names)| format!("{}: {names}.", fate.name()));
-        what.into_iter().chain([self.darkness()]).chain(fates).chain(self.seen()).collect()
+        let fates = self
+            .fates()
+            .into_iter()
+            .map(|(fate, names)| format!("{}: {names}.", fate.name()));
+        what.into_iter()
+            .chain([self.darkness()])
+            .chain(fates)
+            .chain(self.seen())
+            .collect()
     }
 
     /// What moves, with a capital; empty where nobody knows.
@@ -89,52 +99,87 @@ impl Story {
     /// When the camera was dark.
     #[must_use]
     pub fn darkness(&self) -> String {
-        let Some([from, to]) = self.dark else { return "The camera sees the object all the time.".to_owned() };
+        let Some([from, to]) = self.dark else {
+            return "The camera sees the object all the time.".to_owned();
+        };
         let contact = match self.first_fixel.map(|contact| contact - from) {
-            Some(ahead) if ahead >= 0.0 => format!(", {ahead:.1} s before the object first touches a fixel,"),
+            Some(ahead) if ahead >= 0.0 => {
+                format!(", {ahead:.1} s before the object first touches a fixel,")
+            }
             Some(after) => format!(", {:.1} s after the object first touched a fixel,", -after),
             None => String::new(),
         };
-        let end = if to >= self.duration - 0.1 { "stays dark to the end".to_owned() } else { format!("is back at {to:.1} s") };
+        let end = if to >= self.duration - 0.1 {
+            "stays dark to the end".to_owned()
+        } else {
+            format!("is back at {to:.1} s")
+        };
         format!("At {from:.1} s{contact} the camera goes dark; it {end}.")
     }
 
-    /// The methods by their fates, those that saw everything left out: "particle filter (0.12 mm), nominal simulation (0.30 mm)".
+    /// The methods by their fates, those that saw everything left out: "particle filter (0.12 mm),
+    /// nominal simulation (0.30 mm)".
     #[must_use]
     pub fn fates(&self) -> Vec<(Fate, String)> {
-        let mut blind: Vec<&Outcome> = self.outcomes.iter().filter(|outcome| !outcome.saw_all).collect();
-        blind.sort_by(|a, b| a.wmse_mm.unwrap_or(f64::INFINITY).total_cmp(&b.wmse_mm.unwrap_or(f64::INFINITY)));
+        let mut blind: Vec<&Outcome> = self
+            .outcomes
+            .iter()
+            .filter(|outcome| !outcome.saw_all)
+            .collect();
+        blind.sort_by(|a, b| {
+            a.wmse_mm
+                .unwrap_or(f64::INFINITY)
+                .total_cmp(&b.wmse_mm.unwrap_or(f64::INFINITY))
+        });
         let listed = |fate: Fate| {
-            let named = blind.iter().filter(|outcome| Fate::of(outcome.wmse_mm) == fate).map(|outcome| outcome.named());
+            let named = blind
+                .iter()
+                .filter(|outcome| Fate::of(outcome.wmse_mm) == fate)
+                .map(|outcome| outcome.named());
             (fate, named.collect::<Vec<_>>().join(", "))
         };
-        [Fate::Kept, Fate::Drifted, Fate::Lost].map(listed).into_iter().filter(|(_, names)| !names.is_empty()).collect()
+        [Fate::Kept, Fate::Drifted, Fate::Lost]
+            .map(listed)
+            .into_iter()
+            .filter(|(_, names)| !names.is_empty())
+            .collect()
     }
 
     /// How well the object could be known.
     #[must_use]
     pub fn seen(&self) -> Option<String> {
         let outcome = self.outcomes.iter().find(|outcome| outcome.saw_all)?;
-        Some(format!("With the camera always on: {}.", millimetres(outcome.wmse_mm?)))
+        Some(format!(
+            "With the camera always on: {}.",
+            millimetres(outcome.wmse_mm?)
+        ))
     }
 }
 
 impl Outcome {
     /// "particle filter (0.12 mm)".
     fn named(&self) -> String {
-        self.wmse_mm.map_or_else(|| self.name.clone(), |wmse| format!("{} ({})", self.name, millimetres(wmse)))
+        self.wmse_mm.map_or_else(
+            || self.name.clone(),
+            |wmse| format!("{} ({})", self.name, millimetres(wmse)),
+        )
     }
 }
 
 /// "0.12 mm", "143 mm".
 fn millimetres(value: f64) -> String {
-    let decimals = [(100.0, 0), (10.0, 1)].into_iter().find(|(from, _)| value >= *from).map_or(2, |(_, decimals)| decimals);
+    let decimals = [(100.0, 0), (10.0, 1)]
+        .into_iter()
+        .find(|(from, _)| value >= *from)
+        .map_or(2, |(_, decimals)| decimals);
     format!("{value:.decimals$} mm")
 }
 
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }
 
 #[cfg(test)]
@@ -142,7 +187,11 @@ mod tests {
     use super::*;
 
     fn outcome(name: &str, saw_all: bool, wmse: f64) -> Outcome {
-        Outcome { name: name.to_owned(), saw_all, wmse_mm: Some(wmse) }
+        Outcome {
+            name: name.to_owned(),
+            saw_all,
+            wmse_mm: Some(wmse),
+        }
     }
 
     #[test]
@@ -174,7 +223,16 @@ mod tests {
 
     #[test]
     fn sentences_know_logs_without_darkness_and_without_survivors() {
-        let story = Story { outcomes: vec![outcome("kalman", false, 12.0)], ..Story::default() };
-        assert_eq!(story.sentences(), ["The camera sees the object all the time.", "Lost it: kalman (12.0 mm)."]);
+        let story = Story {
+            outcomes: vec![outcome("kalman", false, 12.0)],
+            ..Story::default()
+        };
+        assert_eq!(
+            story.sentences(),
+            [
+                "The camera sees the object all the time.",
+                "Lost it: kalman (12.0 mm)."
+            ]
+        );
     }
 }

@@ -17,7 +17,10 @@ impl Table {
     /// A table with these column titles.
     #[must_use]
     pub fn new<S: Into<String>>(titles: impl IntoIterator<Item = S>) -> Self {
-        Self { titles: titles.into_iter().map(Into::into).collect(), rows: Vec::new() }
+        Self {
+            titles: titles.into_iter().map(Into::into).collect(),
+            rows: Vec::new(),
+        }
     }
 
     /// Appends a row.
@@ -58,7 +61,11 @@ impl Table {
     }
 
     fn width(&self, column: usize) -> usize {
-        self.all_rows().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        self.all_rows()
+            .filter_map(|row| row.get(column))
+            .map(|cell| cell.chars().count())
+            .max()
+            .unwrap_or(0)
     }
 }
 
@@ -70,7 +77,10 @@ pub(crate) fn swatch(colour: Colour) -> Markup {
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for row in self.all_rows() {
-            let cells = row.iter().enumerate().map(|(column, cell)| aligned(cell, self.width(column), column == 0));
+            let cells = row
+                .iter()
+                .enumerate()
+                .map(|(column, cell)| aligned(cell, self.width(column), column == 0));
             writeln!(f, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
         }
         Ok(())
@@ -78,7 +88,11 @@ impl fmt::Display for Table {
 }
 
 fn aligned(cell: &str, width: usize, left: bool) -> String {
-    if left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+    if left {
+        format!("{cell:<width$}")
+    } else {
+        format!("{cell:>width$}")
+    }
 }
 
 /// A number with `decimals` digits after the point; a dash where there is none.
@@ -96,7 +110,10 @@ mod tests {
         let mut table = Table::new(["method", "mm"]);
         table.push(["a".to_owned(), number(Some(12.345), 2)]);
         table.push(["longer name".to_owned(), number(None, 2)]);
-        assert_eq!(table.to_string(), "method          mm\na            12.35\nlonger name      -\n");
+        assert_eq!(
+            table.to_string(),
+            "method          mm\na            12.35\nlonger name      -\n"
+        );
     }
 
     #[test]
@@ -104,6 +121,11 @@ mod tests {
         let mut table = Table::new(["<script>"]);
         table.push_coloured(Colour::SKY, ["a & \"b\"".to_owned()]);
         let text = table.html("x < y").into_string();
-        assert!(!text.contains("<script>") && text.contains("a &amp; &quot;b&quot;") && text.contains("x &lt; y"), "{text}");
+        assert!(
+            !text.contains("<script>")
+                && text.contains("a &amp; &quot;b&quot;")
+                && text.contains("x &lt; y"),
+            "{text}"
+        );
     }
 }

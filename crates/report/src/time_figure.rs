@@ -1,4 +1,5 @@
-//! Quantities against time: [`TimeFigure`], any number of panels over one time axis. Errors of methods, estimated parameters.
+//! Quantities against time: [`TimeFigure`], any number of panels over one time axis. Errors of
+//! methods, estimated parameters.
 
 use maud::{Markup, html};
 
@@ -139,23 +140,44 @@ impl TimeFigure {
                 (self.panel(panel, &place))
             }
         };
-        Drawing { width, height: head + rows as f64 * panel_height + TIMES, label: self.title.clone(), body }
+        Drawing {
+            width,
+            height: head + rows as f64 * panel_height + TIMES,
+            label: self.title.clone(),
+            body,
+        }
     }
 
     fn axis(&self, pixels: [f64; 2]) -> Axis {
-        Axis { scale: Scale::Linear, limits: self.span, pixels }
+        Axis {
+            scale: Scale::Linear,
+            limits: self.span,
+            pixels,
+        }
     }
 
     fn panel(&self, panel: &Panel, place: &Place) -> Markup {
         let ([left, top], [width, height]) = (place.corner, self.panel_size);
-        let head = if panel.title.is_empty() { TOP } else { TOP + 20.0 };
+        let head = if panel.title.is_empty() {
+            TOP
+        } else {
+            TOP + 20.0
+        };
         let plot = Plot {
             x: self.axis([left + LEFT, left + width - RIGHT]),
-            y: Axis { scale: panel.scale, limits: panel.shown(self.span), pixels: [top + height - BOTTOM, top + head] },
+            y: Axis {
+                scale: panel.scale,
+                limits: panel.shown(self.span),
+                pixels: [top + height - BOTTOM, top + head],
+            },
             x_label: if place.last_row { &self.time_label } else { "" },
             y_label: &panel.label,
         };
-        let title = Text { weight: Weight::Bold, anchor: Anchor::Start, ..Text::at([left + LEFT, top + head - 8.0], &panel.title) };
+        let title = Text {
+            weight: Weight::Bold,
+            anchor: Anchor::Start,
+            ..Text::at([left + LEFT, top + head - 8.0], &panel.title)
+        };
         let [from, to] = self.span;
         let curves = html! {
             @for curve in panel.curves.iter().rev() { (plot.band(&curve.band, curve.colour)) }
@@ -194,10 +216,20 @@ impl TimeFigure {
 impl Panel {
     fn shown(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let within = |time: &f64| (from..=to).contains(time);
-        let points = self.curves.iter().flat_map(|curve| &curve.points).filter(|[time, _]| within(time)).map(|[_, value]| *value);
-        let bands =
-            self.curves.iter().flat_map(|curve| &curve.band).filter(|[time, ..]| within(time)).flat_map(|[_, low, high]| [*low, *high]);
+        let points = self
+            .curves
+            .iter()
+            .flat_map(|curve| &curve.points)
+            .filter(|[time, _]| within(time))
+            .map(|[_, value]| *value);
+        let bands = self
+            .curves
+            .iter()
+            .flat_map(|curve| &curve.band)
+            .filter(|[time, ..]| within(time))
+            .flat_map(|[_, low, high]| [*low, *high]);
         let levels = self.levels.iter().map(|level| level.value);
-        self.limits.unwrap_or_else(|| self.scale.limits(points.chain(bands).chain(levels)))
+        self.limits
+            .unwrap_or_else(|| self.scale.limits(points.chain(bands).chain(levels)))
     }
 }

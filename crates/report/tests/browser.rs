@@ -1,7 +1,9 @@
-//! The report in a real browser: no error, nothing loaded, moving the scrubber changes the drawing, the dark rows are shaded, the page
-//! fits a phone. Chromium prints the page after its scripts have run, with a verdict that a script added here wrote into it.
+//! The report in a real browser: no error, nothing loaded, moving the scrubber changes the drawing,
+//! the dark rows are shaded, the page fits a phone. Chromium prints the page after its scripts have
+//! run, with a verdict that a script added here wrote into it.
 //!
-//! `cargo test -p stickslip-report --test browser -- --ignored`; the browser is `chromium`, or what `STICKSLIP_CHROMIUM` names.
+//! `cargo test -p stickslip-report --test browser -- --ignored`; the browser is `chromium`, or what
+//! `STICKSLIP_CHROMIUM` names.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -28,7 +30,12 @@ fn page() -> String {
     let (setup, log) = (setup(), log(200));
     let episode = episode("a grasp", &setup, &log, 60);
     let summary = episode.summary().to_vec();
-    Report { title: "A test of the report".to_owned(), summary, sections: vec![episode.section()] }.to_html()
+    Report {
+        title: "A test of the report".to_owned(),
+        summary,
+        sections: vec![episode.section()],
+    }
+    .to_html()
 }
 
 /// What Chromium prints, or the screenshot that it makes, at a width (px).
@@ -36,17 +43,33 @@ fn chromium(page: &Path, width: u32, what: &str) -> String {
     let program = std::env::var("STICKSLIP_CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
     // browsers that run at the same time may not share a profile
     let name = page.file_stem().unwrap().display();
-    let profile = format!("--user-data-dir={}", folder().join(format!("profile-{name}-{width}")).display());
+    let profile = format!(
+        "--user-data-dir={}",
+        folder().join(format!("profile-{name}-{width}")).display()
+    );
     let size = format!("--window-size={width},1600");
-    let fixed = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--virtual-time-budget=8000"];
+    let fixed = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--hide-scrollbars",
+        "--virtual-time-budget=8000",
+    ];
     let run = Command::new("timeout")
         .args(["120", &program])
         .args(fixed)
         .args([&size, &profile, what])
         .arg(format!("file://{}", page.display()))
         .output();
-    let run = run.unwrap_or_else(|error| panic!("{program} cannot be run: {error}; install it, or name it in STICKSLIP_CHROMIUM"));
-    assert!(run.status.success(), "{program}: {}\n{}", run.status, String::from_utf8_lossy(&run.stderr));
+    let run = run.unwrap_or_else(|error| {
+        panic!("{program} cannot be run: {error}; install it, or name it in STICKSLIP_CHROMIUM")
+    });
+    assert!(
+        run.status.success(),
+        "{program}: {}\n{}",
+        run.status,
+        String::from_utf8_lossy(&run.stderr)
+    );
     String::from_utf8(run.stdout).unwrap()
 }
 
@@ -54,9 +77,16 @@ fn chromium(page: &Path, width: u32, what: &str) -> String {
 fn verdict(width: u32) -> Value {
     let path = folder().join(format!("checked-{width}.html"));
     let checked = page().replacen("<head>", &format!("<head><script>{BEFORE}</script>"), 1);
-    std::fs::write(&path, checked.replace("</body>", &format!("<script>{AFTER}</script></body>"))).unwrap();
+    std::fs::write(
+        &path,
+        checked.replace("</body>", &format!("<script>{AFTER}</script></body>")),
+    )
+    .unwrap();
     let ended = chromium(&path, width, "--dump-dom");
-    let start = ended.find("<pre id=\"verdict\">").unwrap_or_else(|| panic!("the checks came to no end")) + "<pre id=\"verdict\">".len();
+    let start = ended
+        .find("<pre id=\"verdict\">")
+        .unwrap_or_else(|| panic!("the checks came to no end"))
+        + "<pre id=\"verdict\">".len();
     let length = ended[start..].find("</pre>").unwrap();
     serde_json::from_str(&ended[start..start + length]).unwrap()
 }
@@ -75,7 +105,11 @@ fn the_report_works_in_a_browser() {
 #[ignore = "needs Chromium; .ci/run installs it and runs this"]
 fn the_report_fits_a_phone() {
     let verdict = verdict(400);
-    assert_eq!((&verdict["no trouble"], &verdict["fits the width"]), (&Value::Bool(true), &Value::Bool(true)), "{verdict:#}");
+    assert_eq!(
+        (&verdict["no trouble"], &verdict["fits the width"]),
+        (&Value::Bool(true), &Value::Bool(true)),
+        "{verdict:#}"
+    );
 }
 
 #[test]
@@ -87,6 +121,10 @@ fn screenshots_are_made() {
         let picture = folder().join(format!("report-{width}.png"));
         chromium(&path, width, &format!("--screenshot={}", picture.display()));
         // a blank page takes a tenth of this
-        assert!(std::fs::metadata(&picture).unwrap().len() > 60_000, "{}", picture.display());
+        assert!(
+            std::fs::metadata(&picture).unwrap().len() > 60_000,
+            "{}",
+            picture.display()
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The report as a file: nothing is loaded, nothing breaks out of its place, the data are right and few.
+//! The report as a file: nothing is loaded, nothing breaks out of its place, the data are right and
+//! few.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -14,12 +15,18 @@ fn page(rows: usize, particles: usize, name: &str) -> String {
     let (setup, log) = (setup(), log(rows));
     let episode = episode(name, &setup, &log, particles);
     let summary = episode.summary().to_vec();
-    Report { title: name.to_owned(), summary, sections: vec![episode.section()] }.to_html()
+    Report {
+        title: name.to_owned(),
+        summary,
+        sections: vec![episode.section()],
+    }
+    .to_html()
 }
 
 /// The JSON that the page's script reads.
 fn data(page: &str) -> Value {
-    let start = page.find(r#"<script type="application/json">"#).unwrap() + r#"<script type="application/json">"#.len();
+    let start = page.find(r#"<script type="application/json">"#).unwrap()
+        + r#"<script type="application/json">"#.len();
     let length = page[start..].find("</script>").unwrap();
     serde_json::from_str(&page[start..start + length]).unwrap()
 }
@@ -27,12 +34,26 @@ fn data(page: &str) -> Value {
 #[test]
 fn a_page_loads_nothing() {
     let text = page(60, 5, "test");
-    for address in ["http:", "https:", "//cdn", "@import", "src=\"/", "url(/", "fetch(", "XMLHttpRequest", "import("] {
+    for address in [
+        "http:",
+        "https:",
+        "//cdn",
+        "@import",
+        "src=\"/",
+        "url(/",
+        "fetch(",
+        "XMLHttpRequest",
+        "import(",
+    ] {
         // names of XML namespaces are no addresses
         let others = text.replace("http://www.w3.org/2000/svg", "");
         assert!(!others.contains(address), "{address}");
     }
-    for link in text.split("href=\"").skip(1).chain(text.split("src=\"").skip(1)) {
+    for link in text
+        .split("href=\"")
+        .skip(1)
+        .chain(text.split("src=\"").skip(1))
+    {
         assert!(link.starts_with("data:"), "{}", &link[..40]);
     }
 }
@@ -40,7 +61,10 @@ fn a_page_loads_nothing() {
 #[test]
 fn hostile_names_stay_text() {
     let text = page(60, 5, HOSTILE);
-    assert!(!text.contains("<script>alert") && !text.contains("<b>&"), "escaped");
+    assert!(
+        !text.contains("<script>alert") && !text.contains("<b>&"),
+        "escaped"
+    );
     // one style sheet's worth of scripts: the data and the player
     assert_eq!(text.matches("<script").count(), 2);
     assert_eq!(text.matches("</script>").count(), 2);
@@ -52,14 +76,22 @@ fn data_read_back_to_the_numbers_they_were() {
     let rows = 90;
     let data = data(&page(rows, 4, "test"));
     let number = |value: &Value| value.as_f64().unwrap();
-    let (first, shown) = (data["first"].as_u64().unwrap() as usize, data["time"].as_array().unwrap().len());
+    let (first, shown) = (
+        data["first"].as_u64().unwrap() as usize,
+        data["time"].as_array().unwrap().len(),
+    );
     assert!(first == 0 && shown == rows, "{first} {shown}");
     for row in [0, 31, 89] {
         let pose = truth(row, rows);
         let at = |key: &str| number(&data["truth"][key][row]);
-        assert!((at("x") / 1e5 - pose.x).abs() <= 0.5e-5 && (at("y") / 1e5 - pose.y).abs() <= 0.5e-5);
+        assert!(
+            (at("x") / 1e5 - pose.x).abs() <= 0.5e-5 && (at("y") / 1e5 - pose.y).abs() <= 0.5e-5
+        );
         assert!((at("theta") / 1e4 - pose.theta).abs() <= 0.5e-4);
-        assert_eq!(number(&data["time"][row]), (1e3 * row as f64 / 30.0).round());
+        assert_eq!(
+            number(&data["time"][row]),
+            (1e3 * row as f64 / 30.0).round()
+        );
         // what the player draws is the sum of an estimate and a particle's offset
         let method = &data["methods"][3];
         for particle in 0..4 {
@@ -67,15 +99,31 @@ fn data_read_back_to_the_numbers_they_were() {
             assert!((x / 1e5 - (pose.x + 1e-3 * libm::sin(particle as f64))).abs() <= 0.6e-5);
         }
         let off = 2e-4_f64;
-        assert!((number(&method["error"][row]) - 1e6 * off * libm::sin(row as f64).hypot(1.0)).abs() < 0.51);
+        assert!(
+            (number(&method["error"][row]) - 1e6 * off * libm::sin(row as f64).hypot(1.0)).abs()
+                < 0.51
+        );
     }
     assert!(data["pusherPose"]["x"][3].is_null() && data["pusherPose"]["x"][4].is_number());
     assert_eq!(data["dark"], serde_json::json!([[54, 90]]));
-    assert_eq!((&data["hidden"][53], &data["hidden"][54]), (&0.into(), &1.into()));
+    assert_eq!(
+        (&data["hidden"][53], &data["hidden"][54]),
+        (&0.into(), &1.into())
+    );
     assert_eq!(data["touches"][0]["truth"][0], 1);
-    assert!(data["touches"][1]["truth"].is_null() && data["touches"][1]["sensed"][89] == 1 && data["touches"][2]["sensed"].is_null());
-    assert_eq!(data["methods"][3]["contact"], serde_json::json!([vec![50; 90], vec![25; 90], vec![100; 90]]));
-    assert!(data["methods"][2]["contact"].is_null(), "only one method's contacts are shown");
+    assert!(
+        data["touches"][1]["truth"].is_null()
+            && data["touches"][1]["sensed"][89] == 1
+            && data["touches"][2]["sensed"].is_null()
+    );
+    assert_eq!(
+        data["methods"][3]["contact"],
+        serde_json::json!([vec![50; 90], vec![25; 90], vec![100; 90]])
+    );
+    assert!(
+        data["methods"][2]["contact"].is_null(),
+        "only one method's contacts are shown"
+    );
     assert_eq!(data["order"], serde_json::json!([4, 0, 1, 2, 3]));
 }
 
@@ -85,7 +133,11 @@ fn an_experiment_of_600_rows_stays_below_2_mb() {
     let mut episode = episode("test", &setup, &log, 60);
     // without contacts, all rows are shown
     episode.contacts.clear();
-    let text = Report { sections: vec![episode.section()], ..Report::default() }.to_html();
+    let text = Report {
+        sections: vec![episode.section()],
+        ..Report::default()
+    }
+    .to_html();
     assert_eq!(data(&text)["time"].as_array().unwrap().len(), 600);
     assert!(text.len() < 2_000_000, "{}", text.len());
 }
@@ -96,8 +148,17 @@ fn pages_of_nothing_and_of_one_row_are_pages() {
         assert!(page(rows, 2, "test").ends_with("</html>"));
     }
     let block = Block::Table(Table::new(["a"]), String::new());
-    let plain =
-        Report { title: "t".to_owned(), summary: Vec::new(), sections: vec![Section { title: String::new(), blocks: vec![block] }] };
-    assert!(!plain.to_html().contains("<script"), "no script where nothing is played back");
+    let plain = Report {
+        title: "t".to_owned(),
+        summary: Vec::new(),
+        sections: vec![Section {
+            title: String::new(),
+            blocks: vec![block],
+        }],
+    };
+    assert!(
+        !plain.to_html().contains("<script"),
+        "no script where nothing is played back"
+    );
     assert_eq!(CloudSample::new(3).into_rows(2), [vec![], vec![]]);
 }

@@ -6,7 +6,8 @@ use stickslip_filter::Streams;
 /// The step of the streams that no other random number of a testbed uses.
 const STEP: u64 = 1 << 20;
 
-/// A true friction that the nominal one misses: every value is drawn evenly within `share` (0 to 1) of the nominal one.
+/// A true friction that the nominal one misses: every value is drawn evenly within `share` (0 to 1)
+/// of the nominal one.
 ///
 /// ```
 /// # use stickslip_dynamics::Friction;

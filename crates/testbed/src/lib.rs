@@ -1,7 +1,9 @@
-//! A virtual testbed for pushing experiments: [`Rig`], a physics that is finer than the model's and another one, [`Model`], the model
-//! itself, and the [`Tracker`] that measures what either of them did; and an overhead [`camera`] that takes frames of it.
+//! A virtual testbed for pushing experiments: [`Rig`], a physics that is finer than the model's and
+//! another one, [`Model`], the model itself, and the [`Tracker`] that measures what either of them
+//! did; and an overhead [`camera`] that takes frames of it.
 //!
-//! All of it is a function of scene, start, settings and seed; the same arguments give the same bits.
+//! All of it is a function of scene, start, settings and seed; the same arguments give the same
+//! bits.
 
 pub mod camera;
 mod guess;

@@ -1,6 +1,8 @@
 //! The model in the rig's place: [`Model`] runs Γ itself, one step per frame.
 
-use stickslip_dynamics::{Body, Dynamics, Friction, Outcome, Particle, Pose, PusherMotion, StepInput, StepWork, Twist};
+use stickslip_dynamics::{
+    Body, Dynamics, Friction, Outcome, Particle, Pose, PusherMotion, StepInput, StepWork, Twist,
+};
 
 use crate::touch::TouchSensors;
 use crate::{Contact, Frame, Trace, Trial, TrialError};
@@ -15,32 +17,68 @@ pub struct Model {
 }
 
 impl Model {
-    /// Runs an experiment; the pusher moves by h (u − y d), so a stalled one stays behind its command.
+    /// Runs an experiment; the pusher moves by h (u − y d), so a stalled one stays behind its
+    /// command.
     ///
     /// # Errors
     /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start.
     pub fn run(&self, trial: &Trial<'_>) -> Result<Trace, TrialError> {
-        let Friction { mu_s, mu_p, mu_f, .. } = self.friction;
+        let Friction {
+            mu_s, mu_p, mu_f, ..
+        } = self.friction;
         trial.check([("mu_s", mu_s), ("mu_p", mu_p), ("mu_f", mu_f)])?;
         let (dynamics, h) = (Dynamics::new(trial.scene.clone()), 1.0 / trial.rate);
         let direction = trial.start.direction_vector();
-        let mut object = Particle { pose: trial.start.object, ..Particle::default() };
-        let (mut pusher, mut work, mut unsolved) = (trial.start.pusher, StepWork::<1>::default(), 0);
+        let mut object = Particle {
+            pose: trial.start.object,
+            ..Particle::default()
+        };
+        let (mut pusher, mut work, mut unsolved) =
+            (trial.start.pusher, StepWork::<1>::default(), 0);
         let mut frames = vec![frame(trial, 0, &object, pusher, Vec::new())];
         for k in 1..trial.frames() {
-            let twist = trial.start.commanded(trial.time(k - 1)).twist_to(trial.start.commanded(trial.time(k)), h);
-            let input = StepInput { h, pusher: Some(PusherMotion { pose: pusher, twist, direction }) };
-            let [report] = dynamics.step(&input, &[self.friction], std::array::from_mut(&mut object), &mut work);
+            let twist = trial
+                .start
+                .commanded(trial.time(k - 1))
+                .twist_to(trial.start.commanded(trial.time(k)), h);
+            let input = StepInput {
+                h,
+                pusher: Some(PusherMotion {
+                    pose: pusher,
+                    twist,
+                    direction,
+                }),
+            };
+            let [report] = dynamics.step(
+                &input,
+                &[self.friction],
+                std::array::from_mut(&mut object),
+                &mut work,
+            );
             unsolved += usize::from(report.outcome != Outcome::Solved);
             let short = work.solution(0).pusher_yield;
-            let moved = Twist { vx: twist.vx - short * direction[0], vy: twist.vy - short * direction[1], ..twist };
+            let moved = Twist {
+                vx: twist.vx - short * direction[0],
+                vy: twist.vy - short * direction[1],
+                ..twist
+            };
             pusher = pusher.advance(moved, h);
             // it stands where it is said to be
             object.pusher_lag = 0.0;
-            frames.push(frame(trial, k, &object, pusher, contacts(&work, object.pose, h)));
+            frames.push(frame(
+                trial,
+                k,
+                &object,
+                pusher,
+                contacts(&work, object.pose, h),
+            ));
         }
         self.touch.feel(&mut frames, trial);
-        Ok(Trace { friction: self.friction, frames, unsolved })
+        Ok(Trace {
+            friction: self.friction,
+            frames,
+            unsolved,
+        })
     }
 }
 
@@ -49,18 +87,41 @@ fn contacts(work: &StepWork<1>, object: Pose, h: f64) -> Vec<Contact> {
     let (problem, solution) = (work.problem(0), work.solution(0));
     let bodies = work.bodies(0);
     let impulses = solution.normal.iter().zip(&solution.tangential);
-    let rows = problem.contacts.iter().zip(&bodies).zip(impulses).filter(|(_, (normal, _))| **normal > 0.0);
-    let contact = |((point, body), (p_n, p_t)): ((&stickslip_dynamics::ContactPoint, &Body), (&f64, &f64))| {
+    let rows = problem
+        .contacts
+        .iter()
+        .zip(&bodies)
+        .zip(impulses)
+        .filter(|(_, (normal, _))| **normal > 0.0);
+    let contact = |((point, body), (p_n, p_t)): (
+        (&stickslip_dynamics::ContactPoint, &Body),
+        (&f64, &f64),
+    )| {
         let ([nx, ny], [rx, ry]) = (point.normal, point.arm);
         let force = [(p_n * nx - p_t * ny) / h, (p_n * ny + p_t * nx) / h];
-        Contact { body: *body, point: [object.x + rx, object.y + ry], normal: point.normal, force }
+        Contact {
+            body: *body,
+            point: [object.x + rx, object.y + ry],
+            normal: point.normal,
+            force,
+        }
     };
     rows.map(contact).collect()
 }
 
-fn frame(trial: &Trial<'_>, k: usize, object: &Particle, pusher: Pose, contacts: Vec<Contact>) -> Frame {
+fn frame(
+    trial: &Trial<'_>,
+    k: usize,
+    object: &Particle,
+    pusher: Pose,
+    contacts: Vec<Contact>,
+) -> Frame {
     let of = |body: Body| contacts.iter().filter(move |contact| contact.body == body);
-    let along = |axis: usize| of(Body::Pusher).map(|c| c.force[axis]).fold(0.0, |sum, f| sum + f);
+    let along = |axis: usize| {
+        of(Body::Pusher)
+            .map(|c| c.force[axis])
+            .fold(0.0, |sum, f| sum + f)
+    };
     let normal = |c: &Contact| c.force[0] * c.normal[0] + c.force[1] * c.normal[1];
     let fixel_force = |j: usize| of(Body::Fixel(j)).map(normal).fold(0.0, |sum, f| sum + f);
     Frame {

@@ -9,7 +9,8 @@ use crate::{Frame, Trial};
 pub struct TouchSensors {
     /// Force at which a sensor reads 1 (N).
     pub threshold: f64,
-    /// Standard deviation of the force that it sees (N): readings chatter where the force is near the threshold.
+    /// Standard deviation of the force that it sees (N): readings chatter where the force is near
+    /// the threshold.
     pub noise: f64,
     /// The same as a share of the force.
     pub relative_noise: f64,
@@ -21,7 +22,13 @@ pub struct TouchSensors {
 
 impl Default for TouchSensors {
     fn default() -> Self {
-        Self { threshold: 0.05, noise: 0.02, relative_noise: 0.1, dropouts: 0.3, dropout_time: 0.1 }
+        Self {
+            threshold: 0.05,
+            noise: 0.02,
+            relative_noise: 0.1,
+            dropouts: 0.3,
+            dropout_time: 0.1,
+        }
     }
 }
 
@@ -36,9 +43,11 @@ impl TouchSensors {
             let reading = |(sensor, force): (usize, &f64)| {
                 let number = sensor as u32;
                 if frame.time >= silent_until[sensor] && draw.uniform(number, 0) < starts {
-                    silent_until[sensor] = frame.time - self.dropout_time * libm::log(draw.uniform(number, 1));
+                    silent_until[sensor] =
+                        frame.time - self.dropout_time * libm::log(draw.uniform(number, 1));
                 }
-                let felt = force + (self.noise + self.relative_noise * force) * draw.normal(number, 0);
+                let felt =
+                    force + (self.noise + self.relative_noise * force) * draw.normal(number, 0);
                 felt > self.threshold && frame.time >= silent_until[sensor]
             };
             frame.tactile = frame.fixel_forces.iter().enumerate().map(reading).collect();
@@ -48,7 +57,9 @@ impl TouchSensors {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape, SpeedProfile, Start, Twist};
+    use stickslip_dynamics::{
+        Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape, SpeedProfile, Start, Twist,
+    };
 
     use super::*;
 
@@ -56,18 +67,48 @@ mod tests {
 
     /// Readings of one sensor under a force that stays the same.
     fn readings(sensors: &TouchSensors, force: f64, seed: u64) -> Vec<bool> {
-        let disc = Shape::new(vec![Part::Disc { radius: 0.01, centre: [0.0; 2] }]).expect("a disc");
+        let disc = Shape::new(vec![Part::Disc {
+            radius: 0.01,
+            centre: [0.0; 2],
+        }])
+        .expect("a disc");
         let scene = Scene {
             gravity: 9.81,
-            object: Object { mass: 1.0, inertia: 1e-4, shape: disc.clone() },
+            object: Object {
+                mass: 1.0,
+                inertia: 1e-4,
+                shape: disc.clone(),
+            },
             feet: Feet::Tripod { angle: 0.0 },
-            pusher: Pusher { shape: disc.clone(), stall_force: None },
-            fixels: vec![Fixel { pose: Pose::default(), shape: disc }],
-            nominal: Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.01 },
+            pusher: Pusher {
+                shape: disc.clone(),
+                stall_force: None,
+            },
+            fixels: vec![Fixel {
+                pose: Pose::default(),
+                shape: disc,
+            }],
+            nominal: Friction {
+                mu_s: 0.3,
+                mu_p: 0.3,
+                mu_f: 0.3,
+                d_tri: 0.01,
+            },
         };
         let (object, pusher) = (Pose::default(), Pose::default());
-        let start = Start { object, pusher, direction: 0.0, speed: SpeedProfile::constant(0.0), duration: 1.0 };
-        let trial = Trial { scene: &scene, start: &start, rate: 30.0, seed };
+        let start = Start {
+            object,
+            pusher,
+            direction: 0.0,
+            speed: SpeedProfile::constant(0.0),
+            duration: 1.0,
+        };
+        let trial = Trial {
+            scene: &scene,
+            start: &start,
+            rate: 30.0,
+            seed,
+        };
         let frame = |k: usize| Frame {
             time: trial.time(k),
             object,
@@ -89,26 +130,49 @@ mod tests {
 
     #[test]
     fn untouched_sensor_seldom_reads_1() {
-        // 0.05 N are 2.5 standard deviations of the noise: 0.62 %, with 3 standard errors of 20 000 readings
+        // 0.05 N are 2.5 standard deviations of the noise: 0.62 %, with 3 standard errors of 20 000
+        // readings
         let share = share(&readings(&TouchSensors::default(), 0.0, 1));
         assert!((share - 0.0062).abs() < 3.0 * 6e-4, "{share}");
     }
 
     #[test]
     fn sensor_at_its_threshold_chatters() {
-        let readings = readings(&TouchSensors { dropouts: 0.0, ..TouchSensors::default() }, 0.05, 1);
-        let changes = readings.windows(2).filter(|pair| pair[0] != pair[1]).count() as f64 / FRAMES as f64;
-        assert!((share(&readings) - 0.5).abs() < 0.02 && (changes - 0.5).abs() < 0.02, "{changes}");
+        let readings = readings(
+            &TouchSensors {
+                dropouts: 0.0,
+                ..TouchSensors::default()
+            },
+            0.05,
+            1,
+        );
+        let changes = readings
+            .windows(2)
+            .filter(|pair| pair[0] != pair[1])
+            .count() as f64
+            / FRAMES as f64;
+        assert!(
+            (share(&readings) - 0.5).abs() < 0.02 && (changes - 0.5).abs() < 0.02,
+            "{changes}"
+        );
     }
 
     #[test]
     fn touched_sensor_drops_out_for_a_while_now_and_then() {
-        let sensors = TouchSensors { dropouts: 0.5, dropout_time: 0.2, ..TouchSensors::default() };
+        let sensors = TouchSensors {
+            dropouts: 0.5,
+            dropout_time: 0.2,
+            ..TouchSensors::default()
+        };
         let readings = readings(&sensors, 5.0, 1);
-        // with a share a of the time dropped out, a / (1 - a) = 0.5 Hz times the mean length, which frames round up
+        // with a share a of the time dropped out, a / (1 - a) = 0.5 Hz times the mean length, which
+        // frames round up
         let silent = 1.0 - share(&readings);
         assert!((0.085..0.13).contains(&silent), "{silent}");
-        let begins = readings.windows(2).filter(|pair| pair[0] && !pair[1]).count() as f64;
+        let begins = readings
+            .windows(2)
+            .filter(|pair| pair[0] && !pair[1])
+            .count() as f64;
         let rate = begins * 30.0 / FRAMES as f64;
         assert!((0.4..0.5).contains(&rate), "{rate}");
     }

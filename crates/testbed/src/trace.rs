@@ -5,7 +5,8 @@ use stickslip_dynamics::{Body, Friction, Pose, Twist};
 /// A simulated experiment: the truth at every camera frame, and what the touch sensors read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// The true friction: μ_s is the mean over the way that the object went, d_tri the tripod radius with the same torque in pure spin.
+    /// The true friction: μ_s is the mean over the way that the object went, d_tri the tripod
+    /// radius with the same torque in pure spin.
     pub friction: Friction,
     /// Camera frames, evenly spaced, the first one at time 0.
     pub frames: Vec<Frame>,
@@ -50,7 +51,9 @@ pub struct Contact {
 impl Trace {
     /// The first frame in whose interval a fixel pressed on the object.
     pub fn first_fixel_contact(&self) -> Option<usize> {
-        self.frames.iter().position(|frame| frame.fixel_forces.iter().any(|force| *force > 0.0))
+        self.frames
+            .iter()
+            .position(|frame| frame.fixel_forces.iter().any(|force| *force > 0.0))
     }
 
     /// The first frame in whose interval a body pressed on the object.

@@ -40,8 +40,14 @@ pub struct Sighting {
 
 impl Tracker {
     /// Sees everything as it is.
-    pub const EXACT: Self =
-        Self { position_std: 0.0, orientation_std: 0.0, pusher_position_std: 0.0, pusher_orientation_std: 0.0, latency: 0.0, repeats: 0.0 };
+    pub const EXACT: Self = Self {
+        position_std: 0.0,
+        orientation_std: 0.0,
+        pusher_position_std: 0.0,
+        pusher_orientation_std: 0.0,
+        latency: 0.0,
+        repeats: 0.0,
+    };
 
     /// One sighting per frame of `trace`.
     pub fn sight(&self, trace: &Trace, seed: u64) -> Vec<Sighting> {
@@ -51,16 +57,34 @@ impl Tracker {
             let draw = streams.at(k as u64);
             let noisy = |pose: Pose, who: u32, [position, angle]: [f64; 2]| {
                 let [x, y, theta] = draw.normals(who, 0);
-                Pose::new(pose.x + position * x, pose.y + position * y, pose.theta + angle * theta)
+                Pose::new(
+                    pose.x + position * x,
+                    pose.y + position * y,
+                    pose.theta + angle * theta,
+                )
             };
-            let repeated = sightings.last().copied().filter(|_| draw.uniform(REPEAT, 0) < self.repeats);
+            let repeated = sightings
+                .last()
+                .copied()
+                .filter(|_| draw.uniform(REPEAT, 0) < self.repeats);
             sightings.push(repeated.map_or_else(
                 || Sighting {
-                    object: noisy(object_at(trace, frame.time - self.latency), OBJECT, [self.position_std, self.orientation_std]),
-                    pusher: noisy(frame.pusher, PUSHER, [self.pusher_position_std, self.pusher_orientation_std]),
+                    object: noisy(
+                        object_at(trace, frame.time - self.latency),
+                        OBJECT,
+                        [self.position_std, self.orientation_std],
+                    ),
+                    pusher: noisy(
+                        frame.pusher,
+                        PUSHER,
+                        [self.pusher_position_std, self.pusher_orientation_std],
+                    ),
                     repeated: false,
                 },
-                |before| Sighting { repeated: true, ..before },
+                |before| Sighting {
+                    repeated: true,
+                    ..before
+                },
             ));
         }
         sightings
@@ -74,7 +98,8 @@ fn object_at(trace: &Trace, time: f64) -> Pose {
     match (after.checked_sub(1), frames.get(after)) {
         (Some(before), Some(next)) => {
             let last = &frames[before];
-            last.object.interpolate(next.object, (time - last.time) / (next.time - last.time))
+            last.object
+                .interpolate(next.object, (time - last.time) / (next.time - last.time))
         }
         (None, Some(first)) => first.object,
         (_, None) => frames[frames.len() - 1].object,
@@ -105,8 +130,17 @@ mod tests {
                 tactile: vec![],
             }
         };
-        let friction = Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.01 };
-        Trace { friction, frames: (0..FRAMES).map(frame).collect(), unsolved: 0 }
+        let friction = Friction {
+            mu_s: 0.3,
+            mu_p: 0.3,
+            mu_f: 0.3,
+            d_tri: 0.01,
+        };
+        Trace {
+            friction,
+            frames: (0..FRAMES).map(frame).collect(),
+            unsolved: 0,
+        }
     }
 
     fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
@@ -117,7 +151,12 @@ mod tests {
     fn exact_tracker_sees_what_is() {
         let trace = trace();
         let sightings = Tracker::EXACT.sight(&trace, 7);
-        assert!(sightings.iter().zip(&trace.frames).all(|(s, f)| (s.object, s.pusher) == (f.object, f.pusher) && !s.repeated));
+        assert!(
+            sightings
+                .iter()
+                .zip(&trace.frames)
+                .all(|(s, f)| (s.object, s.pusher) == (f.object, f.pusher) && !s.repeated)
+        );
     }
 
     #[test]
@@ -131,7 +170,9 @@ mod tests {
         };
         let trace = trace();
         let sightings = deviations.sight(&trace, 7);
-        let error = |of: &dyn Fn(&Sighting, &Frame) -> f64| root_mean_square(sightings.iter().zip(&trace.frames).map(|(s, f)| of(s, f)));
+        let error = |of: &dyn Fn(&Sighting, &Frame) -> f64| {
+            root_mean_square(sightings.iter().zip(&trace.frames).map(|(s, f)| of(s, f)))
+        };
         for (measured, expected) in [
             (error(&|s, f| s.object.x - f.object.x), 1e-3),
             (error(&|s, f| s.object.y - f.object.y), 1e-3),
@@ -140,23 +181,47 @@ mod tests {
             (error(&|s, f| s.pusher.theta - f.pusher.theta), 3e-3),
         ] {
             // 20 000 errors: a standard error of 0.5 %
-            assert!((measured / expected - 1.0).abs() < 0.02, "{measured} {expected}");
+            assert!(
+                (measured / expected - 1.0).abs() < 0.02,
+                "{measured} {expected}"
+            );
         }
     }
 
     #[test]
     fn latency_shows_the_object_where_it_was() {
-        let sightings = Tracker { latency: 0.05, ..Tracker::EXACT }.sight(&trace(), 7);
-        assert!((sightings[30].object.x - 0.03 * 0.95).abs() < 1e-12 && (sightings[30].object.theta - 0.95).abs() < 1e-12);
-        assert_eq!((sightings[0].object, sightings[30].pusher), (Pose::default(), Pose::new(-1.0, 2.0, 0.5)));
+        let sightings = Tracker {
+            latency: 0.05,
+            ..Tracker::EXACT
+        }
+        .sight(&trace(), 7);
+        assert!(
+            (sightings[30].object.x - 0.03 * 0.95).abs() < 1e-12
+                && (sightings[30].object.theta - 0.95).abs() < 1e-12
+        );
+        assert_eq!(
+            (sightings[0].object, sightings[30].pusher),
+            (Pose::default(), Pose::new(-1.0, 2.0, 0.5))
+        );
     }
 
     #[test]
     fn repeated_frames_hold_everything_of_the_one_before() {
-        let tracker = Tracker { position_std: 1e-3, repeats: 0.1, ..Tracker::EXACT };
+        let tracker = Tracker {
+            position_std: 1e-3,
+            repeats: 0.1,
+            ..Tracker::EXACT
+        };
         let sightings = tracker.sight(&trace(), 7);
         let repeats = sightings.windows(2).filter(|pair| pair[1].repeated).count();
-        assert!((repeats as f64 / FRAMES as f64 - 0.1).abs() < 0.007, "{repeats}");
-        assert!(sightings.windows(2).all(|pair| pair[1].repeated == (pair[0].object == pair[1].object)));
+        assert!(
+            (repeats as f64 / FRAMES as f64 - 0.1).abs() < 0.007,
+            "{repeats}"
+        );
+        assert!(
+            sightings
+                .windows(2)
+                .all(|pair| pair[1].repeated == (pair[0].object == pair[1].object))
+        );
     }
 }

@@ -23,13 +23,17 @@ pub struct Trial<'a> {
 #[non_exhaustive]
 pub enum TrialError {
     /// The rate is no rate.
-    #[error("the camera rate is {rate} Hz; it must be from 1 to 1000 Hz. Give frames per second, 30 as a rule")]
+    #[error(
+        "the camera rate is {rate} Hz; it must be from 1 to 1000 Hz. Give frames per second, 30 as a rule"
+    )]
     Rate {
         /// The rate found (Hz).
         rate: f64,
     },
     /// A friction coefficient is none.
-    #[error("the true {name} is {value}; it must be a finite number from 0 up. Give a coefficient of friction")]
+    #[error(
+        "the true {name} is {value}; it must be a finite number from 0 up. Give a coefficient of friction"
+    )]
     Friction {
         /// Which one.
         name: &'static str,
@@ -71,11 +75,19 @@ impl Trial<'_> {
         if !(1.0..=1000.0).contains(&self.rate) {
             return Err(TrialError::Rate { rate: self.rate });
         }
-        if let Some((name, value)) = friction.into_iter().find(|(_, value)| !value.is_finite() || *value < 0.0) {
+        if let Some((name, value)) = friction
+            .into_iter()
+            .find(|(_, value)| !value.is_finite() || *value < 0.0)
+        {
             return Err(TrialError::Friction { name, value });
         }
         let pusher = (Body::Pusher, &self.scene.pusher.shape, self.start.pusher);
-        let fixels = self.scene.fixels.iter().enumerate().map(|(j, fixel)| (Body::Fixel(j), &fixel.shape, fixel.pose));
+        let fixels = self
+            .scene
+            .fixels
+            .iter()
+            .enumerate()
+            .map(|(j, fixel)| (Body::Fixel(j), &fixel.shape, fixel.pose));
         let object = Placed::new(&self.scene.object.shape, self.start.object);
         let mut gaps: Vec<Gap> = Vec::new();
         for (body, shape, pose) in [pusher].into_iter().chain(fixels) {

@@ -7,7 +7,8 @@
 //! subject to       W_nᵀ v + ψ/h − n·(u − y d) ≥ 0,  y ≥ 0     (y = 0 without a stall limit)
 //! ```
 //!
-//! strictly convex in v: the twist is unique. The multipliers are the impulses, so the answer comes with its own certificate.
+//! strictly convex in v: the twist is unique. The multipliers are the impulses, so the answer comes
+//! with its own certificate.
 
 use stickslip_dynamics::{StepProblem, StepSolution, Twist};
 
@@ -17,12 +18,14 @@ use crate::scaled::Scaled;
 
 /// Unknowns: z, y, and per foot the epigraph of |J_k z|.
 const UNKNOWNS: usize = 7;
-/// Worst accepted residual, relative to the problem's fastest speed; an interior point on a curved cone reaches about 1e-8.
+/// Worst accepted residual, relative to the problem's fastest speed; an interior point on a curved
+/// cone reaches about 1e-8.
 const ACCURACY: f64 = 1e-6;
 const YIELD: usize = 3;
 const EPIGRAPH: usize = 4;
 
-/// The unique twist of a step whose contacts are all frictionless; `None` where there is none, or only an absurdly fast one.
+/// The unique twist of a step whose contacts are all frictionless; `None` where there is none, or
+/// only an absurdly fast one.
 ///
 /// # Panics
 /// Where a contact has friction.
@@ -31,7 +34,8 @@ pub fn cone_program_twist(problem: &StepProblem) -> Option<Twist> {
     cone_program_step(problem).map(|solution| solution.twist)
 }
 
-/// The whole solution of a step whose contacts are all frictionless; `None` where there is none, or only an absurdly fast one.
+/// The whole solution of a step whose contacts are all frictionless; `None` where there is none, or
+/// only an absurdly fast one.
 ///
 /// Its residual is below 1e-6 of the fastest speed in the problem, usually near 1e-9 of it.
 ///
@@ -39,10 +43,17 @@ pub fn cone_program_twist(problem: &StepProblem) -> Option<Twist> {
 /// Where a contact has friction.
 #[must_use]
 pub fn cone_program_step(problem: &StepProblem) -> Option<StepSolution> {
-    assert!(problem.contacts.iter().all(|c| c.mu == 0.0), "the step is a convex program only where no contact has friction");
+    assert!(
+        problem.contacts.iter().all(|c| c.mu == 0.0),
+        "the step is a convex program only where no contact has friction"
+    );
     let scaled = Scaled::new(problem);
-    let solves = |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * scaled.speed();
-    program(&scaled).attempts().map(|optimum| solution(&scaled, &optimum)).find(solves)
+    let solves =
+        |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * scaled.speed();
+    program(&scaled)
+        .attempts()
+        .map(|optimum| solution(&scaled, &optimum))
+        .find(solves)
 }
 
 fn unit(j: usize, value: f64) -> Vec<f64> {
@@ -81,7 +92,10 @@ fn program(scaled: &Scaled) -> Conic {
         if scaled.bound(k) > 0.0 {
             conic.cone((unit(EPIGRAPH + k, 1.0), 0.0), slip);
         } else {
-            conic.cone((vec![0.0; UNKNOWNS], 1.0), [(unit(EPIGRAPH + k, 1.0), 0.0), (vec![0.0; UNKNOWNS], 0.0)]);
+            conic.cone(
+                (vec![0.0; UNKNOWNS], 1.0),
+                [(unit(EPIGRAPH + k, 1.0), 0.0), (vec![0.0; UNKNOWNS], 0.0)],
+            );
         }
     }
     bound_yield(scaled, &mut conic);
@@ -93,7 +107,11 @@ fn solution(scaled: &Scaled, optimum: &Optimum) -> StepSolution {
     let impulse = |row: usize| optimum.multipliers[row] * scaled.impulse();
     let foot = |k: usize| {
         let row = contacts + 3 * k;
-        if scaled.bound(k) > 0.0 { [impulse(row + 1), impulse(row + 2)] } else { [0.0; 2] }
+        if scaled.bound(k) > 0.0 {
+            [impulse(row + 1), impulse(row + 2)]
+        } else {
+            [0.0; 2]
+        }
     };
     let yielding = optimum.x[YIELD] * scaled.speed();
     StepSolution {
@@ -101,6 +119,10 @@ fn solution(scaled: &Scaled, optimum: &Optimum) -> StepSolution {
         normal: (0..contacts).map(impulse).collect(),
         tangential: vec![0.0; contacts],
         feet: [foot(0), foot(1), foot(2)],
-        pusher_yield: if scaled.stall_impulse().is_some() { yielding } else { 0.0 },
+        pusher_yield: if scaled.stall_impulse().is_some() {
+            yielding
+        } else {
+            0.0
+        },
     }
 }

@@ -2,7 +2,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, SupportedConeT, ZeroConeT,
+    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
+    SupportedConeT, ZeroConeT,
 };
 
 /// min ½ Σ weight_j x_j² + cost·x over A x + b in a product of cones, gathered row by row.
@@ -27,7 +28,11 @@ pub(crate) type Affine = (Vec<f64>, f64);
 impl Conic {
     /// A program in `n` unknowns without cost or constraint.
     pub fn new(n: usize) -> Self {
-        Self { weight: vec![0.0; n], cost: vec![0.0; n], ..Self::default() }
+        Self {
+            weight: vec![0.0; n],
+            cost: vec![0.0; n],
+            ..Self::default()
+        }
     }
 
     /// Requires `row` = 0.
@@ -55,21 +60,45 @@ impl Conic {
         self.cones.push(cone);
     }
 
-    /// Optima as far as doubles reach them, one per step length that Clarabel takes without giving up; callers check them.
+    /// Optima as far as doubles reach them, one per step length that Clarabel takes without giving
+    /// up; callers check them.
     ///
-    /// On 4000 random steps Clarabel's defaults stalled at 86; with less regularisation, 0.9 stalled at one, and no step at all three.
+    /// On 4000 random steps Clarabel's defaults stalled at 86; with less regularisation, 0.9
+    /// stalled at one, and no step at all three.
     pub fn attempts(&self) -> impl Iterator<Item = Optimum> {
-        [0.9, 0.7, 0.99].into_iter().filter_map(|step_fraction| self.attempt(step_fraction))
+        [0.9, 0.7, 0.99]
+            .into_iter()
+            .filter_map(|step_fraction| self.attempt(step_fraction))
     }
 
     fn attempt(&self, step_fraction: f64) -> Option<Optimum> {
         let n = self.weight.len();
-        let square: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| if i == j { self.weight[i] } else { 0.0 }).collect()).collect();
+        let square: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                (0..n)
+                    .map(|j| if i == j { self.weight[i] } else { 0.0 })
+                    .collect()
+            })
+            .collect();
         let (p, a) = (CscMatrix::from(&square), CscMatrix::from(&self.rows));
-        let mut solver = DefaultSolver::new(&p, &self.cost, &a, &self.offsets, &self.cones, settings(step_fraction)).ok()?;
+        let mut solver = DefaultSolver::new(
+            &p,
+            &self.cost,
+            &a,
+            &self.offsets,
+            &self.cones,
+            settings(step_fraction),
+        )
+        .ok()?;
         solver.solve();
-        let done = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress);
-        done.then(|| Optimum { x: solver.solution.x.clone(), multipliers: solver.solution.z.clone() })
+        let done = matches!(
+            solver.solution.status,
+            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
+        );
+        done.then(|| Optimum {
+            x: solver.solution.x.clone(),
+            multipliers: solver.solution.z.clone(),
+        })
     }
 }
 

@@ -1,19 +1,28 @@
 //! Where the recorded experiments lie: [`data_root`].
 //!
-//! `STICKSLIP_DATA` names the folder; without it, `../shared/data` beside the workspace counts. The build script
-//! `build_data_cfg.rs` applies the same rule at compile time, so that tests without data are reported as ignored.
+//! `STICKSLIP_DATA` names the folder; without it, `../shared/data` beside the workspace counts. The
+//! build script `build_data_cfg.rs` applies the same rule at compile time, so that tests without
+//! data are reported as ignored.
 
 use std::path::{Path, PathBuf};
 
 /// The folder of recorded experiments, or `None` where there is none.
 ///
 /// # Panics
-/// Where there is none and `STICKSLIP_REQUIRE_DATA=1`: continuous integration must not pass for want of data.
+/// Where there is none and `STICKSLIP_REQUIRE_DATA=1`: continuous integration must not pass for
+/// want of data.
 #[must_use]
 pub fn data_root() -> Option<PathBuf> {
     let root = std::env::var_os("STICKSLIP_DATA").map_or_else(default_root, PathBuf::from);
     let required = std::env::var_os("STICKSLIP_REQUIRE_DATA").is_some_and(|value| value == "1");
-    present(root, if required { Absent::Panic } else { Absent::Skip })
+    present(
+        root,
+        if required {
+            Absent::Panic
+        } else {
+            Absent::Skip
+        },
+    )
 }
 
 /// What an absent folder means.
@@ -44,7 +53,10 @@ mod tests {
 
     #[test]
     fn present_absent_folder_is_none() {
-        assert_eq!(present(PathBuf::from("/nonexistent/data"), Absent::Skip), None);
+        assert_eq!(
+            present(PathBuf::from("/nonexistent/data"), Absent::Skip),
+            None
+        );
     }
 
     #[test]
@@ -57,6 +69,10 @@ mod tests {
     #[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
     fn data_root_holds_at_least_one_entry() {
         let root = data_root().expect("the build script found the folder");
-        assert!(root.read_dir().expect("readable").next().is_some(), "{} is empty", root.display());
+        assert!(
+            root.read_dir().expect("readable").next().is_some(),
+            "{} is empty",
+            root.display()
+        );
     }
 }

@@ -1,7 +1,9 @@
-//! The parts from which random step problems are put together: [`Draft`], a body on its feet and a pusher, and random contacts.
+//! The parts from which random step problems are put together: [`Draft`], a body on its feet and a
+//! pusher, and random contacts.
 //!
-//! Everything keeps to the scale of a table-top experiment: masses 0.02–5 kg, radii of gyration ρ 3–60 mm, steps 0.1–33 ms, speeds up to
-//! 0.3 m/s, contacts within 2.1 ρ of the centre of mass (faces 3.2 ρ), gaps within ±2 mm.
+//! Everything keeps to the scale of a table-top experiment: masses 0.02–5 kg, radii of gyration ρ
+//! 3–60 mm, steps 0.1–33 ms, speeds up to 0.3 m/s, contacts within 2.1 ρ of the centre of mass
+//! (faces 3.2 ρ), gaps within ±2 mm.
 
 use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, Twist, Wrench};
 
@@ -34,7 +36,11 @@ impl Draft {
     pub fn new(mut rng: SplitMix64) -> Self {
         let (mass, gyration) = (rng.log_within(0.02, 5.0), rng.log_within(3e-3, 60e-3));
         let h = rng.log_within(1e-4, 1.0 / 30.0);
-        let mu_s = if rng.one_in(10) { 0.0 } else { rng.within(0.02, 1.0) };
+        let mu_s = if rng.one_in(10) {
+            0.0
+        } else {
+            rng.within(0.02, 1.0)
+        };
         let problem = StepProblem {
             mass,
             inertia: mass * gyration * gyration,
@@ -45,7 +51,13 @@ impl Draft {
             feet: [Foot::default(); 3],
             stall: None,
         };
-        let mut draft = Self { rng, problem, gyration, bound: mu_s * mass * GRAVITY * h, pusher: Twist::default() };
+        let mut draft = Self {
+            rng,
+            problem,
+            gyration,
+            bound: mu_s * mass * GRAVITY * h,
+            pusher: Twist::default(),
+        };
         if draft.rng.one_in(4) {
             draft.stand_unevenly(1e-3)
         } else {
@@ -53,42 +65,74 @@ impl Draft {
         }
         draft.problem.twist = draft.slow_twist();
         let (speed, direction) = (draft.rng.log_within(1e-3, FASTEST), draft.rng.direction());
-        draft.pusher = Twist { vx: speed * direction[0], vy: speed * direction[1], omega: 0.0 };
+        draft.pusher = Twist {
+            vx: speed * direction[0],
+            vy: speed * direction[1],
+            omega: 0.0,
+        };
         draft
     }
 
     pub fn stand_on_tripod(&mut self, smallest: f64, largest: f64) {
         let (d_tri, e) = (self.rng.log_within(smallest, largest), self.rng.direction());
         let (cos, sin) = (-0.5, 0.75_f64.sqrt());
-        let directions = [e, [cos * e[0] - sin * e[1], sin * e[0] + cos * e[1]], [cos * e[0] + sin * e[1], cos * e[1] - sin * e[0]]];
-        self.problem.feet = directions.map(|e| Foot { arm: [d_tri * e[0], d_tri * e[1]], bound: self.bound / 3.0 });
+        let directions = [
+            e,
+            [cos * e[0] - sin * e[1], sin * e[0] + cos * e[1]],
+            [cos * e[0] + sin * e[1], cos * e[1] - sin * e[0]],
+        ];
+        self.problem.feet = directions.map(|e| Foot {
+            arm: [d_tri * e[0], d_tri * e[1]],
+            bound: self.bound / 3.0,
+        });
     }
 
-    /// Feet anywhere about the centre of mass; loads from statics: the centre of mass is their load-weighted mean.
+    /// Feet anywhere about the centre of mass; loads from statics: the centre of mass is their
+    /// load-weighted mean.
     pub fn stand_unevenly(&mut self, least_share: f64) {
         let light = self.rng.log_within(least_share, 0.3);
         let split = self.rng.within(0.1, 0.9) * (1.0 - light);
         let loads = [light, split, 1.0 - light - split];
         let reach = 1.5 * self.gyration;
-        let points = [(); 3].map(|()| [self.rng.within(-reach, reach), self.rng.within(-reach, reach)]);
+        let points = [(); 3].map(|()| {
+            [
+                self.rng.within(-reach, reach),
+                self.rng.within(-reach, reach),
+            ]
+        });
         let mean = [0, 1].map(|axis| (0..3).map(|k| loads[k] * points[k][axis]).sum::<f64>());
-        self.problem.feet = [0, 1, 2].map(|k| Foot { arm: [points[k][0] - mean[0], points[k][1] - mean[1]], bound: loads[k] * self.bound });
+        self.problem.feet = [0, 1, 2].map(|k| Foot {
+            arm: [points[k][0] - mean[0], points[k][1] - mean[1]],
+            bound: loads[k] * self.bound,
+        });
     }
 
     pub fn scale_support(&mut self, factor: f64) {
         self.bound *= factor;
-        self.problem.feet.iter_mut().for_each(|foot| foot.bound *= factor);
+        self.problem
+            .feet
+            .iter_mut()
+            .for_each(|foot| foot.bound *= factor);
     }
 
-    /// At rest once in four times, otherwise each of translation and rotation from 0.1 mm/s to 0.3 m/s at ρ.
+    /// At rest once in four times, otherwise each of translation and rotation from 0.1 mm/s to 0.3
+    /// m/s at ρ.
     pub fn slow_twist(&mut self) -> Twist {
-        if self.rng.one_in(4) { Twist::default() } else { self.twist_between(1e-4, FASTEST) }
+        if self.rng.one_in(4) {
+            Twist::default()
+        } else {
+            self.twist_between(1e-4, FASTEST)
+        }
     }
 
     pub fn twist_between(&mut self, slowest: f64, fastest: f64) -> Twist {
         let (speed, direction) = (self.rng.log_within(slowest, fastest), self.rng.direction());
         let turn = self.rng.sign() * self.rng.log_within(slowest, fastest) / self.gyration;
-        Twist { vx: speed * direction[0], vy: speed * direction[1], omega: turn }
+        Twist {
+            vx: speed * direction[0],
+            vy: speed * direction[1],
+            omega: turn,
+        }
     }
 
     /// Unit vector of the commanded translation.
@@ -97,14 +141,22 @@ impl Draft {
         [self.pusher.vx / speed, self.pusher.vy / speed]
     }
 
-    /// Lets the drive give way at a force between a twentieth and twenty times what pushing the object alone takes.
+    /// Lets the drive give way at a force between a twentieth and twenty times what pushing the
+    /// object alone takes.
     pub fn limit_drive(&mut self) {
         let needed = self.bound + self.problem.mass * libm::hypot(self.pusher.vx, self.pusher.vy);
-        self.problem.stall = Some(Stall { impulse: needed * self.rng.log_within(0.05, 20.0), direction: self.drive() });
+        self.problem.stall = Some(Stall {
+            impulse: needed * self.rng.log_within(0.05, 20.0),
+            direction: self.drive(),
+        });
     }
 
     pub fn friction(&mut self) -> f64 {
-        if self.rng.one_in(8) { 0.0 } else { self.rng.within(0.05, 1.5) }
+        if self.rng.one_in(8) {
+            0.0
+        } else {
+            self.rng.within(0.05, 1.5)
+        }
     }
 
     /// Exactly touching, or closing or opening within about a step, or anything up to 2 mm apart.
@@ -119,24 +171,46 @@ impl Draft {
 
     /// Overlap down to −2 mm, often by very little.
     pub fn overlap(&mut self) -> f64 {
-        let depth = if self.rng.one_in(2) { self.rng.log_within(1e-7, WIDEST_GAP) } else { self.rng.within(1e-7, WIDEST_GAP) };
+        let depth = if self.rng.one_in(2) {
+            self.rng.log_within(1e-7, WIDEST_GAP)
+        } else {
+            self.rng.within(1e-7, WIDEST_GAP)
+        };
         -depth
     }
 
     /// `normal` turned by a random angle of at most `most` (rad).
     pub fn tilted(&mut self, normal: [f64; 2], most: f64) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.rng.within(-most, most));
-        [cos * normal[0] - sin * normal[1], sin * normal[0] + cos * normal[1]]
+        [
+            cos * normal[0] - sin * normal[1],
+            sin * normal[0] + cos * normal[1],
+        ]
     }
 
-    /// A contact with `body` whose normal passes the centre of mass at `lever` ρ to the left, friction and gap at random.
+    /// A contact with `body` whose normal passes the centre of mass at `lever` ρ to the left,
+    /// friction and gap at random.
     pub fn contact(&mut self, body: Body, normal: [f64; 2], lever: f64) -> ContactPoint {
         let depth = self.rng.within(0.5, 1.7) * self.gyration;
         let (t, side) = (left(normal), lever * self.gyration);
-        let arm = [side * t[0] - depth * normal[0], side * t[1] - depth * normal[1]];
-        let surface_velocity = if body == Body::Pusher { self.pusher.at(arm) } else { [0.0; 2] };
+        let arm = [
+            side * t[0] - depth * normal[0],
+            side * t[1] - depth * normal[1],
+        ];
+        let surface_velocity = if body == Body::Pusher {
+            self.pusher.at(arm)
+        } else {
+            [0.0; 2]
+        };
         let (gap, mu) = (self.gap(), self.friction());
-        ContactPoint { normal, arm, gap, mu, surface_velocity, on_pusher: body == Body::Pusher }
+        ContactPoint {
+            normal,
+            arm,
+            gap,
+            mu,
+            surface_velocity,
+            on_pusher: body == Body::Pusher,
+        }
     }
 
     /// A contact with `body` of the given normal, anywhere on that side of the object.
@@ -157,24 +231,48 @@ impl Draft {
         self.add(contact);
     }
 
-    /// Two contacts of one face, at the same depth on either side of a random point; tilted against each other not at all or slightly.
+    /// Two contacts of one face, at the same depth on either side of a random point; tilted against
+    /// each other not at all or slightly.
     pub fn add_face(&mut self, body: Body, normal: [f64; 2]) {
         let first = self.contact_anywhere(body, normal);
-        let tilt = if self.rng.one_in(2) { 0.0 } else { self.rng.log_within(1e-9, 1e-2) };
+        let tilt = if self.rng.one_in(2) {
+            0.0
+        } else {
+            self.rng.log_within(1e-9, 1e-2)
+        };
         let width = self.rng.within(-1.5, 1.5) * self.gyration;
         let t = left(normal);
         let arm = [first.arm[0] + width * t[0], first.arm[1] + width * t[1]];
-        let surface_velocity = if body == Body::Pusher { self.pusher.at(arm) } else { [0.0; 2] };
-        let gap = if self.rng.one_in(2) { first.gap } else { self.gap() };
-        let second = ContactPoint { normal: self.tilted(normal, tilt), arm, gap, surface_velocity, ..first };
+        let surface_velocity = if body == Body::Pusher {
+            self.pusher.at(arm)
+        } else {
+            [0.0; 2]
+        };
+        let gap = if self.rng.one_in(2) {
+            first.gap
+        } else {
+            self.gap()
+        };
+        let second = ContactPoint {
+            normal: self.tilted(normal, tilt),
+            arm,
+            gap,
+            surface_velocity,
+            ..first
+        };
         self.add(first);
         self.add(second);
     }
 
-    /// A load at a random point: an impulse of `share` times the support's friction impulse, torque to match the reach.
+    /// A load at a random point: an impulse of `share` times the support's friction impulse, torque
+    /// to match the reach.
     pub fn load(&mut self, share: f64) {
         let (size, e) = (share * self.bound, self.rng.direction());
         let torque = share * self.bound * self.gyration * self.rng.within(-1.0, 1.0);
-        self.problem.applied = Wrench { fx: size * e[0], fy: size * e[1], torque };
+        self.problem.applied = Wrench {
+            fx: size * e[0],
+            fy: size * e[1],
+            torque,
+        };
     }
 }

@@ -1,5 +1,6 @@
-//! Steps of recorded experiments: [`harvest`] runs the particle filter over one and judges every step that it solves; a sample of them,
-//! cold-started and disturbed, joins the corpus of hard problems ([`survey_steps`]).
+//! Steps of recorded experiments: [`harvest`] runs the particle filter over one and judges every
+//! step that it solves; a sample of them, cold-started and disturbed, joins the corpus of hard
+//! problems ([`survey_steps`]).
 
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +12,8 @@ use crate::rng::{SplitMix64, scatter};
 use crate::survey::{Tally, examine};
 use crate::{RecordedCase, residual_si};
 
-/// Most particles of a harvest: their steps come in order, so that the same ones are kept each time.
+/// Most particles of a harvest: their steps come in order, so that the same ones are kept each
+/// time.
 pub const MOST_PARTICLES: usize = 64;
 
 /// Largest residual of a step that counts as solved (m/s; model.md, "What solved means").
@@ -49,7 +51,8 @@ pub struct HarvestOptions {
     pub keep_one_in: u64,
 }
 
-/// Runs the particle filter over an experiment, as the program does by default, and judges every step.
+/// Runs the particle filter over an experiment, as the program does by default, and judges every
+/// step.
 ///
 /// # Errors
 /// The experiment cannot be run.
@@ -57,11 +60,25 @@ pub struct HarvestOptions {
 /// # Panics
 /// With more than [`MOST_PARTICLES`]: their steps would come in no fixed order.
 pub fn harvest(case: &RecordedCase, options: &HarvestOptions) -> Result<Harvest, RunError> {
-    assert!(options.particles <= MOST_PARTICLES, "{} particles, at most {MOST_PARTICLES}", options.particles);
-    let run_options = RunOptions { particles: options.particles, occlusion: case.occlusion, ..RunOptions::default() };
-    let reaper = Reaper { options: *options, harvest: Mutex::default() };
+    assert!(
+        options.particles <= MOST_PARTICLES,
+        "{} particles, at most {MOST_PARTICLES}",
+        options.particles
+    );
+    let run_options = RunOptions {
+        particles: options.particles,
+        occlusion: case.occlusion,
+        ..RunOptions::default()
+    };
+    let reaper = Reaper {
+        options: *options,
+        harvest: Mutex::default(),
+    };
     run_watched(&case.setup, &case.log, &run_options, &reaper, &mut |_| ())?;
-    Ok(reaper.harvest.into_inner().unwrap_or_else(PoisonError::into_inner))
+    Ok(reaper
+        .harvest
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner))
 }
 
 #[derive(Debug)]
@@ -76,25 +93,41 @@ impl StepWatch for Reaper {
         let mut tally = Tally::of_report(harvest.tally.problems, &step.report);
         let solved = step.report.outcome == Outcome::Solved;
         if solved {
-            tally.worst_residual = tally.worst_residual.max(residual_si(step.problem, step.solution));
+            tally.worst_residual = tally
+                .worst_residual
+                .max(residual_si(step.problem, step.solution));
         }
         if step.report.outcome == Outcome::Failed || tally.worst_residual > TOLERANCE {
             harvest.refuted.push(step.problem.clone());
         }
         harvest.tally.add(tally);
-        if !step.problem.contacts.is_empty() && fingerprint(step.problem).is_multiple_of(self.options.keep_one_in) {
-            harvest.kept.push(HarvestedStep { problem: step.problem.clone(), witness: solved.then(|| step.solution.clone()) });
+        if !step.problem.contacts.is_empty()
+            && fingerprint(step.problem).is_multiple_of(self.options.keep_one_in)
+        {
+            harvest.kept.push(HarvestedStep {
+                problem: step.problem.clone(),
+                witness: solved.then(|| step.solution.clone()),
+            });
         }
     }
 }
 
 /// A number that tells steps apart: their twist and the noise impulse differ.
 fn fingerprint(problem: &StepProblem) -> u64 {
-    let numbers = [problem.twist.vx, problem.twist.vy, problem.twist.omega, problem.applied.fx, problem.applied.fy];
-    numbers.iter().fold(0, |hash, number| scatter(hash ^ number.to_bits()))
+    let numbers = [
+        problem.twist.vx,
+        problem.twist.vy,
+        problem.twist.omega,
+        problem.applied.fx,
+        problem.applied.fy,
+    ];
+    numbers
+        .iter()
+        .fold(0, |hash, number| scatter(hash ^ number.to_bits()))
 }
 
-/// How the solver does on harvested steps from a cold start: as they are, and disturbed. Independent of the number of threads.
+/// How the solver does on harvested steps from a cold start: as they are, and disturbed.
+/// Independent of the number of threads.
 ///
 /// The disturbance of step k is a pure function of (seed, k).
 #[must_use]
@@ -105,18 +138,39 @@ pub fn survey_steps(steps: &[HarvestedStep], seed: u64) -> [(&'static str, Tally
     });
     let disturbed = (0..steps.len() as u64 * DISTURBED)
         .into_par_iter()
-        .map(|k| examine(k, &disturbed_step(&steps[(k / DISTURBED) as usize].problem, &mut SplitMix64::stream(seed, k)), None));
-    [("harvested", cold.reduce(Tally::default, Tally::sum)), ("disturbed", disturbed.reduce(Tally::default, Tally::sum))]
+        .map(|k| {
+            examine(
+                k,
+                &disturbed_step(
+                    &steps[(k / DISTURBED) as usize].problem,
+                    &mut SplitMix64::stream(seed, k),
+                ),
+                None,
+            )
+        });
+    [
+        ("harvested", cold.reduce(Tally::default, Tally::sum)),
+        ("disturbed", disturbed.reduce(Tally::default, Tally::sum)),
+    ]
 }
 
-/// The step with twist, gaps and friction changed by factors of up to two, and the first two by a little more besides.
+/// The step with twist, gaps and friction changed by factors of up to two, and the first two by a
+/// little more besides.
 fn disturbed_step(step: &StepProblem, rng: &mut SplitMix64) -> StepProblem {
     let mut problem = step.clone();
     let gyration = (problem.inertia / problem.mass).sqrt();
-    for (speed, scale) in [(&mut problem.twist.vx, 1.0), (&mut problem.twist.vy, 1.0), (&mut problem.twist.omega, gyration)] {
+    for (speed, scale) in [
+        (&mut problem.twist.vx, 1.0),
+        (&mut problem.twist.vy, 1.0),
+        (&mut problem.twist.omega, gyration),
+    ] {
         *speed = *speed * rng.log_within(0.5, 2.0) + rng.within(-0.01, 0.01) / scale;
     }
-    let (shift, friction, support) = (rng.log_within(1e-7, 1e-3), rng.log_within(0.5, 2.0), rng.log_within(0.5, 2.0));
+    let (shift, friction, support) = (
+        rng.log_within(1e-7, 1e-3),
+        rng.log_within(0.5, 2.0),
+        rng.log_within(0.5, 2.0),
+    );
     for contact in &mut problem.contacts {
         contact.gap = contact.gap * rng.log_within(0.5, 2.0) + rng.within(-shift, shift);
         contact.mu *= friction;
@@ -134,15 +188,32 @@ mod tests {
     use super::*;
 
     fn reaper() -> Reaper {
-        Reaper { options: HarvestOptions { particles: 1, keep_one_in: 1 }, harvest: Mutex::default() }
+        Reaper {
+            options: HarvestOptions {
+                particles: 1,
+                keep_one_in: 1,
+            },
+            harvest: Mutex::default(),
+        }
     }
 
     /// A block that slides on three feet, solved.
     fn sliding() -> (StepProblem, StepSolution, Report) {
         let arms = [[0.02, 0.0], [-0.01, 0.017], [-0.01, -0.017]];
         let feet = arms.map(|arm| Foot { arm, bound: 0.01 });
-        let twist = Twist { vx: 0.3, vy: 0.1, omega: 1.0 };
-        let problem = StepProblem { mass: 0.5, inertia: 2e-4, h: 0.03, twist, feet, ..StepProblem::default() };
+        let twist = Twist {
+            vx: 0.3,
+            vy: 0.1,
+            omega: 1.0,
+        };
+        let problem = StepProblem {
+            mass: 0.5,
+            inertia: 2e-4,
+            h: 0.03,
+            twist,
+            feet,
+            ..StepProblem::default()
+        };
         let (solution, report) = solve(&problem);
         (problem, solution, report)
     }
@@ -151,9 +222,20 @@ mod tests {
     fn see_counts_a_solved_step() {
         let (problem, solution, report) = sliding();
         let reaper = reaper();
-        reaper.see(&SolvedStep { problem: &problem, solution: &solution, report });
+        reaper.see(&SolvedStep {
+            problem: &problem,
+            solution: &solution,
+            report,
+        });
         let harvest = reaper.harvest.into_inner().expect("one thread");
-        assert_eq!((harvest.tally.problems, harvest.tally.solved.iter().sum::<u64>(), harvest.refuted.len()), (1, 1, 0));
+        assert_eq!(
+            (
+                harvest.tally.problems,
+                harvest.tally.solved.iter().sum::<u64>(),
+                harvest.refuted.len()
+            ),
+            (1, 1, 0)
+        );
     }
 
     #[test]
@@ -161,7 +243,11 @@ mod tests {
         let (problem, mut solution, report) = sliding();
         solution.twist.vx += 1e-8;
         let reaper = reaper();
-        reaper.see(&SolvedStep { problem: &problem, solution: &solution, report });
+        reaper.see(&SolvedStep {
+            problem: &problem,
+            solution: &solution,
+            report,
+        });
         let harvest = reaper.harvest.into_inner().expect("one thread");
         assert_eq!(harvest.refuted, [problem]);
         assert!(harvest.tally.worst_residual > 9e-9);

@@ -1,8 +1,9 @@
 //! Impulses that belong to a given twist: [`impulses_for_twist`], a convex feasibility problem.
 //!
-//! Once v⁺ and y are known, every contact is open or closed and every slip velocity zero or not, and what is left is linear:
-//! Newton–Euler, friction on the cone's edge where something slips, friction inside the cone where it sticks. Where several sets of
-//! impulses do (a face that sticks, an object wedged at rest) the one of least norm is returned.
+//! Once v⁺ and y are known, every contact is open or closed and every slip velocity zero or not,
+//! and what is left is linear: Newton–Euler, friction on the cone's edge where something slips,
+//! friction inside the cone where it sticks. Where several sets of impulses do (a face that sticks,
+//! an object wedged at rest) the one of least norm is returned.
 
 use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist};
 
@@ -23,13 +24,27 @@ enum Motion {
     Moving(f64),
 }
 
-/// A solution with the given `twist` and pusher yield; `None` where no impulses go with it to 1e-8 of the problem's fastest speed.
+/// A solution with the given `twist` and pusher yield; `None` where no impulses go with it to 1e-8
+/// of the problem's fastest speed.
 #[must_use]
-pub fn impulses_for_twist(problem: &StepProblem, twist: Twist, pusher_yield: f64) -> Option<StepSolution> {
+pub fn impulses_for_twist(
+    problem: &StepProblem,
+    twist: Twist,
+    pusher_yield: f64,
+) -> Option<StepSolution> {
     let scaled = Scaled::new(problem);
-    let state = State { z: scaled.scale_twist(twist), y: pusher_yield / scaled.speed(), scaled };
-    let solves = |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * state.scaled.speed();
-    state.program()?.attempts().map(|optimum| state.solution(&optimum, twist, pusher_yield)).find(solves)
+    let state = State {
+        z: scaled.scale_twist(twist),
+        y: pusher_yield / scaled.speed(),
+        scaled,
+    };
+    let solves =
+        |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * state.scaled.speed();
+    state
+        .program()?
+        .attempts()
+        .map(|optimum| state.solution(&optimum, twist, pusher_yield))
+        .find(solves)
 }
 
 struct State<'a> {
@@ -57,7 +72,9 @@ impl State<'_> {
     fn program(&self) -> Option<Conic> {
         let mut conic = Conic::new(self.unknowns());
         conic.weight.fill(1.0);
-        self.momentum_rows().into_iter().for_each(|row| conic.equal(row));
+        self.momentum_rows()
+            .into_iter()
+            .for_each(|row| conic.equal(row));
         for (i, contact) in self.contacts().iter().enumerate() {
             self.contact_rows(&mut conic, i, contact)?;
         }
@@ -67,13 +84,23 @@ impl State<'_> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let contacts = self.contacts().iter().flat_map(|c| [self.scaled.normal(c), self.scaled.tangent(c)]);
-        contacts.chain((0..3).flat_map(|k| self.scaled.foot(k))).collect()
+        let contacts = self
+            .contacts()
+            .iter()
+            .flat_map(|c| [self.scaled.normal(c), self.scaled.tangent(c)]);
+        contacts
+            .chain((0..3).flat_map(|k| self.scaled.foot(k)))
+            .collect()
     }
 
     fn momentum_rows(&self) -> [Affine; 3] {
         let (columns, free) = (self.columns(), self.scaled.free());
-        [0, 1, 2].map(|axis| (columns.iter().map(|c| c[axis]).collect(), free[axis] - self.z[axis]))
+        [0, 1, 2].map(|axis| {
+            (
+                columns.iter().map(|c| c[axis]).collect(),
+                free[axis] - self.z[axis],
+            )
+        })
     }
 
     fn contact_rows(&self, conic: &mut Conic, i: usize, contact: &ContactPoint) -> Option<()> {
@@ -96,7 +123,10 @@ impl State<'_> {
         let (normal, tangential) = (2 * i, 2 * i + 1);
         match self.slip_motion(contact) {
             Motion::Moving(slip) => {
-                conic.equal(self.combination(&[(tangential, 1.0), (normal, contact.mu * slip.signum())], 0.0));
+                conic.equal(self.combination(
+                    &[(tangential, 1.0), (normal, contact.mu * slip.signum())],
+                    0.0,
+                ));
             }
             Motion::Still => {
                 conic.at_least(self.combination(&[(normal, contact.mu), (tangential, 1.0)], 0.0));
@@ -110,7 +140,9 @@ impl State<'_> {
         let slip = self.scaled.foot(k).map(|row| dot3(&row, &self.z));
         let length = libm::hypot(slip[0], slip[1]);
         if length > STILL {
-            (0..2).for_each(|axis| conic.equal(self.combination(&[(x + axis, 1.0)], bound * slip[axis] / length)));
+            (0..2).for_each(|axis| {
+                conic.equal(self.combination(&[(x + axis, 1.0)], bound * slip[axis] / length))
+            });
         } else {
             let parts = [x, x + 1].map(|j| self.combination(&[(j, 1.0)], 0.0));
             conic.cone(self.combination(&[], bound), parts);
@@ -133,7 +165,10 @@ impl State<'_> {
     fn reserve(&self, limit: f64) -> Affine {
         let terms = |(i, c): (usize, &ContactPoint)| {
             let tangent = left(c.normal);
-            [(2 * i, -self.scaled.yielding(c, c.normal)), (2 * i + 1, -self.scaled.yielding(c, tangent))]
+            [
+                (2 * i, -self.scaled.yielding(c, c.normal)),
+                (2 * i + 1, -self.scaled.yielding(c, tangent)),
+            ]
         };
         let terms: Vec<_> = self.contacts().iter().enumerate().flat_map(terms).collect();
         self.combination(&terms, limit)
@@ -164,5 +199,9 @@ impl State<'_> {
 }
 
 fn motion(speed: f64) -> Motion {
-    if speed.abs() > STILL { Motion::Moving(speed) } else { Motion::Still }
+    if speed.abs() > STILL {
+        Motion::Moving(speed)
+    } else {
+        Motion::Still
+    }
 }

@@ -1,10 +1,12 @@
 //! When a step can fail to have a solution: [`gap_margin`] and [`may_jam`].
 //!
-//! Two one-sided answers. Below zero margin the gap rows exclude each other, at any reasonable speed: no solution. Where the friction
-//! cones admit no impulses that cancel each other (their sum is a pointed cone) there is always a solution: impulses p that grow
-//! without bound along a homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent. Faces that
-//! close on an object at a slight angle meet both conditions: their solution squeezes it out at an absurd speed. So a step *must* be
-//! solved where `!may_jam(p) && gap_margin(p, cap) > 0`.
+//! Two one-sided answers. Below zero margin the gap rows exclude each other, at any reasonable
+//! speed: no solution. Where the friction cones admit no impulses that cancel each other (their sum
+//! is a pointed cone) there is always a solution: impulses p that grow without bound along a
+//! homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent.
+//! Faces that close on an object at a slight angle meet both conditions: their solution squeezes it
+//! out at an absurd speed. So a step *must* be solved where `!may_jam(p) && gap_margin(p, cap) >
+//! 0`.
 
 use stickslip_dynamics::StepProblem;
 
@@ -14,12 +16,15 @@ use crate::scaled::Scaled;
 
 /// Twists up to this many times the problem's fastest speed are considered.
 const REACH: f64 = 100.0;
-/// Wrenches of unit impulses that sum to less than this may cancel each other; the quadratic program is good to about 1e-7.
+/// Wrenches of unit impulses that sum to less than this may cancel each other; the quadratic
+/// program is good to about 1e-7.
 const CANCELLED: f64 = 1e-5;
 
-/// How fast all gaps can open at once (m/s), at most `cap`, with twists up to 100 times the fastest speed in the problem.
+/// How fast all gaps can open at once (m/s), at most `cap`, with twists up to 100 times the fastest
+/// speed in the problem.
 ///
-/// Negative where the gap rows exclude each other: then there is no solution of such a speed, whatever the friction.
+/// Negative where the gap rows exclude each other: then there is no solution of such a speed,
+/// whatever the friction.
 ///
 /// # Panics
 /// Where Clarabel fails on this bounded linear program.
@@ -34,9 +39,16 @@ pub fn gap_margin(problem: &StepProblem, cap: f64) -> f64 {
         let [x, y, turn] = scaled.normal(contact);
         // Farther than a twist can close: never binding, and tamed for the sake of accuracy.
         let offset = scaled.gap_offset(contact).min(cap + 10.0 * REACH);
-        conic.at_least((vec![x, y, turn, scaled.yielding(contact, contact.normal), -1.0], offset));
+        conic.at_least((
+            vec![x, y, turn, scaled.yielding(contact, contact.normal), -1.0],
+            offset,
+        ));
     }
-    let reach = if problem.stall.is_some() { [REACH; 4] } else { [REACH, REACH, REACH, 0.0] };
+    let reach = if problem.stall.is_some() {
+        [REACH; 4]
+    } else {
+        [REACH, REACH, REACH, 0.0]
+    };
     for (j, reach) in reach.into_iter().enumerate() {
         conic.at_least((unit(j, -1.0), reach));
         conic.at_least((unit(j, 1.0), if j == 3 { 0.0 } else { reach }));
@@ -52,10 +64,12 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
     row
 }
 
-/// Whether impulses within the friction cones can cancel each other while a drive with a force limit does not push.
+/// Whether impulses within the friction cones can cancel each other while a drive with a force
+/// limit does not push.
 ///
-/// Where they cannot, a solution exists; one of reasonable speed where [`gap_margin`] is positive too, and a solver that then reports
-/// none is at fault. Impulses that cancel to 1e-5 of their size count as cancelling, open contacts as closed.
+/// Where they cannot, a solution exists; one of reasonable speed where [`gap_margin`] is positive
+/// too, and a solver that then reports none is at fault. Impulses that cancel to 1e-5 of their size
+/// count as cancelling, open contacts as closed.
 ///
 /// # Panics
 /// Where Clarabel fails on this bounded quadratic program.
@@ -64,7 +78,8 @@ pub fn may_jam(problem: &StepProblem) -> bool {
     !problem.contacts.is_empty() && least_wrench(problem) < CANCELLED
 }
 
-/// Least size of the sum of wrenches, and of the push along the drive, of impulses whose normal parts sum to one.
+/// Least size of the sum of wrenches, and of the push along the drive, of impulses whose normal
+/// parts sum to one.
 fn least_wrench(problem: &StepProblem) -> f64 {
     let (scaled, contacts) = (Scaled::new(problem), problem.contacts.len());
     // Unknowns p_n, p_t per contact, then the wrench, then the push.
@@ -100,7 +115,10 @@ fn least_wrench(problem: &StepProblem) -> f64 {
     positive[wrench + 3] = 1.0;
     conic.at_least((positive, 0.0));
     conic.equal((normals, -1.0));
-    let optimum = conic.attempts().next().expect("a bounded quadratic program");
+    let optimum = conic
+        .attempts()
+        .next()
+        .expect("a bounded quadratic program");
     let size = |axis: usize| optimum.x[wrench + axis].abs();
     size(0).max(size(1)).max(size(2)).max(size(3))
 }

@@ -1,4 +1,5 @@
-//! Independent oracles for the tests of the other crates. Nothing here shares code with the solver, only the problem's types.
+//! Independent oracles for the tests of the other crates. Nothing here shares code with the solver,
+//! only the problem's types.
 //!
 //! - [`residual_si`]: the certificate of a step, by a second route.
 //! - [`enumerate_modes`]: all solutions of a small step, by trying every contact mode.
@@ -9,7 +10,8 @@
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.
 //! - [`data_root`], [`recorded_cases`]: where recorded experiments lie, and how they are run.
-//! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard problems.
+//! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
+//!   problems.
 
 mod closed_form;
 mod cone;

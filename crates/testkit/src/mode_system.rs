@@ -1,7 +1,8 @@
 //! The smooth equations of one contact mode and their damped Newton iteration: [`System`].
 //!
-//! Unknowns, scaled: z, y, then the impulses that the mode leaves free. Rows: z − z_free − Σ c p + Σ_sliding b_k J_kᵀ s_k/σ_k = 0 with
-//! σ_k = sqrt(|s_k|² + ε²), then the velocities that the mode holds at zero, then the drive. All but the sliding feet is linear.
+//! Unknowns, scaled: z, y, then the impulses that the mode leaves free. Rows: z − z_free − Σ c p +
+//! Σ_sliding b_k J_kᵀ s_k/σ_k = 0 with σ_k = sqrt(|s_k|² + ε²), then the velocities that the mode
+//! holds at zero, then the drive. All but the sliding feet is linear.
 
 use nalgebra::{DMatrix, DVector, SVD};
 use stickslip_dynamics::StepSolution;
@@ -37,7 +38,8 @@ pub(crate) struct Mode {
     pub drive: DriveMode,
 }
 
-/// An impulse that a mode leaves free, `share` of it along a contact's normal or tangent or a foot's axis.
+/// An impulse that a mode leaves free, `share` of it along a contact's normal or tangent or a
+/// foot's axis.
 #[derive(Clone, Copy)]
 enum Target {
     Normal(usize),
@@ -45,7 +47,8 @@ enum Target {
     Foot(usize, usize),
 }
 
-/// One unknown impulse: its column in Newton's law, its component along the drive, and where it goes.
+/// One unknown impulse: its column in Newton's law, its component along the drive, and where it
+/// goes.
 struct Impulse {
     column: Column,
     drive: f64,
@@ -77,7 +80,10 @@ const RANK: f64 = 1e-11;
 
 impl<'a> System<'a> {
     pub fn new(scaled: &'a Scaled<'a>, mode: &Mode) -> Self {
-        let impulses: Vec<Impulse> = contact_impulses(scaled, mode).into_iter().chain(foot_impulses(scaled, mode)).collect();
+        let impulses: Vec<Impulse> = contact_impulses(scaled, mode)
+            .into_iter()
+            .chain(foot_impulses(scaled, mode))
+            .collect();
         let held = held_velocities(scaled, mode);
         let n = YIELD + 1 + impulses.len();
         let mut linear = DMatrix::zeros(3 + held.len() + 1, n);
@@ -91,14 +97,26 @@ impl<'a> System<'a> {
         fill_drive(scaled, mode.drive, &impulses, &mut linear, &mut offset);
         let slides = |k: &usize| scaled.bound(*k) > 0.0 && !stuck(mode.feet, *k);
         let largest_term = (0..3).map(|k| scaled.bound(k)).fold(1.0, f64::max);
-        Self { scaled, impulses, sliding: (0..3).filter(slides).collect(), largest_term, linear, offset }
+        Self {
+            scaled,
+            impulses,
+            sliding: (0..3).filter(slides).collect(),
+            largest_term,
+            linear,
+            offset,
+        }
     }
 
-    /// The mode's solution reached from twist `start`, inequalities unchecked; `None` where the iteration fails.
+    /// The mode's solution reached from twist `start`, inequalities unchecked; `None` where the
+    /// iteration fails.
     pub fn solve(&self, start: &Column) -> Option<StepSolution> {
         let mut x = DVector::zeros(self.linear.ncols());
         x.rows_mut(0, 3).copy_from_slice(start);
-        let roundings = if self.sliding.is_empty() { &[0.0] } else { &ROUNDINGS[..] };
+        let roundings = if self.sliding.is_empty() {
+            &[0.0]
+        } else {
+            &ROUNDINGS[..]
+        };
         for &rounding in roundings {
             self.newton(&mut x, rounding)?;
         }
@@ -112,17 +130,28 @@ impl<'a> System<'a> {
             if rows.amax() < ROUNDING_ERROR * self.largest_term {
                 break;
             }
-            let svd = SVD::try_new_unordered(self.jacobian(x, rounding), true, true, f64::EPSILON, 400)?;
+            let svd =
+                SVD::try_new_unordered(self.jacobian(x, rounding), true, true, f64::EPSILON, 400)?;
             let step = svd.solve(&rows, RANK).ok()?;
-            let Some(next) = self.damped(x, &step, rounding, rows.norm()) else { break };
+            let Some(next) = self.damped(x, &step, rounding, rows.norm()) else {
+                break;
+            };
             *x = next;
         }
         Some(())
     }
 
-    fn damped(&self, x: &DVector<f64>, step: &DVector<f64>, rounding: f64, norm: f64) -> Option<DVector<f64>> {
+    fn damped(
+        &self,
+        x: &DVector<f64>,
+        step: &DVector<f64>,
+        rounding: f64,
+        norm: f64,
+    ) -> Option<DVector<f64>> {
         let trial = |halvings: usize| x - step * 0.5_f64.powi(halvings as i32);
-        (0..HALVINGS).map(trial).find(|next| self.rows(next, rounding).norm() < norm)
+        (0..HALVINGS)
+            .map(trial)
+            .find(|next| self.rows(next, rounding).norm() < norm)
     }
 
     fn slip(&self, x: &DVector<f64>, k: usize, rounding: f64) -> ([Column; 2], [f64; 2], f64) {
@@ -137,7 +166,9 @@ impl<'a> System<'a> {
         for &k in &self.sliding {
             let (foot, slip, length) = self.slip(x, k, rounding);
             for axis in 0..3 {
-                rows[axis] += self.scaled.bound(k) * (foot[0][axis] * slip[0] + foot[1][axis] * slip[1]) / length;
+                rows[axis] += self.scaled.bound(k)
+                    * (foot[0][axis] * slip[0] + foot[1][axis] * slip[1])
+                    / length;
             }
         }
         rows
@@ -147,9 +178,11 @@ impl<'a> System<'a> {
         let mut jacobian = self.linear.clone();
         for &k in &self.sliding {
             let (foot, slip, length) = self.slip(x, k, rounding);
-            let along: [f64; 3] = [0, 1, 2].map(|axis| (foot[0][axis] * slip[0] + foot[1][axis] * slip[1]) / length);
+            let along: [f64; 3] =
+                [0, 1, 2].map(|axis| (foot[0][axis] * slip[0] + foot[1][axis] * slip[1]) / length);
             for (i, j) in (0..9).map(|cell| (cell / 3, cell % 3)) {
-                let spread = foot[0][i] * foot[0][j] + foot[1][i] * foot[1][j] - along[i] * along[j];
+                let spread =
+                    foot[0][i] * foot[0][j] + foot[1][i] * foot[1][j] - along[i] * along[j];
                 jacobian[(i, j)] += self.scaled.bound(k) / length * spread;
             }
         }
@@ -190,17 +223,30 @@ fn stuck(feet: FeetMode, k: usize) -> bool {
     feet == FeetMode::Stuck || feet == FeetMode::Pivot(k)
 }
 
-/// Impulses of the closed contacts: normal and tangential where one sticks, one along the friction cone's edge where it slips.
+/// Impulses of the closed contacts: normal and tangential where one sticks, one along the friction
+/// cone's edge where it slips.
 fn contact_impulses(scaled: &Scaled, mode: &Mode) -> Vec<Impulse> {
     let mut all = vec![];
-    for (i, (contact, &contact_mode)) in scaled.problem.contacts.iter().zip(&mode.contacts).enumerate() {
+    for (i, (contact, &contact_mode)) in scaled
+        .problem
+        .contacts
+        .iter()
+        .zip(&mode.contacts)
+        .enumerate()
+    {
         let mut along = |normal: f64, tangential: f64| {
             let (n, t) = (contact.normal, left(contact.normal));
-            let direction = [normal * n[0] + tangential * t[0], normal * n[1] + tangential * t[1]];
+            let direction = [
+                normal * n[0] + tangential * t[0],
+                normal * n[1] + tangential * t[1],
+            ];
             all.push(Impulse {
                 column: scaled.column(direction, contact.arm),
                 drive: scaled.yielding(contact, direction),
-                targets: vec![(Target::Normal(i), normal), (Target::Tangential(i), tangential)],
+                targets: vec![
+                    (Target::Normal(i), normal),
+                    (Target::Tangential(i), tangential),
+                ],
             });
         };
         match contact_mode {
@@ -218,7 +264,11 @@ fn contact_impulses(scaled: &Scaled, mode: &Mode) -> Vec<Impulse> {
 fn foot_impulses(scaled: &Scaled, mode: &Mode) -> Vec<Impulse> {
     let held = (0..3).filter(|&k| stuck(mode.feet, k));
     let axes = held.flat_map(|k| (0..2).map(move |axis| (k, axis)));
-    let impulse = |(k, axis)| Impulse { column: scaled.foot(k)[axis], drive: 0.0, targets: vec![(Target::Foot(k, axis), 1.0)] };
+    let impulse = |(k, axis)| Impulse {
+        column: scaled.foot(k)[axis],
+        drive: 0.0,
+        targets: vec![(Target::Foot(k, axis), 1.0)],
+    };
     axes.map(impulse).collect()
 }
 
@@ -227,21 +277,35 @@ fn held_velocities(scaled: &Scaled, mode: &Mode) -> Vec<(Column, f64, f64)> {
     let mut rows = vec![];
     for (c, &contact_mode) in scaled.problem.contacts.iter().zip(&mode.contacts) {
         if contact_mode != ContactMode::Separate {
-            rows.push((scaled.normal(c), scaled.yielding(c, c.normal), scaled.gap_offset(c)));
+            rows.push((
+                scaled.normal(c),
+                scaled.yielding(c, c.normal),
+                scaled.gap_offset(c),
+            ));
         }
         if contact_mode == ContactMode::Stick {
-            rows.push((scaled.tangent(c), scaled.yielding(c, left(c.normal)), scaled.slip_offset(c)));
+            rows.push((
+                scaled.tangent(c),
+                scaled.yielding(c, left(c.normal)),
+                scaled.slip_offset(c),
+            ));
         }
     }
     match mode.feet {
         FeetMode::Slide => {}
         FeetMode::Pivot(k) => rows.extend(scaled.foot(k).map(|row| (row, 0.0, 0.0))),
-        FeetMode::Stuck => rows.extend([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|row| (row, 0.0, 0.0))),
+        FeetMode::Stuck => rows
+            .extend([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|row| (row, 0.0, 0.0))),
     }
     rows
 }
 
-fn fill_momentum(scaled: &Scaled, impulses: &[Impulse], linear: &mut DMatrix<f64>, offset: &mut DVector<f64>) {
+fn fill_momentum(
+    scaled: &Scaled,
+    impulses: &[Impulse],
+    linear: &mut DMatrix<f64>,
+    offset: &mut DVector<f64>,
+) {
     let free = scaled.free();
     for axis in 0..3 {
         linear[(axis, axis)] = 1.0;
@@ -253,13 +317,22 @@ fn fill_momentum(scaled: &Scaled, impulses: &[Impulse], linear: &mut DMatrix<f64
 }
 
 /// The last row: y = 0, or the drive's impulse at its limit.
-fn fill_drive(scaled: &Scaled, drive: DriveMode, impulses: &[Impulse], linear: &mut DMatrix<f64>, offset: &mut DVector<f64>) {
+fn fill_drive(
+    scaled: &Scaled,
+    drive: DriveMode,
+    impulses: &[Impulse],
+    linear: &mut DMatrix<f64>,
+    offset: &mut DVector<f64>,
+) {
     let row = linear.nrows() - 1;
     match drive {
         DriveMode::Commanded => linear[(row, YIELD)] = 1.0,
         DriveMode::Stalled => {
             offset[row] = -scaled.stall_impulse().unwrap_or(0.0);
-            impulses.iter().enumerate().for_each(|(j, impulse)| linear[(row, YIELD + 1 + j)] = impulse.drive);
+            impulses
+                .iter()
+                .enumerate()
+                .for_each(|(j, impulse)| linear[(row, YIELD + 1 + j)] = impulse.drive);
         }
     }
 }

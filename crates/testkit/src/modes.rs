@@ -1,9 +1,11 @@
 //! All solutions of a small step by trying every contact mode: [`enumerate_modes`].
 //!
-//! A mode says of each contact whether it separates, sticks or slips to the left or right, of the feet whether all slide, one sticks
-//! or all do, and of the drive whether it follows its command. Within a mode the conditions are smooth equations; a damped Newton
-//! iteration solves them from several starts, first with the corner of |s_k| rounded off, and what passes the residual is kept. Where
-//! a mode leaves impulses undetermined, those of least norm that respect the cones are looked for at the twist it yields.
+//! A mode says of each contact whether it separates, sticks or slips to the left or right, of the
+//! feet whether all slide, one sticks or all do, and of the drive whether it follows its command.
+//! Within a mode the conditions are smooth equations; a damped Newton iteration solves them from
+//! several starts, first with the corner of |s_k| rounded off, and what passes the residual is
+//! kept. Where a mode leaves impulses undetermined, those of least norm that respect the cones are
+//! looked for at the twist it yields.
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 
@@ -21,19 +23,28 @@ const DISTINCT: f64 = 1e-6;
 const MOST_CONTACTS: usize = 3;
 const RANDOM_STARTS: usize = 3;
 
-/// Every solution of distinct twist or yield that the enumeration finds; slow (milliseconds), for up to three contacts.
+/// Every solution of distinct twist or yield that the enumeration finds; slow (milliseconds), for
+/// up to three contacts.
 ///
-/// Complete up to the Newton iteration's luck in each mode and up to continua of twists, of which it reports a few members.
-/// Each returned solution has `residual_si` ≤ 1e-10 m/s.
+/// Complete up to the Newton iteration's luck in each mode and up to continua of twists, of which
+/// it reports a few members. Each returned solution has `residual_si` ≤ 1e-10 m/s.
 ///
 /// # Panics
 /// With more than three contacts.
 #[must_use]
 pub fn enumerate_modes(problem: &StepProblem) -> Vec<StepSolution> {
-    assert!(problem.contacts.len() <= MOST_CONTACTS, "{} contacts have too many modes to enumerate", problem.contacts.len());
+    assert!(
+        problem.contacts.len() <= MOST_CONTACTS,
+        "{} contacts have too many modes to enumerate",
+        problem.contacts.len()
+    );
     let scaled = Scaled::new(problem);
     let starts = starts(&scaled);
-    let mut search = Search { scaled: &scaled, tried: vec![], found: vec![] };
+    let mut search = Search {
+        scaled: &scaled,
+        tried: vec![],
+        found: vec![],
+    };
     for mode in modes(problem) {
         let system = System::new(&scaled, &mode);
         for start in &starts {
@@ -52,9 +63,15 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn consider(&mut self, system: &System, start: &Column) {
-        let Some(candidate) = system.solve(start) else { return };
+        let Some(candidate) = system.solve(start) else {
+            return;
+        };
         let place = self.place(&candidate);
-        if self.found.iter().any(|known| near(&self.place(known), &place)) {
+        if self
+            .found
+            .iter()
+            .any(|known| near(&self.place(known), &place))
+        {
             return;
         }
         let problem = self.scaled.problem;
@@ -63,7 +80,8 @@ impl Search<'_> {
         } else if !self.tried.iter().any(|known| near(known, &place)) {
             self.tried.push(place);
             let mended = impulses_for_twist(problem, candidate.twist, candidate.pusher_yield);
-            self.found.extend(mended.filter(|solution| residual_si(problem, solution) <= TOLERANCE));
+            self.found
+                .extend(mended.filter(|solution| residual_si(problem, solution) <= TOLERANCE));
         }
     }
 
@@ -79,8 +97,18 @@ fn near(a: &[f64; 4], b: &[f64; 4]) -> bool {
 
 fn starts(scaled: &Scaled) -> Vec<Column> {
     let mut rng = SplitMix64::new(1);
-    let mut all = vec![scaled.free(), scaled.scale_twist(scaled.problem.twist), [0.0; 3]];
-    all.extend((0..RANDOM_STARTS).map(|_| [rng.within(-1.0, 1.0), rng.within(-1.0, 1.0), rng.within(-1.0, 1.0)]));
+    let mut all = vec![
+        scaled.free(),
+        scaled.scale_twist(scaled.problem.twist),
+        [0.0; 3],
+    ];
+    all.extend((0..RANDOM_STARTS).map(|_| {
+        [
+            rng.within(-1.0, 1.0),
+            rng.within(-1.0, 1.0),
+            rng.within(-1.0, 1.0),
+        ]
+    }));
     all
 }
 
@@ -88,14 +116,28 @@ fn modes(problem: &StepProblem) -> Vec<Mode> {
     let feet = if problem.feet.iter().all(|foot| foot.bound == 0.0) {
         vec![FeetMode::Slide]
     } else {
-        vec![FeetMode::Slide, FeetMode::Pivot(0), FeetMode::Pivot(1), FeetMode::Pivot(2), FeetMode::Stuck]
+        vec![
+            FeetMode::Slide,
+            FeetMode::Pivot(0),
+            FeetMode::Pivot(1),
+            FeetMode::Pivot(2),
+            FeetMode::Stuck,
+        ]
     };
     let may_stall = problem.stall.is_some() && problem.contacts.iter().any(|c| c.on_pusher);
-    let drives = if may_stall { vec![DriveMode::Commanded, DriveMode::Stalled] } else { vec![DriveMode::Commanded] };
+    let drives = if may_stall {
+        vec![DriveMode::Commanded, DriveMode::Stalled]
+    } else {
+        vec![DriveMode::Commanded]
+    };
     let mut all = vec![];
     for contacts in contact_modes(problem) {
         for &feet in &feet {
-            all.extend(drives.iter().map(|&drive| Mode { contacts: contacts.clone(), feet, drive }));
+            all.extend(drives.iter().map(|&drive| Mode {
+                contacts: contacts.clone(),
+                feet,
+                drive,
+            }));
         }
     }
     all
@@ -107,9 +149,21 @@ fn contact_modes(problem: &StepProblem) -> Vec<Vec<ContactMode>> {
     for contact in &problem.contacts {
         let options = match contact.mu {
             0.0 => vec![ContactMode::Separate, ContactMode::Slip(1.0)],
-            _ => vec![ContactMode::Separate, ContactMode::Stick, ContactMode::Slip(1.0), ContactMode::Slip(-1.0)],
+            _ => vec![
+                ContactMode::Separate,
+                ContactMode::Stick,
+                ContactMode::Slip(1.0),
+                ContactMode::Slip(-1.0),
+            ],
         };
-        all = all.iter().flat_map(|head| options.iter().map(move |&last| [head.as_slice(), &[last]].concat())).collect();
+        all = all
+            .iter()
+            .flat_map(|head| {
+                options
+                    .iter()
+                    .map(move |&last| [head.as_slice(), &[last]].concat())
+            })
+            .collect();
     }
     all
 }

@@ -1,10 +1,13 @@
-//! A fixed corpus of step problems that are meant to hurt: [`Corpus`], its problems sorted into [`Family`]s.
+//! A fixed corpus of step problems that are meant to hurt: [`Corpus`], its problems sorted into
+//! [`Family`]s.
 //!
-//! Problem `index` is a pure function of (seed, index). Families follow each other cyclically, so that any run of
-//! `Family::ALL.len()` indices holds each once and failures can be counted per family.
+//! Problem `index` is a pure function of (seed, index). Families follow each other cyclically, so
+//! that any run of `Family::ALL.len()` indices holds each once and failures can be counted per
+//! family.
 //!
-//! Not every problem has a rigid solution: a rigid pusher into a jam and fixels that overlap from two sides have none, and the solver
-//! must say so. [`crate::gap_margin`] tells some of them; [`Corpus::witness`] gives a solution where one is known by construction.
+//! Not every problem has a rigid solution: a rigid pusher into a jam and fixels that overlap from
+//! two sides have none, and the solver must say so. [`crate::gap_margin`] tells some of them;
+//! [`Corpus::witness`] gives a solution where one is known by construction.
 
 use stickslip_dynamics::{StepProblem, StepSolution, Twist, Wrench};
 
@@ -18,7 +21,8 @@ use crate::rng::SplitMix64;
 pub enum Family {
     /// No contact; slides on or comes to rest within the step.
     Sliding,
-    /// Remains at rest under load, touched by nothing, fixels or a resting pusher; impulses not unique. Has a witness.
+    /// Remains at rest under load, touched by nothing, fixels or a resting pusher; impulses not
+    /// unique. Has a witness.
     Resting,
     /// Turns about one stuck foot under load. Has a witness.
     Pivoting,
@@ -48,7 +52,8 @@ pub enum Family {
     Duplicated,
     /// Up to eight contacts without friction; the cone program knows the answer.
     Frictionless,
-    /// Long levers and large friction, where the tangential impulse drives the object into the contact (Painlevé).
+    /// Long levers and large friction, where the tangential impulse drives the object into the
+    /// contact (Painlevé).
     Painleve,
     /// Contacts without any support friction.
     SlipperySupport,
@@ -139,7 +144,12 @@ fn prescribed_motion(family: Family, draft: &mut Draft) -> Option<(Motion, usize
         }
         Family::Pivoting => Some((Motion::Pivot(foot), draft.rng.below(2))),
         Family::Manufactured => {
-            let motions = [Motion::Rest, Motion::Pivot(foot), Motion::WithPusher, Motion::Any];
+            let motions = [
+                Motion::Rest,
+                Motion::Pivot(foot),
+                Motion::WithPusher,
+                Motion::Any,
+            ];
             Some((motions[draft.rng.below(4)], draft.rng.below(9)))
         }
         _ => None,
@@ -171,7 +181,11 @@ fn compose(family: Family, draft: &mut Draft) {
 }
 
 fn any_body(draft: &mut Draft) -> Body {
-    if draft.rng.one_in(2) { Body::Pusher } else { Body::Fixel }
+    if draft.rng.one_in(2) {
+        Body::Pusher
+    } else {
+        Body::Fixel
+    }
 }
 
 fn scatter(draft: &mut Draft, most: usize) {
@@ -219,7 +233,11 @@ fn face_push(draft: &mut Draft) {
 
 fn rotating_pusher(draft: &mut Draft) {
     draft.pusher.omega = draft.rng.within(-0.2, 0.2) / draft.gyration;
-    if draft.rng.one_in(2) { draft.add_push(1.2) } else { face_push(draft) }
+    if draft.rng.one_in(2) {
+        draft.add_push(1.2)
+    } else {
+        face_push(draft)
+    }
 }
 
 /// The object between pusher and fixels: touching or nearly so.
@@ -237,7 +255,11 @@ fn jam(draft: &mut Draft) {
 fn close_up(draft: &mut Draft) {
     let reachable = 0.01 * draft.problem.h;
     for contact in &mut draft.problem.contacts {
-        contact.gap = if draft.rng.one_in(2) { 0.0 } else { reachable * draft.rng.within(-1.0, 1.0) };
+        contact.gap = if draft.rng.one_in(2) {
+            0.0
+        } else {
+            reachable * draft.rng.within(-1.0, 1.0)
+        };
     }
 }
 
@@ -262,7 +284,10 @@ fn grasp(draft: &mut Draft) {
     let [x, y] = draft.drive();
     let t = left([x, y]);
     for side in [1.0, -1.0, 0.2].into_iter().take(2 + draft.rng.below(2)) {
-        let normal = draft.tilted([-0.6 * x + 0.8 * side * t[0], -0.6 * y + 0.8 * side * t[1]], 0.2);
+        let normal = draft.tilted(
+            [-0.6 * x + 0.8 * side * t[0], -0.6 * y + 0.8 * side * t[1]],
+            0.2,
+        );
         let length = libm::hypot(normal[0], normal[1]);
         let contact = draft.contact_anywhere(Body::Fixel, normal.map(|n| n / length));
         draft.add(contact);
@@ -295,7 +320,11 @@ fn frictionless(draft: &mut Draft) {
         let contact = draft.contact_anywhere(body, normal);
         draft.add(contact);
     }
-    draft.problem.contacts.iter_mut().for_each(|contact| contact.mu = 0.0);
+    draft
+        .problem
+        .contacts
+        .iter_mut()
+        .for_each(|contact| contact.mu = 0.0);
     if draft.rng.one_in(3) {
         draft.limit_drive();
     }
@@ -329,12 +358,20 @@ fn unloaded_foot(draft: &mut Draft) {
 
 fn creeping(draft: &mut Draft) {
     let scale = draft.rng.log_within(1e-6, 3e-4);
-    let slow = |v: Twist| Twist { vx: scale * v.vx, vy: scale * v.vy, omega: scale * v.omega };
+    let slow = |v: Twist| Twist {
+        vx: scale * v.vx,
+        vy: scale * v.vy,
+        omega: scale * v.omega,
+    };
     draft.problem.twist = slow(draft.problem.twist);
     draft.pusher = slow(draft.pusher);
     draft.load(1.0);
     let Wrench { fx, fy, torque } = draft.problem.applied;
-    draft.problem.applied = Wrench { fx: scale * fx, fy: scale * fy, torque: scale * torque };
+    draft.problem.applied = Wrench {
+        fx: scale * fx,
+        fy: scale * fy,
+        torque: scale * torque,
+    };
     draft.add_push(0.5);
     draft.problem.contacts[0].gap *= scale;
 }

@@ -1,8 +1,9 @@
 //! The natural-map residual of one step, written from the model alone: [`residual_si`].
 //!
-//! A second route to the certificate of the solver. Everything stays in SI units (N s, and N m s about the centre of mass by cross
-//! products); each row is divided by the mass, the angular one by m ρ with ρ = sqrt(J/m), only at the very end, so that all rows are in
-//! m/s. Multiplying a natural map by the mass first changes nothing: min(p, m g)/m = min(p/m, g).
+//! A second route to the certificate of the solver. Everything stays in SI units (N s, and N m s
+//! about the centre of mass by cross products); each row is divided by the mass, the angular one by
+//! m ρ with ρ = sqrt(J/m), only at the very end, so that all rows are in m/s. Multiplying a natural
+//! map by the mass first changes nothing: min(p, m g)/m = min(p/m, g).
 //!
 //! ```text
 //! twist   m v⁺ − m v − Σ impulses − p_app,  (J ω⁺ − J ω − Σ torques − τ_app)/ρ
@@ -33,24 +34,37 @@ pub enum ResidualRow {
     Stall,
 }
 
-/// Largest row of the natural map (m/s); zero exactly at solutions, infinite where any number of problem or solution is not finite.
+/// Largest row of the natural map (m/s); zero exactly at solutions, infinite where any number of
+/// problem or solution is not finite.
 ///
 /// # Panics
 /// Where the solution has not one normal and one tangential impulse per contact.
 #[must_use]
 pub fn residual_si(problem: &StepProblem, solution: &StepSolution) -> f64 {
-    residual_rows_si(problem, solution).into_iter().map(|(_, value)| value).fold(0.0, f64::max)
+    residual_rows_si(problem, solution)
+        .into_iter()
+        .map(|(_, value)| value)
+        .fold(0.0, f64::max)
 }
 
-/// Every row of the natural map (m/s), absolute values; all infinite where any number of problem or solution is not finite.
+/// Every row of the natural map (m/s), absolute values; all infinite where any number of problem or
+/// solution is not finite.
 ///
 /// # Panics
 /// Where the solution has not one normal and one tangential impulse per contact.
 #[must_use]
 pub fn residual_rows_si(problem: &StepProblem, solution: &StepSolution) -> Vec<(ResidualRow, f64)> {
     let contacts = problem.contacts.len();
-    assert_eq!(solution.normal.len(), contacts, "one normal impulse per contact");
-    assert_eq!(solution.tangential.len(), contacts, "one tangential impulse per contact");
+    assert_eq!(
+        solution.normal.len(),
+        contacts,
+        "one normal impulse per contact"
+    );
+    assert_eq!(
+        solution.tangential.len(),
+        contacts,
+        "one tangential impulse per contact"
+    );
     let mut rows = momentum_rows(problem, solution);
     for i in 0..contacts {
         rows.extend(contact_rows(problem, solution, i));
@@ -58,8 +72,16 @@ pub fn residual_rows_si(problem: &StepProblem, solution: &StepSolution) -> Vec<(
     rows.extend((0..3).map(|k| (ResidualRow::Foot(k), foot_row(problem, solution, k))));
     rows.push((ResidualRow::Stall, stall_row(problem, solution)));
     let finite = numbers(problem, solution).into_iter().all(f64::is_finite);
-    let in_speed = |impulse: f64| if finite { (impulse / problem.mass).abs() } else { f64::INFINITY };
-    rows.into_iter().map(|(row, impulse)| (row, in_speed(impulse))).collect()
+    let in_speed = |impulse: f64| {
+        if finite {
+            (impulse / problem.mass).abs()
+        } else {
+            f64::INFINITY
+        }
+    };
+    rows.into_iter()
+        .map(|(row, impulse)| (row, in_speed(impulse)))
+        .collect()
 }
 
 pub(crate) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -77,14 +99,25 @@ pub(crate) fn left(a: [f64; 2]) -> [f64; 2] {
 /// What a contact pushes the object with (N s).
 fn contact_impulse(contact: &ContactPoint, normal: f64, tangential: f64) -> [f64; 2] {
     let (n, t) = (contact.normal, left(contact.normal));
-    [normal * n[0] + tangential * t[0], normal * n[1] + tangential * t[1]]
+    [
+        normal * n[0] + tangential * t[0],
+        normal * n[1] + tangential * t[1],
+    ]
 }
 
 /// All impulses on the object with their arms.
 fn impulses(problem: &StepProblem, solution: &StepSolution) -> Vec<([f64; 2], [f64; 2])> {
     let magnitudes = solution.normal.iter().zip(&solution.tangential);
-    let contacts = problem.contacts.iter().zip(magnitudes).map(|(c, (&n, &t))| (c.arm, contact_impulse(c, n, t)));
-    let feet = problem.feet.iter().zip(solution.feet).map(|(foot, p)| (foot.arm, p));
+    let contacts = problem
+        .contacts
+        .iter()
+        .zip(magnitudes)
+        .map(|(c, (&n, &t))| (c.arm, contact_impulse(c, n, t)));
+    let feet = problem
+        .feet
+        .iter()
+        .zip(solution.feet)
+        .map(|(foot, p)| (foot.arm, p));
     contacts.chain(feet).collect()
 }
 
@@ -100,11 +133,19 @@ fn momentum_rows(problem: &StepProblem, solution: &StepSolution) -> Vec<(Residua
         torque -= cross(arm, p);
     }
     let gyration = (inertia / mass).sqrt();
-    vec![(ResidualRow::ForceX, x), (ResidualRow::ForceY, y), (ResidualRow::Torque, torque / gyration)]
+    vec![
+        (ResidualRow::ForceX, x),
+        (ResidualRow::ForceY, y),
+        (ResidualRow::Torque, torque / gyration),
+    ]
 }
 
 /// Velocity of the object's contact point relative to the other body's surface (m/s).
-fn relative_velocity(problem: &StepProblem, solution: &StepSolution, contact: &ContactPoint) -> [f64; 2] {
+fn relative_velocity(
+    problem: &StepProblem,
+    solution: &StepSolution,
+    contact: &ContactPoint,
+) -> [f64; 2] {
     let (v, u) = (solution.twist.at(contact.arm), contact.surface_velocity);
     let lost = match problem.stall {
         Some(stall) if contact.on_pusher => stall.direction.map(|d| solution.pusher_yield * d),
@@ -113,7 +154,11 @@ fn relative_velocity(problem: &StepProblem, solution: &StepSolution, contact: &C
     [v[0] - (u[0] - lost[0]), v[1] - (u[1] - lost[1])]
 }
 
-fn contact_rows(problem: &StepProblem, solution: &StepSolution, i: usize) -> [(ResidualRow, f64); 2] {
+fn contact_rows(
+    problem: &StepProblem,
+    solution: &StepSolution,
+    i: usize,
+) -> [(ResidualRow, f64); 2] {
     let contact = &problem.contacts[i];
     let (normal, tangential) = (solution.normal[i], solution.tangential[i]);
     let relative = relative_velocity(problem, solution, contact);
@@ -122,7 +167,10 @@ fn contact_rows(problem: &StepProblem, solution: &StepSolution, i: usize) -> [(R
     let limit = contact.mu * normal.max(0.0);
     let gap_row = normal.min(problem.mass * gap_speed);
     let slip_row = tangential - (tangential - problem.mass * slip).min(limit).max(-limit);
-    [(ResidualRow::Gap(i), gap_row), (ResidualRow::Slip(i), slip_row)]
+    [
+        (ResidualRow::Gap(i), gap_row),
+        (ResidualRow::Slip(i), slip_row),
+    ]
 }
 
 fn foot_row(problem: &StepProblem, solution: &StepSolution, k: usize) -> f64 {
@@ -130,33 +178,71 @@ fn foot_row(problem: &StepProblem, solution: &StepSolution, k: usize) -> f64 {
     let slip = solution.twist.at(foot.arm);
     let target = [p[0] - problem.mass * slip[0], p[1] - problem.mass * slip[1]];
     let length = libm::hypot(target[0], target[1]);
-    let scale = if length > foot.bound { foot.bound / length } else { 1.0 };
+    let scale = if length > foot.bound {
+        foot.bound / length
+    } else {
+        1.0
+    };
     libm::hypot(p[0] - scale * target[0], p[1] - scale * target[1])
 }
 
 fn stall_row(problem: &StepProblem, solution: &StepSolution) -> f64 {
     let lag = problem.mass * solution.pusher_yield;
-    problem.stall.map_or(lag, |stall| lag.min(stall.impulse - drive_impulse(problem, solution, stall.direction)))
+    problem.stall.map_or(lag, |stall| {
+        lag.min(stall.impulse - drive_impulse(problem, solution, stall.direction))
+    })
 }
 
 /// F: the impulse along `direction` with which the object resists the pusher (N s).
 fn drive_impulse(problem: &StepProblem, solution: &StepSolution, direction: [f64; 2]) -> f64 {
     let magnitudes = solution.normal.iter().zip(&solution.tangential);
-    let pushed = problem.contacts.iter().zip(magnitudes).filter(|(c, _)| c.on_pusher);
-    pushed.map(|(c, (&n, &t))| dot(contact_impulse(c, n, t), direction)).sum()
+    let pushed = problem
+        .contacts
+        .iter()
+        .zip(magnitudes)
+        .filter(|(c, _)| c.on_pusher);
+    pushed
+        .map(|(c, (&n, &t))| dot(contact_impulse(c, n, t), direction))
+        .sum()
 }
 
 /// Everything that enters the rows; one number that is not finite spoils all of them.
 fn numbers(problem: &StepProblem, solution: &StepSolution) -> Vec<f64> {
     let (v, w, p) = (problem.twist, solution.twist, problem.applied);
-    let mut all = vec![problem.mass, problem.inertia, problem.h, solution.pusher_yield];
-    all.extend([v.vx, v.vy, v.omega, w.vx, w.vy, w.omega, p.fx, p.fy, p.torque]);
+    let mut all = vec![
+        problem.mass,
+        problem.inertia,
+        problem.h,
+        solution.pusher_yield,
+    ];
+    all.extend([
+        v.vx, v.vy, v.omega, w.vx, w.vy, w.omega, p.fx, p.fy, p.torque,
+    ]);
     for c in &problem.contacts {
-        all.extend([c.normal[0], c.normal[1], c.arm[0], c.arm[1], c.gap, c.mu, c.surface_velocity[0], c.surface_velocity[1]]);
+        all.extend([
+            c.normal[0],
+            c.normal[1],
+            c.arm[0],
+            c.arm[1],
+            c.gap,
+            c.mu,
+            c.surface_velocity[0],
+            c.surface_velocity[1],
+        ]);
     }
     all.extend(solution.normal.iter().chain(&solution.tangential));
-    all.extend(problem.feet.iter().flat_map(|foot| [foot.arm[0], foot.arm[1], foot.bound]));
+    all.extend(
+        problem
+            .feet
+            .iter()
+            .flat_map(|foot| [foot.arm[0], foot.arm[1], foot.bound]),
+    );
     all.extend(solution.feet.as_flattened());
-    all.extend(problem.stall.iter().flat_map(|stall| [stall.impulse, stall.direction[0], stall.direction[1]]));
+    all.extend(
+        problem
+            .stall
+            .iter()
+            .flat_map(|stall| [stall.impulse, stall.direction[0], stall.direction[1]]),
+    );
     all
 }

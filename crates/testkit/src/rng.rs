@@ -1,4 +1,5 @@
-//! SplitMix64 (Steele, Lea & Flood 2014): a generator that is a pure function of its seed, on every machine.
+//! SplitMix64 (Steele, Lea & Flood 2014): a generator that is a pure function of its seed, on every
+//! machine.
 
 pub(crate) struct SplitMix64(u64);
 
@@ -16,7 +17,9 @@ impl SplitMix64 {
 
     /// The stream number `index` of `seed`.
     pub fn stream(seed: u64, index: u64) -> Self {
-        Self(scatter(seed ^ scatter(index.wrapping_add(0x632b_e59b_d9b4_e019))))
+        Self(scatter(
+            seed ^ scatter(index.wrapping_add(0x632b_e59b_d9b4_e019)),
+        ))
     }
 
     pub fn word(&mut self) -> u64 {

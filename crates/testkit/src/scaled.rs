@@ -1,7 +1,9 @@
-//! A step problem in mass-normalised units of order one: [`Scaled`], the form in which the numerical oracles solve it.
+//! A step problem in mass-normalised units of order one: [`Scaled`], the form in which the
+//! numerical oracles solve it.
 //!
-//! Twists become z = (vx, vy, ρ ω)/S and impulses p/(m S), with ρ = sqrt(J/m) and S the largest speed in the data, so that Newton's
-//! law reads z = z_free + Σ c p with columns c = (direction, arm × direction / ρ) and the velocity along a direction is c·z.
+//! Twists become z = (vx, vy, ρ ω)/S and impulses p/(m S), with ρ = sqrt(J/m) and S the largest
+//! speed in the data, so that Newton's law reads z = z_free + Σ c p with columns c = (direction,
+//! arm × direction / ρ) and the velocity along a direction is c·z.
 
 use stickslip_dynamics::{ContactPoint, StepProblem, Twist};
 
@@ -24,11 +26,25 @@ pub(crate) fn dot3(a: &Column, b: &Column) -> f64 {
 
 impl<'a> Scaled<'a> {
     pub fn new(problem: &'a StepProblem) -> Self {
-        let unscaled = Self { problem, gyration: (problem.inertia / problem.mass).sqrt(), speed: 1.0 };
-        let approach = |c: &ContactPoint| (-c.gap / problem.h).max(libm::hypot(c.surface_velocity[0], c.surface_velocity[1]));
-        let fastest = problem.contacts.iter().map(approach).fold(SLOWEST, f64::max);
+        let unscaled = Self {
+            problem,
+            gyration: (problem.inertia / problem.mass).sqrt(),
+            speed: 1.0,
+        };
+        let approach = |c: &ContactPoint| {
+            (-c.gap / problem.h).max(libm::hypot(c.surface_velocity[0], c.surface_velocity[1]))
+        };
+        let fastest = problem
+            .contacts
+            .iter()
+            .map(approach)
+            .fold(SLOWEST, f64::max);
         let (free, before) = (unscaled.free(), unscaled.scale_twist(problem.twist));
-        let speed = free.iter().chain(&before).map(|z| z.abs()).fold(fastest, f64::max);
+        let speed = free
+            .iter()
+            .chain(&before)
+            .map(|z| z.abs())
+            .fold(fastest, f64::max);
         Self { speed, ..unscaled }
     }
 
@@ -43,7 +59,11 @@ impl<'a> Scaled<'a> {
     }
 
     pub fn column(&self, direction: [f64; 2], arm: [f64; 2]) -> Column {
-        [direction[0], direction[1], cross(arm, direction) / self.gyration]
+        [
+            direction[0],
+            direction[1],
+            cross(arm, direction) / self.gyration,
+        ]
     }
 
     pub fn normal(&self, contact: &ContactPoint) -> Column {
@@ -74,27 +94,45 @@ impl<'a> Scaled<'a> {
         -dot(left(contact.normal), contact.surface_velocity) / self.speed
     }
 
-    /// How fast the contact's surface retreats along −`direction` per unit of the pusher's yield: d·direction, 0 for a fixel.
+    /// How fast the contact's surface retreats along −`direction` per unit of the pusher's yield:
+    /// d·direction, 0 for a fixel.
     pub fn yielding(&self, contact: &ContactPoint, direction: [f64; 2]) -> f64 {
-        self.problem.stall.filter(|_| contact.on_pusher).map_or(0.0, |stall| dot(direction, stall.direction))
+        self.problem
+            .stall
+            .filter(|_| contact.on_pusher)
+            .map_or(0.0, |stall| dot(direction, stall.direction))
     }
 
     pub fn stall_impulse(&self) -> Option<f64> {
-        self.problem.stall.map(|stall| stall.impulse / self.impulse())
+        self.problem
+            .stall
+            .map(|stall| stall.impulse / self.impulse())
     }
 
     /// z without any contact or friction impulse.
     pub fn free(&self) -> Column {
         let (m, v, p) = (self.problem.mass, self.problem.twist, self.problem.applied);
-        let kick = Twist { vx: v.vx + p.fx / m, vy: v.vy + p.fy / m, omega: v.omega + p.torque / self.problem.inertia };
+        let kick = Twist {
+            vx: v.vx + p.fx / m,
+            vy: v.vy + p.fy / m,
+            omega: v.omega + p.torque / self.problem.inertia,
+        };
         self.scale_twist(kick)
     }
 
     pub fn scale_twist(&self, twist: Twist) -> Column {
-        [twist.vx / self.speed, twist.vy / self.speed, self.gyration * twist.omega / self.speed]
+        [
+            twist.vx / self.speed,
+            twist.vy / self.speed,
+            self.gyration * twist.omega / self.speed,
+        ]
     }
 
     pub fn unscale_twist(&self, z: &Column) -> Twist {
-        Twist { vx: self.speed * z[0], vy: self.speed * z[1], omega: self.speed * z[2] / self.gyration }
+        Twist {
+            vx: self.speed * z[0],
+            vy: self.speed * z[1],
+            omega: self.speed * z[2] / self.gyration,
+        }
     }
 }

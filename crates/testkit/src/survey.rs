@@ -28,12 +28,16 @@ pub struct Tally {
 
 impl Tally {
     /// The columns of its [`Display`](fmt::Display).
-    pub const TITLES: &'static str = " problems    newton  smoothed  homotopy   modes  infeasible  failed     residual";
+    pub const TITLES: &'static str =
+        " problems    newton  smoothed  homotopy   modes  infeasible  failed     residual";
 
     /// One step by its report; `index` names it should it have failed.
     #[must_use]
     pub fn of_report(index: u64, report: &Report) -> Self {
-        let mut tally = Tally { problems: 1, ..Tally::default() };
+        let mut tally = Tally {
+            problems: 1,
+            ..Tally::default()
+        };
         match report.outcome {
             Outcome::Solved => {
                 tally.solved[place(report.route)] = 1;
@@ -91,12 +95,16 @@ impl fmt::Display for Tally {
 pub fn survey(corpus: &Corpus, range: Range<u64>) -> BTreeMap<Family, Tally> {
     let one = |index: u64| {
         let (problem, witness) = corpus.draw(index);
-        BTreeMap::from([(corpus.family(index), examine(index, &problem, witness.as_ref()))])
+        BTreeMap::from([(
+            corpus.family(index),
+            examine(index, &problem, witness.as_ref()),
+        )])
     };
     range.into_par_iter().map(one).reduce(BTreeMap::new, merged)
 }
 
-/// Solves problem `index` of a set from a cold start; `witness` is a solution of it, where one is known.
+/// Solves problem `index` of a set from a cold start; `witness` is a solution of it, where one is
+/// known.
 pub(crate) fn examine(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
     let (_, report) = solve(problem);
     let mut tally = Tally::of_report(index, &report);
@@ -107,7 +115,10 @@ pub(crate) fn examine(index: u64, problem: &StepProblem, witness: Option<&StepSo
     tally
 }
 
-fn merged(mut all: BTreeMap<Family, Tally>, more: BTreeMap<Family, Tally>) -> BTreeMap<Family, Tally> {
+fn merged(
+    mut all: BTreeMap<Family, Tally>,
+    more: BTreeMap<Family, Tally>,
+) -> BTreeMap<Family, Tally> {
     for (family, tally) in more {
         all.entry(family).or_default().add(tally);
     }

@@ -10,12 +10,16 @@ fn indices() -> std::ops::Range<u64> {
 }
 
 fn of(family: Family) -> impl Iterator<Item = StepProblem> {
-    indices().filter(move |&index| CORPUS.family(index) == family).map(|index| CORPUS.problem(index))
+    indices()
+        .filter(move |&index| CORPUS.family(index) == family)
+        .map(|index| CORPUS.problem(index))
 }
 
 /// FNV-1a over the shortest decimal form of every number.
 fn digest(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 #[test]
@@ -30,17 +34,29 @@ fn problem_is_a_function_of_seed_and_index() {
 
 #[test]
 fn problem_digest_is_the_recorded_one() {
-    let all: String = (0..220).map(|index| format!("{:?}\n", CORPUS.problem(index))).collect();
-    assert_eq!(digest(&all), RECORDED, "the corpus has changed: failures counted before and after cannot be compared");
+    let all: String = (0..220)
+        .map(|index| format!("{:?}\n", CORPUS.problem(index)))
+        .collect();
+    assert_eq!(
+        digest(&all),
+        RECORDED,
+        "the corpus has changed: failures counted before and after cannot be compared"
+    );
 }
 
 const RECORDED: u64 = 13898550079187888915;
 
 #[test]
 fn family_every_one_appears_once_per_cycle() {
-    let cycle: Vec<_> = (100..100 + Family::ALL.len() as u64).map(|index| CORPUS.family(index)).collect();
+    let cycle: Vec<_> = (100..100 + Family::ALL.len() as u64)
+        .map(|index| CORPUS.family(index))
+        .collect();
     for family in Family::ALL {
-        assert_eq!(cycle.iter().filter(|&&other| other == family).count(), 1, "{family:?}");
+        assert_eq!(
+            cycle.iter().filter(|&&other| other == family).count(),
+            1,
+            "{family:?}"
+        );
     }
 }
 
@@ -49,14 +65,34 @@ fn problem_keeps_to_the_scale_of_a_table_top() {
     for index in indices() {
         let p = CORPUS.problem(index);
         let gyration = (p.inertia / p.mass).sqrt();
-        assert!((0.02..=5.0).contains(&p.mass) && (2.9e-3..=61e-3).contains(&gyration) && (1e-4..=0.034).contains(&p.h), "{index}");
-        assert!(libm::hypot(p.twist.vx, p.twist.vy) <= 0.3 && p.twist.omega.abs() * gyration <= 0.31, "{index}");
+        assert!(
+            (0.02..=5.0).contains(&p.mass)
+                && (2.9e-3..=61e-3).contains(&gyration)
+                && (1e-4..=0.034).contains(&p.h),
+            "{index}"
+        );
+        assert!(
+            libm::hypot(p.twist.vx, p.twist.vy) <= 0.3 && p.twist.omega.abs() * gyration <= 0.31,
+            "{index}"
+        );
         assert!(p.contacts.len() <= 12, "{index}");
         for c in &p.contacts {
-            assert!((libm::hypot(c.normal[0], c.normal[1]) - 1.0).abs() < 1e-14, "{index}");
-            assert!(c.gap.abs() <= 2e-3 && (0.0..=1.5).contains(&c.mu), "{index}: {c:?}");
-            assert!(libm::hypot(c.arm[0], c.arm[1]) <= 3.3 * gyration, "{index}: {c:?}");
-            assert!(c.on_pusher || c.surface_velocity == [0.0; 2], "{index}: fixels do not move");
+            assert!(
+                (libm::hypot(c.normal[0], c.normal[1]) - 1.0).abs() < 1e-14,
+                "{index}"
+            );
+            assert!(
+                c.gap.abs() <= 2e-3 && (0.0..=1.5).contains(&c.mu),
+                "{index}: {c:?}"
+            );
+            assert!(
+                libm::hypot(c.arm[0], c.arm[1]) <= 3.3 * gyration,
+                "{index}: {c:?}"
+            );
+            assert!(
+                c.on_pusher || c.surface_velocity == [0.0; 2],
+                "{index}: fixels do not move"
+            );
         }
     }
 }
@@ -65,9 +101,17 @@ fn problem_keeps_to_the_scale_of_a_table_top() {
 fn feet_carry_the_weight_in_balance() {
     for index in indices() {
         let p = CORPUS.problem(index);
-        let moment = |axis: usize| p.feet.iter().map(|foot| foot.bound * foot.arm[axis]).sum::<f64>();
+        let moment = |axis: usize| {
+            p.feet
+                .iter()
+                .map(|foot| foot.bound * foot.arm[axis])
+                .sum::<f64>()
+        };
         let total = p.feet.iter().map(|foot| foot.bound).sum::<f64>();
-        assert!(moment(0).abs() + moment(1).abs() <= 1e-14 * total, "{index}");
+        assert!(
+            moment(0).abs() + moment(1).abs() <= 1e-14 * total,
+            "{index}"
+        );
         assert!(total <= 1.0001 * p.mass * 9.81 * p.h, "{index}");
     }
 }
@@ -78,7 +122,11 @@ fn witness_solves_its_problem() {
     for index in indices() {
         if let Some(witness) = CORPUS.witness(index) {
             let residual = residual_si(&CORPUS.problem(index), &witness);
-            assert!(residual < 1e-13, "{:?} {index}: {residual:e}", CORPUS.family(index));
+            assert!(
+                residual < 1e-13,
+                "{:?} {index}: {residual:e}",
+                CORPUS.family(index)
+            );
             witnesses += 1;
         }
     }
@@ -92,8 +140,16 @@ fn problems_hold_what_their_families_promise() {
     assert!(of(Family::StalledJam).all(|p| p.stall.is_some()));
     assert!(of(Family::SlipperySupport).all(|p| p.feet.iter().all(|foot| foot.bound == 0.0)));
     assert!(of(Family::Overlapping).all(|p| p.contacts.iter().all(|c| c.gap < 0.0)));
-    assert!(of(Family::Duplicated).all(|p| p.contacts.iter().all(|a| p.contacts.iter().filter(|&b| a == b).count() >= 2)));
-    assert!(of(Family::TinyTripod).all(|p| p.feet.iter().all(|foot| libm::hypot(foot.arm[0], foot.arm[1]) < 5.1e-4)));
+    assert!(of(Family::Duplicated).all(|p| {
+        p.contacts
+            .iter()
+            .all(|a| p.contacts.iter().filter(|&b| a == b).count() >= 2)
+    }));
+    assert!(of(Family::TinyTripod).all(|p| {
+        p.feet
+            .iter()
+            .all(|foot| libm::hypot(foot.arm[0], foot.arm[1]) < 5.1e-4)
+    }));
 }
 
 #[test]
@@ -106,6 +162,12 @@ fn corpus_holds_what_is_rare() {
     assert!(has(&|p| p.contacts.iter().any(|c| c.mu == 0.0)) > 50);
     assert!(has(&|p| p.twist == Default::default()) > 50);
     assert!(has(&|p| p.stall.is_some()) > 50);
-    assert!(has(&|p| gap_margin(p, 1.0) < -1e-6) > 10, "some have no rigid solution");
-    assert!(has(&|p| gap_margin(p, 1.0) > 1e-6) > 500, "most are not excluded by their gap rows");
+    assert!(
+        has(&|p| gap_margin(p, 1.0) < -1e-6) > 10,
+        "some have no rigid solution"
+    );
+    assert!(
+        has(&|p| gap_margin(p, 1.0) > 1e-6) > 500,
+        "most are not excluded by their gap rows"
+    );
 }

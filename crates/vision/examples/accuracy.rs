@@ -1,4 +1,5 @@
-//! How good tracking is on rendered frames with known truth: `cargo run --release -p stickslip-vision --example accuracy`.
+//! How good tracking is on rendered frames with known truth: `cargo run --release -p
+//! stickslip-vision --example accuracy`.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -20,20 +21,54 @@ fn main() {
     let (lens, truth) = (calibration.camera.lens(), true_camera());
     let numbers = [lens.focal, lens.centre, lens.radial, lens.tangential];
     let true_lens = truth.lens();
-    let expected = [true_lens.focal, true_lens.centre, true_lens.radial, true_lens.tangential];
-    for (k, name) in ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"].iter().enumerate() {
-        let (number, expected, std) = (numbers[k / 2][k % 2], expected[k / 2][k % 2], calibration.lens_std[k]);
-        println!("  {name} {number:10.4}, true {expected:10.4}, error {:6.2} standard deviations", (number - expected) / std);
+    let expected = [
+        true_lens.focal,
+        true_lens.centre,
+        true_lens.radial,
+        true_lens.tangential,
+    ];
+    for (k, name) in ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"]
+        .iter()
+        .enumerate()
+    {
+        let (number, expected, std) = (
+            numbers[k / 2][k % 2],
+            expected[k / 2][k % 2],
+            calibration.lens_std[k],
+        );
+        println!(
+            "  {name} {number:10.4}, true {expected:10.4}, error {:6.2} standard deviations",
+            (number - expected) / std
+        );
     }
-    println!("\n{:<34} {:>6}  {:>22}  {:>22}  {:>22}", "", "found", "bias (um, um, mdeg)", "spread", "spread / predicted");
+    println!(
+        "\n{:<34} {:>6}  {:>22}  {:>22}  {:>22}",
+        "", "found", "bias (um, um, mdeg)", "spread", "spread / predicted"
+    );
     let still = Pose::default();
     for blur in [0.4, 0.6, 1.0, 1.5, 2.0, 2.5, 3.0] {
-        row(&format!("blur {blur} px"), &Rig::new(Optics { blur, ..Optics::default() }, 2), still, &calibration.camera);
+        row(
+            &format!("blur {blur} px"),
+            &Rig::new(
+                Optics {
+                    blur,
+                    ..Optics::default()
+                },
+                2,
+            ),
+            still,
+            &calibration.camera,
+        );
     }
     for pixels in [1.0, 2.0, 4.0, 6.0, 8.0, 12.0] {
         // at the object's height a pixel is about half a millimetre
         let way = Pose::new(pixels * 0.6 / 1205.0, 0.0, 0.0);
-        row(&format!("moved by {pixels} px"), &Rig::new(Optics::default(), 3), way, &calibration.camera);
+        row(
+            &format!("moved by {pixels} px"),
+            &Rig::new(Optics::default(), 3),
+            way,
+            &calibration.camera,
+        );
     }
 }
 
@@ -50,9 +85,21 @@ fn row(name: &str, rig: &Rig, way: Pose, camera: &stickslip_vision::Camera) {
     }
     for (body, errors) in [("object", object), ("pusher", pusher)] {
         let units = [1e6, 1e6, 1e3_f64.to_degrees()];
-        let show = |numbers: [f64; 3]| [0, 1, 2].map(|k| format!("{:6.1}", numbers[k] * units[k])).join("  ");
-        let ratio = errors.ratio().map(|ratio| format!("{ratio:6.2}")).join("  ");
+        let show = |numbers: [f64; 3]| {
+            [0, 1, 2]
+                .map(|k| format!("{:6.1}", numbers[k] * units[k]))
+                .join("  ")
+        };
+        let ratio = errors
+            .ratio()
+            .map(|ratio| format!("{ratio:6.2}"))
+            .join("  ");
         let found = 100.0 * (1.0 - errors.missed as f64 / FRAMES as f64);
-        println!("{:<34} {found:>4.0} %  {}  {}  {ratio}", format!("{name}, {body}"), show(errors.bias()), show(errors.spread()));
+        println!(
+            "{:<34} {found:>4.0} %  {}  {}  {ratio}",
+            format!("{name}, {body}"),
+            show(errors.bias()),
+            show(errors.spread())
+        );
     }
 }

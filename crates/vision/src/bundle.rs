@@ -1,7 +1,9 @@
-//! A lens and the poses of a plane from where its points are seen: [`Bundle`], by Levenberg–Marquardt over all of it.
+//! A lens and the poses of a plane from where its points are seen: [`Bundle`], by
+//! Levenberg–Marquardt over all of it.
 //!
-//! The normal equations are an arrow: a block of the lens's 8 numbers, one of 6 for every view, nothing between views. Views are
-//! eliminated (Schur complement), which leaves 8 equations; their inverse is the lens's covariance.
+//! The normal equations are an arrow: a block of the lens's 8 numbers, one of 6 for every view,
+//! nothing between views. Views are eliminated (Schur complement), which leaves 8 equations; their
+//! inverse is the lens's covariance.
 
 use nalgebra::{Matrix2x3, Matrix3, SMatrix, SVector, Vector2, Vector3};
 
@@ -71,17 +73,30 @@ impl Bundle {
                 break;
             }
         }
-        let coordinates = 2 * bundle.views.iter().map(|view| view.matches.len()).sum::<usize>();
-        let free = coordinates.checked_sub(PARAMETERS + 6 * bundle.views.len()).filter(|free| *free > 0)?;
+        let coordinates = 2 * bundle
+            .views
+            .iter()
+            .map(|view| view.matches.len())
+            .sum::<usize>();
+        let free = coordinates
+            .checked_sub(PARAMETERS + 6 * bundle.views.len())
+            .filter(|free| *free > 0)?;
         let variance = squares / free as f64;
         let (reduced, _) = reduce(&equations, 0.0)?;
         let covariance = scaled_inverse(reduced)? * variance;
-        Some(Adjusted { bundle, rms: variance.sqrt(), lens_std: std::array::from_fn(|k| covariance[(k, k)].sqrt()) })
+        Some(Adjusted {
+            bundle,
+            rms: variance.sqrt(),
+            lens_std: std::array::from_fn(|k| covariance[(k, k)].sqrt()),
+        })
     }
 
     /// `None` where a point is behind the camera.
     fn equations(&self) -> Option<Vec<ViewEquations>> {
-        self.views.iter().map(|view| view.equations(&self.lens)).collect()
+        self.views
+            .iter()
+            .map(|view| view.equations(&self.lens))
+            .collect()
     }
 
     fn stepped(&self, equations: &[ViewEquations], damping: f64) -> Option<Self> {
@@ -92,10 +107,24 @@ impl Bundle {
             let by = damped(equations.view, damping).cholesky()?.solve(&rest);
             let turn = rotation(Vector3::new(by[0], by[1], by[2]));
             let translation = view.motion.translation + Vector3::new(by[3], by[4], by[5]);
-            Some(View { motion: Motion { rotation: turn * view.motion.rotation, translation }, matches: view.matches.clone() })
+            Some(View {
+                motion: Motion {
+                    rotation: turn * view.motion.rotation,
+                    translation,
+                },
+                matches: view.matches.clone(),
+            })
         };
-        let views = self.views.iter().zip(equations).map(moved).collect::<Option<_>>()?;
-        Some(Self { lens: self.lens.moved(by_lens.as_slice()), views })
+        let views = self
+            .views
+            .iter()
+            .zip(equations)
+            .map(moved)
+            .collect::<Option<_>>()?;
+        Some(Self {
+            lens: self.lens.moved(by_lens.as_slice()),
+            views,
+        })
     }
 }
 
@@ -122,9 +151,13 @@ impl View {
             let turned = self.motion.rotation * point.push(0.0);
             let at = turned + self.motion.translation;
             let (_, by_direction, by_lens) = lens.project(at.xy() / at.z);
-            let by_point = by_direction * Matrix2x3::new(1.0, 0.0, -at.x / at.z, 0.0, 1.0, -at.y / at.z) / at.z;
+            let by_point = by_direction
+                * Matrix2x3::new(1.0, 0.0, -at.x / at.z, 0.0, 1.0, -at.y / at.z)
+                / at.z;
             let mut by_view = SMatrix::<f64, 2, 6>::zeros();
-            by_view.fixed_view_mut::<2, 3>(0, 0).copy_from(&(by_point * -Matrix3::from(turned.cross_matrix())));
+            by_view
+                .fixed_view_mut::<2, 3>(0, 0)
+                .copy_from(&(by_point * -Matrix3::from(turned.cross_matrix())));
             by_view.fixed_view_mut::<2, 3>(0, 3).copy_from(&by_point);
             sum.lens += by_lens.transpose() * by_lens;
             sum.mixed += by_lens.transpose() * by_view;
@@ -142,10 +175,17 @@ fn total(equations: &[ViewEquations]) -> f64 {
 }
 
 /// The equations of the lens with all views eliminated.
-fn reduce(equations: &[ViewEquations], damping: f64) -> Option<(LensBlock, SVector<f64, PARAMETERS>)> {
-    let whole = equations.iter().fold(LensBlock::zeros(), |sum, e| sum + e.lens);
+fn reduce(
+    equations: &[ViewEquations],
+    damping: f64,
+) -> Option<(LensBlock, SVector<f64, PARAMETERS>)> {
+    let whole = equations
+        .iter()
+        .fold(LensBlock::zeros(), |sum, e| sum + e.lens);
     let mut reduced = damped(whole, damping);
-    let mut gradient = equations.iter().fold(SVector::zeros(), |sum, e| sum + e.lens_gradient);
+    let mut gradient = equations
+        .iter()
+        .fold(SVector::zeros(), |sum, e| sum + e.lens_gradient);
     for e in equations {
         let inverse = damped(e.view, damping).cholesky()?.inverse();
         reduced -= e.mixed * inverse * e.mixed.transpose();
@@ -159,7 +199,8 @@ fn damped<const N: usize>(matrix: SMatrix<f64, N, N>, damping: f64) -> SMatrix<f
     matrix + SMatrix::from_diagonal(&(matrix.diagonal() * damping))
 }
 
-/// The inverse, found with a diagonal of ones, since pixels and distortions differ by many powers of ten; `None` where there is none.
+/// The inverse, found with a diagonal of ones, since pixels and distortions differ by many powers
+/// of ten; `None` where there is none.
 fn scaled_inverse(matrix: LensBlock) -> Option<LensBlock> {
     let scale = LensBlock::from_diagonal(&matrix.diagonal().map(|d| 1.0 / d.sqrt()));
     Some(scale * (scale * matrix * scale).cholesky()?.inverse() * scale)
@@ -173,7 +214,13 @@ mod tests {
     const STD: f64 = 0.05;
 
     fn truth() -> Lens {
-        Lens { size: [640, 480], focal: [810.0, 805.0], centre: [330.0, 236.0], radial: [-0.25, 0.1], tangential: [1e-3, -1e-3] }
+        Lens {
+            size: [640, 480],
+            focal: [810.0, 805.0],
+            centre: [330.0, 236.0],
+            radial: [-0.25, 0.1],
+            tangential: [1e-3, -1e-3],
+        }
     }
 
     /// Twelve views of 8 × 6 points, seen with noise.
@@ -181,15 +228,28 @@ mod tests {
         let down = rotation(Vector3::new(std::f64::consts::PI, 0.0, 0.0));
         let view = |k: u32| {
             let angle = 2.4 * f64::from(k);
-            let tilt = Vector3::new(0.5 * libm::cos(angle), 0.5 * libm::sin(angle), 0.3 * libm::sin(3.0 * angle));
-            let motion = Motion { rotation: rotation(tilt) * down, translation: Vector3::new(-0.12, 0.09, 0.5) };
+            let tilt = Vector3::new(
+                0.5 * libm::cos(angle),
+                0.5 * libm::sin(angle),
+                0.3 * libm::sin(3.0 * angle),
+            );
+            let motion = Motion {
+                rotation: rotation(tilt) * down,
+                translation: Vector3::new(-0.12, 0.09, 0.5),
+            };
             let seen = |i: u32| {
                 let point = Vector2::new(0.035 * f64::from(i % 8), 0.035 * f64::from(i / 8));
                 let at = motion.apply(point.push(0.0));
                 let noise: [f64; 2] = Streams::new(seed).at(k.into()).normals(i, 0);
-                (point, truth().project(at.xy() / at.z).0 + Vector2::from(noise) * std)
+                (
+                    point,
+                    truth().project(at.xy() / at.z).0 + Vector2::from(noise) * std,
+                )
             };
-            View { motion, matches: (0..48).map(seen).collect() }
+            View {
+                motion,
+                matches: (0..48).map(seen).collect(),
+            }
         };
         (0..12).map(view).collect()
     }
@@ -201,7 +261,12 @@ mod tests {
             view.motion.rotation = rotation(Vector3::new(0.02, -0.03, 0.01)) * view.motion.rotation;
             view.motion.translation += Vector3::new(0.003, 0.002, -0.01);
         }
-        Bundle { lens: Lens::pinhole([640, 480], 780.0), views }.adjust().unwrap()
+        Bundle {
+            lens: Lens::pinhole([640, 480], 780.0),
+            views,
+        }
+        .adjust()
+        .unwrap()
     }
 
     fn numbers(lens: &Lens) -> [f64; PARAMETERS] {
@@ -214,7 +279,10 @@ mod tests {
         let found = adjusted(0.0, 0);
         let truth = numbers(&truth());
         for (k, (number, expected)) in numbers(&found.bundle.lens).iter().zip(truth).enumerate() {
-            assert!((number - expected).abs() < 1e-6 * expected.abs().max(1.0), "{k}: {number} {expected}");
+            assert!(
+                (number - expected).abs() < 1e-6 * expected.abs().max(1.0),
+                "{k}: {number} {expected}"
+            );
         }
         assert!(found.rms < 1e-7, "{}", found.rms);
     }
@@ -227,16 +295,38 @@ mod tests {
         for seed in 0..DRAWS {
             let found = adjusted(STD, seed);
             assert!((found.rms / STD - 1.0).abs() < 0.12, "{}", found.rms);
-            let errors = numbers(&found.bundle.lens).into_iter().zip(numbers(&truth())).zip(found.lens_std);
-            mean_square += errors.fold(0.0, |sum, ((n, t), std)| sum + ((n - t) / std).powi(2)) / (DRAWS as f64 * PARAMETERS as f64);
+            let errors = numbers(&found.bundle.lens)
+                .into_iter()
+                .zip(numbers(&truth()))
+                .zip(found.lens_std);
+            mean_square += errors.fold(0.0, |sum, ((n, t), std)| sum + ((n - t) / std).powi(2))
+                / (DRAWS as f64 * PARAMETERS as f64);
         }
-        // five standard errors of 60 mean squares of 8 correlated normals, had they but one degree of freedom
-        assert!((mean_square - 1.0).abs() < 5.0 * (2.0 / DRAWS as f64).sqrt(), "{mean_square}");
+        // five standard errors of 60 mean squares of 8 correlated normals, had they but one degree
+        // of freedom
+        assert!(
+            (mean_square - 1.0).abs() < 5.0 * (2.0 / DRAWS as f64).sqrt(),
+            "{mean_square}"
+        );
     }
 
     #[test]
     fn adjust_of_too_few_points_is_none() {
-        let few = views(0.0, 0).into_iter().take(1).map(|v| View { matches: v.matches[..5].to_vec(), ..v }).collect();
-        assert!(Bundle { lens: truth(), views: few }.adjust().is_none());
+        let few = views(0.0, 0)
+            .into_iter()
+            .take(1)
+            .map(|v| View {
+                matches: v.matches[..5].to_vec(),
+                ..v
+            })
+            .collect();
+        assert!(
+            Bundle {
+                lens: truth(),
+                views: few
+            }
+            .adjust()
+            .is_none()
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! From frames of a tag board to a calibrated camera: [`calibrate`].
 //!
-//! Homographies give a first focal length and first poses (Zhang 2000), a bundle over all frames the rest. Corners are first fitted as
-//! if edges were straight in the image, then twice more in the image that the lens found so far straightens.
+//! Homographies give a first focal length and first poses (Zhang 2000), a bundle over all frames
+//! the rest. Corners are first fitted as if edges were straight in the image, then twice more in
+//! the image that the lens found so far straightens.
 
 use image::GrayImage;
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -140,7 +141,8 @@ pub enum CalibrationError {
 /// A tag's corners on the board and where they are seen, by frame.
 type FrameMatches = Vec<[Match; 4]>;
 
-/// Searches the frames 0 to `count` - 1, which `load` brings as a name and an image, from any thread.
+/// Searches the frames 0 to `count` - 1, which `load` brings as a name and an image, from any
+/// thread.
 ///
 /// # Errors
 /// Those of `load`; frames of several sizes.
@@ -151,61 +153,118 @@ pub fn search_board<E: From<CalibrationError> + Send>(
     let search = |index: usize| {
         let (name, image) = load(index)?;
         let size = [image.width(), image.height()];
-        Ok((CalibrationFrame { name, tags: Detector::new(size).find(&image) }, size))
+        Ok((
+            CalibrationFrame {
+                name,
+                tags: Detector::new(size).find(&image),
+            },
+            size,
+        ))
     };
-    let found: Vec<(CalibrationFrame, [u32; 2])> = (0..count).into_par_iter().map(search).collect::<Result<_, E>>()?;
+    let found: Vec<(CalibrationFrame, [u32; 2])> = (0..count)
+        .into_par_iter()
+        .map(search)
+        .collect::<Result<_, E>>()?;
     let size = found.first().map_or([0; 2], |first| first.1);
     if let Some((odd, other)) = found.iter().find(|(_, other)| *other != size) {
         let text = |[columns, rows]: [u32; 2]| format!("{columns} x {rows}");
         let (name, first) = (odd.name.clone(), found[0].0.name.clone());
-        return Err(CalibrationError::Size { name, found: text(*other), first, expected: text(size) }.into());
+        return Err(CalibrationError::Size {
+            name,
+            found: text(*other),
+            first,
+            expected: text(size),
+        }
+        .into());
     }
-    Ok(BoardRecording { frames: found.into_iter().map(|(frame, _)| frame).collect(), size })
+    Ok(BoardRecording {
+        frames: found.into_iter().map(|(frame, _)| frame).collect(),
+        size,
+    })
 }
 
-/// Calibrates a camera from frames of a board; in frame number `flat` the board lies on the table as `board` says.
+/// Calibrates a camera from frames of a board; in frame number `flat` the board lies on the table
+/// as `board` says.
 ///
 /// # Errors
-/// [`CalibrationError`]: no tags, those of another board, too few frames, none tilted, or a board that does not fit.
+/// [`CalibrationError`]: no tags, those of another board, too few frames, none tilted, or a board
+/// that does not fit.
 ///
 /// # Panics
 /// If `flat` is not the number of a frame.
-pub fn calibrate(recording: &BoardRecording, board: &BoardOnTable, flat: usize) -> Result<Calibration, CalibrationError> {
+pub fn calibrate(
+    recording: &BoardRecording,
+    board: &BoardOnTable,
+    flat: usize,
+) -> Result<Calibration, CalibrationError> {
     let BoardRecording { frames, size } = recording;
     let size = *size;
     let on_board = board_tags(frames, board)?;
     let straight = Lens::pinhole(size, f64::from(size[0].max(size[1])));
-    let seen: Vec<FrameMatches> = on_board.iter().map(|tags| matches_of(tags, board, &straight)).collect();
-    let usable: Vec<usize> = (0..frames.len()).filter(|frame| seen[*frame].len() >= FEWEST_TAGS).collect();
+    let seen: Vec<FrameMatches> = on_board
+        .iter()
+        .map(|tags| matches_of(tags, board, &straight))
+        .collect();
+    let usable: Vec<usize> = (0..frames.len())
+        .filter(|frame| seen[*frame].len() >= FEWEST_TAGS)
+        .collect();
     let flat_view = usable.iter().position(|frame| *frame == flat);
-    let flat_view = flat_view.ok_or_else(|| CalibrationError::FlatFrame { name: frames[flat].name.clone(), found: seen[flat].len() })?;
+    let flat_view = flat_view.ok_or_else(|| CalibrationError::FlatFrame {
+        name: frames[flat].name.clone(),
+        found: seen[flat].len(),
+    })?;
     if usable.len() < FEWEST_FRAMES {
-        return Err(CalibrationError::TooFewFrames { usable: usable.len(), frames: frames.len() });
+        return Err(CalibrationError::TooFewFrames {
+            usable: usable.len(),
+            frames: frames.len(),
+        });
     }
     let no_tilt = |relative_std| CalibrationError::NoTilt { relative_std };
-    let first = first_bundle(usable.iter().map(|frame| seen[*frame].as_flattened()), size).ok_or(no_tilt(None))?;
+    let first = first_bundle(usable.iter().map(|frame| seen[*frame].as_flattened()), size)
+        .ok_or(no_tilt(None))?;
     let mut adjusted = first.adjust().ok_or(no_tilt(None))?;
     for _ in 0..ROUNDS {
         let views = adjusted.bundle.views.iter().zip(&usable);
         let refitted = |(view, frame): (&View, &usize)| {
             let matches = matches_of(&on_board[*frame], board, &adjusted.bundle.lens);
-            without_outliers(View { matches: matches.concat(), ..view.clone() }, &adjusted)
+            without_outliers(
+                View {
+                    matches: matches.concat(),
+                    ..view.clone()
+                },
+                &adjusted,
+            )
         };
-        let bundle = Bundle { lens: adjusted.bundle.lens, views: views.map(refitted).collect() };
+        let bundle = Bundle {
+            lens: adjusted.bundle.lens,
+            views: views.map(refitted).collect(),
+        };
         adjusted = bundle.adjust().ok_or(no_tilt(None))?;
     }
     if adjusted.rms > WORST_MISFIT {
         return Err(CalibrationError::Misfit { rms: adjusted.rms });
     }
     let lens = adjusted.bundle.lens;
-    let relative_std = (adjusted.lens_std[0] / lens.focal[0]).max(adjusted.lens_std[1] / lens.focal[1]);
+    let relative_std =
+        (adjusted.lens_std[0] / lens.focal[0]).max(adjusted.lens_std[1] / lens.focal[1]);
     if relative_std.is_nan() || relative_std > FOCAL_STD {
         return Err(no_tilt(Some(relative_std)));
     }
-    let tags = adjusted.bundle.views.iter().map(|view| view.matches.len() / 4).sum();
-    let offered = usable.iter().map(|frame| on_board[*frame].len()).sum::<usize>();
+    let tags = adjusted
+        .bundle
+        .views
+        .iter()
+        .map(|view| view.matches.len() / 4)
+        .sum();
+    let offered = usable
+        .iter()
+        .map(|frame| on_board[*frame].len())
+        .sum::<usize>();
     Ok(Calibration {
-        camera: Camera::new(lens, world_to_camera(&adjusted.bundle.views[flat_view], board)),
+        camera: Camera::new(
+            lens,
+            world_to_camera(&adjusted.bundle.views[flat_view], board),
+        ),
         rms: adjusted.rms,
         frames: usable.len(),
         tags,
@@ -215,21 +274,41 @@ pub fn calibrate(recording: &BoardRecording, board: &BoardOnTable, flat: usize) 
 }
 
 /// The board's tags in each frame, but for those that are there twice.
-fn board_tags<'a>(frames: &'a [CalibrationFrame], board: &BoardOnTable) -> Result<Vec<Vec<&'a FoundTag>>, CalibrationError> {
-    let mut found: Vec<u16> = frames.iter().flat_map(|frame| frame.tags.iter().map(|tag| tag.id)).collect();
+fn board_tags<'a>(
+    frames: &'a [CalibrationFrame],
+    board: &BoardOnTable,
+) -> Result<Vec<Vec<&'a FoundTag>>, CalibrationError> {
+    let mut found: Vec<u16> = frames
+        .iter()
+        .flat_map(|frame| frame.tags.iter().map(|tag| tag.id))
+        .collect();
     found.sort_unstable();
     found.dedup();
     let range = board.board.tags();
     if found.is_empty() {
-        return Err(CalibrationError::NoTag { frames: frames.len() });
+        return Err(CalibrationError::NoTag {
+            frames: frames.len(),
+        });
     }
     if !found.iter().any(|id| range.contains(id)) {
-        let found = found.iter().map(u16::to_string).collect::<Vec<_>>().join(", ");
-        return Err(CalibrationError::ForeignTags { from: range.start, to: range.end - 1, found });
+        let found = found
+            .iter()
+            .map(u16::to_string)
+            .collect::<Vec<_>>()
+            .join(", ");
+        return Err(CalibrationError::ForeignTags {
+            from: range.start,
+            to: range.end - 1,
+            found,
+        });
     }
     let once = |frame: &'a CalibrationFrame| {
         let count = |id: u16| frame.tags.iter().filter(|tag| tag.id == id).count();
-        frame.tags.iter().filter(|tag| range.contains(&tag.id) && count(tag.id) == 1).collect()
+        frame
+            .tags
+            .iter()
+            .filter(|tag| range.contains(&tag.id) && count(tag.id) == 1)
+            .collect()
     };
     Ok(frames.iter().map(once).collect())
 }
@@ -239,32 +318,79 @@ fn matches_of(tags: &[&FoundTag], board: &BoardOnTable, lens: &Lens) -> FrameMat
     let of_tag = |tag: &&FoundTag| {
         let on_board = board.board.corners(tag.id)?;
         let square = tag.outline.fit(lens)?;
-        Some(std::array::from_fn(|k| (on_board[k].into(), lens.distort(square.corners[k].into()).into())))
+        Some(std::array::from_fn(|k| {
+            (
+                on_board[k].into(),
+                lens.distort(square.corners[k].into()).into(),
+            )
+        }))
     };
     tags.iter().filter_map(of_tag).collect()
 }
 
-fn first_bundle<'a>(views: impl Iterator<Item = &'a [Match]> + Clone, size: [u32; 2]) -> Option<Bundle> {
+fn first_bundle<'a>(
+    views: impl Iterator<Item = &'a [Match]> + Clone,
+    size: [u32; 2],
+) -> Option<Bundle> {
     let centre = Lens::pinhole(size, 1.0).centre;
     let maps: Vec<Matrix3<f64>> = views.clone().map(homography).collect::<Option<_>>()?;
     let lens = Lens::pinhole(size, focal_length(&maps, Vector2::from(centre))?);
-    let to_direction = Matrix3::new(1.0, 0.0, -centre[0], 0.0, 1.0, -centre[1], 0.0, 0.0, lens.focal[0]) / lens.focal[0];
-    let view =
-        |(map, matches): (&Matrix3<f64>, &[Match])| Some(View { motion: plane_motion(to_direction * map)?, matches: matches.to_vec() });
-    Some(Bundle { lens, views: maps.iter().zip(views).map(view).collect::<Option<_>>()? })
+    let to_direction = Matrix3::new(
+        1.0,
+        0.0,
+        -centre[0],
+        0.0,
+        1.0,
+        -centre[1],
+        0.0,
+        0.0,
+        lens.focal[0],
+    ) / lens.focal[0];
+    let view = |(map, matches): (&Matrix3<f64>, &[Match])| {
+        Some(View {
+            motion: plane_motion(to_direction * map)?,
+            matches: matches.to_vec(),
+        })
+    };
+    Some(Bundle {
+        lens,
+        views: maps.iter().zip(views).map(view).collect::<Option<_>>()?,
+    })
 }
 
 /// The view without tags that have a corner far off.
 fn without_outliers(view: View, adjusted: &Adjusted) -> View {
-    let Some(misfits) = view.misfits(&adjusted.bundle.lens) else { return view };
-    let good = |tag: &(&[Match], &[Vector2<f64>])| tag.1.iter().all(|misfit| misfit.amax() < OUTLIER * adjusted.rms);
-    let kept: Vec<Match> = view.matches.chunks(4).zip(misfits.chunks(4)).filter(good).flat_map(|(tag, _)| tag.to_vec()).collect();
+    let Some(misfits) = view.misfits(&adjusted.bundle.lens) else {
+        return view;
+    };
+    let good = |tag: &(&[Match], &[Vector2<f64>])| {
+        tag.1
+            .iter()
+            .all(|misfit| misfit.amax() < OUTLIER * adjusted.rms)
+    };
+    let kept: Vec<Match> = view
+        .matches
+        .chunks(4)
+        .zip(misfits.chunks(4))
+        .filter(good)
+        .flat_map(|(tag, _)| tag.to_vec())
+        .collect();
     // a frame that fits nowhere tells of a wrong board, not of outliers
-    if kept.len() < 4 * FEWEST_TAGS { view } else { View { matches: kept, ..view } }
+    if kept.len() < 4 * FEWEST_TAGS {
+        view
+    } else {
+        View {
+            matches: kept,
+            ..view
+        }
+    }
 }
 
 fn world_to_camera(flat: &View, board: &BoardOnTable) -> Motion {
-    let to_world = Motion::planar(board.pose.theta, Vector3::new(board.pose.x, board.pose.y, board.thickness));
+    let to_world = Motion::planar(
+        board.pose.theta,
+        Vector3::new(board.pose.x, board.pose.y, board.thickness),
+    );
     flat.motion.after(&to_world.inverse())
 }
 

@@ -65,22 +65,32 @@ impl Camera {
 
     /// The point at height `z` (m) that is seen at a pixel; `None` where there is none.
     pub fn point_at(&self, pixel: [f64; 2], z: f64) -> Option<[f64; 2]> {
-        self.on_plane(self.lens.undistort(pixel)?.into(), z).map(Into::into)
+        self.on_plane(self.lens.undistort(pixel)?.into(), z)
+            .map(Into::into)
     }
 
-    /// The ideal pixel of a point of the world, with its derivatives by x and y; `None` behind the camera.
+    /// The ideal pixel of a point of the world, with its derivatives by x and y; `None` behind the
+    /// camera.
     pub(crate) fn ideal(&self, point: [f64; 3]) -> Option<(Vector2<f64>, Matrix2<f64>)> {
         let at = self.to_camera.apply(point.into());
         if at.z <= 0.0 {
             return None;
         }
-        let by_point = Matrix2x3::new(1.0 / at.z, 0.0, -at.x / (at.z * at.z), 0.0, 1.0 / at.z, -at.y / (at.z * at.z));
+        let by_point = Matrix2x3::new(
+            1.0 / at.z,
+            0.0,
+            -at.x / (at.z * at.z),
+            0.0,
+            1.0 / at.z,
+            -at.y / (at.z * at.z),
+        );
         let by_plane = by_point * self.to_camera.rotation.fixed_columns::<2>(0);
         let focal = Matrix2::from_diagonal(&self.lens.focal.into());
         Some((self.lens.ideal(at.xy() / at.z), focal * by_plane))
     }
 
-    /// The point at height `z` that an ideal pixel sees; `None` where there is none before the camera.
+    /// The point at height `z` that an ideal pixel sees; `None` where there is none before the
+    /// camera.
     pub(crate) fn on_plane(&self, ideal: Vector2<f64>, z: f64) -> Option<Vector2<f64>> {
         let to_world = self.to_camera.inverse();
         let way = to_world.rotation * self.lens.direction(ideal).push(1.0);
@@ -92,22 +102,66 @@ impl Camera {
 /// Reads a calibration; `name` is shown in errors.
 ///
 /// # Errors
-/// Not TOML, a key that is missing, unknown or of another type, or a number against its rule, each with file and line.
+/// Not TOML, a key that is missing, unknown or of another type, or a number against its rule, each
+/// with file and line.
 pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
     let document = Document { name, text };
     let file: Form = document.parse("Make the file with `stickslip calibrate`")?;
-    let LensTable { size, focal, centre, radial, tangential } = file.lens;
+    let LensTable {
+        size,
+        focal,
+        centre,
+        radial,
+        tangential,
+    } = file.lens;
     let numbers = [focal, centre, radial, tangential];
-    document.require(numbers.as_flattened().iter().all(|n| n.is_finite()), "lens", "not finite", "finite numbers")?;
-    document.require(size.iter().all(|n| (1..=65_535).contains(n)), "size", format!("{size:?}"), "columns and rows in 1 to 65535")?;
-    document.require(focal.iter().all(|f| *f > 0.0), "focal", format!("{focal:?}"), "positive, in pixels")?;
+    document.require(
+        numbers.as_flattened().iter().all(|n| n.is_finite()),
+        "lens",
+        "not finite",
+        "finite numbers",
+    )?;
+    document.require(
+        size.iter().all(|n| (1..=65_535).contains(n)),
+        "size",
+        format!("{size:?}"),
+        "columns and rows in 1 to 65535",
+    )?;
+    document.require(
+        focal.iter().all(|f| *f > 0.0),
+        "focal",
+        format!("{focal:?}"),
+        "positive, in pixels",
+    )?;
     let rotation = Matrix3::from(file.table.rotation).transpose();
-    let nearest = nearest_rotation(rotation).filter(|nearest| (nearest - rotation).amax() < ROUNDED);
-    document.require(nearest.is_some(), "rotation", "no rotation", "three rows, each of length 1 and at right angles to the others")?;
+    let nearest =
+        nearest_rotation(rotation).filter(|nearest| (nearest - rotation).amax() < ROUNDED);
+    document.require(
+        nearest.is_some(),
+        "rotation",
+        "no rotation",
+        "three rows, each of length 1 and at right angles to the others",
+    )?;
     let translation = Vector3::from(file.table.translation);
-    document.require(translation.iter().all(|x| x.is_finite()), "translation", "not finite", "finite, in metres")?;
-    let camera =
-        Camera::new(Lens { size, focal, centre, radial, tangential }, Motion { rotation: nearest.unwrap_or(rotation), translation });
+    document.require(
+        translation.iter().all(|x| x.is_finite()),
+        "translation",
+        "not finite",
+        "finite, in metres",
+    )?;
+    let camera = Camera::new(
+        Lens {
+            size,
+            focal,
+            centre,
+            radial,
+            tangential,
+        },
+        Motion {
+            rotation: nearest.unwrap_or(rotation),
+            translation,
+        },
+    );
     let height = camera.centre()[2];
     document.require(
         height > 0.0,
@@ -120,9 +174,19 @@ pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
 
 /// A calibration as text; every number reads back to the same bits.
 pub fn write_camera(camera: &Camera) -> String {
-    let Lens { size, focal, centre, radial, tangential } = camera.lens;
-    let rotation: Vec<String> =
-        camera.to_camera.rotation.row_iter().map(|row| format!("  [{}, {}, {}],\n", row[0], row[1], row[2])).collect();
+    let Lens {
+        size,
+        focal,
+        centre,
+        radial,
+        tangential,
+    } = camera.lens;
+    let rotation: Vec<String> = camera
+        .to_camera
+        .rotation
+        .row_iter()
+        .map(|row| format!("  [{}, {}, {}],\n", row[0], row[1], row[2]))
+        .collect();
     let [x, y, z] = camera.to_camera.translation.into();
     format!(
         "# A calibrated camera over the table. Pixels: the centre of the first one is (0, 0).\n\n\
@@ -156,17 +220,33 @@ pub(crate) mod tests {
 
     /// A camera 0.6 m above the table, tilted by 0.15 rad.
     pub(crate) fn camera() -> Camera {
-        let lens =
-            Lens { size: [640, 480], focal: [1210.0, 1200.0], centre: [330.0, 236.0], radial: [-0.2, 0.1], tangential: [1e-3, -1e-3] };
+        let lens = Lens {
+            size: [640, 480],
+            focal: [1210.0, 1200.0],
+            centre: [330.0, 236.0],
+            radial: [-0.2, 0.1],
+            tangential: [1e-3, -1e-3],
+        };
         let down = rotation(Vector3::new(std::f64::consts::PI, 0.0, 0.0));
-        Camera::new(lens, Motion { rotation: rotation(Vector3::new(0.1, -0.11, 0.02)) * down, translation: Vector3::new(0.01, -0.02, 0.6) })
+        Camera::new(
+            lens,
+            Motion {
+                rotation: rotation(Vector3::new(0.1, -0.11, 0.02)) * down,
+                translation: Vector3::new(0.01, -0.02, 0.6),
+            },
+        )
     }
 
     #[test]
     fn point_at_undoes_project_at_any_height() {
         for point in [[0.0, 0.0, 0.0], [0.1, -0.05, 0.03], [-0.08, 0.07, 0.2]] {
-            let [x, y] = camera().point_at(camera().project(point).unwrap(), point[2]).unwrap();
-            assert!((x - point[0]).abs() < 1e-12 && (y - point[1]).abs() < 1e-12, "{point:?}");
+            let [x, y] = camera()
+                .point_at(camera().project(point).unwrap(), point[2])
+                .unwrap();
+            assert!(
+                (x - point[0]).abs() < 1e-12 && (y - point[1]).abs() < 1e-12,
+                "{point:?}"
+            );
         }
         assert_eq!(camera().project([0.0, 0.0, 0.7]), None);
     }
@@ -177,7 +257,10 @@ pub(crate) mod tests {
         const H: f64 = 1e-6;
         let at = |x: f64, y: f64| camera().ideal([x, y, 0.02]).unwrap().0;
         let (_, by_plane) = camera().ideal([0.05, -0.03, 0.02]).unwrap();
-        let numeric = [(at(0.05 + H, -0.03) - at(0.05 - H, -0.03)) / (2.0 * H), (at(0.05, -0.03 + H) - at(0.05, -0.03 - H)) / (2.0 * H)];
+        let numeric = [
+            (at(0.05 + H, -0.03) - at(0.05 - H, -0.03)) / (2.0 * H),
+            (at(0.05, -0.03 + H) - at(0.05, -0.03 - H)) / (2.0 * H),
+        ];
         assert!((Matrix2::from_columns(&numeric) - by_plane).amax() < 1e-3 * by_plane.amax());
     }
 
@@ -192,14 +275,33 @@ pub(crate) mod tests {
     #[test]
     fn read_camera_names_line_value_rule_and_next_step() {
         let good = write_camera(&camera());
-        let refused = |from: &str, to: &str| read_camera(&good.replacen(from, to, 1), "c.toml").unwrap_err().to_string();
+        let refused = |from: &str, to: &str| {
+            read_camera(&good.replacen(from, to, 1), "c.toml")
+                .unwrap_err()
+                .to_string()
+        };
         let text = refused("focal = [1210", "focal = [-1210");
-        assert!(text.contains("c.toml:5: `focal` is [-1210.0, 1200.0]") && text.contains("must be positive"), "{text}");
+        assert!(
+            text.contains("c.toml:5: `focal` is [-1210.0, 1200.0]")
+                && text.contains("must be positive"),
+            "{text}"
+        );
         let text = refused("rotation = [\n  [", "rotation = [\n  [2");
-        assert!(text.contains("c.toml:11: `rotation` is no rotation") && text.contains("right angles"), "{text}");
+        assert!(
+            text.contains("c.toml:11: `rotation` is no rotation") && text.contains("right angles"),
+            "{text}"
+        );
         let text = refused("radial", "radail");
-        assert!(text.starts_with("c.toml:7: ") && text.contains("`radail`") && text.contains("stickslip calibrate"), "{text}");
+        assert!(
+            text.starts_with("c.toml:7: ")
+                && text.contains("`radail`")
+                && text.contains("stickslip calibrate"),
+            "{text}"
+        );
         let text = refused("0.6]", "-0.6]");
-        assert!(text.contains("`translation`") && text.contains("above the table"), "{text}");
+        assert!(
+            text.contains("`translation`") && text.contains("above the table"),
+            "{text}"
+        );
     }
 }

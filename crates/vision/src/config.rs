@@ -53,21 +53,53 @@ impl Document<'_> {
         toml::from_str(self.text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
             let line = self.text[..start].matches('\n').count() + 1;
-            let found = self.text.lines().nth(line - 1).unwrap_or("").trim().to_owned();
+            let found = self
+                .text
+                .lines()
+                .nth(line - 1)
+                .unwrap_or("")
+                .trim()
+                .to_owned();
             let message = error.message().lines().collect::<Vec<_>>().join(", ");
-            self.error(line, ConfigProblem::Form { found, message, next: next.to_owned() })
+            self.error(
+                line,
+                ConfigProblem::Form {
+                    found,
+                    message,
+                    next: next.to_owned(),
+                },
+            )
         })
     }
 
     /// An error unless `kept`: the value of `key` is `found` and must be what `rule` says.
-    pub(crate) fn require(&self, kept: bool, key: &str, found: impl Into<String>, rule: &str) -> Result<(), ConfigError> {
+    pub(crate) fn require(
+        &self,
+        kept: bool,
+        key: &str,
+        found: impl Into<String>,
+        rule: &str,
+    ) -> Result<(), ConfigError> {
         if kept {
             return Ok(());
         }
-        let named = |line: &str| line.trim_start().trim_start_matches('[').starts_with(key.rsplit('.').next().unwrap_or(key));
-        let below = key.split_once('.').map_or(0, |(table, _)| self.line_of(|line| line.trim() == format!("[{table}]")));
+        let named = |line: &str| {
+            line.trim_start()
+                .trim_start_matches('[')
+                .starts_with(key.rsplit('.').next().unwrap_or(key))
+        };
+        let below = key.split_once('.').map_or(0, |(table, _)| {
+            self.line_of(|line| line.trim() == format!("[{table}]"))
+        });
         let line = below + self.text.lines().skip(below).position(named).unwrap_or(0) + 1;
-        Err(self.error(line, ConfigProblem::Rule { key: key.to_owned(), found: found.into(), rule: rule.to_owned() }))
+        Err(self.error(
+            line,
+            ConfigProblem::Rule {
+                key: key.to_owned(),
+                found: found.into(),
+                rule: rule.to_owned(),
+            },
+        ))
     }
 
     fn line_of(&self, is_it: impl Fn(&str) -> bool) -> usize {
@@ -75,6 +107,10 @@ impl Document<'_> {
     }
 
     fn error(&self, line: usize, problem: ConfigProblem) -> ConfigError {
-        ConfigError { file: self.name.to_owned(), line, problem }
+        ConfigError {
+            file: self.name.to_owned(),
+            line,
+            problem,
+        }
     }
 }

@@ -18,7 +18,8 @@ const SMALLEST: usize = 32;
 pub struct Detector {
     decoder: Arc<Mutex<AprilTagDecoder>>,
     size: ImageSize,
-    /// The library shares an image out among the threads it finds, and its last digits depend on their number: it gets one.
+    /// The library shares an image out among the threads it finds, and its last digits depend on
+    /// their number: it gets one.
     one_thread: rayon::ThreadPool,
 }
 
@@ -38,11 +39,23 @@ impl Detector {
     /// If a side is 0 or above 65535, or the system gives no thread.
     pub fn new(size: [u32; 2]) -> Self {
         // finer than by every second pixel, the library misses tags
-        let config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11]).expect("the library has this family");
-        let size = ImageSize { width: size[0] as usize, height: size[1] as usize };
+        let config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11])
+            .expect("the library has this family");
+        let size = ImageSize {
+            width: size[0] as usize,
+            height: size[1] as usize,
+        };
         let decoder = AprilTagDecoder::new(config, size).expect("an image of usual size");
-        let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).panic_handler(|_| ()).build().expect("the system gives a thread");
-        Self { decoder: Arc::new(Mutex::new(decoder)), size, one_thread }
+        let one_thread = rayon::ThreadPoolBuilder::new()
+            .num_threads(1)
+            .panic_handler(|_| ())
+            .build()
+            .expect("the system gives a thread");
+        Self {
+            decoder: Arc::new(Mutex::new(decoder)),
+            size,
+            one_thread,
+        }
     }
 
     /// The tags in an image, by number and then by place; one may be there twice.
@@ -57,27 +70,38 @@ impl Detector {
         let mut tags: Vec<FoundTag> = detections
             .iter()
             .map(|detection| {
-                // anti-clockwise from the lower left as printed; the library's y axis points down, its pixels begin at their corner
+                // anti-clockwise from the lower left as printed; the library's y axis points down,
+                // its pixels begin at their corner
                 let corners = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(|[x, y]| {
                     let at = detection.quad.homography_project(x, y);
                     [f64::from(at.x) - 0.5, f64::from(at.y) - 0.5]
                 });
-                FoundTag { id: detection.id, outline: Outline::gather(image, corners) }
+                FoundTag {
+                    id: detection.id,
+                    outline: Outline::gather(image, corners),
+                }
             })
             .collect();
-        tags.sort_by(|a, b| a.id.cmp(&b.id).then(a.corners()[0][0].total_cmp(&b.corners()[0][0])));
+        tags.sort_by(|a, b| {
+            a.id.cmp(&b.id)
+                .then(a.corners()[0][0].total_cmp(&b.corners()[0][0]))
+        });
         tags
     }
 
-    /// What the library finds. Its thread is waited for outside of any pool: a thread of a pool that waits inside takes up the next
-    /// frame meanwhile, which waits in turn, one within the other until the stack is full.
+    /// What the library finds. Its thread is waited for outside of any pool: a thread of a pool
+    /// that waits inside takes up the next frame meanwhile, which waits in turn, one within the
+    /// other until the stack is full.
     fn decode(&self, image: &GrayImage) -> Vec<Detection> {
-        let view = Image::new(self.size, image.as_raw().clone()).expect("an image of the detector's size");
+        let view =
+            Image::new(self.size, image.as_raw().clone()).expect("an image of the detector's size");
         let (found, wait) = sync_channel(1);
         let decoder = Arc::clone(&self.decoder);
         self.one_thread.spawn(move || {
             let mut decoder = decoder.lock().unwrap_or_else(PoisonError::into_inner);
-            let detections = decoder.decode(&view).expect("an image of the detector's size");
+            let detections = decoder
+                .decode(&view)
+                .expect("an image of the detector's size");
             decoder.clear();
             // the one who asked is gone only if it panicked
             let _ = found.send(detections);
@@ -87,7 +111,8 @@ impl Detector {
 }
 
 impl FoundTag {
-    /// Corners of its black square, roughly (px): lower left, lower right, upper right, upper left, as printed.
+    /// Corners of its black square, roughly (px): lower left, lower right, upper right, upper left,
+    /// as printed.
     pub fn corners(&self) -> [[f64; 2]; 4] {
         self.outline.corners
     }

@@ -1,9 +1,10 @@
 //! A straight edge between dark and bright, fitted to pixels: [`Edge`].
 //!
-//! A pixel at distance d outside the edge and s along it has the level dark + (bright + fade s - dark) Φ(d / blur), Φ the normal
-//! distribution function: a step seen through lens, defocus, the pixel's own area and motion, in light that changes along it. Its six
-//! numbers (offset, turn, dark, bright, blur, fade) are found by Gauss–Newton over all pixels in a band; pixels have independent noise,
-//! so that the residuals give the covariance.
+//! A pixel at distance d outside the edge and s along it has the level dark + (bright + fade s -
+//! dark) Φ(d / blur), Φ the normal distribution function: a step seen through lens, defocus, the
+//! pixel's own area and motion, in light that changes along it. Its six numbers (offset, turn,
+//! dark, bright, blur, fade) are found by Gauss–Newton over all pixels in a band; pixels have
+//! independent noise, so that the residuals give the covariance.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
@@ -33,7 +34,8 @@ pub(crate) struct Sample {
     pub(crate) level: f64,
 }
 
-/// A straight edge: the points p with n · (p - middle) = offset + turn · (t · (p - middle)), for unit vectors t along it and n outwards.
+/// A straight edge: the points p with n · (p - middle) = offset + turn · (t · (p - middle)), for
+/// unit vectors t along it and n outwards.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Edge {
     middle: Vector2<f64>,
@@ -63,11 +65,17 @@ struct Equations {
 }
 
 impl Edge {
-    /// Fits the edge near a rough one, from corner to corner with the dark side on the left in the image, to the samples near it; what
-    /// is `cell` (px) away from it on either side or beyond its ends has other levels. `None` where there is no such edge.
+    /// Fits the edge near a rough one, from corner to corner with the dark side on the left in the
+    /// image, to the samples near it; what is `cell` (px) away from it on either side or beyond its
+    /// ends has other levels. `None` where there is no such edge.
     pub(crate) fn fit(samples: &[Sample], rough: [Vector2<f64>; 2], cell: f64) -> Option<Self> {
         let way = rough[1] - rough[0];
-        let edge = Self { middle: (rough[0] + rough[1]) / 2.0, along: way / way.norm(), blur: FIRST_BLUR, ..Self::default() };
+        let edge = Self {
+            middle: (rough[0] + rough[1]) / 2.0,
+            along: way / way.norm(),
+            blur: FIRST_BLUR,
+            ..Self::default()
+        };
         // once the edge and its blur are known, the band that is free of its neighbours is
         let first = edge.fit_in_band(samples, way.norm() / 2.0, cell)?;
         let found = first.fit_in_band(samples, way.norm() / 2.0, cell)?;
@@ -85,7 +93,8 @@ impl Edge {
         nalgebra::RowVector2::new(1.0, self.along.dot(&(point - self.middle)))
     }
 
-    /// To the right of the way from corner to corner, y pointing down: anti-clockwise as printed, the outside.
+    /// To the right of the way from corner to corner, y pointing down: anti-clockwise as printed,
+    /// the outside.
     fn outward(&self) -> Vector2<f64> {
         Vector2::new(-self.along.y, self.along.x)
     }
@@ -94,11 +103,15 @@ impl Edge {
     fn coordinates(&self, at: Vector2<f64>) -> [f64; 2] {
         let from = at - self.middle;
         let along = self.along.dot(&from);
-        [along, self.outward().dot(&from) - self.offset - self.turn * along]
+        [
+            along,
+            self.outward().dot(&from) - self.offset - self.turn * along,
+        ]
     }
 
     fn fit_in_band(&self, samples: &[Sample], half_length: f64, cell: f64) -> Option<Self> {
-        let band = (cell - CLEAR * self.blur).clamp(LEAST_BAND, WIDEST_BAND * cell.max(LEAST_BAND / WIDEST_BAND));
+        let band = (cell - CLEAR * self.blur)
+            .clamp(LEAST_BAND, WIDEST_BAND * cell.max(LEAST_BAND / WIDEST_BAND));
         let reach = half_length - band.max(CLEAR * self.blur);
         let inside = |sample: &&Sample| {
             let [along, outside] = self.coordinates(sample.at);
@@ -113,7 +126,8 @@ impl Edge {
         let mut damping = 1e-3;
         let mut converged = false;
         for _ in 0..ITERATIONS {
-            let diagonal = SMatrix::<f64, NUMBERS, NUMBERS>::from_diagonal(&(now.matrix.diagonal() * damping));
+            let diagonal =
+                SMatrix::<f64, NUMBERS, NUMBERS>::from_diagonal(&(now.matrix.diagonal() * damping));
             let by = (now.matrix + diagonal).cholesky()?.solve(&now.gradient);
             converged = by[0].abs() + by[1].abs() * reach < FOUND;
             if converged {
@@ -130,32 +144,61 @@ impl Edge {
         let found = converged && step.bright > step.dark && step.blur < cell;
         let inverse = now.matrix.try_inverse().filter(|_| found)?;
         let variance = now.squares / (now.count - NUMBERS) as f64;
-        Some(Self { covariance: inverse.fixed_view::<2, 2>(0, 0) * variance, blur: step.blur, ..edge })
+        Some(Self {
+            covariance: inverse.fixed_view::<2, 2>(0, 0) * variance,
+            blur: step.blur,
+            ..edge
+        })
     }
 
     /// Levels far from the edge on either side; `None` where one side has no pixels.
     fn first_step(&self, samples: &[Sample], band: f64) -> Option<Step> {
         let mean = |side: f64| {
-            let far = samples.iter().filter(|sample| self.coordinates(sample.at)[1] * side > band / 2.0);
-            let (sum, count) = far.fold((0.0, 0), |(sum, count), sample| (sum + sample.level, count + 1));
+            let far = samples
+                .iter()
+                .filter(|sample| self.coordinates(sample.at)[1] * side > band / 2.0);
+            let (sum, count) = far.fold((0.0, 0), |(sum, count), sample| {
+                (sum + sample.level, count + 1)
+            });
             (count > 0).then(|| sum / f64::from(count))
         };
-        Some(Step { dark: mean(-1.0)?, bright: mean(1.0)?, blur: self.blur, fade: 0.0 })
+        Some(Step {
+            dark: mean(-1.0)?,
+            bright: mean(1.0)?,
+            blur: self.blur,
+            fade: 0.0,
+        })
     }
 
     fn moved(&self, by: &SVector<f64, NUMBERS>) -> Self {
-        Self { offset: self.offset + by[0], turn: self.turn + by[1], ..*self }
+        Self {
+            offset: self.offset + by[0],
+            turn: self.turn + by[1],
+            ..*self
+        }
     }
 
     fn equations(&self, step: &Step, samples: &[Sample]) -> Equations {
-        let mut sum = Equations { matrix: SMatrix::zeros(), gradient: SVector::zeros(), squares: 0.0, count: samples.len() };
+        let mut sum = Equations {
+            matrix: SMatrix::zeros(),
+            gradient: SVector::zeros(),
+            squares: 0.0,
+            count: samples.len(),
+        };
         for sample in samples {
             let [along, outside] = self.coordinates(sample.at);
             let (share, density) = normal(outside / step.blur);
             let height = step.bright + step.fade * along - step.dark;
             let slope = height * density / step.blur;
             let residual = sample.level - step.dark - height * share;
-            let row = SVector::from([-slope, -slope * along, 1.0 - share, share, -slope * outside / step.blur, share * along]);
+            let row = SVector::from([
+                -slope,
+                -slope * along,
+                1.0 - share,
+                share,
+                -slope * outside / step.blur,
+                share * along,
+            ]);
             sum.matrix += row * row.transpose();
             sum.gradient += row * residual;
             sum.squares += residual * residual;
@@ -167,14 +210,22 @@ impl Edge {
 impl Step {
     fn moved(&self, by: &SVector<f64, NUMBERS>) -> Self {
         let blur = (self.blur + by[4]).max(LEAST_BLUR);
-        Self { dark: self.dark + by[2], bright: self.bright + by[3], blur, fade: self.fade + by[5] }
+        Self {
+            dark: self.dark + by[2],
+            bright: self.bright + by[3],
+            blur,
+            fade: self.fade + by[5],
+        }
     }
 }
 
 /// Distribution function and density of the standard normal distribution.
 fn normal(z: f64) -> (f64, f64) {
     use std::f64::consts::{FRAC_1_SQRT_2, PI};
-    (0.5 * (1.0 + libm::erf(z * FRAC_1_SQRT_2)), libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt())
+    (
+        0.5 * (1.0 + libm::erf(z * FRAC_1_SQRT_2)),
+        libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt(),
+    )
 }
 
 #[cfg(test)]
@@ -185,15 +236,25 @@ mod tests {
     const CORNERS: [Vector2<f64>; 2] = [Vector2::new(10.0, 20.0), Vector2::new(58.0, 26.0)];
     const CELL: f64 = 6.0;
 
-    /// Pixels about the corners' line, moved outwards by `offset` and turned by `turn`, seen with a blur, fading light and noise.
+    /// Pixels about the corners' line, moved outwards by `offset` and turned by `turn`, seen with a
+    /// blur, fading light and noise.
     fn samples(offset: f64, turn: f64, blur: f64, noise: f64, draw: u64) -> Vec<Sample> {
         let way = CORNERS[1] - CORNERS[0];
-        let edge = Edge { middle: (CORNERS[0] + CORNERS[1]) / 2.0, along: way.normalize(), offset, turn, ..Edge::default() };
+        let edge = Edge {
+            middle: (CORNERS[0] + CORNERS[1]) / 2.0,
+            along: way.normalize(),
+            offset,
+            turn,
+            ..Edge::default()
+        };
         let pixel = |index: u32| {
             let at = Vector2::new(f64::from(index % 70), f64::from(index / 70));
             let [along, outside] = edge.coordinates(at);
             let level = 30.0 + (150.0 + 0.2 * along) * normal(outside / blur).0;
-            Sample { at, level: level + noise * Streams::new(3).normal(draw, index, 0) }
+            Sample {
+                at,
+                level: level + noise * Streams::new(3).normal(draw, index, 0),
+            }
         };
         (0..70 * 48).map(pixel).collect()
     }
@@ -202,12 +263,16 @@ mod tests {
     fn fit_of_an_exact_edge_is_exact() {
         for (offset, turn, blur) in [(0.0, 0.0, 0.6), (0.8, -0.02, 0.9), (-0.5, 0.01, 1.6)] {
             let edge = Edge::fit(&samples(offset, turn, blur, 0.0, 0), CORNERS, CELL).unwrap();
-            assert!((edge.offset - offset).abs() < 1e-5 && (edge.turn - turn).abs() < 1e-6, "{edge:?}");
+            assert!(
+                (edge.offset - offset).abs() < 1e-5 && (edge.turn - turn).abs() < 1e-6,
+                "{edge:?}"
+            );
             assert!((edge.blur - blur).abs() < 1e-3, "{edge:?}");
         }
     }
 
-    /// Squared errors in units of the predicted covariance have mean 2, those of the offset and of the turn mean 0.
+    /// Squared errors in units of the predicted covariance have mean 2, those of the offset and of
+    /// the turn mean 0.
     #[test]
     fn fit_has_the_covariance_of_its_errors() {
         const DRAWS: u64 = 400;
@@ -215,20 +280,36 @@ mod tests {
         for draw in 0..DRAWS {
             let edge = Edge::fit(&samples(0.3, 0.01, 0.8, 2.0, draw), CORNERS, CELL).unwrap();
             let error = Vector2::new(edge.offset - 0.3, edge.turn - 0.01);
-            whitened += (error.transpose() * edge.covariance.try_inverse().unwrap() * error).x / DRAWS as f64;
-            let std = Vector2::new(edge.covariance[(0, 0)].sqrt(), edge.covariance[(1, 1)].sqrt());
+            whitened += (error.transpose() * edge.covariance.try_inverse().unwrap() * error).x
+                / DRAWS as f64;
+            let std = Vector2::new(
+                edge.covariance[(0, 0)].sqrt(),
+                edge.covariance[(1, 1)].sqrt(),
+            );
             mean += error.component_div(&std) / DRAWS as f64;
         }
         // five standard errors
-        assert!((whitened - 2.0).abs() < 5.0 * (4.0 / DRAWS as f64).sqrt(), "{whitened}");
+        assert!(
+            (whitened - 2.0).abs() < 5.0 * (4.0 / DRAWS as f64).sqrt(),
+            "{whitened}"
+        );
         assert!(mean.amax() < 5.0 / (DRAWS as f64).sqrt(), "{mean}");
     }
 
     #[test]
     fn fit_of_no_edge_is_none() {
-        let flat: Vec<Sample> = samples(0.0, 0.0, 0.8, 0.0, 0).iter().map(|s| Sample { level: 80.0, ..*s }).collect();
+        let flat: Vec<Sample> = samples(0.0, 0.0, 0.8, 0.0, 0)
+            .iter()
+            .map(|s| Sample { level: 80.0, ..*s })
+            .collect();
         assert!(Edge::fit(&flat, CORNERS, CELL).is_none());
-        let inverted: Vec<Sample> = samples(0.0, 0.0, 0.8, 0.0, 0).iter().map(|s| Sample { level: 255.0 - s.level, ..*s }).collect();
+        let inverted: Vec<Sample> = samples(0.0, 0.0, 0.8, 0.0, 0)
+            .iter()
+            .map(|s| Sample {
+                level: 255.0 - s.level,
+                ..*s
+            })
+            .collect();
         assert!(Edge::fit(&inverted, CORNERS, CELL).is_none());
         assert!(Edge::fit(&[], CORNERS, CELL).is_none());
     }

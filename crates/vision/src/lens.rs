@@ -7,9 +7,10 @@ pub(crate) const PARAMETERS: usize = 8;
 
 /// A pinhole with Brown–Conrady distortion, as OpenCV has it with k3 = 0.
 ///
-/// A point with the direction (x, y, 1) in the camera's frame (x right, y down), r² = x² + y², is seen at
-/// x' = x (1 + k1 r² + k2 r⁴) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2 r⁴) + p1 (r² + 2 y²) + 2 p2 x y, and there at the
-/// pixel (fx x' + cx, fy y' + cy). Without distortion it would be at (fx x + cx, fy y + cy), its *ideal* pixel.
+/// A point with the direction (x, y, 1) in the camera's frame (x right, y down), r² = x² + y², is
+/// seen at x' = x (1 + k1 r² + k2 r⁴) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2 r⁴) + p1
+/// (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy). Without distortion it
+/// would be at (fx x + cx, fy y + cy), its *ideal* pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Columns and rows of the image.
@@ -28,17 +29,29 @@ impl Lens {
     /// A lens without distortion, its axis in the image's middle.
     pub fn pinhole(size: [u32; 2], focal: f64) -> Self {
         let centre = size.map(|n| (f64::from(n) - 1.0) / 2.0);
-        Self { size, focal: [focal; 2], centre, radial: [0.0; 2], tangential: [0.0; 2] }
+        Self {
+            size,
+            focal: [focal; 2],
+            centre,
+            radial: [0.0; 2],
+            tangential: [0.0; 2],
+        }
     }
 
     /// The ideal pixel of the direction (x, y, 1).
     pub(crate) fn ideal(&self, direction: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new(self.focal[0] * direction.x + self.centre[0], self.focal[1] * direction.y + self.centre[1])
+        Vector2::new(
+            self.focal[0] * direction.x + self.centre[0],
+            self.focal[1] * direction.y + self.centre[1],
+        )
     }
 
     /// The direction (x, y, 1) of an ideal pixel.
     pub(crate) fn direction(&self, ideal: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new((ideal.x - self.centre[0]) / self.focal[0], (ideal.y - self.centre[1]) / self.focal[1])
+        Vector2::new(
+            (ideal.x - self.centre[0]) / self.focal[0],
+            (ideal.y - self.centre[1]) / self.focal[1],
+        )
     }
 
     /// The pixel where a point with an ideal pixel is seen.
@@ -57,16 +70,22 @@ impl Lens {
             let step = jacobian.try_inverse()? * (seen - bent);
             direction += step;
             if step.amax() < CLOSE {
-                // past the fold, and on the other side of the axis, other directions are seen at the same pixel
-                let near = self.bend(direction).1.determinant() > 0.0 && direction.dot(&seen) >= 0.0;
+                // past the fold, and on the other side of the axis, other directions are seen at
+                // the same pixel
+                let near =
+                    self.bend(direction).1.determinant() > 0.0 && direction.dot(&seen) >= 0.0;
                 return near.then(|| self.ideal(direction).into());
             }
         }
         None
     }
 
-    /// The pixel of the direction (x, y, 1), with its derivatives by direction and by the lens's eight numbers.
-    pub(crate) fn project(&self, direction: Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>, SMatrix<f64, 2, PARAMETERS>) {
+    /// The pixel of the direction (x, y, 1), with its derivatives by direction and by the lens's
+    /// eight numbers.
+    pub(crate) fn project(
+        &self,
+        direction: Vector2<f64>,
+    ) -> (Vector2<f64>, Matrix2<f64>, SMatrix<f64, 2, PARAMETERS>) {
         let (bent, by_direction) = self.bend(direction);
         let (x, y, [fx, fy]) = (direction.x, direction.y, self.focal);
         let r2 = x * x + y * y;
@@ -75,7 +94,11 @@ impl Lens {
             bent.x, 0.0, 1.0, 0.0, fx * x * r2, fx * x * r2 * r2, fx * 2.0 * x * y, fx * (r2 + 2.0 * x * x),
             0.0, bent.y, 0.0, 1.0, fy * y * r2, fy * y * r2 * r2, fy * (r2 + 2.0 * y * y), fy * 2.0 * x * y,
         ]);
-        (self.ideal(bent), Matrix2::from_diagonal(&self.focal.into()) * by_direction, by_lens)
+        (
+            self.ideal(bent),
+            Matrix2::from_diagonal(&self.focal.into()) * by_direction,
+            by_lens,
+        )
     }
 
     /// The same lens with its eight numbers (fx, fy, cx, cy, k1, k2, p1, p2) moved.
@@ -97,8 +120,10 @@ impl Lens {
         let r2 = x * x + y * y;
         let radial = 1.0 + r2 * (k1 + r2 * k2);
         let slope = 2.0 * (k1 + 2.0 * k2 * r2); // by r², twice: times x or y it is the derivative by x or y
-        let bent =
-            Vector2::new(x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x), y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y);
+        let bent = Vector2::new(
+            x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+            y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
+        );
         let mixed = x * y * slope + 2.0 * (p1 * x + p2 * y);
         let by_direction = Matrix2::new(
             radial + x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x,
@@ -115,20 +140,32 @@ mod tests {
     use super::*;
 
     fn lens() -> Lens {
-        Lens { size: [640, 480], focal: [610.0, 605.0], centre: [330.0, 236.0], radial: [-0.3, 0.1], tangential: [2e-3, -1e-3] }
+        Lens {
+            size: [640, 480],
+            focal: [610.0, 605.0],
+            centre: [330.0, 236.0],
+            radial: [-0.3, 0.1],
+            tangential: [2e-3, -1e-3],
+        }
     }
 
     #[test]
     fn undistort_undoes_distort() {
         for ideal in [[0.0, 0.0], [639.0, 479.0], [100.0, 400.0], [330.0, 236.0]] {
             let [x, y] = lens().undistort(lens().distort(ideal)).unwrap();
-            assert!((x - ideal[0]).abs() < 1e-9 && (y - ideal[1]).abs() < 1e-9, "{ideal:?}");
+            assert!(
+                (x - ideal[0]).abs() < 1e-9 && (y - ideal[1]).abs() < 1e-9,
+                "{ideal:?}"
+            );
         }
     }
 
     #[test]
     fn undistort_past_a_fold_is_none() {
-        let folded = Lens { radial: [-2.0, 0.0], ..lens() };
+        let folded = Lens {
+            radial: [-2.0, 0.0],
+            ..lens()
+        };
         assert_eq!(folded.undistort([639.0, 479.0]), None);
     }
 
@@ -141,11 +178,18 @@ mod tests {
         for k in 0..2 {
             let step = Vector2::from_fn(|i, _| if i == k { H } else { 0.0 });
             let numeric = (lens.project(at + step).0 - lens.project(at - step).0) / (2.0 * H);
-            assert!((numeric - by_direction.column(k)).amax() < 1e-6, "direction {k}");
+            assert!(
+                (numeric - by_direction.column(k)).amax() < 1e-6,
+                "direction {k}"
+            );
         }
         for k in 0..PARAMETERS {
-            let step = |h: f64| std::array::from_fn::<f64, PARAMETERS, _>(|i| if i == k { h } else { 0.0 });
-            let numeric = (lens.moved(&step(H)).project(at).0 - lens.moved(&step(-H)).project(at).0) / (2.0 * H);
+            let step = |h: f64| {
+                std::array::from_fn::<f64, PARAMETERS, _>(|i| if i == k { h } else { 0.0 })
+            };
+            let numeric = (lens.moved(&step(H)).project(at).0
+                - lens.moved(&step(-H)).project(at).0)
+                / (2.0 * H);
             assert!((numeric - by_lens.column(k)).amax() < 1e-5, "parameter {k}");
         }
     }

@@ -1,19 +1,23 @@
 //! From camera frames to poses on the table.
 //!
-//! An overhead camera is calibrated once from frames of a tag [`Board`] ([`calibrate`]): [`Lens`] and the place of the table before
-//! it ([`Camera`]). Then [`track`] finds the tags of object and pusher in every frame and returns their planar poses with covariance.
-//! A pose is found in the plane that the tag's print is known to lie in, never as the six-parameter pose of a single tag, which has
-//! two near-equal solutions (Collins & Bartoli 2014).
+//! An overhead camera is calibrated once from frames of a tag [`Board`] ([`calibrate`]): [`Lens`]
+//! and the place of the table before it ([`Camera`]). Then [`track`] finds the tags of object and
+//! pusher in every frame and returns their planar poses with covariance. A pose is found in the
+//! plane that the tag's print is known to lie in, never as the six-parameter pose of a single tag,
+//! which has two near-equal solutions (Collins & Bartoli 2014).
 //!
-//! Tags are found by `kornia-apriltag`; their borders are then fitted anew, to the pixels themselves (`edge`), since the library's
-//! corners are neither free of bias nor come with their noise.
+//! Tags are found by `kornia-apriltag`; their borders are then fitted anew, to the pixels
+//! themselves (`edge`), since the library's corners are neither free of bias nor come with their
+//! noise.
 //!
-//! Lengths in m, world frame: x and y on the table, z up from it. Pixels: x right, y down, the centre of the first pixel at (0, 0).
+//! Lengths in m, world frame: x and y on the table, z up from it. Pixels: x right, y down, the
+//! centre of the first pixel at (0, 0).
 //!
 //! Invariants:
 //! - opens no file, knows no filter;
 //! - results do not depend on the number of threads, bit for bit;
-//! - a pose whose tag's border does not fit a square on its plane is not given: it is counted as [`Sighting::Distorted`].
+//! - a pose whose tag's border does not fit a square on its plane is not given: it is counted as
+//!   [`Sighting::Distorted`].
 
 mod board;
 mod bundle;
@@ -34,7 +38,9 @@ mod tags;
 mod track;
 
 pub use board::{Board, BoardOnTable, read_board, write_board};
-pub use calibrate::{BoardRecording, Calibration, CalibrationError, CalibrationFrame, calibrate, search_board};
+pub use calibrate::{
+    BoardRecording, Calibration, CalibrationError, CalibrationFrame, calibrate, search_board,
+};
 pub use camera::{Camera, read_camera, write_camera};
 pub use config::{ConfigError, ConfigProblem};
 pub use detector::{Detector, FoundTag};

@@ -12,7 +12,10 @@ pub(crate) struct Motion {
 impl Motion {
     /// Turns about the z axis by `angle` (rad), then moves.
     pub(crate) fn planar(angle: f64, translation: Vector3<f64>) -> Self {
-        Self { rotation: rotation(Vector3::new(0.0, 0.0, angle)), translation }
+        Self {
+            rotation: rotation(Vector3::new(0.0, 0.0, angle)),
+            translation,
+        }
     }
 
     pub(crate) fn apply(&self, point: Vector3<f64>) -> Vector3<f64> {
@@ -21,12 +24,18 @@ impl Motion {
 
     /// This motion after `first`.
     pub(crate) fn after(&self, first: &Motion) -> Self {
-        Self { rotation: self.rotation * first.rotation, translation: self.apply(first.translation) }
+        Self {
+            rotation: self.rotation * first.rotation,
+            translation: self.apply(first.translation),
+        }
     }
 
     pub(crate) fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
-        Self { rotation, translation: -(rotation * self.translation) }
+        Self {
+            rotation,
+            translation: -(rotation * self.translation),
+        }
     }
 }
 
@@ -38,7 +47,10 @@ pub(crate) fn rotation(vector: Vector3<f64>) -> Matrix3<f64> {
     let (first, second) = if angle < 1e-4 {
         (1.0 - angle * angle / 6.0, 0.5 - angle * angle / 24.0)
     } else {
-        (libm::sin(angle) / angle, (1.0 - libm::cos(angle)) / (angle * angle))
+        (
+            libm::sin(angle) / angle,
+            (1.0 - libm::cos(angle)) / (angle * angle),
+        )
     };
     Matrix3::identity() + cross * first + cross * cross * second
 }
@@ -66,21 +78,37 @@ mod tests {
         let many = (0..20).fold(small, |power, _| power * power); // 2^20 turns
         let expected = rotation(vector * (1e-6 * f64::from(1 << 20)));
         assert!((many - expected).amax() < 1e-5);
-        assert!((rotation(vector * 1e-5) - (Matrix3::identity() + vector.cross_matrix() * 1e-5)).amax() < 1e-9);
+        assert!(
+            (rotation(vector * 1e-5) - (Matrix3::identity() + vector.cross_matrix() * 1e-5)).amax()
+                < 1e-9
+        );
     }
 
     #[test]
     fn nearest_rotation_undoes_scale_and_noise() {
         let turn = rotation(Vector3::new(0.3, 0.2, -0.9));
         assert!((nearest_rotation(turn * 2.0).unwrap() - turn).amax() < 1e-12);
-        assert!((nearest_rotation(turn.add_scalar(1e-3)).unwrap().determinant() - 1.0).abs() < 1e-12);
+        assert!(
+            (nearest_rotation(turn.add_scalar(1e-3))
+                .unwrap()
+                .determinant()
+                - 1.0)
+                .abs()
+                < 1e-12
+        );
         assert_eq!(nearest_rotation(Matrix3::zeros()), None);
     }
 
     #[test]
     fn inverse_undoes_the_motion() {
-        let motion = Motion { rotation: rotation(Vector3::new(0.3, 0.2, -0.9)), translation: Vector3::new(1.0, 2.0, 3.0) };
+        let motion = Motion {
+            rotation: rotation(Vector3::new(0.3, 0.2, -0.9)),
+            translation: Vector3::new(1.0, 2.0, 3.0),
+        };
         let round = motion.inverse().after(&motion);
-        assert!((round.rotation - Matrix3::identity()).amax() < 1e-14 && round.translation.amax() < 1e-14);
+        assert!(
+            (round.rotation - Matrix3::identity()).amax() < 1e-14
+                && round.translation.amax() < 1e-14
+        );
     }
 }

@@ -15,7 +15,9 @@ pub enum PictureError {
         file: String,
     },
     /// An image that cannot be decoded.
-    #[error("{file}: the {kind} image cannot be decoded: {reason}. Record or copy it anew, or take it out of the folder")]
+    #[error(
+        "{file}: the {kind} image cannot be decoded: {reason}. Record or copy it anew, or take it out of the folder"
+    )]
     Broken {
         /// Display name of the file.
         file: String,
@@ -34,14 +36,26 @@ pub fn read_picture(bytes: &[u8], name: &str) -> Result<GrayImage, PictureError>
     let file = || name.to_owned();
     let unknown = |_| PictureError::Unknown { file: file() };
     let format = image::guess_format(bytes).map_err(unknown)?;
-    if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp | ImageFormat::Pnm) {
+    if !matches!(
+        format,
+        ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Bmp | ImageFormat::Pnm
+    ) {
         return Err(PictureError::Unknown { file: file() });
     }
     let broken = |error: image::ImageError| {
-        let kind = format.extensions_str().first().map_or_else(String::new, |ending| ending.to_uppercase());
-        PictureError::Broken { file: file(), kind, reason: error.to_string() }
+        let kind = format
+            .extensions_str()
+            .first()
+            .map_or_else(String::new, |ending| ending.to_uppercase());
+        PictureError::Broken {
+            file: file(),
+            kind,
+            reason: error.to_string(),
+        }
     };
-    Ok(image::load_from_memory_with_format(bytes, format).map_err(broken)?.into_luma8())
+    Ok(image::load_from_memory_with_format(bytes, format)
+        .map_err(broken)?
+        .into_luma8())
 }
 
 #[cfg(test)]
@@ -58,11 +72,27 @@ mod tests {
 
     #[test]
     fn read_picture_names_what_is_wrong() {
-        let text = read_picture(b"time,file\n", "frames/frames.csv").unwrap_err().to_string();
-        assert!(text.starts_with("frames/frames.csv: its first bytes") && text.contains("Convert it to PNG"), "{text}");
-        let text = read_picture(b"P5 20 10 255\n\x07", "frames/7.pgm").unwrap_err().to_string();
-        assert!(text.starts_with("frames/7.pgm: the ") && text.contains("cannot be decoded") && text.contains("anew"), "{text}");
+        let text = read_picture(b"time,file\n", "frames/frames.csv")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.starts_with("frames/frames.csv: its first bytes")
+                && text.contains("Convert it to PNG"),
+            "{text}"
+        );
+        let text = read_picture(b"P5 20 10 255\n\x07", "frames/7.pgm")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.starts_with("frames/7.pgm: the ")
+                && text.contains("cannot be decoded")
+                && text.contains("anew"),
+            "{text}"
+        );
         let webp = b"RIFF\x00\x00\x00\x00WEBPVP8 ";
-        assert!(matches!(read_picture(webp, "a.webp"), Err(PictureError::Unknown { .. })));
+        assert!(matches!(
+            read_picture(webp, "a.webp"),
+            Err(PictureError::Unknown { .. })
+        ));
     }
 }

@@ -5,7 +5,8 @@ use kornia_apriltag::family::TagFamily;
 /// Tags of the family 36h11, numbered from 0.
 pub const TAG_COUNT: u16 = 587;
 
-/// Cells of a tag with its black border, [row][column] from the top left as printed; true is white. `None` past [`TAG_COUNT`].
+/// Cells of a tag with its black border, [row][column] from the top left as printed; true is white.
+/// `None` past [`TAG_COUNT`].
 pub fn tag_cells(id: u16) -> Option<[[bool; 8]; 8]> {
     let family = TagFamily::tag36_h11().expect("the library has this family");
     let code = family.code_data.get(usize::from(id))?;

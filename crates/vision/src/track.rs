@@ -18,7 +18,8 @@ pub enum Sighting {
     Measured(Measurement),
     /// Its tag is not found.
     Missing,
-    /// Its tag is found, but the border fits no square on its plane: partly covered, bent, or blurred beyond measure.
+    /// Its tag is found, but the border fits no square on its plane: partly covered, bent, or
+    /// blurred beyond measure.
     Distorted,
     /// Its tag is found at two places.
     Twice,
@@ -90,7 +91,8 @@ struct Seen {
     sighting: FrameSighting,
 }
 
-/// Tracks object and pusher through the frames 0 to `count` - 1, which `load` brings as a name and an image, from any thread.
+/// Tracks object and pusher through the frames 0 to `count` - 1, which `load` brings as a name and
+/// an image, from any thread.
 ///
 /// # Errors
 /// Those of `load`; a frame of another size; no tag, or a body's tag, in no frame at all.
@@ -103,25 +105,44 @@ pub fn track<E: From<TrackError> + Send>(
     let chunk = |chunk: usize| {
         let detector = Detector::new(camera.lens().size);
         let frames = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
-        frames.map(|index| look(&detector, load(index)?, camera, tags).map_err(E::from)).collect::<Result<Vec<Seen>, E>>()
+        frames
+            .map(|index| look(&detector, load(index)?, camera, tags).map_err(E::from))
+            .collect::<Result<Vec<Seen>, E>>()
     };
-    let seen: Vec<Vec<Seen>> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect::<Result<_, E>>()?;
+    let seen: Vec<Vec<Seen>> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(chunk)
+        .collect::<Result<_, E>>()?;
     let mut before = None;
     let frames = seen.into_iter().flatten().map(|seen| {
         let repeated = before.replace(seen.digest) == Some(seen.digest);
-        FrameSighting { repeated, ..seen.sighting }
+        FrameSighting {
+            repeated,
+            ..seen.sighting
+        }
     });
-    let track = Track { frames: frames.collect() };
+    let track = Track {
+        frames: frames.collect(),
+    };
     track.check(tags)?;
     Ok(track)
 }
 
 /// What one image shows.
-fn look(detector: &Detector, (name, image): (String, GrayImage), camera: &Camera, tags: &Tags) -> Result<Seen, TrackError> {
+fn look(
+    detector: &Detector,
+    (name, image): (String, GrayImage),
+    camera: &Camera,
+    tags: &Tags,
+) -> Result<Seen, TrackError> {
     let (size, expected) = ([image.width(), image.height()], camera.lens().size);
     if size != expected {
         let text = |[columns, rows]: [u32; 2]| format!("{columns} x {rows}");
-        return Err(TrackError::Size { name, found: text(size), expected: text(expected) });
+        return Err(TrackError::Size {
+            name,
+            found: text(size),
+            expected: text(expected),
+        });
     }
     let found = detector.find(&image);
     let sighting = FrameSighting {
@@ -130,21 +151,30 @@ fn look(detector: &Detector, (name, image): (String, GrayImage), camera: &Camera
         pusher: sight(&found, &tags.pusher, camera),
         tags: found.iter().map(|tag| tag.id).collect(),
     };
-    Ok(Seen { digest: digest(&image), sighting })
+    Ok(Seen {
+        digest: digest(&image),
+        sighting,
+    })
 }
 
 fn sight(found: &[FoundTag], body: &BodyTag, camera: &Camera) -> Sighting {
     let mut of_body = found.iter().filter(|tag| tag.id == body.id);
-    let Some(tag) = of_body.next() else { return Sighting::Missing };
+    let Some(tag) = of_body.next() else {
+        return Sighting::Missing;
+    };
     if of_body.next().is_some() {
         return Sighting::Twice;
     }
-    let measurement = tag.outline.fit(camera.lens()).and_then(|square| Measurement::of(&square, &body.place, camera));
+    let measurement = tag
+        .outline
+        .fit(camera.lens())
+        .and_then(|square| Measurement::of(&square, &body.place, camera));
     measurement.map_or(Sighting::Distorted, Sighting::Measured)
 }
 
 impl Track {
-    /// Poses of the object by frame, angles continued from pose to pose; `None` where there is none, or none of that time.
+    /// Poses of the object by frame, angles continued from pose to pose; `None` where there is
+    /// none, or none of that time.
     pub fn object(&self) -> Vec<Option<Pose>> {
         self.poses(|frame| frame.object)
     }
@@ -157,9 +187,14 @@ impl Track {
     fn poses(&self, body: impl Fn(&FrameSighting) -> Sighting) -> Vec<Option<Pose>> {
         let mut before = 0.0;
         let pose = |frame: &FrameSighting| {
-            let Sighting::Measured(Measurement { pose, .. }) = body(frame) else { return None };
+            let Sighting::Measured(Measurement { pose, .. }) = body(frame) else {
+                return None;
+            };
             before = nearest_turn(pose.theta, before);
-            (!frame.repeated).then_some(Pose { theta: before, ..pose })
+            (!frame.repeated).then_some(Pose {
+                theta: before,
+                ..pose
+            })
         };
         self.frames.iter().map(pose).collect()
     }
@@ -167,15 +202,33 @@ impl Track {
     /// Refuses a track without one of the bodies.
     fn check(&self, tags: &Tags) -> Result<(), TrackError> {
         let frames = self.frames.len();
-        let mut found: Vec<u16> = self.frames.iter().flat_map(|frame| frame.tags.iter().copied()).collect();
+        let mut found: Vec<u16> = self
+            .frames
+            .iter()
+            .flat_map(|frame| frame.tags.iter().copied())
+            .collect();
         found.sort_unstable();
         if found.is_empty() {
             return Err(TrackError::NoTag { frames });
         }
         let counted = |run: &[u16]| format!("{} ({} times)", run[0], run.len());
-        let listed = || found.chunk_by(|a, b| a == b).map(counted).collect::<Vec<_>>().join(", ");
-        match [("object", tags.object.id), ("pusher", tags.pusher.id)].into_iter().find(|(_, id)| !found.contains(id)) {
-            Some((body, id)) => Err(TrackError::WrongTag { body, id, frames, found: listed() }),
+        let listed = || {
+            found
+                .chunk_by(|a, b| a == b)
+                .map(counted)
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        match [("object", tags.object.id), ("pusher", tags.pusher.id)]
+            .into_iter()
+            .find(|(_, id)| !found.contains(id))
+        {
+            Some((body, id)) => Err(TrackError::WrongTag {
+                body,
+                id,
+                frames,
+                found: listed(),
+            }),
             None => Ok(()),
         }
     }
@@ -186,14 +239,18 @@ fn nearest_turn(angle: f64, before: f64) -> f64 {
     angle + std::f64::consts::TAU * ((before - angle) / std::f64::consts::TAU).round()
 }
 
-/// A number that differs between images that differ, but for one in 10¹⁹ (FNV-1a, by words of eight bytes).
+/// A number that differs between images that differ, but for one in 10¹⁹ (FNV-1a, by words of eight
+/// bytes).
 fn digest(image: &GrayImage) -> u64 {
-    image.as_raw().chunks(8).fold(0xcbf2_9ce4_8422_2325, |hash, bytes| {
-        let mut word = [0; 8];
-        word[..bytes.len()].copy_from_slice(bytes);
-        let mixed = (hash ^ u64::from_le_bytes(word)).wrapping_mul(0x0000_0100_0000_01b3);
-        mixed ^ mixed >> 32
-    })
+    image
+        .as_raw()
+        .chunks(8)
+        .fold(0xcbf2_9ce4_8422_2325, |hash, bytes| {
+            let mut word = [0; 8];
+            word[..bytes.len()].copy_from_slice(bytes);
+            let mixed = (hash ^ u64::from_le_bytes(word)).wrapping_mul(0x0000_0100_0000_01b3);
+            mixed ^ mixed >> 32
+        })
 }
 
 #[cfg(test)]

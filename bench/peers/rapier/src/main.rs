@@ -1,6 +1,6 @@
-//! rapier2d on the timing scene, seen from above. The engine knows no support friction: before every substep the three feet are
-//! brought to rest by hand, each within its friction disc, in a few Gauss-Seidel sweeps.
-//! usage: peer-rapier SUBSTEPS; prints what compare.py reads.
+//! rapier2d on the timing scene, seen from above. The engine knows no support friction: before
+//! every substep the three feet are brought to rest by hand, each within its friction disc, in a
+//! few Gauss-Seidel sweeps. usage: peer-rapier SUBSTEPS; prints what compare.py reads.
 
 use std::time::Instant;
 

@@ -1,5 +1,6 @@
-//! `timing-scene`: this project in the row of its peers. Prints what `bench/peers/compare.py` reads: `pose FRAME X Y THETA` of the first
-//! particle, `time FRAME NS` per particle, and `creep MM` over 5 s under half the friction limit.
+//! `timing-scene`: this project in the row of its peers. Prints what `bench/peers/compare.py`
+//! reads: `pose FRAME X Y THETA` of the first particle, `time FRAME NS` per particle, and `creep
+//! MM` over 5 s under half the friction limit.
 
 use std::error::Error;
 use std::io::Write;
@@ -15,7 +16,10 @@ const CREEP_FRAMES: u32 = 150;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let scene = timing_scene()?;
-    let dynamics = with_level(Dynamics::new(scene.clone()), std::env::args().nth(1).as_deref())?;
+    let dynamics = with_level(
+        Dynamics::new(scene.clone()),
+        std::env::args().nth(1).as_deref(),
+    )?;
     let mut out = std::io::stdout().lock();
     let mut batch = Batch::scattered(&dynamics, BLOCKS);
     (0..FRAMES).for_each(|frame| {
@@ -24,8 +28,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut batch = Batch::scattered(&dynamics, BLOCKS);
     for frame in 0..FRAMES {
         let time = batch.step(&dynamics, &timing_input(frame));
-        let Some(Particle { pose, .. }) = batch.first() else { continue };
-        writeln!(out, "time {frame} {time}\npose {frame} {:e} {:e} {:e}", pose.x, pose.y, pose.theta)?;
+        let Some(Particle { pose, .. }) = batch.first() else {
+            continue;
+        };
+        writeln!(
+            out,
+            "time {frame} {time}\npose {frame} {:e} {:e} {:e}",
+            pose.x, pose.y, pose.theta
+        )?;
     }
     writeln!(out, "creep {:e}", creep(&scene) * 1e3)?;
     Ok(())
@@ -33,21 +43,40 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The dynamics on the instructions of this name.
 fn with_level(dynamics: Dynamics, name: Option<&str>) -> Result<Dynamics, String> {
-    let Some(name) = name else { return Ok(dynamics) };
+    let Some(name) = name else {
+        return Ok(dynamics);
+    };
     let sets: Vec<(&str, Level)> = stickslip_bench::instruction_sets();
     let found = sets.iter().find(|(known, _)| *known == name);
     let known: Vec<&str> = sets.iter().map(|(known, _)| *known).collect();
-    found.map(|(_, level)| dynamics.with_level(*level)).ok_or(format!("`{name}`: this machine has {}", known.join(", ")))
+    found
+        .map(|(_, level)| dynamics.with_level(*level))
+        .ok_or(format!("`{name}`: this machine has {}", known.join(", ")))
 }
 
 /// How far the object moves (m) under half of μ_s m g.
 fn creep(scene: &Scene) -> f64 {
     let weight = scene.object.mass * scene.gravity;
-    let applied = Wrench { fx: 0.5 * scene.nominal.mu_s * weight * FRAME, ..Wrench::default() };
-    let (dynamics, mut particle, mut work) = (Dynamics::new(scene.clone()), [Particle::default()], StepWork::<1>::default());
+    let applied = Wrench {
+        fx: 0.5 * scene.nominal.mu_s * weight * FRAME,
+        ..Wrench::default()
+    };
+    let (dynamics, mut particle, mut work) = (
+        Dynamics::new(scene.clone()),
+        [Particle::default()],
+        StepWork::<1>::default(),
+    );
     for _ in 0..CREEP_FRAMES {
         particle[0].applied = applied;
-        let _ = dynamics.step(&StepInput { h: FRAME, pusher: None }, &[scene.nominal], &mut particle, &mut work);
+        let _ = dynamics.step(
+            &StepInput {
+                h: FRAME,
+                pusher: None,
+            },
+            &[scene.nominal],
+            &mut particle,
+            &mut work,
+        );
     }
     let pose = particle[0].pose;
     (pose.x * pose.x + pose.y * pose.y).sqrt()

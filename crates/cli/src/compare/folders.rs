@@ -8,16 +8,28 @@ use anyhow::Result;
 use crate::experiment::log_path;
 use crate::failure::hinted;
 
-/// The experiment folders among `given`: a folder that is none itself stands for those below it, in the order of their names.
+/// The experiment folders among `given`: a folder that is none itself stands for those below it, in
+/// the order of their names.
 pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
     let mut folders = Vec::new();
     for folder in given {
-        let below = if is_experiment(folder, scene_name) { Vec::new() } else { experiments_below(folder, scene_name) };
+        let below = if is_experiment(folder, scene_name) {
+            Vec::new()
+        } else {
+            experiments_below(folder, scene_name)
+        };
         // a folder without any is kept: its error is reported with the others'
-        if below.is_empty() { folders.push(folder.clone()) } else { folders.extend(below) }
+        if below.is_empty() {
+            folders.push(folder.clone())
+        } else {
+            folders.extend(below)
+        }
     }
     match folders.is_empty() {
-        true => Err(hinted("no experiment folder was given", "give folders with scene.toml and log.csv or log.mcap")),
+        true => Err(hinted(
+            "no experiment folder was given",
+            "give folders with scene.toml and log.csv or log.mcap",
+        )),
         false => Ok(folders),
     }
 }
@@ -28,10 +40,20 @@ fn is_experiment(folder: &Path, scene_name: &str) -> bool {
 }
 
 fn experiments_below(folder: &Path, scene_name: &str) -> Vec<PathBuf> {
-    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    let mut below: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).filter(|path| path.is_dir()).collect();
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let mut below: Vec<PathBuf> = entries
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| path.is_dir())
+        .collect();
     below.sort();
-    let expanded =
-        below.into_iter().flat_map(|path| if is_experiment(&path, scene_name) { vec![path] } else { experiments_below(&path, scene_name) });
+    let expanded = below.into_iter().flat_map(|path| {
+        if is_experiment(&path, scene_name) {
+            vec![path]
+        } else {
+            experiments_below(&path, scene_name)
+        }
+    });
     expanded.collect()
 }

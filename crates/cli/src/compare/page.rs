@@ -8,23 +8,59 @@ use crate::contest::Rival;
 
 /// The table over all folders on top, then each folder's.
 pub fn report(comparison: &Comparison) -> Report {
-    let Comparison { particles, seeds, quantile, folders, overall, errors } = comparison;
-    let outcome = |rival: Rival, wmse_mm| Outcome { name: rival.title().to_owned(), saw_all: rival == Rival::ParticleAlwaysOn, wmse_mm };
-    let story = Story { outcomes: overall.iter().map(|row| outcome(row.rival, row.median.wmse_mm)).collect(), ..Story::default() };
+    let Comparison {
+        particles,
+        seeds,
+        quantile,
+        folders,
+        overall,
+        errors,
+    } = comparison;
+    let outcome = |rival: Rival, wmse_mm| Outcome {
+        name: rival.title().to_owned(),
+        saw_all: rival == Rival::ParticleAlwaysOn,
+        wmse_mm,
+    };
+    let story = Story {
+        outcomes: overall
+            .iter()
+            .map(|row| outcome(row.rival, row.median.wmse_mm))
+            .collect(),
+        ..Story::default()
+    };
     let told = format!(
         "{} experiments, every method on each: particle filters with {particles} particles, the median of {seeds} seeds per experiment. \
          Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
         folders.len()
     );
     let note = format!("Quantiles: {quantile}. {}", Fate::rule());
-    let all = [Block::Table(tables::overall(overall), "Median (90th percentile) over all experiments".to_owned()), Block::Note(note)];
-    let each = folders.iter().map(|folder| Block::Table(tables::entries(&folder.methods), folder.folder.clone()));
+    let all = [
+        Block::Table(
+            tables::overall(overall),
+            "Median (90th percentile) over all experiments".to_owned(),
+        ),
+        Block::Note(note),
+    ];
+    let each = folders
+        .iter()
+        .map(|folder| Block::Table(tables::entries(&folder.methods), folder.folder.clone()));
     let lost = errors.iter().map(|lost| Block::Text(lost.error.clone()));
-    let sections = [("All experiments", all.to_vec()), ("Each experiment", each.collect()), ("Without a result", lost.collect())];
-    let sections = sections.into_iter().filter(|(_, blocks)| !blocks.is_empty());
+    let sections = [
+        ("All experiments", all.to_vec()),
+        ("Each experiment", each.collect()),
+        ("Without a result", lost.collect()),
+    ];
+    let sections = sections
+        .into_iter()
+        .filter(|(_, blocks)| !blocks.is_empty());
     Report {
         title: "Methods compared".to_owned(),
         summary: vec![Block::Text(told), Block::Fates(story)],
-        sections: sections.map(|(title, blocks)| Section { title: title.to_owned(), blocks }).collect(),
+        sections: sections
+            .map(|(title, blocks)| Section {
+                title: title.to_owned(),
+                blocks,
+            })
+            .collect(),
     }
 }

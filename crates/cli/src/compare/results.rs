@@ -102,10 +102,22 @@ pub struct Comparison {
 
 /// The scores that are shown, in order.
 pub const COLUMNS: [Column; 4] = [
-    Column { title: "WMSE mm", of: |marks| marks.wmse_mm },
-    Column { title: "moving mm", of: |marks| marks.wmse_moving_mm },
-    Column { title: "final mm", of: |marks| marks.final_error_mm },
-    Column { title: "final deg", of: |marks| marks.final_error_deg },
+    Column {
+        title: "WMSE mm",
+        of: |marks| marks.wmse_mm,
+    },
+    Column {
+        title: "moving mm",
+        of: |marks| marks.wmse_moving_mm,
+    },
+    Column {
+        title: "final mm",
+        of: |marks| marks.final_error_mm,
+    },
+    Column {
+        title: "final deg",
+        of: |marks| marks.final_error_deg,
+    },
 ];
 
 impl Marks {
@@ -122,7 +134,9 @@ impl Marks {
 
     /// The `q`-quantile of each score, and all unsolved steps.
     fn quantile(of: &[Self], q: f64) -> Self {
-        let each = |score: fn(&Self) -> Option<f64>| quantile(&of.iter().filter_map(score).collect::<Vec<_>>(), q);
+        let each = |score: fn(&Self) -> Option<f64>| {
+            quantile(&of.iter().filter_map(score).collect::<Vec<_>>(), q)
+        };
         Self {
             wmse_mm: each(|m| m.wmse_mm),
             wmse_moving_mm: each(|m| m.wmse_moving_mm),
@@ -136,13 +150,20 @@ impl Marks {
 impl Entry {
     /// The scores of a rival.
     pub fn new(rival: Rival, marks: Marks) -> Self {
-        Self { rival, method: rival.key(), marks }
+        Self {
+            rival,
+            method: rival.key(),
+            marks,
+        }
     }
 }
 
 impl FolderResult {
     /// Medians over the runs of each rival; the first failed run is the folder's error.
-    pub fn gather<'a>(folder: &Path, runs: impl Iterator<Item = (Rival, &'a Result<Marks>)>) -> Result<Self, &'a anyhow::Error> {
+    pub fn gather<'a>(
+        folder: &Path,
+        runs: impl Iterator<Item = (Rival, &'a Result<Marks>)>,
+    ) -> Result<Self, &'a anyhow::Error> {
         let mut by_rival: Vec<(Rival, Vec<Marks>)> = Vec::new();
         for (rival, marks) in runs {
             let marks = *marks.as_ref()?;
@@ -151,8 +172,13 @@ impl FolderResult {
                 _ => by_rival.push((rival, vec![marks])),
             }
         }
-        let methods = by_rival.into_iter().map(|(rival, marks)| Entry::new(rival, Marks::quantile(&marks, 0.5)));
-        Ok(Self { folder: folder.display().to_string(), methods: methods.collect() })
+        let methods = by_rival
+            .into_iter()
+            .map(|(rival, marks)| Entry::new(rival, Marks::quantile(&marks, 0.5)));
+        Ok(Self {
+            folder: folder.display().to_string(),
+            methods: methods.collect(),
+        })
     }
 }
 
@@ -160,7 +186,11 @@ impl LostFolder {
     /// The folder with its error.
     pub fn new(folder: &Path, error: &anyhow::Error) -> Self {
         let (folder, error) = (folder.display().to_string(), one_line(error));
-        let error = if error.contains(&folder) { error } else { format!("{folder}: {error}") };
+        let error = if error.contains(&folder) {
+            error
+        } else {
+            format!("{folder}: {error}")
+        };
         Self { folder, error }
     }
 }
@@ -168,19 +198,39 @@ impl LostFolder {
 impl Comparison {
     /// The folders' results with quantiles over them.
     pub fn new(args: &CompareArgs, folders: Vec<FolderResult>, errors: Vec<LostFolder>) -> Self {
-        let overall = Rival::ALL.into_iter().filter_map(|rival| Overall::new(rival, &folders)).collect();
+        let overall = Rival::ALL
+            .into_iter()
+            .filter_map(|rival| Overall::new(rival, &folders))
+            .collect();
         let quantile = "linear between order statistics: position q (n - 1) from the smallest";
-        Self { particles: args.shared.particles, seeds: args.seeds, quantile, folders, overall, errors }
+        Self {
+            particles: args.shared.particles,
+            seeds: args.seeds,
+            quantile,
+            folders,
+            overall,
+            errors,
+        }
     }
 }
 
 impl Overall {
     /// `None` where the rival ran on no folder.
     fn new(rival: Rival, folders: &[FolderResult]) -> Option<Self> {
-        let entries = folders.iter().flat_map(|folder| &folder.methods).filter(|entry| entry.rival == rival);
+        let entries = folders
+            .iter()
+            .flat_map(|folder| &folder.methods)
+            .filter(|entry| entry.rival == rival);
         let marks: Vec<Marks> = entries.map(|entry| entry.marks).collect();
         let (median, p90) = (Marks::quantile(&marks, 0.5), Marks::quantile(&marks, 0.9));
-        let result = Self { rival, method: rival.key(), folders: marks.len(), median, p90, unsolved: median.unsolved };
+        let result = Self {
+            rival,
+            method: rival.key(),
+            folders: marks.len(),
+            median,
+            p90,
+            unsolved: median.unsolved,
+        };
         (!marks.is_empty()).then_some(result)
     }
 }

@@ -5,8 +5,15 @@ use stickslip_report::{Table, number};
 
 /// A table per folder, then one over all of them; nothing where there is no folder.
 pub fn text(comparison: &Comparison) -> String {
-    let Comparison { folders, seeds, quantile, .. } = comparison;
-    let folder_tables = folders.iter().map(|folder| format!("{}\n{}", folder.folder, entries(&folder.methods)));
+    let Comparison {
+        folders,
+        seeds,
+        quantile,
+        ..
+    } = comparison;
+    let folder_tables = folders
+        .iter()
+        .map(|folder| format!("{}\n{}", folder.folder, entries(&folder.methods)));
     let overall = (!folders.is_empty()).then(|| {
         format!(
             "median (90th percentile) over {} folders, each the median of {seeds} seeds\n{}\
@@ -22,10 +29,15 @@ pub fn text(comparison: &Comparison) -> String {
 pub fn entries(entries: &[Entry]) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved"]));
     for entry in entries {
-        let scores = COLUMNS.iter().map(|column| number((column.of)(&entry.marks), 3));
+        let scores = COLUMNS
+            .iter()
+            .map(|column| number((column.of)(&entry.marks), 3));
         table.push_coloured(
             entry.rival.colour(),
-            [entry.rival.name().to_owned()].into_iter().chain(scores).chain([entry.marks.unsolved.to_string()]),
+            [entry.rival.name().to_owned()]
+                .into_iter()
+                .chain(scores)
+                .chain([entry.marks.unsolved.to_string()]),
         );
     }
     table
@@ -35,14 +47,30 @@ pub fn entries(entries: &[Entry]) -> Table {
 pub fn overall(rows: &[Overall]) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved", "folders"]));
     for row in rows {
-        let both =
-            |column: &super::results::Column| format!("{} ({})", number((column.of)(&row.median), 2), number((column.of)(&row.p90), 2));
+        let both = |column: &super::results::Column| {
+            format!(
+                "{} ({})",
+                number((column.of)(&row.median), 2),
+                number((column.of)(&row.p90), 2)
+            )
+        };
         let counts = [row.unsolved.to_string(), row.folders.to_string()];
-        table.push_coloured(row.rival.colour(), [row.rival.name().to_owned()].into_iter().chain(COLUMNS.iter().map(both)).chain(counts));
+        table.push_coloured(
+            row.rival.colour(),
+            [row.rival.name().to_owned()]
+                .into_iter()
+                .chain(COLUMNS.iter().map(both))
+                .chain(counts),
+        );
     }
     table
 }
 
 fn titles<const A: usize, const B: usize>(before: [&str; A], after: [&str; B]) -> Vec<String> {
-    before.into_iter().chain(COLUMNS.iter().map(|column| column.title)).chain(after).map(str::to_owned).collect()
+    before
+        .into_iter()
+        .chain(COLUMNS.iter().map(|column| column.title))
+        .chain(after)
+        .map(str::to_owned)
+        .collect()
 }

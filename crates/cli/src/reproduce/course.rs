@@ -4,7 +4,9 @@ use anyhow::Result;
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, score};
 
-use super::participant::{BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, TACTILE, TACTILE_OPEN};
+use super::participant::{
+    BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, TACTILE, TACTILE_OPEN,
+};
 use super::recording::Recording;
 use crate::contest::Rules;
 use crate::paper::PaperExperiment;
@@ -47,10 +49,20 @@ pub fn participants(paper: PaperExperiment) -> Vec<Participant> {
 impl Course {
     /// Runs a participant, with the recording's own seed.
     pub fn run(participant: Participant, recording: &Recording, rules: &Rules) -> Result<Self> {
-        let Recording { experiment, blackout, seed, .. } = recording;
+        let Recording {
+            experiment,
+            blackout,
+            seed,
+            ..
+        } = recording;
         let run = participant.run(experiment, *blackout, rules, *seed, None)?;
         let hidden = blackout.hidden(&experiment.log);
-        let scores = score(&run.estimate, &experiment.reference(), &hidden, experiment.setup.virtual_radius());
+        let scores = score(
+            &run.estimate,
+            &experiment.reference(),
+            &hidden,
+            experiment.setup.virtual_radius(),
+        );
         let known = "a simulated experiment has a truth for every row";
         Ok(Self {
             participant,
@@ -63,18 +75,32 @@ impl Course {
     }
 }
 
-/// Root of the mean variance over the hidden rows, angles weighted as in WMSE (mm): what WMSE would be if the spread told the truth.
+/// Root of the mean variance over the hidden rows, angles weighted as in WMSE (mm): what WMSE would
+/// be if the spread told the truth.
 fn spread(estimate: &Estimate, hidden: &[bool], virtual_radius: f64) -> Option<f64> {
-    let rows = estimate.rows.iter().zip(hidden).filter(|(_, hidden)| **hidden);
+    let rows = estimate
+        .rows
+        .iter()
+        .zip(hidden)
+        .filter(|(_, hidden)| **hidden);
     let spreads: Vec<Pose> = rows.filter_map(|(row, _)| Some(row.spread?.pose)).collect();
-    let square = |pose: &Pose| pose.x * pose.x + pose.y * pose.y + virtual_radius * virtual_radius * pose.theta * pose.theta;
-    let sum = spreads.iter().map(square).fold(0.0, |sum, square| sum + square);
+    let square = |pose: &Pose| {
+        pose.x * pose.x
+            + pose.y * pose.y
+            + virtual_radius * virtual_radius * pose.theta * pose.theta
+    };
+    let sum = spreads
+        .iter()
+        .map(square)
+        .fold(0.0, |sum, square| sum + square);
     (!spreads.is_empty()).then(|| 1e3 * (sum / spreads.len() as f64).sqrt())
 }
 
 impl Heat {
     /// The run of a participant.
     pub fn course(&self, participant: Participant) -> Option<&Course> {
-        self.courses.iter().find(|course| course.participant == participant)
+        self.courses
+            .iter()
+            .find(|course| course.participant == participant)
     }
 }

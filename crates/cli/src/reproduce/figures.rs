@@ -1,12 +1,17 @@
-//! Figures 2 to 7 of the paper, ours: [`figures`]. Errors and parameters over all seeds, poses of the first one.
+//! Figures 2 to 7 of the paper, ours: [`figures`]. Errors and parameters over all seeds, poses of
+//! the first one.
 
 use anyhow::Result;
 use stickslip::EstimateRow;
 use stickslip::dynamics::Friction;
-use stickslip_report::{Curve, Drawing, Level, Line, Mark, Panel, PoseError, TimeFigure, pose_errors};
+use stickslip_report::{
+    Curve, Drawing, Level, Line, Mark, Panel, PoseError, TimeFigure, pose_errors,
+};
 
 use super::course::{Course, Heat};
-use super::participant::{BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, Sight, TACTILE};
+use super::participant::{
+    BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, Sight, TACTILE,
+};
 use super::still::Still;
 use crate::paper::PaperExperiment;
 
@@ -16,8 +21,12 @@ const BEFORE: f64 = 0.5;
 /// A parameter's name, the factor to the unit that it is shown in, and where it is.
 type Shown = (&'static str, f64, fn(&Friction) -> f64);
 
-const PARAMETERS: [Shown; 4] =
-    [("μ_s", 1.0, |f| f.mu_s), ("μ_p", 1.0, |f| f.mu_p), ("μ_f", 1.0, |f| f.mu_f), ("d_tri (mm)", 1e3, |f| f.d_tri)];
+const PARAMETERS: [Shown; 4] = [
+    ("μ_s", 1.0, |f| f.mu_s),
+    ("μ_p", 1.0, |f| f.mu_p),
+    ("μ_f", 1.0, |f| f.mu_f),
+    ("d_tri (mm)", 1e3, |f| f.d_tri),
+];
 
 /// A figure of the paper.
 #[derive(Clone, Debug)]
@@ -39,12 +48,23 @@ struct Album<'a> {
 pub fn figures(heats: &[Heat]) -> Result<Vec<PaperFigure>> {
     let a = Album::of(heats, PaperExperiment::A);
     let b = Album::of(heats, PaperExperiment::B);
-    let figure = |name, drawing: Drawing, caption: &str| PaperFigure { name, drawing, caption: caption.to_owned() };
+    let figure = |name, drawing: Drawing, caption: &str| PaperFigure {
+        name,
+        drawing,
+        caption: caption.to_owned(),
+    };
     Ok(vec![
-        figure("fig2", a.x_errors(), "Figure 2, experiment A: error of x. a) the camera is always on; b) it goes dark."),
+        figure(
+            "fig2",
+            a.x_errors(),
+            "Figure 2, experiment A: error of x. a) the camera is always on; b) it goes dark.",
+        ),
         figure(
             "fig3",
-            a.poses(&[(300, &[NOMINAL, BLIND_OPEN, KALMAN_OPEN]), (300, &[NOMINAL, BLIND, KALMAN])])?,
+            a.poses(&[
+                (300, &[NOMINAL, BLIND_OPEN, KALMAN_OPEN]),
+                (300, &[NOMINAL, BLIND, KALMAN]),
+            ])?,
             "Figure 3, experiment A, seed 0: the object at the last row, on the camera image. Above with the camera on, below without.",
         ),
         figure(
@@ -59,16 +79,28 @@ pub fn figures(heats: &[Heat]) -> Result<Vec<PaperFigure>> {
         ),
         figure(
             "fig6",
-            b.poses(&[(257, &[NOMINAL, BLIND, TACTILE]), (300, &[NOMINAL, BLIND, TACTILE])])?,
+            b.poses(&[
+                (257, &[NOMINAL, BLIND, TACTILE]),
+                (300, &[NOMINAL, BLIND, TACTILE]),
+            ])?,
             "Figure 6, experiment B, seed 0: the object at the first contact with a fixel (above) and at the last row (below).",
         ),
-        figure("fig7", b.parameters(TACTILE), "Figure 7, experiment B: friction as the particle filter with tactile data estimates it."),
+        figure(
+            "fig7",
+            b.parameters(TACTILE),
+            "Figure 7, experiment B: friction as the particle filter with tactile data estimates it.",
+        ),
     ])
 }
 
 impl<'a> Album<'a> {
     fn of(heats: &'a [Heat], paper: PaperExperiment) -> Self {
-        Self { heats: heats.iter().filter(|heat| heat.recording.paper == paper).collect() }
+        Self {
+            heats: heats
+                .iter()
+                .filter(|heat| heat.recording.paper == paper)
+                .collect(),
+        }
     }
 
     /// The heat of the first seed.
@@ -77,22 +109,41 @@ impl<'a> Album<'a> {
     }
 
     fn courses(&self, participant: Participant) -> impl Iterator<Item = (&'a Heat, &'a Course)> {
-        self.heats.iter().filter_map(move |heat| Some((*heat, heat.course(participant)?)))
+        self.heats
+            .iter()
+            .filter_map(move |heat| Some((*heat, heat.course(participant)?)))
     }
 
     /// One kind of error of a participant over all seeds.
     fn error(&self, participant: Participant, of: fn(&PoseError) -> f64) -> Curve {
         let run = |(heat, course): (&Heat, &Course)| {
             let errors = pose_errors(&course.estimate, &heat.recording.experiment.reference());
-            errors.iter().map(|error| [error.time, of(error)]).collect::<Vec<_>>()
+            errors
+                .iter()
+                .map(|error| [error.time, of(error)])
+                .collect::<Vec<_>>()
         };
-        Curve::over_runs(participant.name(), participant.colour(), &self.courses(participant).map(run).collect::<Vec<_>>())
+        Curve::over_runs(
+            participant.name(),
+            participant.colour(),
+            &self.courses(participant).map(run).collect::<Vec<_>>(),
+        )
     }
 
     fn panel(&self, label: &str, participants: &[Participant], of: fn(&PoseError) -> f64) -> Panel {
-        let curves = participants.iter().map(|participant| self.error(*participant, of)).collect();
-        let dark = participants.iter().any(|participant| participant.sight == Sight::Dark && *participant != NOMINAL);
-        Panel { label: label.to_owned(), curves, dark: (!dark).then(Vec::new), ..Panel::default() }
+        let curves = participants
+            .iter()
+            .map(|participant| self.error(*participant, of))
+            .collect();
+        let dark = participants
+            .iter()
+            .any(|participant| participant.sight == Sight::Dark && *participant != NOMINAL);
+        Panel {
+            label: label.to_owned(),
+            curves,
+            dark: (!dark).then(Vec::new),
+            ..Panel::default()
+        }
     }
 
     /// What all figures against time share.
@@ -102,12 +153,26 @@ impl<'a> Album<'a> {
         let end = time.last().copied().unwrap_or(0.0);
         let at = |row: Option<usize>| row.and_then(|row| time.get(row)).copied();
         let fixels = facts.first_fixel_contacts.iter().enumerate();
-        let fixels = fixels.filter_map(|(k, row)| Some(Mark { time: at(*row)?, name: format!("fixel {}", k + 1) }));
-        let thumb = at(facts.first_pusher_contact).map(|time| Mark { time, name: "pusher".to_owned() });
-        let begin = thumb.as_ref().map_or(0.0, |mark| mark.time - BEFORE).max(0.0);
+        let fixels = fixels.filter_map(|(k, row)| {
+            Some(Mark {
+                time: at(*row)?,
+                name: format!("fixel {}", k + 1),
+            })
+        });
+        let thumb = at(facts.first_pusher_contact).map(|time| Mark {
+            time,
+            name: "pusher".to_owned(),
+        });
+        let begin = thumb
+            .as_ref()
+            .map_or(0.0, |mark| mark.time - BEFORE)
+            .max(0.0);
         TimeFigure {
             span: [begin, end],
-            dark: at(facts.occlude_from).map(|from| [from, end]).into_iter().collect(),
+            dark: at(facts.occlude_from)
+                .map(|from| [from, end])
+                .into_iter()
+                .collect(),
             marks: thumb.into_iter().chain(fixels).collect(),
             panels,
             band_name: format!("10–90 % of {} seeds", self.heats.len()),
@@ -120,8 +185,15 @@ impl<'a> Album<'a> {
             title: title.to_owned(),
             ..self.panel("error of x (mm)", participants, |error| error.x_mm)
         };
-        let open = x("a) no visual occlusion", &[BLIND_OPEN, KALMAN_OPEN, NOMINAL]);
-        self.frame(vec![open, x("b) visual occlusion", &[BLIND, KALMAN, NOMINAL])]).drawing()
+        let open = x(
+            "a) no visual occlusion",
+            &[BLIND_OPEN, KALMAN_OPEN, NOMINAL],
+        );
+        self.frame(vec![
+            open,
+            x("b) visual occlusion", &[BLIND, KALMAN, NOMINAL]),
+        ])
+        .drawing()
     }
 
     fn errors(&self, participants: &[Participant]) -> Drawing {
@@ -130,7 +202,11 @@ impl<'a> Album<'a> {
             self.panel("error of y (mm)", participants, |error| error.y_mm),
             self.panel("error of θ (°)", participants, |error| error.turn_deg),
         ];
-        TimeFigure { panel_size: [780.0, 200.0], ..self.frame(panels) }.drawing()
+        TimeFigure {
+            panel_size: [780.0, 200.0],
+            ..self.frame(panels)
+        }
+        .drawing()
     }
 
     /// The four friction parameters.
@@ -139,16 +215,29 @@ impl<'a> Album<'a> {
         let (told, facts) = (&experiment.setup.scene.nominal, &experiment.facts);
         let truth = [facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri];
         let panel = |((label, unit, of), truth): (&Shown, Option<f64>)| {
-            let value = |row: &EstimateRow| row.friction.map_or(f64::NAN, |friction| unit * of(&friction));
+            let value = |row: &EstimateRow| {
+                row.friction
+                    .map_or(f64::NAN, |friction| unit * of(&friction))
+            };
             let run = |(_, course): (&Heat, &Course)| {
                 let rows = course.estimate.time.iter().zip(&course.estimate.rows);
-                rows.map(|(time, row)| [*time, value(row)]).collect::<Vec<_>>()
+                rows.map(|(time, row)| [*time, value(row)])
+                    .collect::<Vec<_>>()
             };
             let runs: Vec<Vec<[f64; 2]>> = self.courses(participant).map(run).collect();
-            let level = |name: &str, value: f64, line: Line| Level { name: name.to_owned(), value: unit * value, line, ..Level::default() };
+            let level = |name: &str, value: f64, line: Line| Level {
+                name: name.to_owned(),
+                value: unit * value,
+                line,
+                ..Level::default()
+            };
             Panel {
                 label: (*label).to_owned(),
-                curves: vec![Curve::over_runs(participant.name(), participant.colour(), &runs)],
+                curves: vec![Curve::over_runs(
+                    participant.name(),
+                    participant.colour(),
+                    &runs,
+                )],
                 levels: truth
                     .map(|value| level("truth", value, Line::Solid))
                     .into_iter()
@@ -159,7 +248,12 @@ impl<'a> Album<'a> {
             }
         };
         let panels = PARAMETERS.iter().zip(truth).map(panel).collect();
-        TimeFigure { columns: 2, panel_size: [430.0, 210.0], ..self.frame(panels) }.drawing()
+        TimeFigure {
+            columns: 2,
+            panel_size: [430.0, 210.0],
+            ..self.frame(panels)
+        }
+        .drawing()
     }
 
     /// Poses at rows of the log, one row of pictures for each, one picture for each participant.
@@ -172,9 +266,17 @@ impl<'a> Album<'a> {
             for participant in *participants {
                 let estimate = heat.course(*participant).map(|course| &course.estimate);
                 let pose = estimate.and_then(|estimate| estimate.rows.get(*row)?.pose);
-                pictures.push(frame.with(&format!("{}, row {row}", participant.name()), pose, participant.colour())?);
+                pictures.push(frame.with(
+                    &format!("{}, row {row}", participant.name()),
+                    pose,
+                    participant.colour(),
+                )?);
             }
         }
-        Ok(Drawing::grid(&pictures, rows.first().map_or(1, |(_, participants)| participants.len())))
+        Ok(Drawing::grid(
+            &pictures,
+            rows.first()
+                .map_or(1, |(_, participants)| participants.len()),
+        ))
     }
 }

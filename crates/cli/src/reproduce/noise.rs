@@ -5,8 +5,8 @@ use stickslip::dynamics::Pose;
 use stickslip::{Camera, Log};
 use stickslip_testbed::camera::Recorded;
 
-/// What no tracked pose is taken to be better than (m, rad): the bias that tracking may have, docs/guide/camera.md. Frames have it in
-/// common, so that a filter must not average it away.
+/// What no tracked pose is taken to be better than (m, rad): the bias that tracking may have,
+/// docs/guide/camera.md. Frames have it in common, so that a filter must not average it away.
 const BIAS: [f64; 2] = [5e-5, 0.05 * std::f64::consts::PI / 180.0];
 
 /// Sums of squared errors of tracked poses.
@@ -45,11 +45,17 @@ pub struct NoiseLevel {
 impl Errors {
     fn of(tracked: &[Option<Pose>], truth: impl Iterator<Item = Option<Pose>>) -> Self {
         let pairs = tracked.iter().zip(truth);
-        let errors = pairs.filter_map(|(tracked, truth)| tracked.zip(truth)).map(|(tracked, truth)| {
-            let turn = libm::remainder(tracked.theta - truth.theta, std::f64::consts::TAU);
-            [(tracked.x - truth.x), (tracked.y - truth.y), turn]
-        });
-        let none = Self { frames: tracked.len() as u32, ..Self::default() };
+        let errors =
+            pairs
+                .filter_map(|(tracked, truth)| tracked.zip(truth))
+                .map(|(tracked, truth)| {
+                    let turn = libm::remainder(tracked.theta - truth.theta, std::f64::consts::TAU);
+                    [(tracked.x - truth.x), (tracked.y - truth.y), turn]
+                });
+        let none = Self {
+            frames: tracked.len() as u32,
+            ..Self::default()
+        };
         errors.fold(none, |sum, [x, y, turn]| Self {
             position: sum.position + x * x + y * y,
             angle: sum.angle + turn * turn,
@@ -70,7 +76,10 @@ impl Errors {
     /// Root mean square per axis (m), and of the angle (rad).
     fn level(&self) -> [f64; 2] {
         let poses = f64::from(self.poses.max(1));
-        [(self.position / (2.0 * poses)).sqrt(), (self.angle / poses).sqrt()]
+        [
+            (self.position / (2.0 * poses)).sqrt(),
+            (self.angle / poses).sqrt(),
+        ]
     }
 }
 
@@ -85,13 +94,23 @@ impl Noise {
 
     /// Both together.
     pub fn with(self, other: Self) -> Self {
-        Self { object: self.object.with(other.object), pusher: self.pusher.with(other.pusher) }
+        Self {
+            object: self.object.with(other.object),
+            pusher: self.pusher.with(other.pusher),
+        }
     }
 
     /// A camera of this noise.
     pub fn camera(&self) -> Camera {
-        let ([position_std, orientation_std], [pusher_position_std, pusher_orientation_std]) = (self.object.level(), self.pusher.level());
-        Camera { position_std, orientation_std, latency: 0.0, pusher_position_std, pusher_orientation_std }
+        let ([position_std, orientation_std], [pusher_position_std, pusher_orientation_std]) =
+            (self.object.level(), self.pusher.level());
+        Camera {
+            position_std,
+            orientation_std,
+            latency: 0.0,
+            pusher_position_std,
+            pusher_orientation_std,
+        }
     }
 
     /// What the methods are told of the camera.
@@ -128,22 +147,40 @@ mod tests {
     fn methods_are_told_no_less_than_the_bias_of_tracking() {
         let told = Noise::default().told();
         assert_eq!([told.position_std, told.pusher_position_std], [5e-5; 2]);
-        assert_eq!([told.orientation_std, told.pusher_orientation_std].map(|std| (std.to_degrees() * 1e6).round()), [5e4; 2]);
+        assert_eq!(
+            [told.orientation_std, told.pusher_orientation_std]
+                .map(|std| (std.to_degrees() * 1e6).round()),
+            [5e4; 2]
+        );
     }
 
     #[test]
     fn noise_is_the_root_mean_square_of_poses_that_are_there() {
-        let truth =
-            Recorded { time: vec![0.0, 1.0, 2.0], object: vec![Pose::default(); 3], pusher: vec![Some(Pose::new(1.0, 1.0, 3.1)); 3] };
+        let truth = Recorded {
+            time: vec![0.0, 1.0, 2.0],
+            object: vec![Pose::default(); 3],
+            pusher: vec![Some(Pose::new(1.0, 1.0, 3.1)); 3],
+        };
         let log = Log {
             time: truth.time.clone(),
-            object: vec![Some(Pose::new(3e-3, 4e-3, 0.1)), None, Some(Pose::new(3e-3, -4e-3, -0.1))],
+            object: vec![
+                Some(Pose::new(3e-3, 4e-3, 0.1)),
+                None,
+                Some(Pose::new(3e-3, -4e-3, -0.1)),
+            ],
             pusher: vec![Some(Pose::new(1.0, 1.0, -3.1)); 3],
             ..Log::default()
         };
         let level = Noise::of(&log, &truth).level();
-        assert!((level.object_mm - 12.5_f64.sqrt()).abs() < 1e-9 && (level.object_deg - 0.1_f64.to_degrees()).abs() < 1e-9, "{level:?}");
-        assert!((level.pusher_deg - (std::f64::consts::TAU - 6.2).to_degrees()).abs() < 1e-9 && level.pusher_mm == 0.0);
+        assert!(
+            (level.object_mm - 12.5_f64.sqrt()).abs() < 1e-9
+                && (level.object_deg - 0.1_f64.to_degrees()).abs() < 1e-9,
+            "{level:?}"
+        );
+        assert!(
+            (level.pusher_deg - (std::f64::consts::TAU - 6.2).to_degrees()).abs() < 1e-9
+                && level.pusher_mm == 0.0
+        );
         assert!((level.seen - 2.0 / 3.0).abs() < 1e-12);
     }
 }

@@ -1,4 +1,5 @@
-//! Who takes part in the paper's evaluation: [`Participant`], a method with or without a camera after the blackout begins.
+//! Who takes part in the paper's evaluation: [`Participant`], a method with or without a camera
+//! after the blackout begins.
 
 use anyhow::Result;
 use stickslip::{Occlusion, Run, StepWatch};
@@ -26,19 +27,40 @@ pub struct Participant {
 }
 
 /// The nominal simulation, which sees the first frame only.
-pub const NOMINAL: Participant = Participant { rival: Rival::Nominal, sight: Sight::Dark };
+pub const NOMINAL: Participant = Participant {
+    rival: Rival::Nominal,
+    sight: Sight::Dark,
+};
 /// The Kalman filter.
-pub const KALMAN: Participant = Participant { rival: Rival::Kalman, sight: Sight::Dark };
+pub const KALMAN: Participant = Participant {
+    rival: Rival::Kalman,
+    sight: Sight::Dark,
+};
 /// The Kalman filter without a blackout.
-pub const KALMAN_OPEN: Participant = Participant { rival: Rival::Kalman, sight: Sight::Open };
+pub const KALMAN_OPEN: Participant = Participant {
+    rival: Rival::Kalman,
+    sight: Sight::Open,
+};
 /// The particle filter without tactile data.
-pub const BLIND: Participant = Participant { rival: Rival::ParticleNoTactile, sight: Sight::Dark };
+pub const BLIND: Participant = Participant {
+    rival: Rival::ParticleNoTactile,
+    sight: Sight::Dark,
+};
 /// The particle filter without tactile data and without a blackout.
-pub const BLIND_OPEN: Participant = Participant { rival: Rival::ParticleNoTactile, sight: Sight::Open };
+pub const BLIND_OPEN: Participant = Participant {
+    rival: Rival::ParticleNoTactile,
+    sight: Sight::Open,
+};
 /// The particle filter with tactile data.
-pub const TACTILE: Participant = Participant { rival: Rival::Particle, sight: Sight::Dark };
+pub const TACTILE: Participant = Participant {
+    rival: Rival::Particle,
+    sight: Sight::Dark,
+};
 /// The particle filter with tactile data and without a blackout.
-pub const TACTILE_OPEN: Participant = Participant { rival: Rival::Particle, sight: Sight::Open };
+pub const TACTILE_OPEN: Participant = Participant {
+    rival: Rival::Particle,
+    sight: Sight::Open,
+};
 
 impl Participant {
     /// Name in tables and figures.
@@ -78,7 +100,14 @@ impl Participant {
     }
 
     /// Runs it on an experiment in which `blackout` hides the object.
-    pub fn run(self, experiment: &Experiment, blackout: Occlusion, rules: &Rules, seed: u64, watch: Option<&dyn StepWatch>) -> Result<Run> {
+    pub fn run(
+        self,
+        experiment: &Experiment,
+        blackout: Occlusion,
+        rules: &Rules,
+        seed: u64,
+        watch: Option<&dyn StepWatch>,
+    ) -> Result<Run> {
         let hidden = match self.sight {
             Sight::Dark => blackout,
             Sight::Open => Occlusion::None,

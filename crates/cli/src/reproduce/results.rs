@@ -89,7 +89,8 @@ pub struct Blackout {
     pub spread_mm: Spread,
     /// Whether the median is below 0.5 mm.
     pub below_target: bool,
-    /// Against the nominal simulation, the Kalman filter and the particle filter without tactile data.
+    /// Against the nominal simulation, the Kalman filter and the particle filter without tactile
+    /// data.
     pub margins: Vec<Margin>,
 }
 
@@ -119,7 +120,8 @@ impl Ratio {
     /// Of every cell.
     pub fn all(frames: &Reproduction, poses: &Reproduction) -> Vec<Self> {
         let rows = frames.rows().zip(poses.rows());
-        let cells = rows.flat_map(|(a, b)| a.cells.iter().zip(&b.cells).map(|(x, y)| (a.title, x, y)));
+        let cells =
+            rows.flat_map(|(a, b)| a.cells.iter().zip(&b.cells).map(|(x, y)| (a.title, x, y)));
         let ratio = |(row, frames, poses): (&'static str, &Cell, &Cell)| Self {
             row,
             method: frames.method,
@@ -141,12 +143,24 @@ impl Spread {
 struct Field<'a>(&'a [Heat]);
 
 impl Field<'_> {
-    fn courses(&self, paper: PaperExperiment, participant: Participant) -> impl Iterator<Item = &Course> {
-        let heats = self.0.iter().filter(move |heat| heat.recording.paper == paper);
+    fn courses(
+        &self,
+        paper: PaperExperiment,
+        participant: Participant,
+    ) -> impl Iterator<Item = &Course> {
+        let heats = self
+            .0
+            .iter()
+            .filter(move |heat| heat.recording.paper == paper);
         heats.filter_map(move |heat| heat.course(participant))
     }
 
-    fn scores(&self, paper: PaperExperiment, participant: Participant, of: fn(&Course) -> f64) -> Vec<f64> {
+    fn scores(
+        &self,
+        paper: PaperExperiment,
+        participant: Participant,
+        of: fn(&Course) -> f64,
+    ) -> Vec<f64> {
         self.courses(paper, participant).map(of).collect()
     }
 
@@ -158,12 +172,19 @@ impl Field<'_> {
             paper_mm,
             wmse_mm: spread(|course| course.wmse_mm),
             dark_mm: spread(|course| course.dark_mm),
-            unsolved: self.courses(paper, participant).map(|course| course.unsolved).sum(),
+            unsolved: self
+                .courses(paper, participant)
+                .map(|course| course.unsolved)
+                .sum(),
         }
     }
 
     fn row(&self, row: &PrintedRow) -> Row {
-        let PrintedRow { title, experiment, cells } = *row;
+        let PrintedRow {
+            title,
+            experiment,
+            cells,
+        } = *row;
         let entrant = |(participant, paper_mm): &(Participant, f64)| Entrant {
             participant: *participant,
             paper_mm: *paper_mm,
@@ -172,17 +193,22 @@ impl Field<'_> {
         let entrants: Vec<Entrant> = cells.iter().map(entrant).collect();
         Row {
             title,
-            cells: cells.iter().map(|(participant, paper_mm)| self.cell(experiment, *participant, *paper_mm)).collect(),
+            cells: cells
+                .iter()
+                .map(|(participant, paper_mm)| self.cell(experiment, *participant, *paper_mm))
+                .collect(),
             orderings: Standing::all(&entrants),
         }
     }
 
     fn blackout(&self, paper: PaperExperiment) -> Blackout {
-        let scores = |participant: Participant| self.scores(paper, participant, |course| course.dark_mm);
+        let scores =
+            |participant: Participant| self.scores(paper, participant, |course| course.dark_mm);
         let own = scores(TACTILE);
         let margin = |rival: Participant| {
             let theirs = scores(rival);
-            let difference = PairedDifference::of(&own, &theirs).expect("there is at least one seed");
+            let difference =
+                PairedDifference::of(&own, &theirs).expect("there is at least one seed");
             let direction = difference.direction(CLEAR);
             Margin {
                 rival: rival.key(),
@@ -195,8 +221,17 @@ impl Field<'_> {
         };
         let wmse_mm = Spread::of(&own);
         let margins = [NOMINAL, KALMAN, BLIND].map(margin).to_vec();
-        let spreads: Vec<f64> = self.courses(paper, TACTILE).filter_map(|course| course.spread_mm).collect();
-        Blackout { experiment: paper.name(), wmse_mm, spread_mm: Spread::of(&spreads), below_target: wmse_mm.median < TARGET_MM, margins }
+        let spreads: Vec<f64> = self
+            .courses(paper, TACTILE)
+            .filter_map(|course| course.spread_mm)
+            .collect();
+        Blackout {
+            experiment: paper.name(),
+            wmse_mm,
+            spread_mm: Spread::of(&spreads),
+            below_target: wmse_mm.median < TARGET_MM,
+            margins,
+        }
     }
 }
 
@@ -208,10 +243,16 @@ impl Reproduction {
     /// The tables from all runs.
     pub fn new(heats: &[Heat]) -> Self {
         let field = Field(heats);
-        let table = |table: &PrintedTable| PaperTable { name: table.name, rows: table.rows.iter().map(|row| field.row(row)).collect() };
+        let table = |table: &PrintedTable| PaperTable {
+            name: table.name,
+            rows: table.rows.iter().map(|row| field.row(row)).collect(),
+        };
         Self {
             tables: TABLES.iter().map(table).collect(),
-            blackouts: PaperExperiment::ALL.into_iter().map(|paper| field.blackout(paper)).collect(),
+            blackouts: PaperExperiment::ALL
+                .into_iter()
+                .map(|paper| field.blackout(paper))
+                .collect(),
         }
     }
 }

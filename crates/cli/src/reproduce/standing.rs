@@ -53,8 +53,13 @@ impl Standing {
     pub fn all(entrants: &[Entrant]) -> Vec<Self> {
         let mut ranked: Vec<&Entrant> = entrants.iter().collect();
         ranked.sort_by(|a, b| a.paper_mm.total_cmp(&b.paper_mm));
-        let pairs = ranked.iter().enumerate().flat_map(|(k, better)| ranked[k + 1..].iter().map(move |worse| (better, worse)));
-        pairs.filter_map(|(better, worse)| Self::of(better, worse)).collect()
+        let pairs = ranked
+            .iter()
+            .enumerate()
+            .flat_map(|(k, better)| ranked[k + 1..].iter().map(move |worse| (better, worse)));
+        pairs
+            .filter_map(|(better, worse)| Self::of(better, worse))
+            .collect()
     }
 
     fn of(better: &Entrant, worse: &Entrant) -> Option<Self> {
@@ -81,7 +86,11 @@ mod tests {
     use super::*;
 
     fn entrant(participant: Participant, paper_mm: f64, score: impl Fn(usize) -> f64) -> Entrant {
-        Entrant { participant, paper_mm, scores: (0..8).map(score).collect() }
+        Entrant {
+            participant,
+            paper_mm,
+            scores: (0..8).map(score).collect(),
+        }
     }
 
     #[test]
@@ -94,16 +103,33 @@ mod tests {
         ];
         let standings = Standing::all(&rows);
         let order: Vec<[&str; 2]> = standings.iter().map(|s| [s.better, s.worse]).collect();
-        assert_eq!(order, [["particle_tactile", "nominal"], ["particle_tactile", "kalman"], ["nominal", "kalman"]]);
+        assert_eq!(
+            order,
+            [
+                ["particle_tactile", "nominal"],
+                ["particle_tactile", "kalman"],
+                ["nominal", "kalman"]
+            ]
+        );
         assert_eq!(standings[2].finding, Finding::Reversed);
-        assert!((standings[2].difference_mm - 0.965).abs() < 1e-12, "{standings:?}");
-        assert_eq!((standings[0].finding, standings[1].finding), (Finding::Unclear, Finding::Unclear));
+        assert!(
+            (standings[2].difference_mm - 0.965).abs() < 1e-12,
+            "{standings:?}"
+        );
+        assert_eq!(
+            (standings[0].finding, standings[1].finding),
+            (Finding::Unclear, Finding::Unclear)
+        );
         assert_eq!(standings[0].paper_mm, [0.2, 4.0]);
     }
 
     #[test]
     fn standing_of_one_seed_is_unclear() {
-        let rows = [NOMINAL, KALMAN].map(|participant| Entrant { participant, paper_mm: 1.0, scores: vec![3.0] });
+        let rows = [NOMINAL, KALMAN].map(|participant| Entrant {
+            participant,
+            paper_mm: 1.0,
+            scores: vec![3.0],
+        });
         assert_eq!(Standing::all(&rows)[0].finding, Finding::Unclear);
     }
 }

@@ -37,34 +37,72 @@ impl<'a> Still<'a> {
     pub fn new(recording: &'a Recording) -> Result<Self> {
         let motion = motion(recording);
         let scene = &recording.experiment.setup.scene;
-        let set = FilmSet::new(scene, std::slice::from_ref(&motion), Optics::default(), recording.seed)?;
-        Ok(Self { recording, motion, set })
+        let set = FilmSet::new(
+            scene,
+            std::slice::from_ref(&motion),
+            Optics::default(),
+            recording.seed,
+        )?;
+        Ok(Self {
+            recording,
+            motion,
+            set,
+        })
     }
 
     /// The image of a row of the log.
     pub fn frame(&'a self, row: usize) -> StillFrame<'a> {
-        let take = Take { exposure: 0.0, grabber: Grabber { repeat: 0.0, seed: 0 }, covered: 0..0, hand_height: self.set.hand_height };
-        let film = Film { studio: &self.set.studio, recorded: &self.motion, take };
-        StillFrame { still: self, row, png: encode_png(&film.frame(row)) }
+        let take = Take {
+            exposure: 0.0,
+            grabber: Grabber {
+                repeat: 0.0,
+                seed: 0,
+            },
+            covered: 0..0,
+            hand_height: self.set.hand_height,
+        };
+        let film = Film {
+            studio: &self.set.studio,
+            recorded: &self.motion,
+            take,
+        };
+        StillFrame {
+            still: self,
+            row,
+            png: encode_png(&film.frame(row)),
+        }
     }
 
     /// Where a point of the object's upper face is seen, from the image's left and upper edge (px).
     fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         // pixels are numbered by their centres
-        self.set.studio.camera().project([x, y, FACE]).map(|pixel| pixel + 0.5)
+        self.set
+            .studio
+            .camera()
+            .project([x, y, FACE])
+            .map(|pixel| pixel + 0.5)
     }
 
     /// The part of the image with object, pusher and fixels in it: two corners (px).
     fn view(&self, row: usize) -> [[f64; 2]; 2] {
         let scene = &self.recording.experiment.setup.scene;
-        let fixels = scene.fixels.iter().map(|fixel| (fixel.pose, fixel.shape.bounding_radius()));
-        let object = (self.motion.object[row], scene.object.shape.bounding_radius());
-        let corners = fixels
-            .chain([object])
-            .flat_map(|(pose, r)| [[-r, -r], [r, -r], [r, r], [-r, r]].map(|[x, y]| self.pixel([pose.x + x, pose.y + y])));
+        let fixels = scene
+            .fixels
+            .iter()
+            .map(|fixel| (fixel.pose, fixel.shape.bounding_radius()));
+        let object = (
+            self.motion.object[row],
+            scene.object.shape.bounding_radius(),
+        );
+        let corners = fixels.chain([object]).flat_map(|(pose, r)| {
+            [[-r, -r], [r, -r], [r, r], [-r, r]].map(|[x, y]| self.pixel([pose.x + x, pose.y + y]))
+        });
         let empty = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         let [low, high] = corners.fold(empty, |[low, high], pixel| {
-            [std::array::from_fn(|k| low[k].min(pixel[k])), std::array::from_fn(|k| high[k].max(pixel[k]))]
+            [
+                std::array::from_fn(|k| low[k].min(pixel[k])),
+                std::array::from_fn(|k| high[k].max(pixel[k])),
+            ]
         });
         [low.map(|x| x - ROOM), high.map(|x| x + ROOM)]
     }
@@ -75,8 +113,15 @@ impl StillFrame<'_> {
     pub fn with(&self, title: &str, pose: Option<Pose>, colour: Colour) -> Result<Drawing> {
         let shape = &self.still.recording.experiment.setup.scene.object.shape;
         let body = pose.map(|pose| Body::new("", shape, &pose, colour).filled(0.25));
-        let overlay =
-            Overlay { title: title.to_owned(), bodies: body.into_iter().collect(), view: Some(self.still.view(self.row)), width: WIDTH };
-        Ok(overlay.drawing_on(&CameraImage { png: &self.png, pixel: &|point| Some(self.still.pixel(point)) })?)
+        let overlay = Overlay {
+            title: title.to_owned(),
+            bodies: body.into_iter().collect(),
+            view: Some(self.still.view(self.row)),
+            width: WIDTH,
+        };
+        Ok(overlay.drawing_on(&CameraImage {
+            png: &self.png,
+            pixel: &|point| Some(self.still.pixel(point)),
+        })?)
     }
 }

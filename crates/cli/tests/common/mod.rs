@@ -19,7 +19,12 @@ pub fn stickslip() -> Command {
 /// What the program prints as JSON; it must succeed.
 pub fn json(command: &mut Command) -> serde_json::Value {
     let run = command.output().unwrap();
-    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    assert_eq!(
+        run.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
     serde_json::from_slice(&run.stdout).unwrap()
 }
 
@@ -42,7 +47,12 @@ pub struct Experiment {
 impl Experiment {
     /// Copies an embedded experiment.
     pub fn copy(name: &str, test: &str) -> Self {
-        let (folder, source) = (empty_folder(test), Path::new(env!("CARGO_MANIFEST_DIR")).join("demo").join(name));
+        let (folder, source) = (
+            empty_folder(test),
+            Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("demo")
+                .join(name),
+        );
         for file in ["scene.toml", "log.csv", "truth.csv", "truth.json"] {
             fs::copy(source.join(file), folder.join(file)).unwrap();
         }
@@ -66,16 +76,34 @@ impl Experiment {
         fs::write(path, text).unwrap();
     }
 
-    /// Rewrites the log's cells as numbers, a row of them for each line after the header; NaN is an empty cell.
+    /// Rewrites the log's cells as numbers, a row of them for each line after the header; NaN is an
+    /// empty cell.
     pub fn edit_rows(&self, change: impl FnOnce(&mut Vec<Vec<f64>>)) {
         self.edit("log.csv", |text| {
             let (header, body) = text.split_once('\n').unwrap();
-            let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+            let numbers = |line: &str| {
+                line.split(',')
+                    .map(|cell| cell.parse().unwrap_or(f64::NAN))
+                    .collect()
+            };
             let mut rows: Vec<Vec<f64>> = body.lines().map(numbers).collect();
             change(&mut rows);
-            let cell = |value: &f64| if value.is_nan() { String::new() } else { value.to_string() };
-            let lines = rows.iter().map(|row| row.iter().map(cell).collect::<Vec<_>>().join(","));
-            [header.trim_end().to_owned()].into_iter().chain(lines).collect::<Vec<_>>().join("\n") + "\n"
+            let cell = |value: &f64| {
+                if value.is_nan() {
+                    String::new()
+                } else {
+                    value.to_string()
+                }
+            };
+            let lines = rows
+                .iter()
+                .map(|row| row.iter().map(cell).collect::<Vec<_>>().join(","));
+            [header.trim_end().to_owned()]
+                .into_iter()
+                .chain(lines)
+                .collect::<Vec<_>>()
+                .join("\n")
+                + "\n"
         });
     }
 }

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use stickslip_dynamics::{
-    Dynamics, Feet, Fixel, Friction, Impulses, Lanes, Object, Part, Particle, Pose, Pusher, PusherMotion, Report, Scene, Shape, StepInput,
-    StepProblem, StepSolution, StepWork, Twist,
+    Dynamics, Feet, Fixel, Friction, Impulses, Lanes, Object, Part, Particle, Pose, Pusher,
+    PusherMotion, Report, Scene, Shape, StepInput, StepProblem, StepSolution, StepWork, Twist,
 };
 
 /// One camera frame [s].
@@ -33,7 +33,11 @@ impl Rng {
 }
 
 pub fn disc(radius: f64) -> Shape {
-    Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]).expect("a disc")
+    Shape::new(vec![Part::Disc {
+        radius,
+        centre: [0.0, 0.0],
+    }])
+    .expect("a disc")
 }
 
 pub fn polygon(vertices: Vec<[f64; 2]>) -> Shape {
@@ -42,28 +46,56 @@ pub fn polygon(vertices: Vec<[f64; 2]>) -> Shape {
 
 /// The square of half side `half`.
 pub fn square(half: f64) -> Shape {
-    polygon(vec![[-half, -half], [half, -half], [half, half], [-half, half]])
+    polygon(vec![
+        [-half, -half],
+        [half, -half],
+        [half, half],
+        [-half, half],
+    ])
 }
 
 /// The regular polygon with `n` corners at distance `radius`, the first one in direction +x.
 pub fn regular(n: u32, radius: f64) -> Shape {
     let corner = |k: u32| libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(n));
-    polygon((0..n).map(corner).map(|(sin, cos)| [radius * cos, radius * sin]).collect())
+    polygon(
+        (0..n)
+            .map(corner)
+            .map(|(sin, cos)| [radius * cos, radius * sin])
+            .collect(),
+    )
 }
 
 pub fn fixel(shape: Shape, x: f64, y: f64) -> Fixel {
-    Fixel { pose: Pose::new(x, y, 0.0), shape }
+    Fixel {
+        pose: Pose::new(x, y, 0.0),
+        shape,
+    }
 }
 
-pub const FRICTION: Friction = Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 };
+pub const FRICTION: Friction = Friction {
+    mu_s: 0.3,
+    mu_p: 0.3,
+    mu_f: 0.3,
+    d_tri: 0.02,
+};
 
-/// A 0.5 kg square of 50 mm with a rigid disc of 5 mm as its pusher: `bench-scene/scene.toml` with other fixels.
+/// A 0.5 kg square of 50 mm with a rigid disc of 5 mm as its pusher: `bench-scene/scene.toml` with
+/// other fixels.
 pub fn square_scene(fixels: Vec<Fixel>) -> Scene {
     Scene {
         gravity: 9.81,
-        object: Object { mass: 0.5, inertia: 2.083_333_333_333_333_5e-4, shape: square(0.025) },
-        feet: Feet::Tripod { angle: std::f64::consts::FRAC_PI_2 },
-        pusher: Pusher { shape: disc(0.005), stall_force: None },
+        object: Object {
+            mass: 0.5,
+            inertia: 2.083_333_333_333_333_5e-4,
+            shape: square(0.025),
+        },
+        feet: Feet::Tripod {
+            angle: std::f64::consts::FRAC_PI_2,
+        },
+        pusher: Pusher {
+            shape: disc(0.005),
+            stall_force: None,
+        },
         fixels,
         nominal: FRICTION,
     }
@@ -77,8 +109,18 @@ pub fn bench_scene() -> Scene {
 
 /// The pusher at `x`, `y`, commanded to move along +x at `speed`.
 pub fn pushing(h: f64, x: f64, y: f64, speed: f64) -> StepInput {
-    let twist = Twist { vx: speed, ..Twist::default() };
-    StepInput { h, pusher: Some(PusherMotion { pose: Pose::new(x, y, 0.0), twist, direction: [1.0, 0.0] }) }
+    let twist = Twist {
+        vx: speed,
+        ..Twist::default()
+    };
+    StepInput {
+        h,
+        pusher: Some(PusherMotion {
+            pose: Pose::new(x, y, 0.0),
+            twist,
+            direction: [1.0, 0.0],
+        }),
+    }
 }
 
 /// The input of frame `f` of `bench-scene`: 20 mm/s for 6.6 s, then at rest.
@@ -88,35 +130,69 @@ pub fn bench_input(f: u32) -> StepInput {
 }
 
 pub fn at(pose: Pose) -> Particle {
-    Particle { pose, ..Particle::default() }
+    Particle {
+        pose,
+        ..Particle::default()
+    }
 }
 
 /// One step of one particle with the scene's nominal friction.
-pub fn step(dynamics: &Dynamics, input: &StepInput, particle: &mut Particle, work: &mut StepWork<1>) -> Report {
-    let [report] = dynamics.step(input, &[dynamics.scene().nominal], std::array::from_mut(particle), work);
+pub fn step(
+    dynamics: &Dynamics,
+    input: &StepInput,
+    particle: &mut Particle,
+    work: &mut StepWork<1>,
+) -> Report {
+    let [report] = dynamics.step(
+        input,
+        &[dynamics.scene().nominal],
+        std::array::from_mut(particle),
+        work,
+    );
     report
 }
 
 pub fn kinetic_energy(object: &Object, twist: &Twist) -> f64 {
-    0.5 * object.mass * (twist.vx * twist.vx + twist.vy * twist.vy) + 0.5 * object.inertia * twist.omega * twist.omega
+    0.5 * object.mass * (twist.vx * twist.vx + twist.vy * twist.vy)
+        + 0.5 * object.inertia * twist.omega * twist.omega
 }
 
 /// Distance of two twists [m/s], rotation at the radius of gyration.
 pub fn twist_distance(problem: &StepProblem, a: Twist, b: Twist) -> f64 {
     let gyration = (problem.inertia / problem.mass).sqrt();
-    (a.vx - b.vx).abs().max((a.vy - b.vy).abs()).max(gyration * (a.omega - b.omega).abs())
+    (a.vx - b.vx)
+        .abs()
+        .max((a.vy - b.vy).abs())
+        .max(gyration * (a.omega - b.omega).abs())
 }
 
 /// The fastest speed in a problem's data [m/s]: what errors are measured by.
 pub fn fastest(problem: &StepProblem) -> f64 {
     let gyration = (problem.inertia / problem.mass).sqrt();
     let (v, p) = (problem.twist, problem.applied);
-    let own = [v.vx, v.vy, gyration * v.omega, p.fx / problem.mass, p.fy / problem.mass, p.torque / (problem.mass * gyration)];
-    let others = problem.contacts.iter().flat_map(|c| [(-c.gap / problem.h).max(0.0), c.surface_velocity[0], c.surface_velocity[1]]);
-    own.into_iter().chain(others).map(f64::abs).fold(0.0, f64::max)
+    let own = [
+        v.vx,
+        v.vy,
+        gyration * v.omega,
+        p.fx / problem.mass,
+        p.fy / problem.mass,
+        p.torque / (problem.mass * gyration),
+    ];
+    let others = problem.contacts.iter().flat_map(|c| {
+        [
+            (-c.gap / problem.h).max(0.0),
+            c.surface_velocity[0],
+            c.surface_velocity[1],
+        ]
+    });
+    own.into_iter()
+        .chain(others)
+        .map(f64::abs)
+        .fold(0.0, f64::max)
 }
 
-/// A solution in the solver's units, from the definitions: impulses over the mass, rotation at the radius of gyration.
+/// A solution in the solver's units, from the definitions: impulses over the mass, rotation at the
+/// radius of gyration.
 pub fn normalised(problem: &StepProblem, solution: &StepSolution) -> Impulses<1> {
     let (m, gyration) = (problem.mass, (problem.inertia / problem.mass).sqrt());
     let over_mass = |p: &f64| Lanes([p / m]);

@@ -1,4 +1,5 @@
-//! Any valid shapes at any finite poses: no panic, finite contacts with unit normals, all below the reach.
+//! Any valid shapes at any finite poses: no panic, finite contacts with unit normals, all below the
+//! reach.
 
 use proptest::prelude::*;
 use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};
@@ -17,10 +18,19 @@ fn part() -> impl Strategy<Value = Part> {
             0.125 * std::f64::consts::PI * f64::from(k)
         )),
         (grid(), grid(), size(), size()).prop_map(|(x, y, w, h)| rectangle([x, x + w], [y, y + h])),
-        (grid(), grid(), size(), size()).prop_map(|(x, y, w, h)| polygon(&[[x, y], [x + w, y], [x, y + h]])),
+        (grid(), grid(), size(), size()).prop_map(|(x, y, w, h)| polygon(&[
+            [x, y],
+            [x + w, y],
+            [x, y + h]
+        ])),
         (grid(), grid(), 1e-6..0.1, 3usize..30).prop_map(|(x, y, r, n)| {
             let vertex = |k: usize| libm::sincos(std::f64::consts::TAU * k as f64 / n as f64);
-            polygon(&(0..n).map(vertex).map(|(s, c)| [x + r * c, y + r * s]).collect::<Vec<_>>())
+            polygon(
+                &(0..n)
+                    .map(vertex)
+                    .map(|(s, c)| [x + r * c, y + r * s])
+                    .collect::<Vec<_>>(),
+            )
         }),
     ]
 }
@@ -29,22 +39,45 @@ fn body() -> impl Strategy<Value = Vec<Part>> {
     prop::collection::vec(part(), 1..5)
 }
 
-/// Two bodies without what is known to be weak: an ellipse that engulfs one part of a union may be free of it.
+/// Two bodies without what is known to be weak: an ellipse that engulfs one part of a union may be
+/// free of it.
 fn bodies() -> impl Strategy<Value = (Vec<Part>, Vec<Part>)> {
     let round_off = |parts: Vec<Part>| -> Vec<Part> {
-        let of = |part| if let Part::Ellipse { semi_axes, centre, .. } = part { disc(semi_axes[0], centre) } else { part };
+        let of = |part| {
+            if let Part::Ellipse {
+                semi_axes, centre, ..
+            } = part
+            {
+                disc(semi_axes[0], centre)
+            } else {
+                part
+            }
+        };
         parts.into_iter().map(of).collect()
     };
     let single = || part().prop_map(|part| vec![part]);
-    prop_oneof![(body().prop_map(round_off), body().prop_map(round_off)), (single(), single())]
+    prop_oneof![
+        (body().prop_map(round_off), body().prop_map(round_off)),
+        (single(), single())
+    ]
 }
 
 /// Poses on the grid of the parts, anywhere near, and anywhere.
 fn pose() -> impl Strategy<Value = Pose> {
-    let grid = (-8i32..=8, -8i32..=8, -4i32..=4)
-        .prop_map(|(x, y, k)| Pose::new(0.01 * f64::from(x), 0.01 * f64::from(y), 0.25 * std::f64::consts::PI * f64::from(k)));
+    let grid = (-8i32..=8, -8i32..=8, -4i32..=4).prop_map(|(x, y, k)| {
+        Pose::new(
+            0.01 * f64::from(x),
+            0.01 * f64::from(y),
+            0.25 * std::f64::consts::PI * f64::from(k),
+        )
+    });
     let near = (-0.1..0.1, -0.1..0.1, -10.0..10.0).prop_map(|(x, y, theta)| Pose::new(x, y, theta));
-    let far = (prop::num::f64::NORMAL, prop::num::f64::NORMAL, prop::num::f64::NORMAL).prop_map(|(x, y, theta)| Pose::new(x, y, theta));
+    let far = (
+        prop::num::f64::NORMAL,
+        prop::num::f64::NORMAL,
+        prop::num::f64::NORMAL,
+    )
+        .prop_map(|(x, y, theta)| Pose::new(x, y, theta));
     prop_oneof![4 => grid, 4 => near, 1 => far]
 }
 

@@ -1,4 +1,5 @@
-//! The narrow phase against independent answers: parry, brute force over directions, finite differences, and laws of geometry.
+//! The narrow phase against independent answers: parry, brute force over directions, finite
+//! differences, and laws of geometry.
 
 mod engulfed;
 mod errors;

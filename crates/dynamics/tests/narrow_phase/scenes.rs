@@ -1,4 +1,5 @@
-//! The shapes of all recorded scenes, where the data folder is present (`STICKSLIP_DATA`, else `../shared/data` beside the workspace).
+//! The shapes of all recorded scenes, where the data folder is present (`STICKSLIP_DATA`, else
+//! `../shared/data` beside the workspace).
 
 use std::path::{Path, PathBuf};
 
@@ -26,30 +27,52 @@ fn shape_lists(text: &str) -> Vec<&str> {
             (c == ']' && depth == 0).then_some(k)
         })
     };
-    text.split("shape =").skip(1).filter_map(|rest| list(rest).map(|end| &rest[..end])).collect()
+    text.split("shape =")
+        .skip(1)
+        .filter_map(|rest| list(rest).map(|end| &rest[..end]))
+        .collect()
 }
 
 fn numbers(text: &str) -> Vec<f64> {
-    text.split(|c: char| !"+-.eE0123456789".contains(c)).filter_map(|word| word.parse().ok()).collect()
+    text.split(|c: char| !"+-.eE0123456789".contains(c))
+        .filter_map(|word| word.parse().ok())
+        .collect()
 }
 
 fn parts(list: &str) -> Vec<Part> {
     let part = |text: &str| {
         let (kind, rest) = text.split_once('=')?;
-        let key = |name: &str| rest.split_once(name).map(|(_, after)| numbers(after)).unwrap_or_default();
+        let key = |name: &str| {
+            rest.split_once(name)
+                .map(|(_, after)| numbers(after))
+                .unwrap_or_default()
+        };
         let centre = key("centre").get(..2).map_or([0.0; 2], |c| [c[0], c[1]]);
         match kind.trim() {
             "polygon" => Some(polygon(numbers(rest).as_chunks().0)),
             "disc" => Some(disc(key("radius")[0], centre)),
-            "ellipse" => Some(ellipse([key("semi_axes")[0], key("semi_axes")[1]], centre, key("angle").first().copied().unwrap_or(0.0))),
+            "ellipse" => Some(ellipse(
+                [key("semi_axes")[0], key("semi_axes")[1]],
+                centre,
+                key("angle").first().copied().unwrap_or(0.0),
+            )),
             _ => None,
         }
     };
-    // a part opens with one of its three keys; discs and ellipses open an inner table that belongs to them
-    let mut starts: Vec<usize> = ["polygon", "disc", "ellipse"].iter().flat_map(|key| list.match_indices(key)).map(|(k, _)| k).collect();
+    // a part opens with one of its three keys; discs and ellipses open an inner table that belongs
+    // to them
+    let mut starts: Vec<usize> = ["polygon", "disc", "ellipse"]
+        .iter()
+        .flat_map(|key| list.match_indices(key))
+        .map(|(k, _)| k)
+        .collect();
     starts.sort_unstable();
     let ends = starts.iter().skip(1).copied().chain([list.len()]);
-    starts.iter().zip(ends).filter_map(|(a, b)| part(&list[*a..b])).collect()
+    starts
+        .iter()
+        .zip(ends)
+        .filter_map(|(a, b)| part(&list[*a..b]))
+        .collect()
 }
 
 /// All different shapes of the data folder; empty where it is absent.
@@ -82,11 +105,20 @@ fn recorded_shapes_are_as_far_as_their_nearest_part() {
             let tip = shape(vec![disc(radius, [0.0; 2])]);
             for _ in 0..4000 {
                 let pose = random.pose(1.2 * size + radius);
-                let body = |object: &Shape| smallest(&contacts((object, Pose::default()), (&tip, pose), size));
-                let (found, expected) = (body(&whole), singles.iter().map(body).fold(f64::INFINITY, f64::min));
+                let body = |object: &Shape| {
+                    smallest(&contacts((object, Pose::default()), (&tip, pose), size))
+                };
+                let (found, expected) = (
+                    body(&whole),
+                    singles.iter().map(body).fold(f64::INFINITY, f64::min),
+                );
                 // inputs are rounded to a micrometre, and so are the seams of their parts
-                let wrong = (found - expected).abs() > 2e-6 && (found > 0.0 || expected > 0.0 || found.is_infinite());
-                assert!(!wrong, "{list:?} {pose:?}, radius {radius}: {found} is not {expected}");
+                let wrong = (found - expected).abs() > 2e-6
+                    && (found > 0.0 || expected > 0.0 || found.is_infinite());
+                assert!(
+                    !wrong,
+                    "{list:?} {pose:?}, radius {radius}: {found} is not {expected}"
+                );
             }
         }
     }

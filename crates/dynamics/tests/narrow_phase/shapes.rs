@@ -22,7 +22,11 @@ impl Random {
     }
 
     pub fn pose(&mut self, reach: f64) -> Pose {
-        Pose::new(self.range(-reach, reach), self.range(-reach, reach), self.range(-7.0, 7.0))
+        Pose::new(
+            self.range(-reach, reach),
+            self.range(-reach, reach),
+            self.range(-7.0, 7.0),
+        )
     }
 }
 
@@ -31,7 +35,9 @@ pub fn shape(parts: Vec<Part>) -> Shape {
 }
 
 pub fn polygon(vertices: &[[f64; 2]]) -> Part {
-    Part::Polygon { vertices: vertices.to_vec() }
+    Part::Polygon {
+        vertices: vertices.to_vec(),
+    }
 }
 
 pub fn rectangle(x: [f64; 2], y: [f64; 2]) -> Part {
@@ -43,7 +49,11 @@ pub fn disc(radius: f64, centre: [f64; 2]) -> Part {
 }
 
 pub fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Part {
-    Part::Ellipse { semi_axes, centre, angle }
+    Part::Ellipse {
+        semi_axes,
+        centre,
+        angle,
+    }
 }
 
 /// A convex polygon of 3 to 8 corners on an ellipse of random axes.
@@ -63,16 +73,26 @@ fn polygon_of(count: usize, random: &mut Random) -> Part {
     let centre = [random.range(-0.01, 0.01), random.range(-0.01, 0.01)];
     let start = random.range(0.0, 6.0);
     let vertex = |k: usize, jitter: f64| {
-        let (sin, cos) = libm::sincos(start + std::f64::consts::TAU * (k as f64 + jitter) / count as f64);
+        let (sin, cos) =
+            libm::sincos(start + std::f64::consts::TAU * (k as f64 + jitter) / count as f64);
         [centre[0] + axes[0] * cos, centre[1] + axes[1] * sin]
     };
-    polygon(&(0..count).map(|k| vertex(k, random.range(-0.4, 0.4))).collect::<Vec<_>>())
+    polygon(
+        &(0..count)
+            .map(|k| vertex(k, random.range(-0.4, 0.4)))
+            .collect::<Vec<_>>(),
+    )
 }
 
 /// All contacts below `reach`.
 pub fn contacts(object: (&Shape, Pose), other: (&Shape, Pose), reach: f64) -> Vec<Gap> {
     let mut gaps = Vec::new();
-    narrow_phase(&Placed::new(object.0, object.1), &Placed::new(other.0, other.1), reach, &mut gaps);
+    narrow_phase(
+        &Placed::new(object.0, object.1),
+        &Placed::new(other.0, other.1),
+        reach,
+        &mut gaps,
+    );
     gaps
 }
 
@@ -83,6 +103,8 @@ pub fn smallest(gaps: &[Gap]) -> f64 {
 /// The same contacts in any order, to `tolerance` (m, and in the normals).
 pub fn same(a: &[Gap], b: &[Gap], tolerance: f64) -> bool {
     let near = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) <= tolerance;
-    let equal = |p: &Gap, q: &Gap| (p.gap - q.gap).abs() <= tolerance && near(p.normal, q.normal) && near(p.arm, q.arm);
+    let equal = |p: &Gap, q: &Gap| {
+        (p.gap - q.gap).abs() <= tolerance && near(p.normal, q.normal) && near(p.arm, q.arm)
+    };
     a.len() == b.len() && a.iter().all(|p| b.iter().any(|q| equal(p, q)))
 }

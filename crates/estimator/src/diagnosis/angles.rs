@@ -10,19 +10,28 @@ use super::finding::{Finding, Subject};
 /// Angles beyond this are degrees (rad): nobody turns an object twice around on a table.
 const LARGEST: f64 = 2.0 * TAU;
 
-/// Noise of an angle at the object's radius, as a multiple of the position's, from which on it is in degrees.
+/// Noise of an angle at the object's radius, as a multiple of the position's, from which on it is
+/// in degrees.
 const NOISE_RATIO: f64 = 10.0;
 
 const RADIANS: &str = "give angles in radians: multiply by pi / 180";
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let bodies = [("object_theta", &evidence.log.object), ("pusher_theta", &evidence.log.pusher)];
-    let mut found: Vec<Finding> =
-        bodies.iter().filter_map(|(name, poses)| in_degrees(name, poses).or_else(|| wrapped(name, poses))).collect();
+    let bodies = [
+        ("object_theta", &evidence.log.object),
+        ("pusher_theta", &evidence.log.pusher),
+    ];
+    let mut found: Vec<Finding> = bodies
+        .iter()
+        .filter_map(|(name, poses)| in_degrees(name, poses).or_else(|| wrapped(name, poses)))
+        .collect();
     found.extend(noise_in_degrees(evidence).filter(|_| found.is_empty()));
     if found.is_empty() {
         let (low, high) = range(&evidence.log.object);
-        found.push(Finding::ok(Subject::Angles, format!("object_theta goes from {low:.2} to {high:.2} rad")));
+        found.push(Finding::ok(
+            Subject::Angles,
+            format!("object_theta goes from {low:.2} to {high:.2} rad"),
+        ));
     }
     found
 }
@@ -30,22 +39,34 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
     let (low, high) = range(poses);
     let found = || format!("{name} goes from {low:.1} to {high:.1}: these seem to be degrees");
-    (low.abs().max(high.abs()) > LARGEST).then(|| Finding::problem(Subject::Angles, found(), RADIANS))
+    (low.abs().max(high.abs()) > LARGEST)
+        .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
 /// A jump by about a full turn from one row to the next; after a gap an angle may start anew.
 fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
-    let steps = poses.windows(2).filter_map(|pair| Some(pair[1]?.theta - pair[0]?.theta));
+    let steps = poses
+        .windows(2)
+        .filter_map(|pair| Some(pair[1]?.theta - pair[0]?.theta));
     let jumps = steps.filter(|step| step.abs() > PI).count();
     let found = format!("{name} jumps by a full turn at {jumps} rows: it is wrapped to one turn");
-    (jumps > 0).then(|| Finding::problem(Subject::Angles, found, "write angles unwrapped, so that they go on smoothly"))
+    (jumps > 0).then(|| {
+        Finding::problem(
+            Subject::Angles,
+            found,
+            "write angles unwrapped, so that they go on smoothly",
+        )
+    })
 }
 
 /// Small angles in degrees: only their noise gives them away.
 fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
     let noise = evidence.noise?;
     let ratio = noise.angle * evidence.size() / noise.position.max(1e-6);
-    let stated = evidence.setup.camera.map_or(0.0, |camera| camera.orientation_std);
+    let stated = evidence
+        .setup
+        .camera
+        .map_or(0.0, |camera| camera.orientation_std);
     let found = || {
         let twice = "at the object's rim";
         format!(
@@ -53,10 +74,14 @@ fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
             noise.angle
         )
     };
-    (ratio > NOISE_RATIO && noise.angle > 5.0 * stated && noise.angle > 0.02).then(|| Finding::problem(Subject::Angles, found(), RADIANS))
+    (ratio > NOISE_RATIO && noise.angle > 5.0 * stated && noise.angle > 0.02)
+        .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
 fn range(poses: &[Option<Pose>]) -> (f64, f64) {
     let angles = || poses.iter().flatten().map(|pose| pose.theta);
-    (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max))
+    (
+        angles().fold(f64::INFINITY, f64::min),
+        angles().fold(f64::NEG_INFINITY, f64::max),
+    )
 }

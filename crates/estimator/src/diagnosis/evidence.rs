@@ -33,7 +33,12 @@ pub(super) struct PoseNoise {
 impl<'a> Evidence<'a> {
     pub fn new(setup: &'a Setup, log: &'a Log) -> Self {
         let noise = pose_noise(&log.object);
-        let mut evidence = Self { setup, log, noise, moving: Vec::new() };
+        let mut evidence = Self {
+            setup,
+            log,
+            noise,
+            moving: Vec::new(),
+        };
         evidence.moving = (0..log.len()).map(|row| evidence.moves_at(row)).collect();
         evidence
     }
@@ -73,7 +78,10 @@ impl<'a> Evidence<'a> {
 
     /// Gap of object and pusher at `row` if its object pose is `delay` late (m).
     pub fn pusher_gap(&self, row: usize, delay: f64) -> Option<f64> {
-        let (object, pusher) = (self.log.object[row]?, self.pusher_at(self.log.time[row] - delay)?);
+        let (object, pusher) = (
+            self.log.object[row]?,
+            self.pusher_at(self.log.time[row] - delay)?,
+        );
         self.gap_to(object, &self.setup.scene.pusher.shape, pusher)
     }
 
@@ -91,42 +99,71 @@ impl<'a> Evidence<'a> {
         gaps.iter().map(|gap| gap.gap).min_by(f64::total_cmp)
     }
 
-    /// How far the object moves about `row`, with its turn at the radius of gyration (m), and within what time (s).
+    /// How far the object moves about `row`, with its turn at the radius of gyration (m), and
+    /// within what time (s).
     fn displacement(&self, row: usize) -> Option<(f64, f64)> {
         let time = self.log.time[row];
         let before = self.mean_pose(self.log.time.partition_point(|t| *t < time - HALF_WINDOW))?;
-        let after = self.mean_pose(self.log.time.partition_point(|t| *t <= time + HALF_WINDOW).saturating_sub(1))?;
+        let after = self.mean_pose(
+            self.log
+                .time
+                .partition_point(|t| *t <= time + HALF_WINDOW)
+                .saturating_sub(1),
+        )?;
         let turn = self.setup.scene.object.gyration_radius() * (after.1.theta - before.1.theta);
-        Some(((after.1.x - before.1.x).hypot(after.1.y - before.1.y).hypot(turn), after.0 - before.0))
+        Some((
+            (after.1.x - before.1.x)
+                .hypot(after.1.y - before.1.y)
+                .hypot(turn),
+            after.0 - before.0,
+        ))
     }
 
     /// Mean time and pose of up to three rows about `row`.
     fn mean_pose(&self, row: usize) -> Option<(f64, Pose)> {
         let rows = row.saturating_sub(1)..(row + 2).min(self.log.len());
-        let poses: Vec<(f64, Pose)> = rows.filter_map(|row| self.log.object[row].map(|pose| (self.log.time[row], pose))).collect();
-        let mean = |pick: &dyn Fn(&(f64, Pose)) -> f64| poses.iter().map(pick).sum::<f64>() / poses.len() as f64;
+        let poses: Vec<(f64, Pose)> = rows
+            .filter_map(|row| self.log.object[row].map(|pose| (self.log.time[row], pose)))
+            .collect();
+        let mean = |pick: &dyn Fn(&(f64, Pose)) -> f64| {
+            poses.iter().map(pick).sum::<f64>() / poses.len() as f64
+        };
         let pose = Pose::new(mean(&|p| p.1.x), mean(&|p| p.1.y), mean(&|p| p.1.theta));
         (!poses.is_empty()).then(|| (mean(&|p| p.0), pose))
     }
 
     fn moves_at(&self, row: usize) -> bool {
-        let Some(noise) = self.noise else { return false };
+        let Some(noise) = self.noise else {
+            return false;
+        };
         let turn = self.setup.scene.object.gyration_radius() * noise.angle;
         // the difference of two means of three poses
         let std = (2.0 / 3.0 * (2.0 * noise.position * noise.position + turn * turn)).sqrt();
-        self.displacement(row).is_some_and(|(way, _)| way > MOTION * std && way > 1e-5)
+        self.displacement(row)
+            .is_some_and(|(way, _)| way > MOTION * std && way > 1e-5)
     }
 }
 
 /// Noise from second differences, which a steady motion does not change; robust to jumps and stops.
 pub(super) fn pose_noise(poses: &[Option<Pose>]) -> Option<PoseNoise> {
-    let triples = || poses.windows(3).filter_map(|w| Some((w[0]?, w[1]?, w[2]?))).filter(|(a, b, c)| a != b && b != c);
+    let triples = || {
+        poses
+            .windows(3)
+            .filter_map(|w| Some((w[0]?, w[1]?, w[2]?)))
+            .filter(|(a, b, c)| a != b && b != c)
+    };
     let std = |pick: fn(&Pose) -> f64| {
-        let bends: Vec<f64> = triples().map(|(a, b, c)| (pick(&a) - 2.0 * pick(&b) + pick(&c)).abs()).collect();
-        // 1.4826 turns a median of deviations into a standard deviation; a second difference has six times a pose's variance
+        let bends: Vec<f64> = triples()
+            .map(|(a, b, c)| (pick(&a) - 2.0 * pick(&b) + pick(&c)).abs())
+            .collect();
+        // 1.4826 turns a median of deviations into a standard deviation; a second difference has
+        // six times a pose's variance
         (bends.len() >= 10).then(|| 1.4826 * median(bends) / 6.0_f64.sqrt())
     };
-    Some(PoseNoise { position: std(|p| p.x)?.max(std(|p| p.y)?), angle: std(|p| p.theta)? })
+    Some(PoseNoise {
+        position: std(|p| p.x)?.max(std(|p| p.y)?),
+        angle: std(|p| p.theta)?,
+    })
 }
 
 /// The median; NaN of nothing.
@@ -134,7 +171,8 @@ pub(super) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The `q`-quantile, linear between order statistics: position q (n - 1) from the smallest; NaN of nothing.
+/// The `q`-quantile, linear between order statistics: position q (n - 1) from the smallest; NaN of
+/// nothing.
 pub(super) fn quantile(values: impl IntoIterator<Item = f64>, q: f64) -> f64 {
     crate::quantile(&values.into_iter().collect::<Vec<_>>(), q).unwrap_or(f64::NAN)
 }

@@ -61,17 +61,40 @@ pub struct Finding {
 impl Finding {
     /// All is well.
     pub(super) fn ok(subject: Subject, found: impl Into<String>) -> Self {
-        Self { subject, severity: Severity::Ok, found: found.into(), advice: None }
+        Self {
+            subject,
+            severity: Severity::Ok,
+            found: found.into(),
+            advice: None,
+        }
     }
 
     /// Estimates may be worse than they could be.
-    pub(super) fn warning(subject: Subject, found: impl Into<String>, advice: impl Into<String>) -> Self {
-        Self { subject, severity: Severity::Warning, found: found.into(), advice: Some(advice.into()) }
+    pub(super) fn warning(
+        subject: Subject,
+        found: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Self {
+        Self {
+            subject,
+            severity: Severity::Warning,
+            found: found.into(),
+            advice: Some(advice.into()),
+        }
     }
 
     /// Estimates will be wrong.
-    pub(super) fn problem(subject: Subject, found: impl Into<String>, advice: impl Into<String>) -> Self {
-        Self { subject, severity: Severity::Problem, found: found.into(), advice: Some(advice.into()) }
+    pub(super) fn problem(
+        subject: Subject,
+        found: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Self {
+        Self {
+            subject,
+            severity: Severity::Problem,
+            found: found.into(),
+            advice: Some(advice.into()),
+        }
     }
 }
 

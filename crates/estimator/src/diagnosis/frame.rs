@@ -1,7 +1,8 @@
 //! Frames: whether object and pusher are told in the same one.
 //!
-//! What moves the object is the pusher, so while the object moves their gap is near zero. Where it is not, the same is tried with
-//! axes mirrored, swapped or turned; a variant that brings the gap to zero names the slip.
+//! What moves the object is the pusher, so while the object moves their gap is near zero. Where it
+//! is not, the same is tried with axes mirrored, swapped or turned; a variant that brings the gap
+//! to zero names the slip.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -24,14 +25,36 @@ type Change = fn(Pose, Pose) -> (Pose, Pose);
 
 /// A slip and how it is undone: from the poses of object and pusher as they are in the log.
 const SLIPS: [(&str, Change); 8] = [
-    ("the object's y axis is mirrored (y and theta change sign)", |o, p| (mirrored(o), p)),
-    ("the pusher's y axis is mirrored (y and theta change sign)", |o, p| (o, mirrored(p))),
-    ("both y axes are mirrored against the outline (y and theta change sign)", |o, p| (mirrored(o), mirrored(p))),
-    ("the object's angle is clockwise (theta changes sign)", |o, p| (Pose::new(o.x, o.y, -o.theta), p)),
-    ("the object's angle is off by a quarter turn (+90 degrees)", |o, p| (Pose::new(o.x, o.y, o.theta + FRAC_PI_2), p)),
-    ("the object's angle is off by a quarter turn (-90 degrees)", |o, p| (Pose::new(o.x, o.y, o.theta - FRAC_PI_2), p)),
-    ("the object's angle is off by half a turn", |o, p| (Pose::new(o.x, o.y, o.theta + 2.0 * FRAC_PI_2), p)),
-    ("the object's x and y are swapped", |o, p| (Pose::new(o.y, o.x, o.theta), p)),
+    (
+        "the object's y axis is mirrored (y and theta change sign)",
+        |o, p| (mirrored(o), p),
+    ),
+    (
+        "the pusher's y axis is mirrored (y and theta change sign)",
+        |o, p| (o, mirrored(p)),
+    ),
+    (
+        "both y axes are mirrored against the outline (y and theta change sign)",
+        |o, p| (mirrored(o), mirrored(p)),
+    ),
+    (
+        "the object's angle is clockwise (theta changes sign)",
+        |o, p| (Pose::new(o.x, o.y, -o.theta), p),
+    ),
+    (
+        "the object's angle is off by a quarter turn (+90 degrees)",
+        |o, p| (Pose::new(o.x, o.y, o.theta + FRAC_PI_2), p),
+    ),
+    (
+        "the object's angle is off by a quarter turn (-90 degrees)",
+        |o, p| (Pose::new(o.x, o.y, o.theta - FRAC_PI_2), p),
+    ),
+    ("the object's angle is off by half a turn", |o, p| {
+        (Pose::new(o.x, o.y, o.theta + 2.0 * FRAC_PI_2), p)
+    }),
+    ("the object's x and y are swapped", |o, p| {
+        (Pose::new(o.y, o.x, o.theta), p)
+    }),
 ];
 
 fn mirrored(pose: Pose) -> Pose {
@@ -41,17 +64,25 @@ fn mirrored(pose: Pose) -> Pose {
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let gaps = gaps(evidence, |object, pusher| (object, pusher));
     if gaps.len() < FEWEST {
-        return vec![Finding::ok(Subject::Frames, "the object hardly moves while the pusher is there: nothing to tell")];
+        return vec![Finding::ok(
+            Subject::Frames,
+            "the object hardly moves while the pusher is there: nothing to tell",
+        )];
     }
     let (off, nearest) = (distance(&gaps), median(gaps.iter().copied()));
     if off < APART * evidence.size() {
         return vec![Finding::ok(
             Subject::Frames,
-            format!("the pusher is there whenever the object moves (half the time within {})", mm(off)),
+            format!(
+                "the pusher is there whenever the object moves (half the time within {})",
+                mm(off)
+            ),
         )];
     }
-    let found =
-        format!("while the object moves the pusher's surface is {} from its own (median): they are not in the same frame", mm(nearest));
+    let found = format!(
+        "while the object moves the pusher's surface is {} from its own (median): they are not in the same frame",
+        mm(nearest)
+    );
     let advice = slip(evidence, off)
         .unwrap_or("give object and pusher poses in the same world frame, x and y right-handed, angles counter-clockwise");
     vec![Finding::problem(Subject::Frames, found, advice)]
@@ -59,16 +90,26 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 /// The slip that explains the gap best, if one does.
 fn slip(evidence: &Evidence<'_>, off: f64) -> Option<&'static str> {
-    let tried = SLIPS.iter().map(|(name, change)| (*name, distance(&gaps(evidence, change))));
+    let tried = SLIPS
+        .iter()
+        .map(|(name, change)| (*name, distance(&gaps(evidence, change))));
     let swapped = ("object and pusher are swapped", swapped_distance(evidence));
     let (name, best) = tried.chain([swapped]).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (best * BETTER < off && best < APART * evidence.size()).then_some(name)
 }
 
-/// How far gaps are from zero if object and pusher are swapped; what moves is then another body, too (m).
+/// How far gaps are from zero if object and pusher are swapped; what moves is then another body,
+/// too (m).
 fn swapped_distance(evidence: &Evidence<'_>) -> f64 {
-    let log = Log { object: evidence.log.pusher.clone(), pusher: evidence.log.object.clone(), ..evidence.log.clone() };
-    distance(&gaps(&Evidence::new(evidence.setup, &log), |object, pusher| (object, pusher)))
+    let log = Log {
+        object: evidence.log.pusher.clone(),
+        pusher: evidence.log.object.clone(),
+        ..evidence.log.clone()
+    };
+    distance(&gaps(
+        &Evidence::new(evidence.setup, &log),
+        |object, pusher| (object, pusher),
+    ))
 }
 
 /// How far gaps are from zero, for most rows (m).

@@ -1,8 +1,9 @@
 //! The delay of the camera behind the pusher, from the stops of the pusher.
 //!
-//! While the pusher pushes and then stands, it touches, so the gap stays what it is. An object pose that is late shows the object
-//! still coming when the pusher stands: the gap then bends. The delay of a stop is the one that keeps the gap most constant from
-//! a quarter of a second before it to half a second after; the log's delay is the median over its stops.
+//! While the pusher pushes and then stands, it touches, so the gap stays what it is. An object pose
+//! that is late shows the object still coming when the pusher stands: the gap then bends. The delay
+//! of a stop is the one that keeps the gap most constant from a quarter of a second before it to
+//! half a second after; the log's delay is the median over its stops.
 
 use super::evidence::{Evidence, median, quantile};
 use super::finding::{Finding, Subject};
@@ -35,8 +36,15 @@ pub(super) struct Latency {
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let stated = evidence.latency();
-    let Some(Latency { delay, stops, speed }) = estimate(evidence) else {
-        let found = format!("the pusher never stops while it pushes: the delay cannot be told (the scene says {stated} s)");
+    let Some(Latency {
+        delay,
+        stops,
+        speed,
+    }) = estimate(evidence)
+    else {
+        let found = format!(
+            "the pusher never stops while it pushes: the delay cannot be told (the scene says {stated} s)"
+        );
         return vec![Finding::ok(Subject::Latency, found)];
     };
     let found = format!(
@@ -45,7 +53,9 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     );
     let advice = format!("set latency = {:.2} under [camera]", delay.max(0.0));
     vec![match (delay - stated).abs() {
-        off if off * speed < MATTERS * evidence.position_std() => Finding::ok(Subject::Latency, found),
+        off if off * speed < MATTERS * evidence.position_std() => {
+            Finding::ok(Subject::Latency, found)
+        }
         off if off > OFF[1] => Finding::problem(Subject::Latency, found, advice),
         off if off > OFF[0] => Finding::warning(Subject::Latency, found, advice),
         _ => Finding::ok(Subject::Latency, found),
@@ -55,22 +65,41 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 /// The delay of the log, where its pusher stops while it pushes.
 pub(super) fn estimate(evidence: &Evidence<'_>) -> Option<Latency> {
     let time = &evidence.log.time;
-    let speeds: Vec<Option<f64>> = (0..time.len()).map(|row| pusher_speed(evidence, row)).collect();
+    let speeds: Vec<Option<f64>> = (0..time.len())
+        .map(|row| pusher_speed(evidence, row))
+        .collect();
     let speed = quantile(speeds.iter().flatten().copied(), 0.9);
-    let delays: Vec<f64> = stops(time, &speeds, speed).into_iter().filter_map(|row| delay_at(evidence, row)).collect();
-    (!delays.is_empty()).then(|| Latency { stops: delays.len(), delay: median(delays), speed })
+    let delays: Vec<f64> = stops(time, &speeds, speed)
+        .into_iter()
+        .filter_map(|row| delay_at(evidence, row))
+        .collect();
+    (!delays.is_empty()).then(|| Latency {
+        stops: delays.len(),
+        delay: median(delays),
+        speed,
+    })
 }
 
 /// Rows at which the pusher comes to rest after a steady motion at about the speed `fast`.
 fn stops(time: &[f64], speeds: &[Option<f64>], fast: f64) -> Vec<usize> {
     let between = |from: f64, to: f64| {
         let rows = time.partition_point(|t| *t < from)..time.partition_point(|t| *t <= to);
-        speeds[rows].iter().map(|speed| speed.unwrap_or(f64::NAN)).collect::<Vec<f64>>()
+        speeds[rows]
+            .iter()
+            .map(|speed| speed.unwrap_or(f64::NAN))
+            .collect::<Vec<f64>>()
     };
     let is_stop = |row: usize| {
-        let (before, after) = (between(time[row] - 0.35, time[row] - 0.1), between(time[row] + 0.12, time[row] + 0.4));
-        let falls = speeds[row - 1].is_some_and(|speed| speed >= 0.5 * fast) && speeds[row].is_some_and(|speed| speed < 0.5 * fast);
-        falls && !after.is_empty() && before.iter().all(|speed| *speed > 0.5 * fast) && after.iter().all(|speed| *speed < 0.2 * fast)
+        let (before, after) = (
+            between(time[row] - 0.35, time[row] - 0.1),
+            between(time[row] + 0.12, time[row] + 0.4),
+        );
+        let falls = speeds[row - 1].is_some_and(|speed| speed >= 0.5 * fast)
+            && speeds[row].is_some_and(|speed| speed < 0.5 * fast);
+        falls
+            && !after.is_empty()
+            && before.iter().all(|speed| *speed > 0.5 * fast)
+            && after.iter().all(|speed| *speed < 0.2 * fast)
     };
     (1..time.len()).filter(|&row| is_stop(row)).collect()
 }
@@ -78,7 +107,10 @@ fn stops(time: &[f64], speeds: &[Option<f64>], fast: f64) -> Vec<usize> {
 /// Speed of the pusher over 0.13 s about a row (m/s).
 fn pusher_speed(evidence: &Evidence<'_>, row: usize) -> Option<f64> {
     let time = evidence.log.time[row];
-    let (before, after) = (evidence.pusher_at(time - 0.067)?, evidence.pusher_at(time + 0.067)?);
+    let (before, after) = (
+        evidence.pusher_at(time - 0.067)?,
+        evidence.pusher_at(time + 0.067)?,
+    );
     Some((after.x - before.x).hypot(after.y - before.y) / 0.134)
 }
 
@@ -86,26 +118,46 @@ fn pusher_speed(evidence: &Evidence<'_>, row: usize) -> Option<f64> {
 fn delay_at(evidence: &Evidence<'_>, stop: usize) -> Option<f64> {
     let time = &evidence.log.time;
     let (from, to) = (time[stop] - WINDOW[0], time[stop] + WINDOW[1]);
-    let rows: Vec<usize> =
-        (0..time.len()).filter(|&row| time[row] >= from && time[row] <= to && evidence.log.object[row].is_some()).collect();
-    let pushed = rows.iter().filter(|&&row| time[row] <= time[stop] && evidence.moving[row]).count();
+    let rows: Vec<usize> = (0..time.len())
+        .filter(|&row| time[row] >= from && time[row] <= to && evidence.log.object[row].is_some())
+        .collect();
+    let pushed = rows
+        .iter()
+        .filter(|&&row| time[row] <= time[stop] && evidence.moving[row])
+        .count();
     if rows.len() < 8 || pushed < 3 {
         return None;
     }
     let count = ((RANGE[1] - RANGE[0]) / STEP).round() as usize;
     let delays: Vec<f64> = (0..=count).map(|k| RANGE[0] + STEP * k as f64).collect();
-    let scatter: Vec<f64> = delays.iter().map(|delay| scatter(evidence, &rows, *delay).unwrap_or(f64::INFINITY)).collect();
+    let scatter: Vec<f64> = delays
+        .iter()
+        .map(|delay| scatter(evidence, &rows, *delay).unwrap_or(f64::INFINITY))
+        .collect();
     let best = (0..scatter.len()).min_by(|a, b| scatter[*a].total_cmp(&scatter[*b]))?;
-    // a delay at the end of the range, or one that is hardly better than those 0.1 s away, tells nothing
+    // a delay at the end of the range, or one that is hardly better than those 0.1 s away, tells
+    // nothing
     let aside = (0.1 / STEP) as usize;
     let sides = [best.checked_sub(aside)?, best + aside];
-    let tells = sides.iter().all(|side| scatter.get(*side).is_some_and(|s| *s > 1.3 * scatter[best]));
+    let tells = sides
+        .iter()
+        .all(|side| scatter.get(*side).is_some_and(|s| *s > 1.3 * scatter[best]));
     tells.then(|| delays[best])
 }
 
 /// Standard deviation of the gap over `rows` at a delay (m); `None` where the pusher is not known.
 fn scatter(evidence: &Evidence<'_>, rows: &[usize], delay: f64) -> Option<f64> {
-    let gaps: Vec<f64> = rows.iter().map(|row| evidence.pusher_gap(*row, delay)).collect::<Option<_>>()?;
+    let gaps: Vec<f64> = rows
+        .iter()
+        .map(|row| evidence.pusher_gap(*row, delay))
+        .collect::<Option<_>>()?;
     let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
-    Some((gaps.iter().map(|gap| (gap - mean) * (gap - mean)).sum::<f64>() / gaps.len() as f64).sqrt())
+    Some(
+        (gaps
+            .iter()
+            .map(|gap| (gap - mean) * (gap - mean))
+            .sum::<f64>()
+            / gaps.len() as f64)
+            .sqrt(),
+    )
 }

@@ -12,20 +12,34 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let parameters = [
         ("mu_s", nominal.mu_s, filter.mu_s, true),
         ("mu_p", nominal.mu_p, filter.mu_p, true),
-        ("mu_f", nominal.mu_f, filter.mu_f, !evidence.setup.scene.fixels.is_empty()),
+        (
+            "mu_f",
+            nominal.mu_f,
+            filter.mu_f,
+            !evidence.setup.scene.fixels.is_empty(),
+        ),
         ("d_tri", nominal.d_tri, filter.d_tri, tripod),
     ];
     let used = parameters.iter().filter(|(_, _, _, used)| *used);
-    let mut found: Vec<Finding> = used.filter_map(|(name, value, limits, _)| outside(name, *value, limits)).collect();
+    let mut found: Vec<Finding> = used
+        .filter_map(|(name, value, limits, _)| outside(name, *value, limits))
+        .collect();
     if found.is_empty() {
-        found.push(Finding::ok(Subject::Limits, "nominal friction lies within the filter's limits"));
+        found.push(Finding::ok(
+            Subject::Limits,
+            "nominal friction lies within the filter's limits",
+        ));
     }
     found
 }
 
 fn outside(name: &str, value: f64, limits: &Limits) -> Option<Finding> {
     let Limits { min, max } = limits;
-    let found = || format!("the nominal {name} is {value}, outside the filter's limits [{min}, {max}]: particles are moved to the limit");
+    let found = || {
+        format!(
+            "the nominal {name} is {value}, outside the filter's limits [{min}, {max}]: particles are moved to the limit"
+        )
+    };
     let advice = || format!("widen `{name}` under [filter] in the scene");
     (!(*min..=*max).contains(&value)).then(|| Finding::warning(Subject::Limits, found(), advice()))
 }

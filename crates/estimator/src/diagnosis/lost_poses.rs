@@ -27,15 +27,21 @@ fn object(evidence: &Evidence<'_>) -> Finding {
         return Finding::ok(Subject::ObjectPoses, "every row has an object pose");
     };
     let rows = evidence.log.len();
-    let found =
-        format!("{missing} of {rows} rows have no object pose, the longest loss {:.2} s from row {}", longest.seconds, longest.first);
+    let found = format!(
+        "{missing} of {rows} rows have no object pose, the longest loss {:.2} s from row {}",
+        longest.seconds, longest.first
+    );
     match missing {
-        _ if missing == rows => {
-            Finding::problem(Subject::ObjectPoses, "no row has an object pose", "give at least the object's first pose")
-        }
-        _ if missing as f64 > MANY * rows as f64 => {
-            Finding::warning(Subject::ObjectPoses, found, "rows without a pose are blacked out: fine if this is meant")
-        }
+        _ if missing == rows => Finding::problem(
+            Subject::ObjectPoses,
+            "no row has an object pose",
+            "give at least the object's first pose",
+        ),
+        _ if missing as f64 > MANY * rows as f64 => Finding::warning(
+            Subject::ObjectPoses,
+            found,
+            "rows without a pose are blacked out: fine if this is meant",
+        ),
         _ => Finding::ok(Subject::ObjectPoses, found),
     }
 }
@@ -44,20 +50,45 @@ fn pusher(evidence: &Evidence<'_>) -> Finding {
     let losses = losses(&evidence.log.time, &evidence.log.pusher);
     let missing: usize = losses.iter().map(|loss| loss.rows).sum();
     if missing == evidence.log.len() {
-        return Finding::problem(Subject::PusherPoses, "no row has a pusher pose", "give the pusher's poses: it is what moves the object");
+        return Finding::problem(
+            Subject::PusherPoses,
+            "no row has a pusher pose",
+            "give the pusher's poses: it is what moves the object",
+        );
     }
-    let lifted: Vec<String> = losses.iter().filter(|loss| loss.seconds > LONGEST_BRIDGE).map(Loss::shown).collect();
+    let lifted: Vec<String> = losses
+        .iter()
+        .filter(|loss| loss.seconds > LONGEST_BRIDGE)
+        .map(Loss::shown)
+        .collect();
     match (missing, lifted.len()) {
         (0, _) => Finding::ok(Subject::PusherPoses, "every row has a pusher pose"),
-        (_, 0) => Finding::ok(Subject::PusherPoses, format!("{missing} rows have no pusher pose, all bridged")),
-        (_, 1) => Finding::ok(Subject::PusherPoses, format!("the pusher is off the plane once: {}", lifted[0])),
-        (_, count) => Finding::ok(Subject::PusherPoses, format!("the pusher is off the plane {count} times: {}", lifted.join(", "))),
+        (_, 0) => Finding::ok(
+            Subject::PusherPoses,
+            format!("{missing} rows have no pusher pose, all bridged"),
+        ),
+        (_, 1) => Finding::ok(
+            Subject::PusherPoses,
+            format!("the pusher is off the plane once: {}", lifted[0]),
+        ),
+        (_, count) => Finding::ok(
+            Subject::PusherPoses,
+            format!(
+                "the pusher is off the plane {count} times: {}",
+                lifted.join(", ")
+            ),
+        ),
     }
 }
 
 impl Loss {
     fn shown(&self) -> String {
-        format!("rows {} to {} ({:.1} s)", self.first, self.first + self.rows - 1, self.seconds)
+        format!(
+            "rows {} to {} ({:.1} s)",
+            self.first,
+            self.first + self.rows - 1,
+            self.seconds
+        )
     }
 }
 
@@ -66,12 +97,19 @@ fn losses(time: &[f64], poses: &[Option<Pose>]) -> Vec<Loss> {
     for row in (0..poses.len()).filter(|&row| poses[row].is_none()) {
         match losses.last_mut() {
             Some(loss) if loss.first + loss.rows == row => loss.rows += 1,
-            _ => losses.push(Loss { first: row, rows: 1, seconds: 0.0 }),
+            _ => losses.push(Loss {
+                first: row,
+                rows: 1,
+                seconds: 0.0,
+            }),
         }
     }
     for loss in &mut losses {
         // from the last pose before to the first one after
-        let (before, after) = (loss.first.saturating_sub(1), (loss.first + loss.rows).min(time.len() - 1));
+        let (before, after) = (
+            loss.first.saturating_sub(1),
+            (loss.first + loss.rows).min(time.len() - 1),
+        );
         loss.seconds = time[after] - time[before];
     }
     losses

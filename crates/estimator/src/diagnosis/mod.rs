@@ -1,8 +1,9 @@
 //! What is wrong with a scene and a log, told from the data alone: [`diagnose`].
 //!
-//! Each finding measures one thing (a gap, a delay, a share of rows), compares it with what the scene says or with what can be
-//! on a table top, and tells what to do. Nothing is repaired. Findings that need the geometry are left out where units or angles
-//! are wrong: they would only repeat it.
+//! Each finding measures one thing (a gap, a delay, a share of rows), compares it with what the
+//! scene says or with what can be on a table top, and tells what to do. Nothing is repaired.
+//! Findings that need the geometry are left out where units or angles are wrong: they would only
+//! repeat it.
 
 mod angles;
 mod evidence;
@@ -51,10 +52,27 @@ use evidence::Evidence;
 /// ```
 pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
-    let plain = [units::check, angles::check, limits::check, timing::check, lost_poses::check, repeats::check, noise::check];
-    let geometric = [frame::check, overlap::check, latency::check, pushing::check, sensors::check];
+    let plain = [
+        units::check,
+        angles::check,
+        limits::check,
+        timing::check,
+        lost_poses::check,
+        repeats::check,
+        noise::check,
+    ];
+    let geometric = [
+        frame::check,
+        overlap::check,
+        latency::check,
+        pushing::check,
+        sensors::check,
+    ];
     let mut findings: Vec<Finding> = plain.iter().flat_map(|check| check(&evidence)).collect();
-    let misread = |finding: &Finding| finding.severity == Severity::Problem && matches!(finding.subject, Subject::Units | Subject::Angles);
+    let misread = |finding: &Finding| {
+        finding.severity == Severity::Problem
+            && matches!(finding.subject, Subject::Units | Subject::Angles)
+    };
     if !findings.iter().any(misread) {
         findings.extend(geometric.iter().flat_map(|check| check(&evidence)));
     }

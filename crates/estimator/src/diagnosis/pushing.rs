@@ -11,12 +11,16 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let delay = latency::estimate(evidence).map_or(evidence.latency(), |latency| latency.delay);
     let gaps = gaps(evidence, delay);
     if gaps.len() < FEWEST {
-        return vec![Finding::ok(Subject::PushingGap, "too few poses of a moving object to tell")];
+        return vec![Finding::ok(
+            Subject::PushingGap,
+            "too few poses of a moving object to tell",
+        )];
     }
     let all = || gaps.iter().copied();
     let (low, middle, high) = (quantile(all(), 0.05), median(all()), quantile(all(), 0.95));
     let third = gaps.len() / 3;
-    let drift = median(gaps[gaps.len() - third..].iter().copied()) - median(gaps[..third].iter().copied());
+    let drift =
+        median(gaps[gaps.len() - third..].iter().copied()) - median(gaps[..third].iter().copied());
     let found = format!(
         "while the object moves the pusher is {} away (5 to 95 %: {} to {}), drifting by {}",
         mm(middle),
@@ -26,11 +30,20 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     );
     let tolerance = evidence.tolerance();
     vec![match middle.abs() {
-        bias if bias > 5.0 * tolerance => {
-            Finding::problem(Subject::PushingGap, found, "correct the outlines or the calibration of camera against pusher")
-        }
-        bias if bias > tolerance || high - low > 4.0 * tolerance || drift.abs() > 2.0 * tolerance => {
-            Finding::warning(Subject::PushingGap, found, "check the outlines and the calibration of camera against pusher")
+        bias if bias > 5.0 * tolerance => Finding::problem(
+            Subject::PushingGap,
+            found,
+            "correct the outlines or the calibration of camera against pusher",
+        ),
+        bias if bias > tolerance
+            || high - low > 4.0 * tolerance
+            || drift.abs() > 2.0 * tolerance =>
+        {
+            Finding::warning(
+                Subject::PushingGap,
+                found,
+                "check the outlines and the calibration of camera against pusher",
+            )
         }
         _ => Finding::ok(Subject::PushingGap, found),
     }]
@@ -39,5 +52,6 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 /// Gaps (m) while the object moves, if its poses are `delay` late.
 pub(super) fn gaps(evidence: &Evidence<'_>, delay: f64) -> Vec<f64> {
     let rows = (0..evidence.log.len()).filter(|&row| evidence.moving[row]);
-    rows.filter_map(|row| evidence.pusher_gap(row, delay)).collect()
+    rows.filter_map(|row| evidence.pusher_gap(row, delay))
+        .collect()
 }

@@ -14,12 +14,19 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         rows.iter().filter(|row| repeats(**row)).count() as f64 / rows.len().max(1) as f64
     };
     let all = share(&mut (1..poses.len()).filter(|&row| poses[row].is_some()));
-    let moving = share(&mut (1..poses.len()).filter(|&row| poses[row].is_some() && evidence.moving[row]));
-    let found = format!("{:.1} % of object poses repeat the row before, {:.1} % while it moves", 1e2 * all, 1e2 * moving);
+    let moving =
+        share(&mut (1..poses.len()).filter(|&row| poses[row].is_some() && evidence.moving[row]));
+    let found = format!(
+        "{:.1} % of object poses repeat the row before, {:.1} % while it moves",
+        1e2 * all,
+        1e2 * moving
+    );
     vec![match moving > MANY {
-        true => {
-            Finding::warning(Subject::RepeatedFrames, found, "leave the cells of repeated frames empty: the camera is slower than the log")
-        }
+        true => Finding::warning(
+            Subject::RepeatedFrames,
+            found,
+            "leave the cells of repeated frames empty: the camera is slower than the log",
+        ),
         false => Finding::ok(Subject::RepeatedFrames, found),
     }]
 }

@@ -7,10 +7,17 @@ use super::finding::{Finding, Subject};
 const FEWEST: usize = 5;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let (sensors, fixels) = (evidence.log.tactile.len(), evidence.setup.scene.fixels.len());
+    let (sensors, fixels) = (
+        evidence.log.tactile.len(),
+        evidence.setup.scene.fixels.len(),
+    );
     if sensors > fixels {
         let found = format!("the log has {sensors} sensors, the scene {fixels} fixels");
-        return vec![Finding::problem(Subject::Sensor(fixels + 1), found, "give each sensor its [[fixel]], in the same order")];
+        return vec![Finding::problem(
+            Subject::Sensor(fixels + 1),
+            found,
+            "give each sensor its [[fixel]], in the same order",
+        )];
     }
     (0..sensors).map(|sensor| judge(evidence, sensor)).collect()
 }
@@ -24,37 +31,64 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
         return silent(evidence, sensor, &clear);
     }
     let own = fixel_distance(evidence, &touched, sensor);
-    let shown = format!("it reads 1 in {} rows; fixel {} is then {} from the object", touched.len(), sensor + 1, mm(own));
+    let shown = format!(
+        "it reads 1 in {} rows; fixel {} is then {} from the object",
+        touched.len(),
+        sensor + 1,
+        mm(own)
+    );
     if own.abs() < near {
         return Finding::ok(subject, shown);
     }
     let (false_touches, free) = free_rows(evidence, sensor, near);
     if 2 * false_touches > free {
-        let found = format!("{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near: 0 and 1 seem to be swapped");
+        let found = format!(
+            "{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near: 0 and 1 seem to be swapped"
+        );
         return Finding::problem(subject, found, "write 1 for a touch, 0 for none");
     }
     let others = (0..evidence.setup.scene.fixels.len()).filter(|&fixel| fixel != sensor);
-    let nearest = others.map(|fixel| (fixel, fixel_distance(evidence, &touched, fixel))).min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let nearest = others
+        .map(|fixel| (fixel, fixel_distance(evidence, &touched, fixel)))
+        .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     match nearest {
         Some((fixel, gap)) if gap.abs() < near => {
-            let found = format!("{shown}, and fixel {} only {}: sensors are swapped", fixel + 1, mm(gap));
+            let found = format!(
+                "{shown}, and fixel {} only {}: sensors are swapped",
+                fixel + 1,
+                mm(gap)
+            );
             Finding::problem(
                 subject,
                 found,
-                format!("sensor {} belongs to fixel {}: swap the columns or the [[fixel]] tables", sensor + 1, fixel + 1),
+                format!(
+                    "sensor {} belongs to fixel {}: swap the columns or the [[fixel]] tables",
+                    sensor + 1,
+                    fixel + 1
+                ),
             )
         }
-        _ if touched.len() > clear.len() => {
-            Finding::problem(subject, format!("{shown}: 0 and 1 seem to be swapped"), "write 1 for a touch, 0 for none")
-        }
-        _ => Finding::problem(subject, shown, "check the fixel's position and the sensor: it reads touches that cannot be"),
+        _ if touched.len() > clear.len() => Finding::problem(
+            subject,
+            format!("{shown}: 0 and 1 seem to be swapped"),
+            "write 1 for a touch, 0 for none",
+        ),
+        _ => Finding::problem(
+            subject,
+            shown,
+            "check the fixel's position and the sensor: it reads touches that cannot be",
+        ),
     }
 }
 
 /// A sensor that hardly ever reads 1.
 fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
     let subject = Subject::Sensor(sensor + 1);
-    let touching = |row: &&usize| evidence.fixel_gap(**row, sensor).is_some_and(|gap| gap < -evidence.tolerance());
+    let touching = |row: &&usize| {
+        evidence
+            .fixel_gap(**row, sensor)
+            .is_some_and(|gap| gap < -evidence.tolerance())
+    };
     let overlapping = clear.iter().filter(touching).count();
     let found = format!("it reads 1 in fewer than {FEWEST} rows");
     if overlapping > clear.len() / 10 {
@@ -65,26 +99,53 @@ fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
         );
         return Finding::warning(subject, found, "check the fixel's position and the sensor");
     }
-    let nearest = clear.iter().filter_map(|row| evidence.fixel_gap(*row, sensor)).fold(f64::INFINITY, f64::min);
-    Finding::ok(subject, format!("{found}; fixel {} is never nearer than {}", sensor + 1, mm(nearest)))
+    let nearest = clear
+        .iter()
+        .filter_map(|row| evidence.fixel_gap(*row, sensor))
+        .fold(f64::INFINITY, f64::min);
+    Finding::ok(
+        subject,
+        format!(
+            "{found}; fixel {} is never nearer than {}",
+            sensor + 1,
+            mm(nearest)
+        ),
+    )
 }
 
 /// Rows in which the sensor reads `value` and the object is seen.
 fn rows(evidence: &Evidence<'_>, sensor: usize, value: bool) -> Vec<usize> {
     let readings = &evidence.log.tactile[sensor];
-    (0..readings.len()).filter(|&row| readings[row] == Some(value) && evidence.log.object[row].is_some()).collect()
+    (0..readings.len())
+        .filter(|&row| readings[row] == Some(value) && evidence.log.object[row].is_some())
+        .collect()
 }
 
-/// Rows in which no fixel is within `near` (m): in how many of them the sensor reads 1, and how many there are.
+/// Rows in which no fixel is within `near` (m): in how many of them the sensor reads 1, and how
+/// many there are.
 fn free_rows(evidence: &Evidence<'_>, sensor: usize, near: f64) -> (usize, usize) {
     let fixels = evidence.setup.scene.fixels.len();
-    let is_free = |row: &usize| (0..fixels).all(|fixel| evidence.fixel_gap(*row, fixel).is_some_and(|gap| gap > near));
-    let count = |value: bool| rows(evidence, sensor, value).iter().filter(|row| is_free(row)).count();
+    let is_free = |row: &usize| {
+        (0..fixels).all(|fixel| {
+            evidence
+                .fixel_gap(*row, fixel)
+                .is_some_and(|gap| gap > near)
+        })
+    };
+    let count = |value: bool| {
+        rows(evidence, sensor, value)
+            .iter()
+            .filter(|row| is_free(row))
+            .count()
+    };
     let (touched, clear) = (count(true), count(false));
     (touched, touched + clear)
 }
 
 /// Median gap of a fixel over `rows` (m).
 fn fixel_distance(evidence: &Evidence<'_>, rows: &[usize], fixel: usize) -> f64 {
-    median(rows.iter().filter_map(|row| evidence.fixel_gap(*row, fixel)))
+    median(
+        rows.iter()
+            .filter_map(|row| evidence.fixel_gap(*row, fixel)),
+    )
 }

@@ -20,13 +20,25 @@ const GRAVITY: [f64; 2] = [1.0, 30.0];
 const METRES: &str = "give all lengths in metres";
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let found: Vec<Finding> =
-        [size, positions, fixels, mass, inertia, gravity, tripod].iter().filter_map(|check| check(evidence)).collect();
+    let found: Vec<Finding> = [size, positions, fixels, mass, inertia, gravity, tripod]
+        .iter()
+        .filter_map(|check| check(evidence))
+        .collect();
     if !found.is_empty() {
         return found;
     }
-    let (mass, area) = (evidence.setup.scene.object.mass, area(&evidence.setup.scene.object.shape));
-    vec![Finding::ok(Subject::Units, format!("object of {} radius and {mass} kg ({:.0} kg/m^2)", mm(evidence.size()), mass / area))]
+    let (mass, area) = (
+        evidence.setup.scene.object.mass,
+        area(&evidence.setup.scene.object.shape),
+    );
+    vec![Finding::ok(
+        Subject::Units,
+        format!(
+            "object of {} radius and {mass} kg ({:.0} kg/m^2)",
+            mm(evidence.size()),
+            mass / area
+        ),
+    )]
 }
 
 fn problem(found: String, advice: &str) -> Option<Finding> {
@@ -36,12 +48,22 @@ fn problem(found: String, advice: &str) -> Option<Finding> {
 fn size(evidence: &Evidence<'_>) -> Option<Finding> {
     let size = evidence.size();
     let spread = spread(evidence.log.object.iter().chain(&evidence.log.pusher));
-    // an outline in millimetres beside a log in metres is hundreds of times larger than all that happens
+    // an outline in millimetres beside a log in metres is hundreds of times larger than all that
+    // happens
     let dwarfs = spread > 0.0 && size > 50.0 * spread && size > 1.0;
     if size > SIZE[1] || dwarfs {
-        return problem(format!("the object has a radius of {size} m: its outline seems to be in millimetres"), METRES);
+        return problem(
+            format!("the object has a radius of {size} m: its outline seems to be in millimetres"),
+            METRES,
+        );
     }
-    (size < SIZE[0]).then(|| Finding::warning(Subject::Units, format!("the object has a radius of only {} mm", 1e3 * size), METRES))
+    (size < SIZE[0]).then(|| {
+        Finding::warning(
+            Subject::Units,
+            format!("the object has a radius of only {} mm", 1e3 * size),
+            METRES,
+        )
+    })
 }
 
 fn positions(evidence: &Evidence<'_>) -> Option<Finding> {
@@ -49,7 +71,9 @@ fn positions(evidence: &Evidence<'_>) -> Option<Finding> {
     let log = evidence.log;
     let far = |what: &str, spread: f64| {
         let times = spread / evidence.size();
-        let found = format!("{what} spread over {spread:.1} m, {times:.0} times the object's radius: they seem to be in millimetres");
+        let found = format!(
+            "{what} spread over {spread:.1} m, {times:.0} times the object's radius: they seem to be in millimetres"
+        );
         problem(found, "divide these columns of the log by 1000")
     };
     let (object, pusher) = (spread(log.object.iter()), spread(log.pusher.iter()));
@@ -75,7 +99,10 @@ fn fixels(evidence: &Evidence<'_>) -> Option<Finding> {
         distance(&fixels[k].pose),
         distance(&fixels[k].pose) / evidence.size()
     );
-    problem(format!("{found}: its position seems to be in millimetres"), METRES)
+    problem(
+        format!("{found}: its position seems to be in millimetres"),
+        METRES,
+    )
 }
 
 fn mass(evidence: &Evidence<'_>) -> Option<Finding> {
@@ -89,18 +116,29 @@ fn mass(evidence: &Evidence<'_>) -> Option<Finding> {
         );
         return problem(found, "give the mass in kilograms");
     }
-    let found = || format!("the object weighs {} kg, {density:.3} kg/m^2: less than paper", object.mass);
-    (density < AREAL_DENSITY[0]).then(|| Finding::warning(Subject::Units, found(), "give the mass in kilograms"))
+    let found = || {
+        format!(
+            "the object weighs {} kg, {density:.3} kg/m^2: less than paper",
+            object.mass
+        )
+    };
+    (density < AREAL_DENSITY[0])
+        .then(|| Finding::warning(Subject::Units, found(), "give the mass in kilograms"))
 }
 
 fn inertia(evidence: &Evidence<'_>) -> Option<Finding> {
     let gyration = evidence.setup.scene.object.gyration_radius();
     let share = gyration / evidence.size();
-    let found = format!("the radius of gyration sqrt(J/m) is {}, {share:.2} times the object's radius", mm(gyration));
+    let found = format!(
+        "the radius of gyration sqrt(J/m) is {}, {share:.2} times the object's radius",
+        mm(gyration)
+    );
     let advice = "give the inertia about the centre of mass in kg m^2";
     match share {
         share if !(0.05..=1.5).contains(&share) => problem(found, advice),
-        share if !(0.3..=1.0).contains(&share) => Some(Finding::warning(Subject::Units, found, advice)),
+        share if !(0.3..=1.0).contains(&share) => {
+            Some(Finding::warning(Subject::Units, found, advice))
+        }
         _ => None,
     }
 }
@@ -108,15 +146,31 @@ fn inertia(evidence: &Evidence<'_>) -> Option<Finding> {
 fn gravity(evidence: &Evidence<'_>) -> Option<Finding> {
     let gravity = evidence.setup.scene.gravity;
     let absurd = !(GRAVITY[0]..=GRAVITY[1]).contains(&gravity);
-    absurd.then(|| Finding::problem(Subject::Units, format!("gravity is {gravity} m/s^2"), "give it in m/s^2: 9.81 on a level table"))
+    absurd.then(|| {
+        Finding::problem(
+            Subject::Units,
+            format!("gravity is {gravity} m/s^2"),
+            "give it in m/s^2: 9.81 on a level table",
+        )
+    })
 }
 
 fn tripod(evidence: &Evidence<'_>) -> Option<Finding> {
     let radius = evidence.setup.scene.nominal.d_tri;
     let tripod = matches!(evidence.setup.scene.feet, Feet::Tripod { .. });
-    let found = || format!("the support tripod has a radius of {radius} m, the object one of {} m", evidence.size());
-    (tripod && radius > evidence.size())
-        .then(|| Finding::problem(Subject::Units, found(), "feet stand under the object: give the tripod radius in metres"))
+    let found = || {
+        format!(
+            "the support tripod has a radius of {radius} m, the object one of {} m",
+            evidence.size()
+        )
+    };
+    (tripod && radius > evidence.size()).then(|| {
+        Finding::problem(
+            Subject::Units,
+            found(),
+            "feet stand under the object: give the tripod radius in metres",
+        )
+    })
 }
 
 /// Diagonal of the box about all positions (m).
@@ -129,7 +183,11 @@ fn spread<'p>(poses: impl Iterator<Item = &'p Option<Pose>>) -> f64 {
             high[k] = high[k].max(value);
         }
     }
-    if low[0] > high[0] { 0.0 } else { (high[0] - low[0]).hypot(high[1] - low[1]) }
+    if low[0] > high[0] {
+        0.0
+    } else {
+        (high[0] - low[0]).hypot(high[1] - low[1])
+    }
 }
 
 /// Area of all parts (m²); parts that overlap count twice.
@@ -143,7 +201,11 @@ fn part_area(part: &Part) -> f64 {
         Part::Ellipse { semi_axes, .. } => std::f64::consts::PI * semi_axes[0] * semi_axes[1],
         Part::Polygon { vertices } => {
             let next = vertices.iter().cycle().skip(1);
-            0.5 * vertices.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
+            0.5 * vertices
+                .iter()
+                .zip(next)
+                .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
+                .sum::<f64>()
         }
     }
 }

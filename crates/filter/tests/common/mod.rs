@@ -1,13 +1,20 @@
-//! A linear-Gaussian model, whose exact answer is a Kalman filter's, for the tests of the particle filter.
+//! A linear-Gaussian model, whose exact answer is a Kalman filter's, for the tests of the particle
+//! filter.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use stickslip_filter::{Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams, WeightedSums};
+use stickslip_filter::{
+    Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams, WeightedSums,
+};
 
 /// Columns.
 pub const POSITION: usize = 0;
 pub const VELOCITY: usize = 1;
 
-pub const AXIS: ConstantVelocity = ConstantVelocity { process_noise: 0.5, measurement_std: 0.3, initial_velocity_std: 1.0 };
+pub const AXIS: ConstantVelocity = ConstantVelocity {
+    process_noise: 0.5,
+    measurement_std: 0.3,
+    initial_velocity_std: 1.0,
+};
 
 /// One axis of nearly constant velocity as particles; the state of [`ConstantVelocity`].
 pub struct Axis {
@@ -19,8 +26,15 @@ pub struct Axis {
 }
 
 impl Axis {
-    pub const OPEN: Axis = Axis { noise: AXIS, start: 0.0, gate: f64::INFINITY };
-    pub const GATED: Axis = Axis { gate: 3.0, ..Axis::OPEN };
+    pub const OPEN: Axis = Axis {
+        noise: AXIS,
+        start: 0.0,
+        gate: f64::INFINITY,
+    };
+    pub const GATED: Axis = Axis {
+        gate: 3.0,
+        ..Axis::OPEN
+    };
 }
 
 /// Sum of the weights, and of weight times position.
@@ -56,7 +70,10 @@ impl Model for Axis {
     }
 
     fn scratch(&self) -> Noise {
-        [vec![0.0; stickslip_filter::BLOCK], vec![0.0; stickslip_filter::BLOCK]]
+        [
+            vec![0.0; stickslip_filter::BLOCK],
+            vec![0.0; stickslip_filter::BLOCK],
+        ]
     }
 
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
@@ -86,27 +103,44 @@ impl Model for Axis {
         let constant = -libm::log(std * std::f64::consts::TAU.sqrt());
         for (l, x) in out.iter_mut().zip(block.column(POSITION)) {
             let z = (measured - x) / std;
-            *l = if (measured - x).abs() > self.gate { f64::NEG_INFINITY } else { constant - 0.5 * z * z };
+            *l = if (measured - x).abs() > self.gate {
+                f64::NEG_INFINITY
+            } else {
+                constant - 0.5 * z * z
+            };
         }
     }
 
     fn sum(&self, _: &f64, block: &Block<'_>, weights: &[f64], sums: &mut Sums) {
-        let position = weights.iter().zip(block.column(POSITION)).map(|(w, x)| w * x).sum();
-        *sums = Sums { weight: weights.iter().sum(), position };
+        let position = weights
+            .iter()
+            .zip(block.column(POSITION))
+            .map(|(w, x)| w * x)
+            .sum();
+        *sums = Sums {
+            weight: weights.iter().sum(),
+            position,
+        };
     }
 
     fn redraw(&self, measured: &f64, draw: Draw, block: &mut BlockMut<'_>) {
         for (lane, particle) in block.particles() {
-            block.column_mut(POSITION)[lane] = measured + self.noise.measurement_std * draw.normal(particle, 0);
+            block.column_mut(POSITION)[lane] =
+                measured + self.noise.measurement_std * draw.normal(particle, 0);
         }
     }
 }
 
 pub fn settings(particles: usize, seed: u64) -> Settings {
-    Settings { particles, seed, ..Settings::default() }
+    Settings {
+        particles,
+        seed,
+        ..Settings::default()
+    }
 }
 
-/// (times, measurements) of one axis that follows the model: steps uneven, every fifth row and a run of rows missing.
+/// (times, measurements) of one axis that follows the model: steps uneven, every fifth row and a
+/// run of rows missing.
 pub fn series(rows: usize, seed: u64) -> (Vec<f64>, Vec<Option<f64>>) {
     let streams = Streams::new(seed).of(Purpose::Measure);
     let (mut time, mut x, mut v) = (0.0, 0.0, 0.4);
@@ -121,7 +155,8 @@ pub fn series(rows: usize, seed: u64) -> (Vec<f64>, Vec<Option<f64>>) {
         time += h;
         let missing = row % 5 == 3 || (10..14).contains(&row);
         out.0.push(time);
-        out.1.push((!missing).then_some(x + AXIS.measurement_std * r));
+        out.1
+            .push((!missing).then_some(x + AXIS.measurement_std * r));
     }
     out
 }

@@ -9,8 +9,8 @@ use crate::log_mcap::topics::Topic;
 pub struct McapPlace {
     /// Name of the topic.
     pub topic: String,
-    /// Number of the message among those of the topic in the file, counted from 1, and its log time (ns); `None` where the whole
-    /// topic is meant.
+    /// Number of the message among those of the topic in the file, counted from 1, and its log time
+    /// (ns); `None` where the whole topic is meant.
     pub message: Option<(usize, u64)>,
 }
 
@@ -31,7 +31,12 @@ impl fmt::Display for McapError {
         if let Some(place) = &self.place {
             write!(f, "{}", place.topic)?;
             if let Some((number, time)) = place.message {
-                write!(f, ", message {number} (log time {}.{:09} s)", time / 1_000_000_000, time % 1_000_000_000)?;
+                write!(
+                    f,
+                    ", message {number} (log time {}.{:09} s)",
+                    time / 1_000_000_000,
+                    time % 1_000_000_000
+                )?;
             }
             write!(f, ": ")?;
         }
@@ -52,13 +57,17 @@ pub enum McapProblem {
         found: String,
     },
     /// The file is damaged before anything could be read.
-    #[error("nothing could be read: {why}. Try `mcap recover` on the file, or give another recording")]
+    #[error(
+        "nothing could be read: {why}. Try `mcap recover` on the file, or give another recording"
+    )]
     Unreadable {
         /// The damage.
         why: String,
     },
     /// A chunk is packed in a way that is not known.
-    #[error("a chunk is compressed with `{found}`; none, zstd and lz4 can be read. Rewrite the file with `mcap compress`")]
+    #[error(
+        "a chunk is compressed with `{found}`; none, zstd and lz4 can be read. Rewrite the file with `mcap compress`"
+    )]
     Compression {
         /// Name of the compression.
         found: String,
@@ -87,7 +96,9 @@ pub enum McapProblem {
         missing: usize,
     },
     /// A topic of another message type.
-    #[error("its messages are {found}, and {expected} is needed. Map another topic, or convert the messages before recording")]
+    #[error(
+        "its messages are {found}, and {expected} is needed. Map another topic, or convert the messages before recording"
+    )]
     WrongType {
         /// The type that is there; empty where none is told.
         found: String,
@@ -95,7 +106,9 @@ pub enum McapProblem {
         expected: &'static str,
     },
     /// A message encoding that is not CDR.
-    #[error("its messages are encoded as `{found}`; only cdr, that of ROS 2, can be read. Record the topic with `ros2 bag record -s mcap`")]
+    #[error(
+        "its messages are encoded as `{found}`; only cdr, that of ROS 2, can be read. Record the topic with `ros2 bag record -s mcap`"
+    )]
     WrongEncoding {
         /// The encoding.
         found: String,
@@ -118,7 +131,9 @@ pub enum McapProblem {
         why: String,
     },
     /// A stamp whose nanoseconds are a second or more.
-    #[error("header.stamp.nanosec is {found}; it must be below 1000000000. Correct what publishes the stamp")]
+    #[error(
+        "header.stamp.nanosec is {found}; it must be below 1000000000. Correct what publishes the stamp"
+    )]
     Nanoseconds {
         /// The nanoseconds.
         found: u32,
@@ -134,7 +149,9 @@ pub enum McapProblem {
         first: usize,
     },
     /// Infinite or NaN.
-    #[error("{field} is {found}; numbers must be finite. Publish no message where nothing was measured")]
+    #[error(
+        "{field} is {found}; numbers must be finite. Publish no message where nothing was measured"
+    )]
     NotFinite {
         /// The field.
         field: &'static str,
@@ -142,13 +159,17 @@ pub enum McapProblem {
         found: f64,
     },
     /// A quaternion that is no rotation.
-    #[error("the orientation's length is {found}; it must be 1 within 0.01. Correct the quaternion that is published")]
+    #[error(
+        "the orientation's length is {found}; it must be 1 within 0.01. Correct the quaternion that is published"
+    )]
     NotUnit {
         /// The length.
         found: f64,
     },
     /// Upside down, so that there is no angle about the vertical.
-    #[error("the pose is upside down, and its angle about z is undefined. Publish poses whose z-axis points up from the table")]
+    #[error(
+        "the pose is upside down, and its angle about z is undefined. Publish poses whose z-axis points up from the table"
+    )]
     UpsideDown,
     /// Two frames.
     #[error("header.frame_id is `{found}`, and `{expected}` in {of}; all must be in one frame. Transform them before recording{}", if *.wrench { ", or leave forces out with wrench=" } else { "" })]
@@ -163,13 +184,17 @@ pub enum McapProblem {
         wrench: bool,
     },
     /// Stamps that are different and the same in seconds.
-    #[error("two rows are both at {time} s, since their stamps differ by less than numbers can tell. Record stamps further apart")]
+    #[error(
+        "two rows are both at {time} s, since their stamps differ by less than numbers can tell. Record stamps further apart"
+    )]
     SameTime {
         /// The time (s).
         time: f64,
     },
     /// Topics without a message.
-    #[error("there is no message on `{object}` or `{pusher}`; at least one is needed. Record while poses are published")]
+    #[error(
+        "there is no message on `{object}` or `{pusher}`; at least one is needed. Record while poses are published"
+    )]
     NoRows {
         /// The object's topic.
         object: String,

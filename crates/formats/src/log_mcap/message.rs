@@ -139,20 +139,32 @@ impl Time {
 pub(crate) fn encode<M: Message>(message: &M) -> Vec<u8> {
     let body = cdr_encoding::to_vec::<M, LittleEndian>(message);
     // numbers, flags and strings have one encoding each, and a vector takes any length
-    let Ok(body) = body else { panic!("a message of {} has a CDR form", M::TYPE) };
+    let Ok(body) = body else {
+        panic!("a message of {} has a CDR form", M::TYPE)
+    };
     [&[0, 1, 0, 0], body.as_slice()].concat()
 }
 
 /// A message from little- or big-endian CDR.
 pub(crate) fn decode<M: Message>(bytes: &[u8]) -> Result<M, McapProblem> {
-    let wrong = |why: String| McapProblem::Message { expected: M::TYPE, why };
+    let wrong = |why: String| McapProblem::Message {
+        expected: M::TYPE,
+        why,
+    };
     let Some((&[first, second, _, _], body)) = bytes.split_first_chunk() else {
-        return Err(wrong(format!("it has {} bytes and CDR begins with four of its own", bytes.len())));
+        return Err(wrong(format!(
+            "it has {} bytes and CDR begins with four of its own",
+            bytes.len()
+        )));
     };
     let read = match (first, second) {
         (0, 0) => cdr_encoding::from_bytes::<M, BigEndian>(body),
         (0, 1) => cdr_encoding::from_bytes::<M, LittleEndian>(body),
-        _ => return Err(McapProblem::Encapsulation { found: [first, second] }),
+        _ => {
+            return Err(McapProblem::Encapsulation {
+                found: [first, second],
+            });
+        }
     };
     let (message, used) = read.map_err(|error| wrong(error.to_string()))?;
     match body.len() - used {
@@ -167,21 +179,49 @@ mod tests {
 
     #[test]
     fn encode_lays_a_pose_out_as_the_specification_says() {
-        let header = Header { stamp: Time { sec: 2, nanosec: 5 }, frame_id: "world".to_owned() };
-        let position = Vector3 { x: 1.0, y: 2.0, z: 0.0 };
-        let pose = PoseStamped { header, position, orientation: Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 } };
+        let header = Header {
+            stamp: Time { sec: 2, nanosec: 5 },
+            frame_id: "world".to_owned(),
+        };
+        let position = Vector3 {
+            x: 1.0,
+            y: 2.0,
+            z: 0.0,
+        };
+        let pose = PoseStamped {
+            header,
+            position,
+            orientation: Quaternion {
+                x: 0.0,
+                y: 0.0,
+                z: 0.0,
+                w: 1.0,
+            },
+        };
         let bytes = encode(&pose);
         // stamp, length with the closing zero, text, two bytes to the next multiple of 8, numbers
-        let front = [0, 1, 0, 0, 2, 0, 0, 0, 5, 0, 0, 0, 6, 0, 0, 0, b'w', b'o', b'r', b'l', b'd', 0, 0, 0];
+        let front = [
+            0, 1, 0, 0, 2, 0, 0, 0, 5, 0, 0, 0, 6, 0, 0, 0, b'w', b'o', b'r', b'l', b'd', 0, 0, 0,
+        ];
         assert_eq!(bytes[..24], front);
-        let numbers: Vec<f64> = bytes[28..].chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
-        assert_eq!((bytes[24..28].to_vec(), numbers), (vec![0; 4], vec![1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+        let numbers: Vec<f64> = bytes[28..]
+            .chunks(8)
+            .map(|b| f64::from_le_bytes(b.try_into().unwrap()))
+            .collect();
+        assert_eq!(
+            (bytes[24..28].to_vec(), numbers),
+            (vec![0; 4], vec![1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        );
         assert_eq!(decode::<PoseStamped>(&bytes), Ok(pose));
     }
 
     #[test]
     fn decode_reads_both_byte_orders_and_padding() {
-        for bytes in [&[0, 0, 0, 0, 1][..], &[0, 1, 0, 0, 1], &[0, 1, 0, 3, 1, 0, 0, 0]] {
+        for bytes in [
+            &[0, 0, 0, 0, 1][..],
+            &[0, 1, 0, 0, 1],
+            &[0, 1, 0, 3, 1, 0, 0, 0],
+        ] {
             assert_eq!(decode::<Bool>(bytes), Ok(Bool { data: true }));
         }
     }
@@ -193,7 +233,10 @@ mod tests {
             (&[0, 1, 0, 0], "std_msgs/msg/Bool"),
             (&[0, 1, 0, 0, 2], "std_msgs/msg/Bool"),
             (&[0x28, 0xb5, 0x2f, 0xfd, 1], "28 B5"),
-            (&[0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0], "8 bytes are left over"),
+            (
+                &[0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0],
+                "8 bytes are left over",
+            ),
         ] {
             let message = decode::<Bool>(bytes).unwrap_err().to_string();
             assert!(message.contains(words), "{message}");

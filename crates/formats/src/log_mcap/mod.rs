@@ -1,7 +1,7 @@
 //! A log as an MCAP recording of ROS 2 messages: [`read_log_mcap`], [`write_log_mcap`].
 //!
-//! `recording` takes the file apart into messages by topic, `message` has their types, `series` makes measurements of them and `rows`
-//! a log's rows; `topics` says which topic is which.
+//! `recording` takes the file apart into messages by topic, `message` has their types, `series`
+//! makes measurements of them and `rows` a log's rows; `topics` says which topic is which.
 
 mod error;
 mod message;

@@ -1,7 +1,7 @@
 //! An MCAP file as messages by topic, as far as it can be read: [`Recording`].
 //!
-//! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in them. An attachment is never
-//! looked at.
+//! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in
+//! them. An attachment is never looked at.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
@@ -86,10 +86,19 @@ impl Recording {
     /// Reads the topics that `wanted` names, up to the first damage.
     pub(crate) fn read(bytes: &[u8], wanted: &Topics) -> Result<Self, McapProblem> {
         if !bytes.starts_with(mcap::MAGIC) {
-            let found = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(" ");
+            let found = bytes
+                .iter()
+                .take(8)
+                .map(|byte| format!("{byte:02X}"))
+                .collect::<Vec<_>>()
+                .join(" ");
             return Err(McapProblem::NotMcap { found });
         }
-        let mut progress = Progress { wanted, links: ChannelAccumulator::default(), recording: Self::default() };
+        let mut progress = Progress {
+            wanted,
+            links: ChannelAccumulator::default(),
+            recording: Self::default(),
+        };
         let mut at = mcap::MAGIC.len() as u64;
         let mut in_summary = false;
         let read = records(bytes, Part::Whole, &mut |opcode, body| {
@@ -105,7 +114,10 @@ impl Recording {
         });
         match read {
             Ok(()) => Ok(progress.recording),
-            Err(Stop::Damage(why)) => Ok(Self { damage: Some(Damage { at, why }), ..progress.recording }),
+            Err(Stop::Damage(why)) => Ok(Self {
+                damage: Some(Damage { at, why }),
+                ..progress.recording
+            }),
             Err(Stop::Refused(problem)) => Err(problem),
         }
     }
@@ -118,7 +130,9 @@ impl Progress<'_> {
             _ => return Err(damage("a chunk is none")),
         };
         let content = unpacked(&header, &packed)?;
-        records(&content, Part::Chunk, &mut |opcode, body| self.take(opcode, body))
+        records(&content, Part::Chunk, &mut |opcode, body| {
+            self.take(opcode, body)
+        })
     }
 
     fn take(&mut self, opcode: u8, body: &[u8]) -> Result<(), Stop> {
@@ -133,9 +147,19 @@ impl Progress<'_> {
                 self.take_channel(id)?;
             }
             Record::Message { header, data } => {
-                let channel = self.links.get(header.channel_id).ok_or_else(|| damage("a message is of no channel"))?;
-                if let Some(content) = self.wanted.carries(&channel.topic).and_then(|topic| self.recording.topics.get_mut(&topic)) {
-                    content.messages.push(RawMessage { log_time: header.log_time, data: data.into_owned() });
+                let channel = self
+                    .links
+                    .get(header.channel_id)
+                    .ok_or_else(|| damage("a message is of no channel"))?;
+                if let Some(content) = self
+                    .wanted
+                    .carries(&channel.topic)
+                    .and_then(|topic| self.recording.topics.get_mut(&topic))
+                {
+                    content.messages.push(RawMessage {
+                        log_time: header.log_time,
+                        data: data.into_owned(),
+                    });
                 }
             }
             _ => {}
@@ -144,12 +168,26 @@ impl Progress<'_> {
     }
 
     fn take_channel(&mut self, id: u16) -> Result<(), Stop> {
-        let channel = self.links.get(id).ok_or_else(|| damage("a channel is lost"))?;
+        let channel = self
+            .links
+            .get(id)
+            .ok_or_else(|| damage("a channel is lost"))?;
         self.recording.names.insert(channel.topic.clone());
         if let Some(topic) = self.wanted.carries(&channel.topic) {
-            let schema = channel.schema.as_ref().map_or(String::new(), |schema| schema.name.clone());
-            let kind = Kind { schema, encoding: channel.message_encoding.clone() };
-            self.recording.topics.entry(topic).or_default().kinds.insert(kind);
+            let schema = channel
+                .schema
+                .as_ref()
+                .map_or(String::new(), |schema| schema.name.clone());
+            let kind = Kind {
+                schema,
+                encoding: channel.message_encoding.clone(),
+            };
+            self.recording
+                .topics
+                .entry(topic)
+                .or_default()
+                .kinds
+                .insert(kind);
         }
         Ok(())
     }
@@ -194,15 +232,30 @@ fn records(bytes: &[u8], part: Part, take: &mut Take<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-/// A record whose texts lie within it; the library reserves memory by their lengths before it looks.
+/// A record whose texts lie within it; the library reserves memory by their lengths before it
+/// looks.
 fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
     let fits = match opcode {
-        op::SCHEMA => body.get(2..).and_then(|rest| after_texts(rest, 2)).is_some(),
-        op::CHANNEL => body.get(4..).and_then(|rest| after_texts(rest, 2)).and_then(map_fits).is_some(),
-        op::CHUNK => body.get(28..).and_then(|rest| after_texts(rest, 1)).is_some(),
+        op::SCHEMA => body
+            .get(2..)
+            .and_then(|rest| after_texts(rest, 2))
+            .is_some(),
+        op::CHANNEL => body
+            .get(4..)
+            .and_then(|rest| after_texts(rest, 2))
+            .and_then(map_fits)
+            .is_some(),
+        op::CHUNK => body
+            .get(28..)
+            .and_then(|rest| after_texts(rest, 1))
+            .is_some(),
         _ => true,
     };
-    if fits { Ok(parse_record(opcode, body)?) } else { Err(damage("a text is longer than its record")) }
+    if fits {
+        Ok(parse_record(opcode, body)?)
+    } else {
+        Err(damage("a text is longer than its record"))
+    }
 }
 
 /// What follows `count` texts, each behind its length.
@@ -227,19 +280,35 @@ fn map_fits(bytes: &[u8]) -> Option<()> {
 fn unpacked(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, Stop> {
     let size = header.uncompressed_size;
     if size > CHUNK_LIMIT {
-        return Err(Stop::Damage(format!("a chunk claims {size} bytes, more than {CHUNK_LIMIT}")));
+        return Err(Stop::Damage(format!(
+            "a chunk claims {size} bytes, more than {CHUNK_LIMIT}"
+        )));
     }
-    let failed = |error: std::io::Error| Stop::Damage(format!("a chunk cannot be unpacked: {error}"));
+    let failed =
+        |error: std::io::Error| Stop::Damage(format!("a chunk cannot be unpacked: {error}"));
     let mut content = Vec::new();
     let read = match header.compression.as_str() {
         "" => packed.take(size).read_to_end(&mut content),
-        "zstd" => zstd::stream::read::Decoder::new(packed).map_err(failed)?.take(size).read_to_end(&mut content),
-        "lz4" => lz4::Decoder::new(packed).map_err(failed)?.take(size).read_to_end(&mut content),
-        found => return Err(Stop::Refused(McapProblem::Compression { found: found.to_owned() })),
+        "zstd" => zstd::stream::read::Decoder::new(packed)
+            .map_err(failed)?
+            .take(size)
+            .read_to_end(&mut content),
+        "lz4" => lz4::Decoder::new(packed)
+            .map_err(failed)?
+            .take(size)
+            .read_to_end(&mut content),
+        found => {
+            return Err(Stop::Refused(McapProblem::Compression {
+                found: found.to_owned(),
+            }));
+        }
     };
     read.map_err(failed)?;
     if content.len() as u64 != size {
-        return Err(Stop::Damage(format!("a chunk has {} bytes, and its header says {size}", content.len())));
+        return Err(Stop::Damage(format!(
+            "a chunk has {} bytes, and its header says {size}",
+            content.len()
+        )));
     }
     match header.uncompressed_crc {
         0 => Ok(content),

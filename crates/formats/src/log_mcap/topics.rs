@@ -28,7 +28,8 @@ pub struct TopicMapping {
     pub name: String,
 }
 
-/// The names of all topics: `/object/pose`, `/pusher/pose`, `/pusher/wrench`, `/fixel_<k>/contact`, or what they are mapped to.
+/// The names of all topics: `/object/pose`, `/pusher/pose`, `/pusher/wrench`, `/fixel_<k>/contact`,
+/// or what they are mapped to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topics(BTreeMap<Topic, String>);
 
@@ -40,7 +41,9 @@ pub enum TopicError {
     #[error("`{0}` has no `=`; write KEY=TOPIC, as object=/vicon/box/pose")]
     NoTopic(String),
     /// The key is none.
-    #[error("`{found}` is none of the keys object, pusher, wrench, fixel_1, fixel_2, ...; the nearest is {nearest}")]
+    #[error(
+        "`{found}` is none of the keys object, pusher, wrench, fixel_1, fixel_2, ...; the nearest is {nearest}"
+    )]
     UnknownKey {
         /// The key.
         found: String,
@@ -104,32 +107,46 @@ impl FromStr for Topic {
             "object" => Ok(Self::Object),
             "pusher" => Ok(Self::Pusher),
             "wrench" => Ok(Self::Wrench),
-            _ => fixel_number(key, "fixel_", "").map(Self::Fixel).ok_or_else(|| unknown(key)),
+            _ => fixel_number(key, "fixel_", "")
+                .map(Self::Fixel)
+                .ok_or_else(|| unknown(key)),
         }
     }
 }
 
 fn unknown(key: &str) -> TopicError {
-    let closest = nearest(key, ["object", "pusher", "wrench", "fixel_1"]).map_or("object", |(name, _)| name);
-    TopicError::UnknownKey { found: key.to_owned(), nearest: closest.to_owned() }
+    let closest =
+        nearest(key, ["object", "pusher", "wrench", "fixel_1"]).map_or("object", |(name, _)| name);
+    TopicError::UnknownKey {
+        found: key.to_owned(),
+        nearest: closest.to_owned(),
+    }
 }
 
 /// The number between `before` and `after`, from 1 up and as it is written out.
 fn fixel_number(text: &str, before: &str, after: &str) -> Option<usize> {
     let digits = text.strip_prefix(before)?.strip_suffix(after)?;
-    digits.parse().ok().filter(|k: &usize| *k > 0 && k.to_string() == digits)
+    digits
+        .parse()
+        .ok()
+        .filter(|k: &usize| *k > 0 && k.to_string() == digits)
 }
 
 impl FromStr for TopicMapping {
     type Err = TopicError;
 
     fn from_str(text: &str) -> Result<Self, TopicError> {
-        let (key, name) = text.split_once('=').ok_or_else(|| TopicError::NoTopic(text.to_owned()))?;
+        let (key, name) = text
+            .split_once('=')
+            .ok_or_else(|| TopicError::NoTopic(text.to_owned()))?;
         let topic: Topic = key.parse()?;
         if name.is_empty() && topic != Topic::Wrench {
             return Err(TopicError::Nameless(topic));
         }
-        Ok(Self { topic, name: name.to_owned() })
+        Ok(Self {
+            topic,
+            name: name.to_owned(),
+        })
     }
 }
 
@@ -149,11 +166,22 @@ impl Topics {
     pub fn new(mappings: impl IntoIterator<Item = TopicMapping>) -> Result<Self, TopicError> {
         let mut names = BTreeMap::new();
         for TopicMapping { topic, name } in mappings {
-            if let Some((first, _)) = names.iter().find(|(other, taken)| **other != topic && **taken == name) {
-                return Err(TopicError::Shared { first: *first, second: topic, name });
+            if let Some((first, _)) = names
+                .iter()
+                .find(|(other, taken)| **other != topic && **taken == name)
+            {
+                return Err(TopicError::Shared {
+                    first: *first,
+                    second: topic,
+                    name,
+                });
             }
             if let Some(first) = names.insert(topic, name.clone()) {
-                return Err(TopicError::Twice { topic, first, second: name });
+                return Err(TopicError::Twice {
+                    topic,
+                    first,
+                    second: name,
+                });
             }
         }
         Ok(Self(names))
@@ -162,7 +190,10 @@ impl Topics {
     /// Name of a topic; `None` for a wrench that is left out.
     #[must_use]
     pub fn name(&self, topic: Topic) -> Option<String> {
-        self.0.get(&topic).cloned().map_or_else(|| Some(topic.default_name()), |name| Some(name).filter(|name| !name.is_empty()))
+        self.0.get(&topic).cloned().map_or_else(
+            || Some(topic.default_name()),
+            |name| Some(name).filter(|name| !name.is_empty()),
+        )
     }
 
     /// Whether nothing is mapped.
@@ -176,19 +207,30 @@ impl Topics {
         self.0.get(&topic).is_some_and(|name| !name.is_empty())
     }
 
-    /// What a topic of a recording carries, if anything. A name that something is mapped to carries that and no other.
+    /// What a topic of a recording carries, if anything. A name that something is mapped to carries
+    /// that and no other.
     pub(crate) fn carries(&self, name: &str) -> Option<Topic> {
         if let Some((topic, _)) = self.0.iter().find(|(_, mapped)| *mapped == name) {
             return Some(*topic);
         }
         let fixel = fixel_number(name, "/fixel_", "/contact").map(Topic::Fixel);
-        let known = [Topic::Object, Topic::Pusher, Topic::Wrench].into_iter().chain(fixel);
-        known.into_iter().find(|topic| topic.default_name() == name && !self.0.contains_key(topic))
+        let known = [Topic::Object, Topic::Pusher, Topic::Wrench]
+            .into_iter()
+            .chain(fixel);
+        known
+            .into_iter()
+            .find(|topic| topic.default_name() == name && !self.0.contains_key(topic))
     }
 
     /// Numbers of the fixels that are mapped.
     pub(crate) fn mapped_fixels(&self) -> impl Iterator<Item = usize> {
-        self.0.keys().filter_map(|topic| if let Topic::Fixel(k) = topic { Some(*k) } else { None })
+        self.0.keys().filter_map(|topic| {
+            if let Topic::Fixel(k) = topic {
+                Some(*k)
+            } else {
+                None
+            }
+        })
     }
 }
 
@@ -197,12 +239,23 @@ mod tests {
     use super::*;
 
     fn topics(mappings: &[&str]) -> Result<Topics, TopicError> {
-        Topics::new(mappings.iter().map(|text| text.parse()).collect::<Result<Vec<_>, _>>()?)
+        Topics::new(
+            mappings
+                .iter()
+                .map(|text| text.parse())
+                .collect::<Result<Vec<_>, _>>()?,
+        )
     }
 
     #[test]
     fn carries_goes_by_mapping_then_by_own_name() {
-        let topics = topics(&["fixel_1=/fixel_2/contact", "fixel_2=/fixel_1/contact", "object=/box", "wrench="]).unwrap();
+        let topics = topics(&[
+            "fixel_1=/fixel_2/contact",
+            "fixel_2=/fixel_1/contact",
+            "object=/box",
+            "wrench=",
+        ])
+        .unwrap();
         for (name, topic) in [
             ("/fixel_1/contact", Some(Topic::Fixel(2))),
             ("/fixel_2/contact", Some(Topic::Fixel(1))),
@@ -223,11 +276,23 @@ mod tests {
     fn mappings_are_refused_with_words() {
         for (mappings, words) in [
             (&["object"][..], "`object` has no `=`; write KEY=TOPIC"),
-            (&["objekt=/a"], "`objekt` is none of the keys object, pusher, wrench, fixel_1, fixel_2, ...; the nearest is object"),
+            (
+                &["objekt=/a"],
+                "`objekt` is none of the keys object, pusher, wrench, fixel_1, fixel_2, ...; the nearest is object",
+            ),
             (&["fixel_01=/a"], "the nearest is fixel_1"),
-            (&["pusher="], "pusher has no name; only the wrench can be left out"),
-            (&["object=/a", "object=/b"], "object is mapped to `/a` and to `/b`; map it once"),
-            (&["object=/a", "pusher=/a"], "object and pusher are both mapped to `/a`"),
+            (
+                &["pusher="],
+                "pusher has no name; only the wrench can be left out",
+            ),
+            (
+                &["object=/a", "object=/b"],
+                "object is mapped to `/a` and to `/b`; map it once",
+            ),
+            (
+                &["object=/a", "pusher=/a"],
+                "object and pusher are both mapped to `/a`",
+            ),
         ] {
             let message = topics(mappings).unwrap_err().to_string();
             assert!(message.contains(words), "{message}");

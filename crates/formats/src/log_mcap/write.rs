@@ -9,7 +9,9 @@ use stickslip::Log;
 use stickslip_dynamics::Pose;
 
 use crate::log_csv::assert_equal_columns;
-use crate::log_mcap::message::{Bool, Header, Message, PoseStamped, Quaternion, SECOND, Time, Vector3, WrenchStamped, encode};
+use crate::log_mcap::message::{
+    Bool, Header, Message, PoseStamped, Quaternion, SECOND, Time, Vector3, WrenchStamped, encode,
+};
 use crate::log_mcap::series::ENCODING;
 use crate::log_mcap::topics::{Topic, Topics};
 
@@ -31,7 +33,9 @@ pub enum McapWriteError {
         time: f64,
     },
     /// Two rows with one stamp.
-    #[error("row {row} is at {time} s, less than a nanosecond after the row before; stamps hold whole nanoseconds. Leave one of them out")]
+    #[error(
+        "row {row} is at {time} s, less than a nanosecond after the row before; stamps hold whole nanoseconds. Leave one of them out"
+    )]
     SameStamp {
         /// The later row, from 0.
         row: usize,
@@ -58,33 +62,62 @@ impl From<mcap::McapError> for McapWriteError {
     }
 }
 
-/// Writes a log as an MCAP recording of ROS 2 messages: poses as `geometry_msgs/msg/PoseStamped`, tactile readings as
-/// `std_msgs/msg/Bool`, forces as `geometry_msgs/msg/WrenchStamped`, all in the frame `world` and at their row's time, rounded to
-/// nanoseconds. An empty cell is no message. The same log gives the same bytes.
+/// Writes a log as an MCAP recording of ROS 2 messages: poses as `geometry_msgs/msg/PoseStamped`,
+/// tactile readings as `std_msgs/msg/Bool`, forces as `geometry_msgs/msg/WrenchStamped`, all in the
+/// frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no message. The
+/// same log gives the same bytes.
 ///
-/// What [`crate::read_log_mcap`] does not bring back: rows without any pose, and which cells were empty where its rules fill them.
+/// What [`crate::read_log_mcap`] does not bring back: rows without any pose, and which cells were
+/// empty where its rules fill them.
 ///
 /// # Errors
-/// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says. After the last nothing useful is written.
+/// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says. After the
+/// last nothing useful is written.
 ///
 /// # Panics
 /// If the columns differ in length.
-pub fn write_log_mcap(writer: impl Write + Seek, log: &Log, topics: &Topics) -> Result<(), McapWriteError> {
+pub fn write_log_mcap(
+    writer: impl Write + Seek,
+    log: &Log,
+    topics: &Topics,
+) -> Result<(), McapWriteError> {
     assert_equal_columns(log);
 
     let stamps = stamps(&log.time)?;
     let mut recorder = Recorder::new(writer)?;
     let object = recorder.channel::<PoseStamped>(topics, Topic::Object)?;
     let pusher = recorder.channel::<PoseStamped>(topics, Topic::Pusher)?;
-    let touches = (1..=log.tactile.len()).map(|k| recorder.channel::<Bool>(topics, Topic::Fixel(k))).collect::<Result<Vec<_>, _>>()?;
-    let wrench = if log.force.is_empty() { None } else { recorder.channel::<WrenchStamped>(topics, Topic::Wrench)? };
+    let touches = (1..=log.tactile.len())
+        .map(|k| recorder.channel::<Bool>(topics, Topic::Fixel(k)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let wrench = if log.force.is_empty() {
+        None
+    } else {
+        recorder.channel::<WrenchStamped>(topics, Topic::Wrench)?
+    };
     for (row, stamp) in stamps.into_iter().enumerate() {
-        recorder.write(object, stamp, log.object[row].map(|pose| pose_message(stamp, pose)))?;
-        recorder.write(pusher, stamp, log.pusher[row].map(|pose| pose_message(stamp, pose)))?;
+        recorder.write(
+            object,
+            stamp,
+            log.object[row].map(|pose| pose_message(stamp, pose)),
+        )?;
+        recorder.write(
+            pusher,
+            stamp,
+            log.pusher[row].map(|pose| pose_message(stamp, pose)),
+        )?;
         for (channel, column) in touches.iter().zip(&log.tactile) {
             recorder.write(*channel, stamp, column[row].map(|data| Bool { data }))?;
         }
-        recorder.write(wrench, stamp, log.force.get(row).copied().flatten().map(|force| force_message(stamp, force)))?;
+        recorder.write(
+            wrench,
+            stamp,
+            log.force
+                .get(row)
+                .copied()
+                .flatten()
+                .map(|force| force_message(stamp, force)),
+        )?;
     }
     recorder.0.finish()?;
     Ok(())
@@ -112,37 +145,89 @@ struct Recorder<W: Write + Seek>(Writer<W>);
 impl<W: Write + Seek> Recorder<W> {
     fn new(writer: W) -> Result<Self, McapWriteError> {
         // without compression, whose output may change from one version to the next
-        let options = WriteOptions::new().compression(None).profile("ros2").library("stickslip").chunk_size(Some(CHUNK));
+        let options = WriteOptions::new()
+            .compression(None)
+            .profile("ros2")
+            .library("stickslip")
+            .chunk_size(Some(CHUNK));
         Ok(Self(options.create(writer)?))
     }
 
     /// A topic of the recording; `None` for one that is left out.
-    fn channel<M: Message>(&mut self, topics: &Topics, topic: Topic) -> Result<Option<u16>, McapWriteError> {
-        let Some(name) = topics.name(topic) else { return Ok(None) };
-        let schema = self.0.add_schema(M::TYPE, "ros2msg", M::SCHEMA.as_bytes())?;
+    fn channel<M: Message>(
+        &mut self,
+        topics: &Topics,
+        topic: Topic,
+    ) -> Result<Option<u16>, McapWriteError> {
+        let Some(name) = topics.name(topic) else {
+            return Ok(None);
+        };
+        let schema = self
+            .0
+            .add_schema(M::TYPE, "ros2msg", M::SCHEMA.as_bytes())?;
         let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), String::new())]);
-        Ok(Some(self.0.add_channel(schema, &name, ENCODING, &metadata)?))
+        Ok(Some(
+            self.0.add_channel(schema, &name, ENCODING, &metadata)?,
+        ))
     }
 
-    fn write<M: Message>(&mut self, channel: Option<u16>, stamp: i64, message: Option<M>) -> Result<(), McapWriteError> {
-        let Some((channel_id, message)) = channel.zip(message) else { return Ok(()) };
+    fn write<M: Message>(
+        &mut self,
+        channel: Option<u16>,
+        stamp: i64,
+        message: Option<M>,
+    ) -> Result<(), McapWriteError> {
+        let Some((channel_id, message)) = channel.zip(message) else {
+            return Ok(());
+        };
         let time = stamp.unsigned_abs();
-        let header = MessageHeader { channel_id, sequence: 0, log_time: time, publish_time: time };
+        let header = MessageHeader {
+            channel_id,
+            sequence: 0,
+            log_time: time,
+            publish_time: time,
+        };
         Ok(self.0.write_to_known_channel(&header, &encode(&message))?)
     }
 }
 
 fn header(stamp: i64) -> Header {
-    let Some(stamp) = Time::of(stamp) else { panic!("{stamp} ns was checked") };
-    Header { stamp, frame_id: FRAME.to_owned() }
+    let Some(stamp) = Time::of(stamp) else {
+        panic!("{stamp} ns was checked")
+    };
+    Header {
+        stamp,
+        frame_id: FRAME.to_owned(),
+    }
 }
 
 fn pose_message(stamp: i64, pose: Pose) -> PoseStamped {
     let (z, w) = libm::sincos(pose.theta / 2.0);
-    let position = Vector3 { x: pose.x, y: pose.y, z: 0.0 };
-    PoseStamped { header: header(stamp), position, orientation: Quaternion { x: 0.0, y: 0.0, z, w } }
+    let position = Vector3 {
+        x: pose.x,
+        y: pose.y,
+        z: 0.0,
+    };
+    PoseStamped {
+        header: header(stamp),
+        position,
+        orientation: Quaternion {
+            x: 0.0,
+            y: 0.0,
+            z,
+            w,
+        },
+    }
 }
 
 fn force_message(stamp: i64, force: [f64; 2]) -> WrenchStamped {
-    WrenchStamped { header: header(stamp), force: Vector3 { x: force[0], y: force[1], z: 0.0 }, torque: Vector3::default() }
+    WrenchStamped {
+        header: header(stamp),
+        force: Vector3 {
+            x: force[0],
+            y: force[1],
+            z: 0.0,
+        },
+        torque: Vector3::default(),
+    }
 }

@@ -1,6 +1,7 @@
 //! A TOML document whose every value knows its place: [`Source`], [`Table`], [`Node`].
 //!
-//! Reading by hand rather than by derive keeps the place of each number in nested lists, and the words for it.
+//! Reading by hand rather than by derive keeps the place of each number in nested lists, and the
+//! words for it.
 
 use std::ops::Range;
 
@@ -14,21 +15,60 @@ type Result<T> = std::result::Result<T, SceneError>;
 
 /// The keys of each table of the format; the first one is the document itself.
 const TABLES: [(&str, &[&str]); 10] = [
-    ("", &["gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile", "filter", "start"]),
+    (
+        "",
+        &[
+            "gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile",
+            "filter", "start",
+        ],
+    ),
     ("object", &["mass", "inertia", "shape"]),
-    ("support", &["friction", "tripod_radius", "tripod_angle", "feet"]),
+    (
+        "support",
+        &["friction", "tripod_radius", "tripod_angle", "feet"],
+    ),
     ("pusher", &["shape", "friction", "stall_force"]),
     ("fixels", &["friction"]),
     ("fixel", &["position", "angle", "shape"]),
-    ("camera", &["position_std", "orientation_std", "latency", "pusher_position_std", "pusher_orientation_std"]),
-    ("tactile", &["false_positive", "false_negative", "touch_force"]),
-    ("filter", &["force_std", "parameter_std", "resample_below", "likelihood_scale", "mu_s", "mu_p", "mu_f", "d_tri"]),
-    ("start", &["object", "pusher", "direction", "speed", "duration"]),
+    (
+        "camera",
+        &[
+            "position_std",
+            "orientation_std",
+            "latency",
+            "pusher_position_std",
+            "pusher_orientation_std",
+        ],
+    ),
+    (
+        "tactile",
+        &["false_positive", "false_negative", "touch_force"],
+    ),
+    (
+        "filter",
+        &[
+            "force_std",
+            "parameter_std",
+            "resample_below",
+            "likelihood_scale",
+            "mu_s",
+            "mu_p",
+            "mu_f",
+            "d_tri",
+        ],
+    ),
+    (
+        "start",
+        &["object", "pusher", "direction", "speed", "duration"],
+    ),
 ];
 
 /// The keys that a table of the format may have; `""` is the document itself.
 pub(super) fn keys_of(table: &str) -> &'static [&'static str] {
-    TABLES.iter().find(|(name, _)| *name == table).map_or(&[], |(_, keys)| keys)
+    TABLES
+        .iter()
+        .find(|(name, _)| *name == table)
+        .map_or(&[], |(_, keys)| keys)
 }
 
 /// The text of a scene file with its name.
@@ -78,16 +118,34 @@ impl Source<'_> {
     /// The line that a byte is on, without blanks around it.
     pub(super) fn line_at(&self, byte: usize) -> &str {
         let before = self.text.get(..byte).unwrap_or(self.text);
-        self.text.lines().nth(before.matches('\n').count()).unwrap_or("").trim()
+        self.text
+            .lines()
+            .nth(before.matches('\n').count())
+            .unwrap_or("")
+            .trim()
     }
 
     /// An error at a byte of the text.
     pub(super) fn error(&self, byte: usize, problem: SceneProblem) -> SceneError {
-        let end = (0..=byte.min(self.text.len())).rev().find(|end| self.text.is_char_boundary(*end)).unwrap_or(0);
+        let end = (0..=byte.min(self.text.len()))
+            .rev()
+            .find(|end| self.text.is_char_boundary(*end))
+            .unwrap_or(0);
         let before = &self.text[..end];
         let line = 1 + before.matches('\n').count();
-        let column = 1 + before.rsplit('\n').next().unwrap_or("").chars().filter(|c| *c != '\u{feff}').count();
-        SceneError { file: self.name.to_owned(), line, column, problem: Box::new(problem) }
+        let column = 1 + before
+            .rsplit('\n')
+            .next()
+            .unwrap_or("")
+            .chars()
+            .filter(|c| *c != '\u{feff}')
+            .count();
+        SceneError {
+            file: self.name.to_owned(),
+            line,
+            column,
+            problem: Box::new(problem),
+        }
     }
 }
 
@@ -114,20 +172,39 @@ impl Rule {
 }
 
 impl Quantity {
-    pub(super) const fn new(key: &'static str, what: &'static str, unit: &'static str, rule: Rule) -> Self {
-        Self { key, what, unit, rule }
+    pub(super) const fn new(
+        key: &'static str,
+        what: &'static str,
+        unit: &'static str,
+        rule: Rule,
+    ) -> Self {
+        Self {
+            key,
+            what,
+            unit,
+            rule,
+        }
     }
 
     /// What to give, with the unit.
     fn order(&self) -> String {
-        if self.unit.is_empty() { self.what.to_owned() } else { format!("{} in {}", self.what, self.unit) }
+        if self.unit.is_empty() {
+            self.what.to_owned()
+        } else {
+            format!("{} in {}", self.what, self.unit)
+        }
     }
 }
 
 impl<'a> Table<'a> {
     /// The whole document.
     pub(super) fn root(source: Source<'a>, document: &'a Spanned<DeTable<'a>>) -> Result<Self> {
-        let table = Self { source, path: String::new(), span: 0..0, entries: document.get_ref() };
+        let table = Self {
+            source,
+            path: String::new(),
+            span: 0..0,
+            entries: document.get_ref(),
+        };
         table.check_keys(keys_of(""))?;
         Ok(table)
     }
@@ -135,36 +212,51 @@ impl<'a> Table<'a> {
     /// The value of a key, if it is there.
     pub(super) fn optional(&self, key: &str) -> Option<Node<'a>> {
         let value = self.entries.get(key)?;
-        Some(Node { source: self.source, path: self.path_to(key), value })
+        Some(Node {
+            source: self.source,
+            path: self.path_to(key),
+            value,
+        })
     }
 
     /// The value of a key that must be there; `what` completes "Give ...".
     pub(super) fn required(&self, key: &str, what: &str) -> Result<Node<'a>> {
         self.optional(key).ok_or_else(|| {
-            let problem = SceneProblem::Missing { key: self.path_to(key), what: what.to_owned() };
+            let problem = SceneProblem::Missing {
+                key: self.path_to(key),
+                what: what.to_owned(),
+            };
             self.source.error(self.span.start, problem)
         })
     }
 
     /// A table of the format that must be there.
     pub(super) fn section(&self, key: &str) -> Result<Table<'a>> {
-        let what = format!("the table [{key}] with keys among {}", keys_of(key).join(", "));
+        let what = format!(
+            "the table [{key}] with keys among {}",
+            keys_of(key).join(", ")
+        );
         self.required(key, &what)?.table(keys_of(key), &what)
     }
 
     /// A table of the format, if it is there.
     pub(super) fn section_if(&self, key: &str) -> Result<Option<Table<'a>>> {
-        self.optional(key).map(|node| node.table(keys_of(key), &format!("it as the table [{key}]"))).transpose()
+        self.optional(key)
+            .map(|node| node.table(keys_of(key), &format!("it as the table [{key}]")))
+            .transpose()
     }
 
     /// A number that must be there.
     pub(super) fn number(&self, quantity: &Quantity) -> Result<f64> {
-        self.required(quantity.key, &quantity.order())?.number(quantity)
+        self.required(quantity.key, &quantity.order())?
+            .number(quantity)
     }
 
     /// A number, if it is there.
     pub(super) fn number_if(&self, quantity: &Quantity) -> Result<Option<f64>> {
-        self.optional(quantity.key).map(|node| node.number(quantity)).transpose()
+        self.optional(quantity.key)
+            .map(|node| node.number(quantity))
+            .transpose()
     }
 
     /// A number, or the default where it is not there.
@@ -174,19 +266,32 @@ impl<'a> Table<'a> {
 
     /// The first key, in the order of the file, that is not known is an error.
     fn check_keys(&self, known: &[&str]) -> Result<()> {
-        let unknown = self.entries.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
-        let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else { return Ok(()) };
+        let unknown = self
+            .entries
+            .iter()
+            .filter(|(key, _)| !known.contains(&key.get_ref().as_ref()));
+        let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else {
+            return Ok(());
+        };
         let nearest = nearest_key(key.get_ref(), known);
-        let problem = SceneProblem::UnknownKey { key: self.path_to(key.get_ref()), nearest };
+        let problem = SceneProblem::UnknownKey {
+            key: self.path_to(key.get_ref()),
+            nearest,
+        };
         Err(self.source.error(key.span().start, problem))
     }
 
     fn path_to(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+        if self.path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.path)
+        }
     }
 }
 
-/// The known key that was probably meant: a near miss at this place, else the same key in the table it belongs to.
+/// The known key that was probably meant: a near miss at this place, else the same key in the table
+/// it belongs to.
 fn nearest_key(key: &str, known: &[&str]) -> String {
     let (here, distance) = nearest(key, known.iter().copied()).unwrap_or_default();
     let elsewhere = TABLES.iter().find(|(_, keys)| keys.contains(&key));
@@ -220,8 +325,15 @@ impl<'a> Node<'a> {
 
     /// The value as a table that has no other keys than `known`; `what` completes "Give ...".
     pub(super) fn table(&self, known: &[&str], what: &str) -> Result<Table<'a>> {
-        let DeValue::Table(entries) = self.value.get_ref() else { return Err(self.wrong_type("a table", what)) };
-        let table = Table { source: self.source, path: self.path.clone(), span: self.value.span(), entries };
+        let DeValue::Table(entries) = self.value.get_ref() else {
+            return Err(self.wrong_type("a table", what));
+        };
+        let table = Table {
+            source: self.source,
+            path: self.path.clone(),
+            span: self.value.span(),
+            entries,
+        };
         table.check_keys(known)?;
         Ok(table)
     }
@@ -233,14 +345,29 @@ impl<'a> Node<'a> {
 
     /// The list is empty and must not be; `what` completes "Give ...".
     pub(super) fn empty(&self, what: &str) -> SceneError {
-        let (key, found, expected) = (self.path.clone(), "an empty list".to_owned(), "a list with entries".to_owned());
-        self.error(SceneProblem::WrongType { key, found, expected, what: what.to_owned() })
+        let (key, found, expected) = (
+            self.path.clone(),
+            "an empty list".to_owned(),
+            "a list with entries".to_owned(),
+        );
+        self.error(SceneProblem::WrongType {
+            key,
+            found,
+            expected,
+            what: what.to_owned(),
+        })
     }
 
     /// The items of a list; `what` completes "Give ...".
     pub(super) fn items(&self, what: &str) -> Result<Vec<Node<'a>>> {
-        let DeValue::Array(items) = self.value.get_ref() else { return Err(self.wrong_type("a list", what)) };
-        let node = |(index, value)| Node { source: self.source, path: format!("{}[{}]", self.path, index + 1), value };
+        let DeValue::Array(items) = self.value.get_ref() else {
+            return Err(self.wrong_type("a list", what));
+        };
+        let node = |(index, value)| Node {
+            source: self.source,
+            path: format!("{}[{}]", self.path, index + 1),
+            value,
+        };
         Ok(items.iter().enumerate().map(node).collect())
     }
 
@@ -249,8 +376,17 @@ impl<'a> Node<'a> {
         let items = self.items(what)?;
         let count = items.len();
         items.try_into().map_err(|_| {
-            let (key, found, expected) = (self.path.clone(), format!("a list of {count}"), format!("a list of {N}"));
-            self.error(SceneProblem::WrongType { key, found, expected, what: what.to_owned() })
+            let (key, found, expected) = (
+                self.path.clone(),
+                format!("a list of {count}"),
+                format!("a list of {N}"),
+            );
+            self.error(SceneProblem::WrongType {
+                key,
+                found,
+                expected,
+                what: what.to_owned(),
+            })
         })
     }
 
@@ -262,30 +398,50 @@ impl<'a> Node<'a> {
 
     /// A number, whole numbers included, under the quantity's rule.
     pub(super) fn number(&self, quantity: &Quantity) -> Result<f64> {
-        let value = self.float().ok_or_else(|| self.wrong_type("a number", &quantity.order()))?;
+        let value = self
+            .float()
+            .ok_or_else(|| self.wrong_type("a number", &quantity.order()))?;
         if !value.is_finite() {
             return Err(self.out_of_range(Rule::Finite.words(), quantity));
         }
-        if quantity.rule.holds(value) { Ok(value) } else { Err(self.out_of_range(quantity.rule.words(), quantity)) }
+        if quantity.rule.holds(value) {
+            Ok(value)
+        } else {
+            Err(self.out_of_range(quantity.rule.words(), quantity))
+        }
     }
 
     /// The value is against a rule, put in words.
     pub(super) fn out_of_range(&self, rule: &'static str, quantity: &Quantity) -> SceneError {
-        let found = format!("{} {}", self.text(), quantity.unit).trim_end().to_owned();
-        self.error(SceneProblem::OutOfRange { key: self.path.clone(), found, rule, what: quantity.order() })
+        let found = format!("{} {}", self.text(), quantity.unit)
+            .trim_end()
+            .to_owned();
+        self.error(SceneProblem::OutOfRange {
+            key: self.path.clone(),
+            found,
+            rule,
+            what: quantity.order(),
+        })
     }
 
     fn float(&self) -> Option<f64> {
         match self.value.get_ref() {
             DeValue::Float(float) => float.as_str().parse().ok(),
-            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|value| value as f64),
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+                .ok()
+                .map(|value| value as f64),
             _ => None,
         }
     }
 
     fn wrong_type(&self, expected: &str, what: &str) -> SceneError {
         let (key, found, expected) = (self.path.clone(), self.kind(), expected.to_owned());
-        self.error(SceneProblem::WrongType { key, found, expected, what: what.to_owned() })
+        self.error(SceneProblem::WrongType {
+            key,
+            found,
+            expected,
+            what: what.to_owned(),
+        })
     }
 
     /// The value in words: as it stands where that is short, else its type.
@@ -293,9 +449,14 @@ impl<'a> Node<'a> {
         match self.value.get_ref() {
             DeValue::Array(_) => "a list".to_owned(),
             DeValue::Table(_) => "a table".to_owned(),
-            DeValue::Integer(_) if self.float().is_none() => format!("the number {}, which is too large", self.text()),
+            DeValue::Integer(_) if self.float().is_none() => {
+                format!("the number {}, which is too large", self.text())
+            }
             DeValue::String(_) => format!("the text {}", self.text()),
-            DeValue::Integer(_) | DeValue::Boolean(_) | DeValue::Float(_) | DeValue::Datetime(_) => self.text().to_owned(),
+            DeValue::Integer(_)
+            | DeValue::Boolean(_)
+            | DeValue::Float(_)
+            | DeValue::Datetime(_) => self.text().to_owned(),
         }
     }
 }

@@ -16,12 +16,15 @@ pub struct SceneError {
     pub problem: Box<SceneProblem>,
 }
 
-/// What is wrong with a scene file. `key` is the way to the value, as `object.shape[2].polygon`; items of lists count from 1.
+/// What is wrong with a scene file. `key` is the way to the value, as `object.shape[2].polygon`;
+/// items of lists count from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneProblem {
     /// The text is not TOML.
-    #[error("`{found}` is not TOML: {message}. Write `key = value` with one value a line, numbers without a unit, and tables as [name]")]
+    #[error(
+        "`{found}` is not TOML: {message}. Write `key = value` with one value a line, numbers without a unit, and tables as [name]"
+    )]
     Syntax {
         /// The line as it stands.
         found: String,
@@ -33,7 +36,8 @@ pub enum SceneProblem {
     UnknownKey {
         /// The key.
         key: String,
-        /// The known key at this place with the fewest edits to it, or the same key where it belongs, as `object.mass`.
+        /// The known key at this place with the fewest edits to it, or the same key where it
+        /// belongs, as `object.mass`.
         nearest: String,
     },
     /// A key that must be there.
@@ -69,7 +73,9 @@ pub enum SceneProblem {
         what: String,
     },
     /// A part of a shape that is none or several of the three kinds.
-    #[error("{key} has {found} of the keys `polygon`, `disc` and `ellipse`; a part is exactly one of them. Give each part its own braces")]
+    #[error(
+        "{key} has {found} of the keys `polygon`, `disc` and `ellipse`; a part is exactly one of them. Give each part its own braces"
+    )]
     PartKind {
         /// The part.
         key: String,
@@ -85,13 +91,17 @@ pub enum SceneProblem {
         source: ShapeError,
     },
     /// Feet and a tripod are both given.
-    #[error("`support.{key}` and `support.feet` are both given; known feet leave no tripod to estimate. Remove one of the two")]
+    #[error(
+        "`support.{key}` and `support.feet` are both given; known feet leave no tripod to estimate. Remove one of the two"
+    )]
     FeetAndTripod {
         /// The tripod's key.
         key: &'static str,
     },
     /// The feet stand on one line.
-    #[error("support.feet are on one line; three feet carry an object only as a triangle. Give their positions in the object frame in m")]
+    #[error(
+        "support.feet are on one line; three feet carry an object only as a triangle. Give their positions in the object frame in m"
+    )]
     FeetOnLine,
     /// The centre of mass is not over the feet.
     #[error(

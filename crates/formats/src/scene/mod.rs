@@ -21,24 +21,74 @@ use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
-const GRAVITY: Quantity = Quantity::new("gravity", "the gravity that presses the object on the support", "m/s^2", Rule::Positive);
+const GRAVITY: Quantity = Quantity::new(
+    "gravity",
+    "the gravity that presses the object on the support",
+    "m/s^2",
+    Rule::Positive,
+);
 const MASS: Quantity = Quantity::new("mass", "the object's mass", "kg", Rule::Positive);
-const INERTIA: Quantity = Quantity::new("inertia", "the object's moment of inertia about its centre of mass", "kg m^2", Rule::Positive);
-const MU_S: Quantity = Quantity::new("friction", "the nominal friction coefficient between object and support", "", Rule::NotNegative);
-const MU_P: Quantity = Quantity::new("friction", "the nominal friction coefficient between object and pusher", "", Rule::NotNegative);
-const MU_F: Quantity = Quantity::new("friction", "the nominal friction coefficient between object and fixels", "", Rule::NotNegative);
-const TRIPOD_RADIUS: Quantity = Quantity::new("tripod_radius", "the nominal radius of the support tripod", "m", Rule::Positive);
-const TRIPOD_ANGLE: Quantity = Quantity::new("tripod_angle", "the direction of the first foot in the object frame", "rad", Rule::Finite);
-const FOOT: Quantity = Quantity::new("feet", "three feet as [[x, y], [x, y], [x, y]] in the object frame", "m", Rule::Finite);
-const STALL_FORCE: Quantity = Quantity::new("stall_force", "the force at which the pusher gives way", "N", Rule::Positive);
-const POSITION: Quantity = Quantity::new("position", "the fixel's position in the world as [x, y]", "m", Rule::Finite);
+const INERTIA: Quantity = Quantity::new(
+    "inertia",
+    "the object's moment of inertia about its centre of mass",
+    "kg m^2",
+    Rule::Positive,
+);
+const MU_S: Quantity = Quantity::new(
+    "friction",
+    "the nominal friction coefficient between object and support",
+    "",
+    Rule::NotNegative,
+);
+const MU_P: Quantity = Quantity::new(
+    "friction",
+    "the nominal friction coefficient between object and pusher",
+    "",
+    Rule::NotNegative,
+);
+const MU_F: Quantity = Quantity::new(
+    "friction",
+    "the nominal friction coefficient between object and fixels",
+    "",
+    Rule::NotNegative,
+);
+const TRIPOD_RADIUS: Quantity = Quantity::new(
+    "tripod_radius",
+    "the nominal radius of the support tripod",
+    "m",
+    Rule::Positive,
+);
+const TRIPOD_ANGLE: Quantity = Quantity::new(
+    "tripod_angle",
+    "the direction of the first foot in the object frame",
+    "rad",
+    Rule::Finite,
+);
+const FOOT: Quantity = Quantity::new(
+    "feet",
+    "three feet as [[x, y], [x, y], [x, y]] in the object frame",
+    "m",
+    Rule::Finite,
+);
+const STALL_FORCE: Quantity = Quantity::new(
+    "stall_force",
+    "the force at which the pusher gives way",
+    "N",
+    Rule::Positive,
+);
+const POSITION: Quantity = Quantity::new(
+    "position",
+    "the fixel's position in the world as [x, y]",
+    "m",
+    Rule::Finite,
+);
 const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", "rad", Rule::Finite);
 
 /// Reads a scene file; `name` is shown in errors.
 ///
 /// # Errors
-/// The first of: no TOML, an unknown key, a missing key, a value of a wrong type or against its rule, a shape or feet that cannot
-/// be; with line and column.
+/// The first of: no TOML, an unknown key, a missing key, a value of a wrong type or against its
+/// rule, a shape or feet that cannot be; with line and column.
 ///
 /// ```
 /// let error = stickslip_formats::read_scene("gravity = 0\n", "scene.toml").unwrap_err();
@@ -55,17 +105,45 @@ pub fn read_scene(text: &str, name: &str) -> Result<Setup> {
 
 fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> SceneError {
     let place = error.span().map_or(0, |span| span.start);
-    let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
-    source.error(place, SceneProblem::Syntax { found: source.line_at(place).to_owned(), message })
+    let message = error
+        .message()
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ");
+    source.error(
+        place,
+        SceneProblem::Syntax {
+            found: source.line_at(place).to_owned(),
+            message,
+        },
+    )
 }
 
 fn setup(root: &Table<'_>) -> Result<Setup> {
     Ok(Setup {
         scene: scene(root)?,
-        camera: root.section_if("camera")?.as_ref().map(sensing::camera).transpose()?,
-        tactile: root.section_if("tactile")?.as_ref().map(sensing::tactile).transpose()?.unwrap_or_default(),
-        filter: root.section_if("filter")?.as_ref().map(sensing::filter).transpose()?.unwrap_or_default(),
-        start: root.section_if("start")?.as_ref().map(start::start).transpose()?,
+        camera: root
+            .section_if("camera")?
+            .as_ref()
+            .map(sensing::camera)
+            .transpose()?,
+        tactile: root
+            .section_if("tactile")?
+            .as_ref()
+            .map(sensing::tactile)
+            .transpose()?
+            .unwrap_or_default(),
+        filter: root
+            .section_if("filter")?
+            .as_ref()
+            .map(sensing::filter)
+            .transpose()?
+            .unwrap_or_default(),
+        start: root
+            .section_if("start")?
+            .as_ref()
+            .map(start::start)
+            .transpose()?,
     })
 }
 
@@ -76,16 +154,35 @@ fn scene(root: &Table<'_>) -> Result<Scene> {
     let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support)?);
     let (mu_p, pusher) = pusher(&root.section("pusher")?)?;
     let mu_f = root.section("fixels")?.number(&MU_F)?;
-    Ok(Scene { gravity, object, feet, pusher, fixels: fixels(root)?, nominal: Friction { mu_s, mu_p, mu_f, d_tri } })
+    Ok(Scene {
+        gravity,
+        object,
+        feet,
+        pusher,
+        fixels: fixels(root)?,
+        nominal: Friction {
+            mu_s,
+            mu_p,
+            mu_f,
+            d_tri,
+        },
+    })
 }
 
 fn object(table: &Table<'_>) -> Result<Object> {
-    Ok(Object { mass: table.number(&MASS)?, inertia: table.number(&INERTIA)?, shape: shape(table)? })
+    Ok(Object {
+        mass: table.number(&MASS)?,
+        inertia: table.number(&INERTIA)?,
+        shape: shape(table)?,
+    })
 }
 
 /// The pusher with its friction.
 fn pusher(table: &Table<'_>) -> Result<(f64, Pusher)> {
-    let pusher = Pusher { shape: shape(table)?, stall_force: table.number_if(&STALL_FORCE)? };
+    let pusher = Pusher {
+        shape: shape(table)?,
+        stall_force: table.number_if(&STALL_FORCE)?,
+    };
     Ok((table.number(&MU_P)?, pusher))
 }
 
@@ -116,11 +213,21 @@ fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
 
 fn fixels(root: &Table<'_>) -> Result<Vec<Fixel>> {
     let what = "each fixel as a table [[fixel]] with the keys position, angle, shape";
-    let Some(node) = root.optional("fixel") else { return Ok(Vec::new()) };
+    let Some(node) = root.optional("fixel") else {
+        return Ok(Vec::new());
+    };
     let fixel = |node: &Node<'_>| {
         let table = node.table(keys_of("fixel"), what)?;
-        let [x, y] = table.required(POSITION.key, &format!("{} in {}", POSITION.what, POSITION.unit))?.pair(&POSITION)?;
-        Ok(Fixel { pose: Pose::new(x, y, table.number_or(&ANGLE, 0.0)?), shape: shape(&table)? })
+        let [x, y] = table
+            .required(
+                POSITION.key,
+                &format!("{} in {}", POSITION.what, POSITION.unit),
+            )?
+            .pair(&POSITION)?;
+        Ok(Fixel {
+            pose: Pose::new(x, y, table.number_or(&ANGLE, 0.0)?),
+            shape: shape(&table)?,
+        })
     };
     node.items(what)?.iter().map(fixel).collect()
 }

@@ -7,12 +7,30 @@ use super::error::SceneError;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
-const POSITION_STD: Quantity = Quantity::new("position_std", "the standard deviation of one object position", "m", Rule::Positive);
-const ORIENTATION_STD: Quantity =
-    Quantity::new("orientation_std", "the standard deviation of one object orientation", "rad", Rule::Positive);
-const LATENCY: Quantity = Quantity::new("latency", "the time by which object poses lag the pusher's", "s", Rule::NotNegative);
-const PUSHER_POSITION_STD: Quantity =
-    Quantity::new("pusher_position_std", "the standard deviation of one pusher position, 0 for exact ones,", "m", Rule::NotNegative);
+const POSITION_STD: Quantity = Quantity::new(
+    "position_std",
+    "the standard deviation of one object position",
+    "m",
+    Rule::Positive,
+);
+const ORIENTATION_STD: Quantity = Quantity::new(
+    "orientation_std",
+    "the standard deviation of one object orientation",
+    "rad",
+    Rule::Positive,
+);
+const LATENCY: Quantity = Quantity::new(
+    "latency",
+    "the time by which object poses lag the pusher's",
+    "s",
+    Rule::NotNegative,
+);
+const PUSHER_POSITION_STD: Quantity = Quantity::new(
+    "pusher_position_std",
+    "the standard deviation of one pusher position, 0 for exact ones,",
+    "m",
+    Rule::NotNegative,
+);
 const PUSHER_ORIENTATION_STD: Quantity = Quantity::new(
     "pusher_orientation_std",
     "the standard deviation of one pusher orientation, 0 for exact ones,",
@@ -20,22 +38,73 @@ const PUSHER_ORIENTATION_STD: Quantity = Quantity::new(
     Rule::NotNegative,
 );
 
-const FALSE_POSITIVE: Quantity = Quantity::new("false_positive", "the probability that an untouched sensor reads 1", "", Rule::Probability);
-const FALSE_NEGATIVE: Quantity = Quantity::new("false_negative", "the probability that a touched sensor reads 0", "", Rule::Probability);
-const TOUCH_FORCE: Quantity = Quantity::new("touch_force", "the force at which the sensor switches", "N", Rule::NotNegative);
+const FALSE_POSITIVE: Quantity = Quantity::new(
+    "false_positive",
+    "the probability that an untouched sensor reads 1",
+    "",
+    Rule::Probability,
+);
+const FALSE_NEGATIVE: Quantity = Quantity::new(
+    "false_negative",
+    "the probability that a touched sensor reads 0",
+    "",
+    Rule::Probability,
+);
+const TOUCH_FORCE: Quantity = Quantity::new(
+    "touch_force",
+    "the force at which the sensor switches",
+    "N",
+    Rule::NotNegative,
+);
 
-const FORCE_STD: Quantity =
-    Quantity::new("force_std", "the disturbance per step of 1/30 s as a share of the friction impulse", "", Rule::NotNegative);
-const PARAMETER_STD: Quantity =
-    Quantity::new("parameter_std", "the relative change of the friction parameters per step of 1/30 s", "", Rule::NotNegative);
-const RESAMPLE_BELOW: Quantity =
-    Quantity::new("resample_below", "the share of effective particles below which the set is resampled", "", Rule::Share);
-const LIKELIHOOD_SCALE: Quantity =
-    Quantity::new("likelihood_scale", "the factor that widens the camera's standard deviations", "", Rule::Positive);
-const MU_S: Quantity = Quantity::new("mu_s", "the limits of mu_s as [smallest, largest]", "", Rule::NotNegative);
-const MU_P: Quantity = Quantity::new("mu_p", "the limits of mu_p as [smallest, largest]", "", Rule::NotNegative);
-const MU_F: Quantity = Quantity::new("mu_f", "the limits of mu_f as [smallest, largest]", "", Rule::NotNegative);
-const D_TRI: Quantity = Quantity::new("d_tri", "the limits of the tripod radius as [smallest, largest]", "m", Rule::Positive);
+const FORCE_STD: Quantity = Quantity::new(
+    "force_std",
+    "the disturbance per step of 1/30 s as a share of the friction impulse",
+    "",
+    Rule::NotNegative,
+);
+const PARAMETER_STD: Quantity = Quantity::new(
+    "parameter_std",
+    "the relative change of the friction parameters per step of 1/30 s",
+    "",
+    Rule::NotNegative,
+);
+const RESAMPLE_BELOW: Quantity = Quantity::new(
+    "resample_below",
+    "the share of effective particles below which the set is resampled",
+    "",
+    Rule::Share,
+);
+const LIKELIHOOD_SCALE: Quantity = Quantity::new(
+    "likelihood_scale",
+    "the factor that widens the camera's standard deviations",
+    "",
+    Rule::Positive,
+);
+const MU_S: Quantity = Quantity::new(
+    "mu_s",
+    "the limits of mu_s as [smallest, largest]",
+    "",
+    Rule::NotNegative,
+);
+const MU_P: Quantity = Quantity::new(
+    "mu_p",
+    "the limits of mu_p as [smallest, largest]",
+    "",
+    Rule::NotNegative,
+);
+const MU_F: Quantity = Quantity::new(
+    "mu_f",
+    "the limits of mu_f as [smallest, largest]",
+    "",
+    Rule::NotNegative,
+);
+const D_TRI: Quantity = Quantity::new(
+    "d_tri",
+    "the limits of the tripod radius as [smallest, largest]",
+    "m",
+    Rule::Positive,
+);
 
 /// `[camera]`; the pusher's deviations default to 1e-4 m and 2e-3 rad, the latency to 0.
 pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
@@ -74,7 +143,13 @@ pub(super) fn filter(table: &Table<'_>) -> Result<FilterSettings> {
 }
 
 fn limits(table: &Table<'_>, quantity: &Quantity, default: Limits) -> Result<Limits> {
-    let Some(node) = table.optional(quantity.key) else { return Ok(default) };
+    let Some(node) = table.optional(quantity.key) else {
+        return Ok(default);
+    };
     let [min, max] = node.pair(quantity)?;
-    if min <= max { Ok(Limits { min, max }) } else { Err(node.out_of_range("the smaller limit first", quantity)) }
+    if min <= max {
+        Ok(Limits { min, max })
+    } else {
+        Err(node.out_of_range("the smaller limit first", quantity))
+    }
 }

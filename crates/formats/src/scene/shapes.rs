@@ -6,13 +6,19 @@ use super::document::{Node, Quantity, Rule, Table};
 use super::error::{SceneError, SceneProblem};
 
 const KINDS: [&str; 3] = ["polygon", "disc", "ellipse"];
-const SHAPE: &str = "the outline as a list of parts, each { polygon = ... }, { disc = ... } or { ellipse = ... }";
+const SHAPE: &str =
+    "the outline as a list of parts, each { polygon = ... }, { disc = ... } or { ellipse = ... }";
 const POLYGON: &str = "the vertices as [[x, y], ...] in m, counter-clockwise";
 const DISC: &str = "{ radius = ... } in m";
 const ELLIPSE: &str = "{ semi_axes = [..., ...] } in m";
 const VERTEX: Quantity = Quantity::new("polygon", "a vertex as [x, y]", "m", Rule::Finite);
 const RADIUS: Quantity = Quantity::new("radius", "the disc's radius", "m", Rule::Positive);
-const SEMI_AXES: Quantity = Quantity::new("semi_axes", "the half lengths of the two axes as [a, b]", "m", Rule::Positive);
+const SEMI_AXES: Quantity = Quantity::new(
+    "semi_axes",
+    "the half lengths of the two axes as [a, b]",
+    "m",
+    Rule::Positive,
+);
 const CENTRE: Quantity = Quantity::new("centre", "the centre as [x, y]", "m", Rule::Finite);
 const ANGLE: Quantity = Quantity::new("angle", "the angle of the first axis", "rad", Rule::Finite);
 
@@ -23,9 +29,14 @@ pub(super) fn shape(body: &Table<'_>) -> Result<Shape, SceneError> {
     let parts = items.iter().map(part).collect::<Result<Vec<Part>, _>>()?;
     Shape::new(parts.clone()).map_err(|source| {
         // the place is that of the first part that is refused by itself, else of the whole
-        let refused = parts.iter().position(|part| Shape::new(vec![part.clone()]).is_err());
+        let refused = parts
+            .iter()
+            .position(|part| Shape::new(vec![part.clone()]).is_err());
         let place = refused.map_or(&node, |index| &items[index]);
-        place.error(SceneProblem::Shape { key: place.path().to_owned(), source })
+        place.error(SceneProblem::Shape {
+            key: place.path().to_owned(),
+            source,
+        })
     })
 }
 
@@ -38,27 +49,43 @@ fn part(node: &Node<'_>) -> Result<Part, SceneError> {
         (None, None, Some(node)) => self::ellipse(&node),
         several => {
             let found = [several.0, several.1, several.2].iter().flatten().count();
-            Err(node.error(SceneProblem::PartKind { key: node.path().to_owned(), found }))
+            Err(node.error(SceneProblem::PartKind {
+                key: node.path().to_owned(),
+                found,
+            }))
         }
     }
 }
 
 fn polygon(node: &Node<'_>) -> Result<Part, SceneError> {
-    let vertices = node.items(POLYGON)?.iter().map(|vertex| vertex.pair(&VERTEX)).collect::<Result<_, _>>()?;
+    let vertices = node
+        .items(POLYGON)?
+        .iter()
+        .map(|vertex| vertex.pair(&VERTEX))
+        .collect::<Result<_, _>>()?;
     Ok(Part::Polygon { vertices })
 }
 
 fn disc(node: &Node<'_>) -> Result<Part, SceneError> {
     let table = node.table(&["radius", "centre"], DISC)?;
-    Ok(Part::Disc { radius: table.number(&RADIUS)?, centre: centre(&table)? })
+    Ok(Part::Disc {
+        radius: table.number(&RADIUS)?,
+        centre: centre(&table)?,
+    })
 }
 
 fn ellipse(node: &Node<'_>) -> Result<Part, SceneError> {
     let table = node.table(&["semi_axes", "centre", "angle"], ELLIPSE)?;
     let semi_axes = table.required(SEMI_AXES.key, ELLIPSE)?.pair(&SEMI_AXES)?;
-    Ok(Part::Ellipse { semi_axes, centre: centre(&table)?, angle: table.number_or(&ANGLE, 0.0)? })
+    Ok(Part::Ellipse {
+        semi_axes,
+        centre: centre(&table)?,
+        angle: table.number_or(&ANGLE, 0.0)?,
+    })
 }
 
 fn centre(table: &Table<'_>) -> Result<[f64; 2], SceneError> {
-    table.optional(CENTRE.key).map_or(Ok([0.0; 2]), |node| node.pair(&CENTRE))
+    table
+        .optional(CENTRE.key)
+        .map_or(Ok([0.0; 2]), |node| node.pair(&CENTRE))
 }

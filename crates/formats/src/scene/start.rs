@@ -11,11 +11,27 @@ const OBJECT: &str = "the object's pose as [x, y, theta] in m and rad";
 const PUSHER: &str = "the pusher's pose as [x, y, theta] in m and rad";
 const PLACE: Quantity = Quantity::new("object", "a coordinate of the pose", "m", Rule::Finite);
 const ANGLE: Quantity = Quantity::new("object", "the angle of the pose", "rad", Rule::Finite);
-const DIRECTION: Quantity = Quantity::new("direction", "the direction of the pusher's motion in the world", "rad", Rule::Finite);
+const DIRECTION: Quantity = Quantity::new(
+    "direction",
+    "the direction of the pusher's motion in the world",
+    "rad",
+    Rule::Finite,
+);
 const SPEED: Quantity = Quantity::new("speed", "the pusher's speed", "m/s", Rule::Finite);
-const TIME: Quantity = Quantity::new("speed", "a time that does not come before the one above it", "s", Rule::NotNegative);
-const DURATION: Quantity = Quantity::new("duration", "how long the experiment lasts", "s", Rule::Positive);
-const PROFILE: &str = "the pusher's speed in m/s, or its course as [[time, speed], ...] in s and m/s";
+const TIME: Quantity = Quantity::new(
+    "speed",
+    "a time that does not come before the one above it",
+    "s",
+    Rule::NotNegative,
+);
+const DURATION: Quantity = Quantity::new(
+    "duration",
+    "how long the experiment lasts",
+    "s",
+    Rule::Positive,
+);
+const PROFILE: &str =
+    "the pusher's speed in m/s, or its course as [[time, speed], ...] in s and m/s";
 
 /// `[start]`.
 pub(super) fn start(table: &Table<'_>) -> Result<Start> {
@@ -30,7 +46,11 @@ pub(super) fn start(table: &Table<'_>) -> Result<Start> {
 
 fn pose(node: &Node<'_>, what: &str) -> Result<Pose> {
     let [x, y, theta] = node.exactly::<3>(what)?;
-    Ok(Pose::new(x.number(&PLACE)?, y.number(&PLACE)?, theta.number(&ANGLE)?))
+    Ok(Pose::new(
+        x.number(&PLACE)?,
+        y.number(&PLACE)?,
+        theta.number(&ANGLE)?,
+    ))
 }
 
 /// One number, or knots of time and speed.

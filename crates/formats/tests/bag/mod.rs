@@ -1,4 +1,5 @@
-//! Recordings built by hand: messages laid out byte by byte after the CDR specification, without the crate's own types.
+//! Recordings built by hand: messages laid out byte by byte after the CDR specification, without
+//! the crate's own types.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use std::collections::BTreeMap;
@@ -39,7 +40,10 @@ struct Cdr {
 
 impl Cdr {
     fn new(order: Order) -> Self {
-        Self { bytes: vec![0, u8::from(order == Order::Little), 0, 0], order }
+        Self {
+            bytes: vec![0, u8::from(order == Order::Little), 0, 0],
+            order,
+        }
     }
 
     fn number<const N: usize>(&mut self, little: [u8; N]) {
@@ -54,8 +58,16 @@ impl Cdr {
     }
 
     fn header(&mut self, stamp: i64, frame: &str) {
-        self.number(i32::try_from(stamp.div_euclid(1_000_000_000)).unwrap().to_le_bytes());
-        self.number(u32::try_from(stamp.rem_euclid(1_000_000_000)).unwrap().to_le_bytes());
+        self.number(
+            i32::try_from(stamp.div_euclid(1_000_000_000))
+                .unwrap()
+                .to_le_bytes(),
+        );
+        self.number(
+            u32::try_from(stamp.rem_euclid(1_000_000_000))
+                .unwrap()
+                .to_le_bytes(),
+        );
         self.number(u32::try_from(frame.len() + 1).unwrap().to_le_bytes());
         self.bytes.extend(frame.as_bytes());
         self.bytes.push(0);
@@ -72,10 +84,22 @@ pub fn stamped(order: Order, stamp: i64, frame: &str, numbers: &[f64]) -> Vec<u8
     cdr.bytes
 }
 
-/// A line with a pose at (x, 0) whose quaternion is given as (x, y, z, w); its log time is 3 ms late, as on a real machine.
+/// A line with a pose at (x, 0) whose quaternion is given as (x, y, z, w); its log time is 3 ms
+/// late, as on a real machine.
 pub fn quaternion(topic: &str, stamp: i64, x: f64, q: [f64; 4]) -> Line {
-    let data = stamped(Order::Little, stamp, "world", &[x, 0.0, 0.0, q[0], q[1], q[2], q[3]]);
-    Line { topic: topic.to_owned(), kind: POSE, encoding: "cdr", log_time: (stamp + 3 * MS).max(0), data }
+    let data = stamped(
+        Order::Little,
+        stamp,
+        "world",
+        &[x, 0.0, 0.0, q[0], q[1], q[2], q[3]],
+    );
+    Line {
+        topic: topic.to_owned(),
+        kind: POSE,
+        encoding: "cdr",
+        log_time: (stamp + 3 * MS).max(0),
+        data,
+    }
 }
 
 /// A line with a pose at (x, 0) and the angle 0.
@@ -92,24 +116,49 @@ pub fn pusher(stamp: i64, x: f64) -> Line {
 }
 
 pub fn touch(fixel: usize, log_time: i64, on: bool) -> Line {
-    Line { topic: format!("/fixel_{fixel}/contact"), kind: BOOL, encoding: "cdr", log_time, data: vec![0, 1, 0, 0, u8::from(on)] }
+    Line {
+        topic: format!("/fixel_{fixel}/contact"),
+        kind: BOOL,
+        encoding: "cdr",
+        log_time,
+        data: vec![0, 1, 0, 0, u8::from(on)],
+    }
 }
 
 pub fn wrench(stamp: i64, x: f64, y: f64) -> Line {
     let data = stamped(Order::Little, stamp, "world", &[x, y, 9.0, 7.0, 7.0, 7.0]);
-    Line { topic: "/pusher/wrench".to_owned(), kind: WRENCH, encoding: "cdr", log_time: stamp + 3 * MS, data }
+    Line {
+        topic: "/pusher/wrench".to_owned(),
+        kind: WRENCH,
+        encoding: "cdr",
+        log_time: stamp + 3 * MS,
+        data,
+    }
 }
 
 /// The file, in chunks of at most `chunk` bytes.
 pub fn file_with(lines: &[Line], compression: Option<Compression>, chunk: u64) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    let options = WriteOptions::new().profile("ros2").compression(compression).chunk_size(Some(chunk)).compression_threads(0);
+    let options = WriteOptions::new()
+        .profile("ros2")
+        .compression(compression)
+        .chunk_size(Some(chunk))
+        .compression_threads(0);
     let mut writer = options.create(&mut bytes).unwrap();
     for line in lines {
-        let schema = writer.add_schema(line.kind, "ros2msg", b"not looked at").unwrap();
-        let channel_id = writer.add_channel(schema, &line.topic, line.encoding, &BTreeMap::new()).unwrap();
+        let schema = writer
+            .add_schema(line.kind, "ros2msg", b"not looked at")
+            .unwrap();
+        let channel_id = writer
+            .add_channel(schema, &line.topic, line.encoding, &BTreeMap::new())
+            .unwrap();
         let log_time = u64::try_from(line.log_time).unwrap();
-        let header = MessageHeader { channel_id, sequence: 0, log_time, publish_time: log_time };
+        let header = MessageHeader {
+            channel_id,
+            sequence: 0,
+            log_time,
+            publish_time: log_time,
+        };
         writer.write_to_known_channel(&header, &line.data).unwrap();
     }
     writer.finish().unwrap();

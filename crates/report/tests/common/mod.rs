@@ -1,33 +1,64 @@
-//! An experiment made of formulas: a disc moves a square along x until it stands still, the camera dark from row 60 % on.
+//! An experiment made of formulas: a disc moves a square along x until it stands still, the camera
+//! dark from row 60 % on.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
-use stickslip::{Estimate, EstimateRow, FilterSettings, Log, Reference, Scores, Setup, Spread, Tactile};
+use stickslip::{
+    Estimate, EstimateRow, FilterSettings, Log, Reference, Scores, Setup, Spread, Tactile,
+};
 use stickslip_report::{Colour, Contender, Episode, Mark};
 
 /// Half the side of the object (m).
 pub const HALF: f64 = 0.025;
 
 pub fn square(half: f64) -> Shape {
-    Shape::new(vec![Part::Polygon { vertices: vec![[-half, -half], [half, -half], [half, half], [-half, half]] }]).unwrap()
+    Shape::new(vec![Part::Polygon {
+        vertices: vec![[-half, -half], [half, -half], [half, half], [-half, half]],
+    }])
+    .unwrap()
 }
 
 pub fn disc(radius: f64) -> Shape {
-    Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]).unwrap()
+    Shape::new(vec![Part::Disc {
+        radius,
+        centre: [0.0, 0.0],
+    }])
+    .unwrap()
 }
 
 pub fn setup() -> Setup {
-    let nominal = Friction { mu_s: 0.3, mu_p: 0.25, mu_f: 0.2, d_tri: 0.02 };
-    let fixel = |x: f64, y: f64| Fixel { pose: Pose::new(x, y, 0.0), shape: disc(0.005) };
+    let nominal = Friction {
+        mu_s: 0.3,
+        mu_p: 0.25,
+        mu_f: 0.2,
+        d_tri: 0.02,
+    };
+    let fixel = |x: f64, y: f64| Fixel {
+        pose: Pose::new(x, y, 0.0),
+        shape: disc(0.005),
+    };
     let scene = Scene {
         gravity: 9.81,
-        object: Object { mass: 0.5, inertia: 2e-4, shape: square(HALF) },
+        object: Object {
+            mass: 0.5,
+            inertia: 2e-4,
+            shape: square(HALF),
+        },
         feet: Feet::Tripod { angle: 0.0 },
-        pusher: Pusher { shape: disc(0.005), stall_force: None },
+        pusher: Pusher {
+            shape: disc(0.005),
+            stall_force: None,
+        },
         fixels: vec![fixel(0.09, 0.01), fixel(0.09, -0.02)],
         nominal,
     };
-    Setup { scene, camera: None, tactile: Tactile::default(), filter: FilterSettings::default(), start: None }
+    Setup {
+        scene,
+        camera: None,
+        tactile: Tactile::default(),
+        filter: FilterSettings::default(),
+        start: None,
+    }
 }
 
 /// Where the object is at a row, of so many.
@@ -37,7 +68,9 @@ pub fn truth(row: usize, rows: usize) -> Pose {
 }
 
 pub fn log(rows: usize) -> Log {
-    let pusher = |row: usize| (row % 17 != 3).then(|| Pose::new(truth(row, rows).x - HALF - 0.005, 0.0, 0.0));
+    let pusher = |row: usize| {
+        (row % 17 != 3).then(|| Pose::new(truth(row, rows).x - HALF - 0.005, 0.0, 0.0))
+    };
     Log {
         time: (0..rows).map(|row| row as f64 / 30.0).collect(),
         object: (0..rows).map(|row| Some(truth(row, rows))).collect(),
@@ -50,10 +83,26 @@ pub fn log(rows: usize) -> Log {
 fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
     let row = |row: usize| {
         let pose = truth(row, rows);
-        let pose = Pose::new(pose.x + off * libm::sin(row as f64), pose.y + off, pose.theta - 10.0 * off);
-        let friction = Friction { mu_s: 0.3 + off, mu_p: 0.25, mu_f: 0.2, d_tri: 0.02 };
-        let spread =
-            Spread { pose: Pose::new(off, off, off), friction: Some(Friction { mu_s: 0.01, mu_p: 0.02, mu_f: 0.0, d_tri: 0.001 }) };
+        let pose = Pose::new(
+            pose.x + off * libm::sin(row as f64),
+            pose.y + off,
+            pose.theta - 10.0 * off,
+        );
+        let friction = Friction {
+            mu_s: 0.3 + off,
+            mu_p: 0.25,
+            mu_f: 0.2,
+            d_tri: 0.02,
+        };
+        let spread = Spread {
+            pose: Pose::new(off, off, off),
+            friction: Some(Friction {
+                mu_s: 0.01,
+                mu_p: 0.02,
+                mu_f: 0.0,
+                d_tri: 0.001,
+            }),
+        };
         EstimateRow {
             pose: Some(pose),
             friction: learns.then_some(friction),
@@ -63,7 +112,12 @@ fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
             ..EstimateRow::default()
         }
     };
-    Estimate { time: log(rows).time, rows: (0..rows).map(row).collect(), fixels: 2, has_tripod: true }
+    Estimate {
+        time: log(rows).time,
+        rows: (0..rows).map(row).collect(),
+        fixels: 2,
+        has_tripod: true,
+    }
 }
 
 /// Five methods on `rows` rows, two with `particles` particles each.
@@ -74,17 +128,31 @@ pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize)
         let cloud = |row: usize| -> Vec<Pose> {
             let pose = truth(row, rows);
             (0..particles)
-                .map(|k| Pose::new(pose.x + 1e-3 * libm::sin(k as f64), pose.y + 1e-3 * libm::cos((k + row) as f64), pose.theta))
+                .map(|k| {
+                    Pose::new(
+                        pose.x + 1e-3 * libm::sin(k as f64),
+                        pose.y + 1e-3 * libm::cos((k + row) as f64),
+                        pose.theta,
+                    )
+                })
                 .collect()
         };
         Contender {
             name: name.to_owned(),
             colour,
             estimate: estimate(rows, off, particles > 0),
-            scores: Scores { wmse_mm: Some(1e3 * off), wmse_occluded_mm: Some(2e3 * off), ..Scores::default() },
+            scores: Scores {
+                wmse_mm: Some(1e3 * off),
+                wmse_occluded_mm: Some(2e3 * off),
+                ..Scores::default()
+            },
             unsolved: 0,
             saw_all: off < 1e-4,
-            cloud: if particles > 0 { (0..rows).map(cloud).collect() } else { Vec::new() },
+            cloud: if particles > 0 {
+                (0..rows).map(cloud).collect()
+            } else {
+                Vec::new()
+            },
         }
     };
     Episode {
@@ -92,20 +160,38 @@ pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize)
         what: format!("a disc pushes a square ({name})"),
         setup,
         log,
-        reference: Reference { time: log.time.clone(), pose: log.object.clone(), ..Reference::default() },
+        reference: Reference {
+            time: log.time.clone(),
+            pose: log.object.clone(),
+            ..Reference::default()
+        },
         reference_name: "truth".to_owned(),
         hidden: (0..rows).map(|row| row >= dark).collect(),
-        touches: vec![Some(vec![true; rows]), None, Some((0..rows).map(|row| row >= dark).collect())],
+        touches: vec![
+            Some(vec![true; rows]),
+            None,
+            Some((0..rows).map(|row| row >= dark).collect()),
+        ],
         contacts: [(0, format!("pusher {name}")), (dark, "fixel 2".to_owned())]
             .into_iter()
-            .filter_map(|(row, name)| Some(Mark { time: *log.time.get(row)?, name }))
+            .filter_map(|(row, name)| {
+                Some(Mark {
+                    time: *log.time.get(row)?,
+                    name,
+                })
+            })
             .collect(),
         first_fixel: log.time.get(dark).copied(),
         friction: [Some(0.35), Some(0.2), None, Some(0.021)],
         methods: vec![
             method("nominal simulation", Colour::GREY, 4e-3, 0),
             method("Kalman filter", Colour::ORANGE, 4e-2, 0),
-            method("particle filter without touch", Colour::SKY, 1e-3, particles),
+            method(
+                "particle filter without touch",
+                Colour::SKY,
+                1e-3,
+                particles,
+            ),
             method("particle filter", Colour::VERMILLION, 2e-4, particles),
             method("particle filter, camera on", Colour::GREEN, 5e-5, 0),
         ],

@@ -8,8 +8,8 @@ use super::viewpoint::{Camera, CameraError};
 
 /// A flat board of tags in rows and columns.
 ///
-/// Its frame has the origin in the lower left corner of the black square of tag 0, x to the right, y up as printed, z towards the
-/// viewer. Tags are counted along x, then along y.
+/// Its frame has the origin in the lower left corner of the black square of tag 0, x to the right,
+/// y up as printed, z towards the viewer. Tags are counted along x, then along y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Board {
     /// Tags in a row.
@@ -60,7 +60,10 @@ impl Board {
         let cell = |along: f64, count: usize| ((along / pitch).max(0.0) as usize).min(count - 1);
         let (column, row) = (cell(x, self.columns), cell(y, self.rows()));
         let middle = |index: usize| index as f64 * pitch + self.tag_size / 2.0;
-        let tag = Tag { cells: self.tags[row * self.columns + column], size: self.tag_size };
+        let tag = Tag {
+            cells: self.tags[row * self.columns + column],
+            size: self.tag_size,
+        };
         Some(tag.grey([x - middle(column), y - middle(row)]))
     }
 }
@@ -68,7 +71,10 @@ impl Board {
 impl BoardPose {
     /// Flat on the table with its print at height `z` (m), its origin at `position` (m).
     pub fn flat(position: [f64; 2], z: f64) -> Self {
-        Self { origin: [position[0], position[1], z], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }
+        Self {
+            origin: [position[0], position[1], z],
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        }
     }
 
     /// A point of the board's plane in the world (m).
@@ -81,8 +87,12 @@ impl BoardPose {
         let normal = cross(self.axes[0], self.axes[1]);
         let way = [ray.slope[0], ray.slope[1], -1.0];
         let descent = dot(sub(self.origin, ray.origin), normal) / dot(way, normal);
-        let from_origin: [f64; 3] = std::array::from_fn(|i| ray.origin[i] + descent * way[i] - self.origin[i]);
-        (self.axes.map(|axis| dot(from_origin, axis)), ray.origin[2] - descent)
+        let from_origin: [f64; 3] =
+            std::array::from_fn(|i| ray.origin[i] + descent * way[i] - self.origin[i]);
+        (
+            self.axes.map(|axis| dot(from_origin, axis)),
+            ray.origin[2] - descent,
+        )
     }
 }
 
@@ -90,7 +100,10 @@ impl View for BoardView<'_> {
     fn grey(&self, ray: &Ray, instant: usize) -> f32 {
         let (point, height) = self.pose.meet(ray);
         let table = self.around.hit(ray, instant);
-        self.board.grey(point).filter(|_| height >= table.height).unwrap_or(table.grey)
+        self.board
+            .grey(point)
+            .filter(|_| height >= table.height)
+            .unwrap_or(table.grey)
     }
 
     fn is_still(&self) -> bool {
@@ -98,12 +111,18 @@ impl View for BoardView<'_> {
     }
 }
 
-/// Poses for a calibration: the first flat on the table, its print at height `thickness` (m) and its middle where the image's is, the
-/// others held above it, tilted by 20° to 35° to all sides and moved over the image.
+/// Poses for a calibration: the first flat on the table, its print at height `thickness` (m) and
+/// its middle where the image's is, the others held above it, tilted by 20° to 35° to all sides and
+/// moved over the image.
 ///
 /// # Errors
 /// A pixel of the camera sees no table.
-pub fn calibration_poses(camera: &Camera, board: &Board, thickness: f64, count: usize) -> Result<Vec<BoardPose>, CameraError> {
+pub fn calibration_poses(
+    camera: &Camera,
+    board: &Board,
+    thickness: f64,
+    count: usize,
+) -> Result<Vec<BoardPose>, CameraError> {
     let size = camera.lens().size.map(f64::from);
     let half = board.extent().map(|side| side / 2.0);
     let middle = camera.point_at(size.map(|n| (n - 1.0) / 2.0), 0.0)?;
@@ -114,17 +133,24 @@ pub fn calibration_poses(camera: &Camera, board: &Board, thickness: f64, count: 
         let height = 0.06 + 0.02 * (k % 4) as f64;
         let at = camera.point_at([place[0] * size[0], place[1] * size[1]], height)?;
         let axes = tilted_axes(k as f64);
-        let origin = std::array::from_fn(|i| [at[0], at[1], height][i] - half[0] * axes[0][i] - half[1] * axes[1][i]);
+        let origin = std::array::from_fn(|i| {
+            [at[0], at[1], height][i] - half[0] * axes[0][i] - half[1] * axes[1][i]
+        });
         Ok(BoardPose { origin, axes })
     });
     [Ok(flat)].into_iter().chain(held).collect()
 }
 
-/// Axes of a board turned by up to 0.3 rad about its normal and tilted about an axis that turns by the golden angle.
+/// Axes of a board turned by up to 0.3 rad about its normal and tilted about an axis that turns by
+/// the golden angle.
 fn tilted_axes(k: f64) -> [[f64; 3]; 2] {
     const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
     let tilt = 0.35 + 0.13 * (1.0 + libm::sin(1.7 * k));
-    let axis = [libm::cos(GOLDEN_ANGLE * k), libm::sin(GOLDEN_ANGLE * k), 0.0];
+    let axis = [
+        libm::cos(GOLDEN_ANGLE * k),
+        libm::sin(GOLDEN_ANGLE * k),
+        0.0,
+    ];
     let turn = 0.3 * libm::sin(2.3 * k);
     let (sin, cos) = libm::sincos(turn);
     [[cos, sin, 0.0], [-sin, cos, 0.0]].map(|v| rotate(v, axis, tilt))

@@ -22,7 +22,8 @@ pub(crate) enum Paint {
     Tag(Tag),
 }
 
-/// An upright body with a convex ground plan, from `bottom` to `top`; of a union of parts, each is one.
+/// An upright body with a convex ground plan, from `bottom` to `top`; of a union of parts, each is
+/// one.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub(crate) carrier: Carrier,
@@ -59,16 +60,40 @@ pub(crate) struct Hit {
 
 impl Body {
     /// A body with a plain top.
-    pub(crate) fn plain(carrier: Carrier, part: &Part, [bottom, top]: [f64; 2], [paint, side]: [f32; 2]) -> Self {
+    pub(crate) fn plain(
+        carrier: Carrier,
+        part: &Part,
+        [bottom, top]: [f64; 2],
+        [paint, side]: [f32; 2],
+    ) -> Self {
         let (middle, radius) = disc_about(part);
         let footprint = Footprint::new(part);
-        Self { carrier, mount: Pose::default(), bottom, top, middle, radius, side, paint: Paint::Plain(paint), footprint }
+        Self {
+            carrier,
+            mount: Pose::default(),
+            bottom,
+            top,
+            middle,
+            radius,
+            side,
+            paint: Paint::Plain(paint),
+            footprint,
+        }
     }
 
     /// A sheet with a tag on it, its print at height `top` (m).
     pub(crate) fn tag(carrier: Carrier, mount: Pose, top: f64, tag: Tag) -> Self {
-        let sheet = Self::plain(carrier, &square(tag.print_size()), [(top - 1e-3).max(0.0), top], [PAPER; 2]);
-        Self { mount, paint: Paint::Tag(tag), ..sheet }
+        let sheet = Self::plain(
+            carrier,
+            &square(tag.print_size()),
+            [(top - 1e-3).max(0.0), top],
+            [PAPER; 2],
+        );
+        Self {
+            mount,
+            paint: Paint::Tag(tag),
+            ..sheet
+        }
     }
 
     /// Where the body is with its carrier at `carrier`.
@@ -76,13 +101,21 @@ impl Body {
         let [x, y] = carrier.transform([self.mount.x, self.mount.y]);
         let pose = Pose::new(x, y, carrier.theta + self.mount.theta);
         let (sin, cos) = libm::sincos(pose.theta);
-        Place { middle: pose.transform(self.middle), sin, cos }
+        Place {
+            middle: pose.transform(self.middle),
+            sin,
+            cos,
+        }
     }
 
-    /// A box that holds the body's ground plan at two places: its lower left and upper right corner (m).
+    /// A box that holds the body's ground plan at two places: its lower left and upper right corner
+    /// (m).
     pub(crate) fn bounds(&self, places: [&Place; 2]) -> [[f64; 2]; 2] {
         let along = |k: usize| places.map(|place| place.middle[k]);
-        [[0, 1].map(|k| along(k)[0].min(along(k)[1]) - self.radius), [0, 1].map(|k| along(k)[0].max(along(k)[1]) + self.radius)]
+        [
+            [0, 1].map(|k| along(k)[0].min(along(k)[1]) - self.radius),
+            [0, 1].map(|k| along(k)[0].max(along(k)[1]) + self.radius),
+        ]
     }
 
     /// What `ray` meets of the body.
@@ -97,26 +130,45 @@ impl Body {
         let [x, y] = place.unrotate(from);
         let start = [x + self.middle[0], y + self.middle[1]];
         let entry = self.footprint.entry(start, place.unrotate(way))?;
-        let grey = if entry == 0.0 { self.paint.grey(start) } else { self.side };
-        Some(Hit { height: self.top - entry * thickness, grey })
+        let grey = if entry == 0.0 {
+            self.paint.grey(start)
+        } else {
+            self.side
+        };
+        Some(Hit {
+            height: self.top - entry * thickness,
+            grey,
+        })
     }
 }
 
 /// A square about the origin.
 pub(crate) fn square(edge: f64) -> Part {
     let half = edge / 2.0;
-    Part::Polygon { vertices: vec![[-half, -half], [half, -half], [half, half], [-half, half]] }
+    Part::Polygon {
+        vertices: vec![[-half, -half], [half, -half], [half, half], [-half, half]],
+    }
 }
 
 /// A disc that holds a part: middle and radius.
 fn disc_about(part: &Part) -> ([f64; 2], f64) {
     match part {
         Part::Disc { radius, centre } => (*centre, *radius),
-        Part::Ellipse { semi_axes, centre, .. } => (*centre, semi_axes[0].max(semi_axes[1])),
+        Part::Ellipse {
+            semi_axes, centre, ..
+        } => (*centre, semi_axes[0].max(semi_axes[1])),
         Part::Polygon { vertices } => {
             let count = vertices.len() as f64;
-            let middle = vertices.iter().fold([0.0; 2], |sum, v| [sum[0] + v[0] / count, sum[1] + v[1] / count]);
-            (middle, vertices.iter().map(|v| libm::hypot(v[0] - middle[0], v[1] - middle[1])).fold(0.0, f64::max))
+            let middle = vertices.iter().fold([0.0; 2], |sum, v| {
+                [sum[0] + v[0] / count, sum[1] + v[1] / count]
+            });
+            (
+                middle,
+                vertices
+                    .iter()
+                    .map(|v| libm::hypot(v[0] - middle[0], v[1] - middle[1]))
+                    .fold(0.0, f64::max),
+            )
         }
     }
 }
@@ -142,11 +194,17 @@ mod tests {
 
     #[test]
     fn hit_meets_the_top_or_a_side_at_its_height() {
-        let disc = Part::Disc { radius: 0.01, centre: [0.0, 0.04] };
+        let disc = Part::Disc {
+            radius: 0.01,
+            centre: [0.0, 0.04],
+        };
         let body = Body::plain(Carrier::Table, &disc, [0.0, 0.02], [0.5, 0.25]);
         // a quarter turn brings the disc's middle to (0.1, 0)
         let place = body.place(Pose::new(0.14, 0.0, std::f64::consts::FRAC_PI_2));
-        let toward = |x: f64, slope: f64| Ray { origin: [x - (1.0 - 0.02) * slope, 0.0, 1.0], slope: [slope, 0.0] };
+        let toward = |x: f64, slope: f64| Ray {
+            origin: [x - (1.0 - 0.02) * slope, 0.0, 1.0],
+            slope: [slope, 0.0],
+        };
         let top = body.hit(&place, &toward(0.1, 0.3)).unwrap();
         assert_eq!((top.height, top.grey), (0.02, 0.5));
         // 3 mm before the disc at its top, one metre per metre: meets it 3 mm lower

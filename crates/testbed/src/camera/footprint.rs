@@ -8,7 +8,10 @@ pub(crate) enum Footprint {
     /// Where n · p <= offset for every (n, offset).
     Polygon(Vec<([f64; 2], f64)>),
     /// Where |rows (p - centre)| <= 1.
-    Ellipse { centre: [f64; 2], rows: [[f64; 2]; 2] },
+    Ellipse {
+        centre: [f64; 2],
+        rows: [[f64; 2]; 2],
+    },
 }
 
 impl Footprint {
@@ -17,7 +20,11 @@ impl Footprint {
         match part {
             Part::Polygon { vertices } => Self::polygon(vertices),
             Part::Disc { radius, centre } => Self::ellipse([*radius; 2], *centre, 0.0),
-            Part::Ellipse { semi_axes, centre, angle } => Self::ellipse(*semi_axes, *centre, *angle),
+            Part::Ellipse {
+                semi_axes,
+                centre,
+                angle,
+            } => Self::ellipse(*semi_axes, *centre, *angle),
         }
     }
 
@@ -34,16 +41,23 @@ impl Footprint {
     fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);
         let [a, b] = semi_axes;
-        Self::Ellipse { centre, rows: [[cos / a, sin / a], [-sin / b, cos / b]] }
+        Self::Ellipse {
+            centre,
+            rows: [[cos / a, sin / a], [-sin / b, cos / b]],
+        }
     }
 
-    /// How far along the way from `start` by `way` the region begins, as a share in [0, 1]; `None` where it does not.
+    /// How far along the way from `start` by `way` the region begins, as a share in [0, 1]; `None`
+    /// where it does not.
     pub(crate) fn entry(&self, start: [f64; 2], way: [f64; 2]) -> Option<f64> {
         match self {
             Self::Polygon(sides) => entry_of_polygon(sides, start, way),
             Self::Ellipse { centre, rows } => {
                 let onto = |v: [f64; 2]| [dot(rows[0], v), dot(rows[1], v)];
-                entry_of_circle(onto([start[0] - centre[0], start[1] - centre[1]]), onto(way))
+                entry_of_circle(
+                    onto([start[0] - centre[0], start[1] - centre[1]]),
+                    onto(way),
+                )
             }
         }
     }
@@ -51,7 +65,10 @@ impl Footprint {
 
 /// Cuts the way at every side (Cyrus & Beck 1978).
 fn entry_of_polygon(sides: &[([f64; 2], f64)], start: [f64; 2], way: [f64; 2]) -> Option<f64> {
-    if sides.iter().all(|(normal, offset)| dot(*normal, start) <= *offset) {
+    if sides
+        .iter()
+        .all(|(normal, offset)| dot(*normal, start) <= *offset)
+    {
         return Some(0.0);
     }
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
@@ -104,7 +121,11 @@ mod tests {
     /// The unit circle at (1, 2), scaled to 2 by 0.5 and turned by a quarter.
     #[test]
     fn entry_of_an_ellipse_is_where_the_way_meets_it() {
-        let part = Part::Ellipse { semi_axes: [2.0, 0.5], centre: [1.0, 2.0], angle: std::f64::consts::FRAC_PI_2 };
+        let part = Part::Ellipse {
+            semi_axes: [2.0, 0.5],
+            centre: [1.0, 2.0],
+            angle: std::f64::consts::FRAC_PI_2,
+        };
         let ellipse = Footprint::new(&part);
         assert_eq!(ellipse.entry([1.0, 3.9], [0.0, 1.0]), Some(0.0));
         let sideways = ellipse.entry([-1.0, 2.0], [2.0, 0.0]).unwrap();

@@ -19,8 +19,13 @@ impl Grabber {
     /// assert_eq!(Grabber { repeat: 0.0, seed: 1 }.delivered(5), 5);
     /// ```
     pub fn delivered(&self, index: u64) -> u64 {
-        let late = |index: u64| Streams::new(self.seed).uniform(index, super::studio::FIRST_DRAW, 0) < self.repeat;
-        (0..=index).rev().find(|index| *index == 0 || !late(*index)).unwrap_or(0)
+        let late = |index: u64| {
+            Streams::new(self.seed).uniform(index, super::studio::FIRST_DRAW, 0) < self.repeat
+        };
+        (0..=index)
+            .rev()
+            .find(|index| *index == 0 || !late(*index))
+            .unwrap_or(0)
     }
 }
 
@@ -30,12 +35,28 @@ mod tests {
 
     #[test]
     fn delivered_repeats_the_frame_before_as_often_as_asked() {
-        let grabber = Grabber { repeat: 0.2, seed: 4 };
+        let grabber = Grabber {
+            repeat: 0.2,
+            seed: 4,
+        };
         let delivered: Vec<u64> = (0..5000).map(|index| grabber.delivered(index)).collect();
-        assert!(delivered.iter().zip(0..).all(|(frame, index)| *frame <= index));
-        let repeats = delivered.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        assert!(
+            delivered
+                .iter()
+                .zip(0..)
+                .all(|(frame, index)| *frame <= index)
+        );
+        let repeats = delivered
+            .windows(2)
+            .filter(|pair| pair[0] == pair[1])
+            .count();
         // mean 1000, standard deviation 28
         assert!((860..1140).contains(&repeats), "{repeats}");
-        assert!(delivered.windows(2).zip(1..).all(|(pair, index)| pair[1] == index || pair[1] == pair[0]));
+        assert!(
+            delivered
+                .windows(2)
+                .zip(1..)
+                .all(|(pair, index)| pair[1] == index || pair[1] == pair[0])
+        );
     }
 }

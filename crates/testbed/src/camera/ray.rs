@@ -13,7 +13,10 @@ impl Ray {
     /// Where the ray is at height `z` (m).
     pub(crate) fn at(&self, z: f64) -> [f64; 2] {
         let descent = self.origin[2] - z;
-        [self.origin[0] + descent * self.slope[0], self.origin[1] + descent * self.slope[1]]
+        [
+            self.origin[0] + descent * self.slope[0],
+            self.origin[1] + descent * self.slope[1],
+        ]
     }
 }
 
@@ -22,7 +25,11 @@ pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

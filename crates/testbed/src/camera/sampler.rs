@@ -7,8 +7,8 @@ use stickslip_filter::Draw;
 use super::ray::Ray;
 use super::viewpoint::Camera;
 
-/// Subpixels along a side of a pixel. The lens's blur falls on them: weighted by whole pixels, an edge along a row would be blurred
-/// by an amount that depends on where in the row it lies.
+/// Subpixels along a side of a pixel. The lens's blur falls on them: weighted by whole pixels, an
+/// edge along a row would be blurred by an amount that depends on where in the row it lies.
 pub(crate) const SUBPIXELS: usize = 2;
 
 /// Rays of a subpixel that sees more than one surface.
@@ -47,7 +47,8 @@ pub(crate) struct Sampler {
     /// Rows of subpixels.
     rows: usize,
     origin: [f64; 3],
-    /// Slopes of the rays through the subpixels' corners, a row of `columns + 1` for every line between rows.
+    /// Slopes of the rays through the subpixels' corners, a row of `columns + 1` for every line
+    /// between rows.
     corners: Vec<[f64; 2]>,
     /// Where in a subpixel the rays are cast, before a random shift.
     offsets: Vec<[f64; 2]>,
@@ -56,32 +57,71 @@ pub(crate) struct Sampler {
 impl Sampler {
     pub(crate) fn new(camera: &Camera) -> Self {
         let [columns, rows] = camera.lens().size.map(|n| n as usize * SUBPIXELS);
-        let corner = |index: usize| [index % (columns + 1), index / (columns + 1)].map(|line| line as f64 / SUBPIXELS as f64 - 0.5);
-        let slope = |index: usize| camera.slope(corner(index)).expect("a camera whose corners look down does everywhere");
+        let corner = |index: usize| {
+            [index % (columns + 1), index / (columns + 1)]
+                .map(|line| line as f64 / SUBPIXELS as f64 - 0.5)
+        };
+        let slope = |index: usize| {
+            camera
+                .slope(corner(index))
+                .expect("a camera whose corners look down does everywhere")
+        };
         let corners = (0..(columns + 1) * (rows + 1)).map(slope).collect();
-        Self { columns, rows, origin: camera.centre(), corners, offsets: offsets() }
+        Self {
+            columns,
+            rows,
+            origin: camera.centre(),
+            corners,
+            offsets: offsets(),
+        }
     }
 
     /// All subpixels, tile by tile.
     pub(crate) fn tiles(&self) -> impl Iterator<Item = Area> {
-        let ranges = |end: usize| (0..end).step_by(TILE).map(move |start| start..(start + TILE).min(end));
-        ranges(self.rows).flat_map(move |rows| ranges(self.columns).map(move |columns| Area { columns, rows: rows.clone() }))
+        let ranges = |end: usize| {
+            (0..end)
+                .step_by(TILE)
+                .map(move |start| start..(start + TILE).min(end))
+        };
+        ranges(self.rows).flat_map(move |rows| {
+            ranges(self.columns).map(move |columns| Area {
+                columns,
+                rows: rows.clone(),
+            })
+        })
     }
 
-    /// A box that holds what an area sees between two heights: its lower left and upper right corner (m).
+    /// A box that holds what an area sees between two heights: its lower left and upper right
+    /// corner (m).
     pub(crate) fn ground(&self, area: &Area, heights: [f64; 2]) -> [[f64; 2]; 2] {
         let rows = [area.rows.start, area.rows.end];
-        let corners = rows.map(|row| [area.columns.start, area.columns.end].map(|column| self.corners[row * (self.columns + 1) + column]));
-        let at = |z: &f64| corners.as_flattened().iter().map(|slope| Ray { origin: self.origin, slope: *slope }.at(*z)).collect::<Vec<_>>();
+        let corners = rows.map(|row| {
+            [area.columns.start, area.columns.end]
+                .map(|column| self.corners[row * (self.columns + 1) + column])
+        });
+        let at = |z: &f64| {
+            corners
+                .as_flattened()
+                .iter()
+                .map(|slope| {
+                    Ray {
+                        origin: self.origin,
+                        slope: *slope,
+                    }
+                    .at(*z)
+                })
+                .collect::<Vec<_>>()
+        };
         let points: Vec<[f64; 2]> = heights.iter().flat_map(at).collect();
-        let [low, high] = [f64::min, f64::max].map(|f| [0, 1].map(|k| points.iter().map(|point| point[k]).reduce(f).unwrap_or(0.0)));
+        let [low, high] = [f64::min, f64::max]
+            .map(|f| [0, 1].map(|k| points.iter().map(|point| point[k]).reduce(f).unwrap_or(0.0)));
         // the lens bends an area's sides, by far less than this
         let margin = 0.1 * (high[0] - low[0]).max(high[1] - low[1]);
         [low.map(|x| x - margin), high.map(|x| x + margin)]
     }
 
-    /// Paints an area of an image of subpixels: one whose corners see one grey throughout the exposure has that grey, any other the
-    /// mean over its rays.
+    /// Paints an area of an image of subpixels: one whose corners see one grey throughout the
+    /// exposure has that grey, any other the mean over its rays.
     pub(crate) fn paint(&self, view: &impl View, area: &Area, shifts: Draw, image: &mut [f32]) {
         let mut above = self.probe(view, area, area.rows.start);
         for row in area.rows.clone() {
@@ -90,7 +130,11 @@ impl Sampler {
                 let [grey, others @ ..] = [above[i], above[i + 1], below[i], below[i + 1]];
                 // NaN, for a corner that sees several greys, equals nothing
                 let even = others.iter().all(|other| *other == grey);
-                image[row * self.columns + column] = if even { grey } else { self.mean(view, column, row, shifts) };
+                image[row * self.columns + column] = if even {
+                    grey
+                } else {
+                    self.mean(view, column, row, shifts)
+                };
             }
             above = below;
         }
@@ -98,11 +142,25 @@ impl Sampler {
 
     /// What the corners above a row see: a grey, or NaN where it changes during the exposure.
     fn probe(&self, view: &impl View, area: &Area, row: usize) -> Vec<f32> {
-        let instants = if view.is_still() { &PROBES[..1] } else { &PROBES };
+        let instants = if view.is_still() {
+            &PROBES[..1]
+        } else {
+            &PROBES
+        };
         let at = |column: usize| {
-            let ray = Ray { origin: self.origin, slope: self.corners[row * (self.columns + 1) + column] };
+            let ray = Ray {
+                origin: self.origin,
+                slope: self.corners[row * (self.columns + 1) + column],
+            };
             let first = view.grey(&ray, instants[0]);
-            if instants[1..].iter().all(|instant| view.grey(&ray, *instant) == first) { first } else { f32::NAN }
+            if instants[1..]
+                .iter()
+                .all(|instant| view.grey(&ray, *instant) == first)
+            {
+                first
+            } else {
+                f32::NAN
+            }
         };
         (area.columns.start..=area.columns.end).map(at).collect()
     }
@@ -112,7 +170,12 @@ impl Sampler {
         let shift = [shifts.uniform(particle, 0), shifts.uniform(particle, 1)];
         let first = row * (self.columns + 1) + column;
         let second = first + self.columns + 1;
-        let corners = [self.corners[first], self.corners[first + 1], self.corners[second], self.corners[second + 1]];
+        let corners = [
+            self.corners[first],
+            self.corners[first + 1],
+            self.corners[second],
+            self.corners[second + 1],
+        ];
         let first_instant = row % SUBPIXELS * SUBPIXELS + column % SUBPIXELS;
         let mut sum = 0.0;
         for (ray, offset) in self.offsets.iter().enumerate() {
@@ -122,17 +185,25 @@ impl Sampler {
                 let along = |a: [f64; 2], b: [f64; 2]| a[k] + x * (b[k] - a[k]);
                 along(corners[0], corners[1]) * (1.0 - y) + along(corners[2], corners[3]) * y
             });
-            sum += view.grey(&Ray { origin: self.origin, slope }, first_instant + ray * SUBPIXELS * SUBPIXELS);
+            sum += view.grey(
+                &Ray {
+                    origin: self.origin,
+                    slope,
+                },
+                first_instant + ray * SUBPIXELS * SUBPIXELS,
+            );
         }
         sum / RAYS as f32
     }
 }
 
-/// A Kronecker sequence that fills the unit square evenly, and the cube with the ray's number as third axis (Roberts 2018:
-/// powers of the root of x³ = x + 1).
+/// A Kronecker sequence that fills the unit square evenly, and the cube with the ray's number as
+/// third axis (Roberts 2018: powers of the root of x³ = x + 1).
 fn offsets() -> Vec<[f64; 2]> {
     const ROOT: f64 = 1.324_717_957_244_746;
-    (0..RAYS).map(|k| [wrap(k as f64 / ROOT), wrap(k as f64 / (ROOT * ROOT))]).collect()
+    (0..RAYS)
+        .map(|k| [wrap(k as f64 / ROOT), wrap(k as f64 / (ROOT * ROOT))])
+        .collect()
 }
 
 /// The fraction of a number that is not negative.
@@ -167,17 +238,26 @@ mod tests {
 
     /// A camera straight above whose pixels are 1 mm, the middle of the first one at (0, 0).
     fn sampler() -> Sampler {
-        let lens = Lens { size: [20, ROWS as u32], focal: [1000.0; 2], centre: [0.0; 2], radial: [0.0; 2], tangential: [0.0; 2] };
+        let lens = Lens {
+            size: [20, ROWS as u32],
+            focal: [1000.0; 2],
+            centre: [0.0; 2],
+            radial: [0.0; 2],
+            tangential: [0.0; 2],
+        };
         Sampler::new(&Camera::look_at(lens, [0.0, 0.0, 1.0], [0.0, 0.0]).unwrap())
     }
 
     /// Means over the pixels' subpixels.
     fn painted(view: &Edge) -> Vec<f32> {
         let mut image = vec![0.0; 20 * ROWS * SUBPIXELS * SUBPIXELS];
-        sampler().tiles().for_each(|tile| sampler().paint(view, &tile, Streams::new(1).at(0), &mut image));
+        sampler()
+            .tiles()
+            .for_each(|tile| sampler().paint(view, &tile, Streams::new(1).at(0), &mut image));
         let mut pixels = vec![0.0; 20 * ROWS];
         for (index, grey) in image.iter().enumerate() {
-            let [column, row] = [index % (20 * SUBPIXELS), index / (20 * SUBPIXELS)].map(|fine| fine / SUBPIXELS);
+            let [column, row] =
+                [index % (20 * SUBPIXELS), index / (20 * SUBPIXELS)].map(|fine| fine / SUBPIXELS);
             pixels[row * 20 + column] += grey / (SUBPIXELS * SUBPIXELS) as f32;
         }
         pixels
@@ -186,12 +266,21 @@ mod tests {
     #[test]
     fn paint_covers_a_pixel_by_the_share_that_is_seen() {
         for share in [0.1, 0.25, 0.5, 0.9] {
-            let image = painted(&Edge { at: (4.5 + share) * 1e-3, way: 0.0 });
+            let image = painted(&Edge {
+                at: (4.5 + share) * 1e-3,
+                way: 0.0,
+            });
             for row in image.chunks(20) {
-                assert!(row[..5].iter().all(|v| *v == 1.0) && row[6..].iter().all(|v| *v == 0.0), "{row:?}");
+                assert!(
+                    row[..5].iter().all(|v| *v == 1.0) && row[6..].iter().all(|v| *v == 0.0),
+                    "{row:?}"
+                );
                 assert!((f64::from(row[5]) - share).abs() < 0.1, "{share} {row:?}");
             }
-            let mean = image.chunks(20).fold(0.0, |sum, row| sum + f64::from(row[5])) / ROWS as f64;
+            let mean = image
+                .chunks(20)
+                .fold(0.0, |sum, row| sum + f64::from(row[5]))
+                / ROWS as f64;
             assert!((mean - share).abs() < 0.01, "{share} {mean}");
         }
     }
@@ -199,9 +288,22 @@ mod tests {
     /// An edge that moves over four pixels leaves a ramp with those four steps.
     #[test]
     fn paint_smears_what_moves_over_its_way() {
-        let image = painted(&Edge { at: 4.5e-3, way: 4e-3 });
-        for (column, expected) in [(4, 1.0), (5, 0.875), (6, 0.625), (7, 0.375), (8, 0.125), (9, 0.0)] {
-            let mean = image.chunks(20).fold(0.0, |sum, row| sum + f64::from(row[column])) / ROWS as f64;
+        let image = painted(&Edge {
+            at: 4.5e-3,
+            way: 4e-3,
+        });
+        for (column, expected) in [
+            (4, 1.0),
+            (5, 0.875),
+            (6, 0.625),
+            (7, 0.375),
+            (8, 0.125),
+            (9, 0.0),
+        ] {
+            let mean = image
+                .chunks(20)
+                .fold(0.0, |sum, row| sum + f64::from(row[column]))
+                / ROWS as f64;
             assert!((mean - expected).abs() < 0.005, "{column}: {mean}");
         }
     }
@@ -210,7 +312,11 @@ mod tests {
     fn tiles_are_all_subpixels_once() {
         let mut seen = vec![0; 20 * ROWS * SUBPIXELS * SUBPIXELS];
         for Area { columns, rows } in sampler().tiles() {
-            rows.for_each(|row| columns.clone().for_each(|column| seen[row * 20 * SUBPIXELS + column] += 1));
+            rows.for_each(|row| {
+                columns
+                    .clone()
+                    .for_each(|column| seen[row * 20 * SUBPIXELS + column] += 1)
+            });
         }
         assert!(seen.iter().all(|count| *count == 1));
     }

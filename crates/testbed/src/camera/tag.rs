@@ -29,7 +29,11 @@ impl Tag {
         let (column, row) = (cell(x), cell(-y));
         let inside = |cell: f64| (0.0..8.0).contains(&cell);
         // the casts cut off towards the first cell
-        if !inside(column) || !inside(row) || self.cells[row as usize][column as usize] { PAPER } else { INK }
+        if !inside(column) || !inside(row) || self.cells[row as usize][column as usize] {
+            PAPER
+        } else {
+            INK
+        }
     }
 }
 

@@ -18,13 +18,17 @@ pub struct Camera {
 #[non_exhaustive]
 pub enum CameraError {
     /// The camera is not above what it looks at.
-    #[error("the camera's height is {height} m; it must be positive. Put the camera above the table")]
+    #[error(
+        "the camera's height is {height} m; it must be positive. Put the camera above the table"
+    )]
     NotAbove {
         /// Its height (m).
         height: f64,
     },
     /// A pixel looks past the table.
-    #[error("the pixel ({x}, {y}) looks at or above the horizon; every pixel must look down. Tilt the camera less")]
+    #[error(
+        "the pixel ({x}, {y}) looks at or above the horizon; every pixel must look down. Tilt the camera less"
+    )]
     Horizon {
         /// Column (px).
         x: f64,
@@ -32,7 +36,9 @@ pub enum CameraError {
         y: f64,
     },
     /// The distortion cannot be undone.
-    #[error("the lens sees the pixel ({x}, {y}) in no direction: its distortion folds the image over. Make its distortion smaller")]
+    #[error(
+        "the lens sees the pixel ({x}, {y}) in no direction: its distortion folds the image over. Make its distortion smaller"
+    )]
     Fold {
         /// Column (px).
         x: f64,
@@ -42,7 +48,8 @@ pub enum CameraError {
 }
 
 impl Camera {
-    /// A camera at `centre` (m) that looks at a point of the table (m), the world's y axis upwards in the image.
+    /// A camera at `centre` (m) that looks at a point of the table (m), the world's y axis upwards
+    /// in the image.
     ///
     /// # Errors
     /// The camera is not above the table, or a corner of its image sees no point of it.
@@ -53,14 +60,22 @@ impl Camera {
         }
         let forward = unit(sub([target[0], target[1], 0.0], centre));
         let right = unit(cross(forward, [0.0, 1.0, 0.0]));
-        let camera = Self { lens, centre, right, down: cross(forward, right), forward };
+        let camera = Self {
+            lens,
+            centre,
+            right,
+            down: cross(forward, right),
+            forward,
+        };
         let [width, rows] = lens.size.map(|n| f64::from(n) - 0.5);
-        [[-0.5, -0.5], [width, -0.5], [width, rows], [-0.5, rows]].into_iter().try_for_each(|corner| camera.slope(corner).map(|_| ()))?;
+        [[-0.5, -0.5], [width, -0.5], [width, rows], [-0.5, rows]]
+            .into_iter()
+            .try_for_each(|corner| camera.slope(corner).map(|_| ()))?;
         Ok(camera)
     }
 
-    /// A camera that sees a box on the table, lower left and upper right corner (m), with some room around it, from a little below its
-    /// middle in the image.
+    /// A camera that sees a box on the table, lower left and upper right corner (m), with some room
+    /// around it, from a little below its middle in the image.
     ///
     /// # Errors
     /// The lens sees no table.
@@ -91,7 +106,8 @@ impl Camera {
     pub fn project(&self, point: [f64; 3]) -> [f64; 2] {
         let way = sub(point, self.centre);
         let depth = dot(way, self.forward);
-        self.lens.pixel([dot(way, self.right) / depth, dot(way, self.down) / depth])
+        self.lens
+            .pixel([dot(way, self.right) / depth, dot(way, self.down) / depth])
     }
 
     /// The point at height `z` (m) that a pixel sees.
@@ -99,7 +115,11 @@ impl Camera {
     /// # Errors
     /// The pixel sees no point of the table.
     pub fn point_at(&self, pixel: [f64; 2], z: f64) -> Result<[f64; 2], CameraError> {
-        Ok(Ray { origin: self.centre, slope: self.slope(pixel)? }.at(z))
+        Ok(Ray {
+            origin: self.centre,
+            slope: self.slope(pixel)?,
+        }
+        .at(z))
     }
 
     /// The point at height `z` (m) on the line of sight to a point.
@@ -111,9 +131,17 @@ impl Camera {
     /// Way along x and y per metre of descent on the ray of a pixel.
     pub(crate) fn slope(&self, pixel: [f64; 2]) -> Result<[f64; 2], CameraError> {
         let [x, y] = pixel;
-        let [a, b] = self.lens.direction(pixel).ok_or(CameraError::Fold { x, y })?;
-        let way: [f64; 3] = std::array::from_fn(|i| a * self.right[i] + b * self.down[i] + self.forward[i]);
-        if way[2] < -1e-3 { Ok([way[0] / -way[2], way[1] / -way[2]]) } else { Err(CameraError::Horizon { x, y }) }
+        let [a, b] = self
+            .lens
+            .direction(pixel)
+            .ok_or(CameraError::Fold { x, y })?;
+        let way: [f64; 3] =
+            std::array::from_fn(|i| a * self.right[i] + b * self.down[i] + self.forward[i]);
+        if way[2] < -1e-3 {
+            Ok([way[0] / -way[2], way[1] / -way[2]])
+        } else {
+            Err(CameraError::Horizon { x, y })
+        }
     }
 }
 
@@ -128,17 +156,30 @@ mod tests {
     /// Straight down without distortion, the image is the table scaled by focal length over height.
     #[test]
     fn project_straight_down_scales_by_focal_length_over_height() {
-        let lens = Lens { radial: [0.0; 2], tangential: [0.0; 2], ..Lens::industrial() };
+        let lens = Lens {
+            radial: [0.0; 2],
+            tangential: [0.0; 2],
+            ..Lens::industrial()
+        };
         let camera = Camera::look_at(lens, [0.1, 0.2, 0.5], [0.1, 0.2]).unwrap();
         let [u, v] = camera.project([0.13, 0.24, 0.1]);
-        assert!((u - (324.3 + 1205.0 * 0.03 / 0.4)).abs() < 1e-9 && (v - (236.8 - 1203.0 * 0.04 / 0.4)).abs() < 1e-9, "{u} {v}");
+        assert!(
+            (u - (324.3 + 1205.0 * 0.03 / 0.4)).abs() < 1e-9
+                && (v - (236.8 - 1203.0 * 0.04 / 0.4)).abs() < 1e-9,
+            "{u} {v}"
+        );
     }
 
     #[test]
     fn point_at_undoes_project_at_any_height() {
         for point in [[0.0, 0.0, 0.0], [0.1, -0.05, 0.03], [-0.08, 0.07, 0.2]] {
-            let [x, y] = camera().point_at(camera().project(point), point[2]).unwrap();
-            assert!((x - point[0]).abs() < 1e-12 && (y - point[1]).abs() < 1e-12, "{point:?}");
+            let [x, y] = camera()
+                .point_at(camera().project(point), point[2])
+                .unwrap();
+            assert!(
+                (x - point[0]).abs() < 1e-12 && (y - point[1]).abs() < 1e-12,
+                "{point:?}"
+            );
         }
     }
 
@@ -148,7 +189,10 @@ mod tests {
             let camera = Camera::over(Lens::industrial(), bounds).unwrap();
             for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let [u, v] = camera.project([bounds[x][0], bounds[y][1], 0.0]);
-                assert!((0.0..640.0).contains(&u) && (0.0..480.0).contains(&v), "{u} {v}");
+                assert!(
+                    (0.0..640.0).contains(&u) && (0.0..480.0).contains(&v),
+                    "{u} {v}"
+                );
             }
         }
     }
@@ -156,16 +200,30 @@ mod tests {
     #[test]
     fn on_sight_is_seen_at_the_same_pixel() {
         let point = [0.05, 0.02, 0.01];
-        let [a, b] = [camera().project(point), camera().project(camera().on_sight(point, 0.2))];
+        let [a, b] = [
+            camera().project(point),
+            camera().project(camera().on_sight(point, 0.2)),
+        ];
         assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
     }
 
     #[test]
     fn look_at_refuses_what_sees_no_table() {
-        assert_eq!(Camera::look_at(Lens::industrial(), [0.0, 0.0, -0.1], [0.0, 0.0]), Err(CameraError::NotAbove { height: -0.1 }));
+        assert_eq!(
+            Camera::look_at(Lens::industrial(), [0.0, 0.0, -0.1], [0.0, 0.0]),
+            Err(CameraError::NotAbove { height: -0.1 })
+        );
         let flat = Camera::look_at(Lens::industrial(), [0.0, 0.0, 0.1], [3.0, 0.0]).unwrap_err();
         assert!(matches!(flat, CameraError::Horizon { .. }), "{flat}");
-        let folded = Lens { radial: [-8.0, 0.0], ..Lens::industrial() };
-        assert!(Camera::look_at(folded, [0.0, 0.0, 0.5], [0.0, 0.0]).unwrap_err().to_string().contains("folds"));
+        let folded = Lens {
+            radial: [-8.0, 0.0],
+            ..Lens::industrial()
+        };
+        assert!(
+            Camera::look_at(folded, [0.0, 0.0, 0.5], [0.0, 0.0])
+                .unwrap_err()
+                .to_string()
+                .contains("folds")
+        );
     }
 }

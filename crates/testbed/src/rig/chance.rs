@@ -1,4 +1,5 @@
-//! Random numbers of the rig: one stream for each thing that is random ([`Topic`]), and smooth random fields ([`Waves`]).
+//! Random numbers of the rig: one stream for each thing that is random ([`Topic`]), and smooth
+//! random fields ([`Waves`]).
 
 use std::f64::consts::TAU;
 
@@ -29,7 +30,8 @@ impl Topic {
     }
 }
 
-/// A smooth random field of mean 0 and variance 1 over the plane: plane waves of random direction, phase and length.
+/// A smooth random field of mean 0 and variance 1 over the plane: plane waves of random direction,
+/// phase and length.
 #[derive(Clone, Debug)]
 pub(super) struct Waves {
     /// Wave vector (rad/m) and phase (rad).
@@ -45,12 +47,18 @@ impl Waves {
             let (sin, cos) = libm::sincos(direction);
             [number * cos, number * sin, phase]
         };
-        Self { waves: (0..WAVES).map(wave).collect() }
+        Self {
+            waves: (0..WAVES).map(wave).collect(),
+        }
     }
 
     /// The field at a point (m).
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> f64 {
-        let sum = self.waves.iter().map(|[kx, ky, phase]| libm::cos(kx * x + ky * y + phase)).fold(0.0, |sum, c| sum + c);
+        let sum = self
+            .waves
+            .iter()
+            .map(|[kx, ky, phase]| libm::cos(kx * x + ky * y + phase))
+            .fold(0.0, |sum, c| sum + c);
         sum * (2.0 / f64::from(WAVES)).sqrt()
     }
 }
@@ -69,7 +77,9 @@ mod tests {
                 let value = waves.at(point);
                 (sum, squares, count) = (sum + value, squares + value * value, count + 1.0);
                 // the slope of a cosine of length 50 mm and amplitude sqrt(2 K) / K per wave
-                assert!((waves.at([point[0] + 1e-4, point[1]]) - value).abs() < 1e-4 * TAU / 0.05 * 5.7);
+                assert!(
+                    (waves.at([point[0] + 1e-4, point[1]]) - value).abs() < 1e-4 * TAU / 0.05 * 5.7
+                );
             }
         }
         let mean: f64 = sum / count;

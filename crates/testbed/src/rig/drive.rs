@@ -1,4 +1,5 @@
-//! The pusher's drive: [`DriveSettings`], a motor that lags and ripples, and a spindle that gives and slips at the stall force.
+//! The pusher's drive: [`DriveSettings`], a motor that lags and ripples, and a spindle that gives
+//! and slips at the stall force.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +17,8 @@ pub struct DriveSettings {
     pub lag: f64,
     /// Largest deviation of the motor's speed, as a share of it.
     pub ripple: f64,
-    /// What is between motor and pusher; `None` moves the pusher as the motor turns, whatever resists.
+    /// What is between motor and pusher; `None` moves the pusher as the motor turns, whatever
+    /// resists.
     pub spindle: Option<Spindle>,
 }
 
@@ -35,13 +37,22 @@ pub struct Spindle {
 
 impl Default for DriveSettings {
     fn default() -> Self {
-        Self { lag: 0.03, ripple: 0.03, spindle: Some(Spindle::default()) }
+        Self {
+            lag: 0.03,
+            ripple: 0.03,
+            spindle: Some(Spindle::default()),
+        }
     }
 }
 
 impl Default for Spindle {
     fn default() -> Self {
-        Self { mass: 1.0, stiffness: 3e5, damping_ratio: 0.5, stall_force: 40.0 }
+        Self {
+            mass: 1.0,
+            stiffness: 3e5,
+            damping_ratio: 0.5,
+            stall_force: 40.0,
+        }
     }
 }
 
@@ -64,14 +75,24 @@ impl<'a> Drive<'a> {
     pub(super) fn new(settings: DriveSettings, command: &'a SpeedProfile, seed: u64) -> Self {
         let draw = Topic::Drive.draw(seed);
         let phases = [0, 1].map(|k| TAU * draw.uniform(k, 0));
-        Self { settings, command, phases, motor: 0.0, motor_speed: 0.0, way: 0.0, speed: 0.0 }
+        Self {
+            settings,
+            command,
+            phases,
+            motor: 0.0,
+            motor_speed: 0.0,
+            way: 0.0,
+            speed: 0.0,
+        }
     }
 
-    /// Advances by `h` seconds from `time` under the force of the object on the pusher along its direction (N).
+    /// Advances by `h` seconds from `time` under the force of the object on the pusher along its
+    /// direction (N).
     pub(super) fn advance(&mut self, time: f64, h: f64, force: f64) {
         let target = self.command.at(time) * (1.0 + self.ripple());
         self.motor_speed = if self.settings.lag > 0.0 {
-            self.motor_speed + (target - self.motor_speed) * (1.0 - libm::exp(-h / self.settings.lag))
+            self.motor_speed
+                + (target - self.motor_speed) * (1.0 - libm::exp(-h / self.settings.lag))
         } else {
             target
         };
@@ -83,12 +104,18 @@ impl<'a> Drive<'a> {
     }
 
     fn turn(&mut self, spindle: &Spindle, h: f64, force: f64) {
-        let Spindle { mass, stiffness, damping_ratio, stall_force } = *spindle;
+        let Spindle {
+            mass,
+            stiffness,
+            damping_ratio,
+            stall_force,
+        } = *spindle;
         let damping = 2.0 * damping_ratio * (stiffness * mass).sqrt();
         // a motor that is held back farther than the stall force winds the spindle slips
         let wound = (stiffness * (self.motor - self.way)).clamp(-stall_force, stall_force);
         self.motor = self.way + wound / stiffness;
-        let drive = (wound + damping * (self.motor_speed - self.speed)).clamp(-stall_force, stall_force);
+        let drive =
+            (wound + damping * (self.motor_speed - self.speed)).clamp(-stall_force, stall_force);
         self.speed += h / mass * (drive + force);
         self.way += h * self.speed;
     }
@@ -97,7 +124,10 @@ impl<'a> Drive<'a> {
         if self.settings.ripple == 0.0 {
             return 0.0;
         }
-        let waves = RIPPLES.iter().zip(self.phases).map(|((length, share), phase)| share * libm::sin(TAU * self.motor / length + phase));
+        let waves = RIPPLES
+            .iter()
+            .zip(self.phases)
+            .map(|((length, share), phase)| share * libm::sin(TAU * self.motor / length + phase));
         self.settings.ripple * waves.fold(0.0, |sum, wave| sum + wave)
     }
 }
@@ -120,40 +150,78 @@ mod tests {
 
     #[test]
     fn rigid_drive_without_lag_does_what_it_is_told() {
-        let (way, speed) = run(DriveSettings { lag: 0.0, ripple: 0.0, spindle: None }, 3.0, |_| -1e9);
+        let (way, speed) = run(
+            DriveSettings {
+                lag: 0.0,
+                ripple: 0.0,
+                spindle: None,
+            },
+            3.0,
+            |_| -1e9,
+        );
         assert!((way - 0.06).abs() < 1e-12 && speed == 0.02, "{way} {speed}");
     }
 
     #[test]
     fn lag_costs_the_way_of_its_time_constant() {
-        let (way, _) = run(DriveSettings { lag: 0.1, ripple: 0.0, spindle: None }, 3.0, |_| 0.0);
+        let (way, _) = run(
+            DriveSettings {
+                lag: 0.1,
+                ripple: 0.0,
+                spindle: None,
+            },
+            3.0,
+            |_| 0.0,
+        );
         assert!((way - 0.02 * (3.0 - 0.1)).abs() < 1e-6, "{way}");
     }
 
     #[test]
     fn ripple_changes_the_speed_by_its_share_and_not_the_mean() {
-        let settings = DriveSettings { lag: 0.0, spindle: None, ..DriveSettings::default() };
+        let settings = DriveSettings {
+            lag: 0.0,
+            spindle: None,
+            ..DriveSettings::default()
+        };
         let (way, _) = run(settings, 5.0, |_| 0.0);
         assert!((way / 0.1 - 1.0).abs() < 2e-3, "{way}");
-        let speeds: Vec<f64> = (1..200).map(|k| run(settings, 0.001 * f64::from(k), |_| 0.0).1 / 0.02).collect();
-        let most = speeds.iter().fold(0.0, |most: f64, speed| most.max((speed - 1.0).abs()));
+        let speeds: Vec<f64> = (1..200)
+            .map(|k| run(settings, 0.001 * f64::from(k), |_| 0.0).1 / 0.02)
+            .collect();
+        let most = speeds
+            .iter()
+            .fold(0.0, |most: f64, speed| most.max((speed - 1.0).abs()));
         assert!((0.02..=0.03).contains(&most), "{most}");
     }
 
     #[test]
     fn spindle_winds_by_the_force_over_its_stiffness() {
-        let settings = DriveSettings { lag: 0.0, ripple: 0.0, spindle: Some(Spindle::default()) };
+        let settings = DriveSettings {
+            lag: 0.0,
+            ripple: 0.0,
+            spindle: Some(Spindle::default()),
+        };
         let (free, _) = run(settings, 1.0, |_| 0.0);
         let (loaded, speed) = run(settings, 1.0, |_| -30.0);
-        assert!((free - loaded - 30.0 / 3e5).abs() < 1e-9 && (speed - 0.02).abs() < 1e-9, "{free} {loaded} {speed}");
+        assert!(
+            (free - loaded - 30.0 / 3e5).abs() < 1e-9 && (speed - 0.02).abs() < 1e-9,
+            "{free} {loaded} {speed}"
+        );
     }
 
     #[test]
     fn motor_slips_at_the_stall_force_and_leaves_nothing_wound_up() {
         // a stiff wall at 10 mm that is taken away after 2 s
-        let settings = DriveSettings { lag: 0.0, ripple: 0.0, spindle: Some(Spindle::default()) };
+        let settings = DriveSettings {
+            lag: 0.0,
+            ripple: 0.0,
+            spindle: Some(Spindle::default()),
+        };
         let wall = |drive: &Drive<'_>| -(1e6 * (drive.way - 0.01) + 1e3 * drive.speed).max(0.0);
         let (way, speed) = run(settings, 2.0, wall);
-        assert!((1e6 * (way - 0.01) - 40.0).abs() < 0.01 && speed.abs() < 1e-6, "{way} {speed}");
+        assert!(
+            (1e6 * (way - 0.01) - 40.0).abs() < 0.01 && speed.abs() < 1e-6,
+            "{way} {speed}"
+        );
     }
 }

@@ -40,15 +40,26 @@ impl<'a> Machine<'a> {
     pub(super) fn new(rig: &'a Rig, trial: &'a Trial<'a>) -> Result<Self, TrialError> {
         let (scene, start) = (trial.scene, trial.start);
         let points = rig.footing.points(&scene.object.shape, trial.seed)?;
-        let fixels: Vec<Placed<'a>> = scene.fixels.iter().map(|fixel| Placed::new(&fixel.shape, fixel.pose)).collect();
-        let mu = [rig.mu_p].into_iter().chain(fixels.iter().map(|_| rig.mu_f));
+        let fixels: Vec<Placed<'a>> = scene
+            .fixels
+            .iter()
+            .map(|fixel| Placed::new(&fixel.shape, fixel.pose))
+            .collect();
+        let mu = [rig.mu_p]
+            .into_iter()
+            .chain(fixels.iter().map(|_| rig.mu_f));
         Ok(Self {
             rig,
             trial,
             direction: start.direction_vector(),
             object: start.object,
             twist: Twist::default(),
-            support: Support::new(&points, rig.table.surface(rig.mu_s, trial.seed), rig.bristles, scene),
+            support: Support::new(
+                &points,
+                rig.table.surface(rig.mu_s, trial.seed),
+                rig.bristles,
+                scene,
+            ),
             drive: Drive::new(rig.drive, &start.speed, trial.seed),
             touches: mu.map(Touch::new).collect(),
             gaps: Vec::new(),
@@ -65,8 +76,13 @@ impl<'a> Machine<'a> {
         let object = &self.trial.scene.object;
         // two contacts at the far ends of the object
         let reach = object.shape.bounding_radius();
-        let contact = 2.0 * self.rig.contact.stiffness * (1.0 / object.mass + reach * reach / object.inertia);
-        let spindle = self.rig.drive.spindle.map_or(0.0, |spindle| spindle.stiffness / spindle.mass);
+        let contact =
+            2.0 * self.rig.contact.stiffness * (1.0 / object.mass + reach * reach / object.inertia);
+        let spindle = self
+            .rig
+            .drive
+            .spindle
+            .map_or(0.0, |spindle| spindle.stiffness / spindle.mass);
         (RESOLUTION / contact.max(spindle).sqrt()).min(self.rig.longest_step)
     }
 
@@ -80,7 +96,11 @@ impl<'a> Machine<'a> {
         self.has_moved |= !self.contacts.is_empty() || self.twist != Twist::default();
         if self.has_moved {
             let drag = self.support.drag(self.object, &self.twist, h);
-            wrench = Wrench { fx: wrench.fx + drag.fx, fy: wrench.fy + drag.fy, torque: wrench.torque + drag.torque };
+            wrench = Wrench {
+                fx: wrench.fx + drag.fx,
+                fy: wrench.fy + drag.fy,
+                torque: wrench.torque + drag.torque,
+            };
         }
 
         let object = &self.trial.scene.object;
@@ -101,13 +121,24 @@ impl<'a> Machine<'a> {
         for j in 0..self.fixels.len() {
             let fixel = self.fixels[j];
             let more = self.touch(Body::Fixel(j), (&object, &fixel), [0.0; 2], h);
-            wrench = Wrench { fx: wrench.fx + more.fx, fy: wrench.fy + more.fy, torque: wrench.torque + more.torque };
+            wrench = Wrench {
+                fx: wrench.fx + more.fx,
+                fy: wrench.fy + more.fy,
+                torque: wrench.torque + more.torque,
+            };
         }
         wrench
     }
 
-    /// Contacts of the object with one body that moves with `velocity`, and their wrench on the object.
-    fn touch(&mut self, body: Body, (object, other): (&Placed<'_>, &Placed<'_>), velocity: [f64; 2], h: f64) -> Wrench {
+    /// Contacts of the object with one body that moves with `velocity`, and their wrench on the
+    /// object.
+    fn touch(
+        &mut self,
+        body: Body,
+        (object, other): (&Placed<'_>, &Placed<'_>),
+        velocity: [f64; 2],
+        h: f64,
+    ) -> Wrench {
         self.gaps.clear();
         narrow_phase(object, other, 0.0, &mut self.gaps);
         let place = if let Body::Fixel(j) = body { 1 + j } else { 0 };
@@ -117,19 +148,36 @@ impl<'a> Machine<'a> {
             let ([nx, ny], [rx, ry]) = (gap.normal, gap.arm);
             let own = self.twist.at(gap.arm);
             let (vx, vy) = (own[0] - velocity[0], own[1] - velocity[1]);
-            let slide = Slide { parting: nx * vx + ny * vy, slip: nx * vy - ny * vx };
-            let press = touch.press(&self.rig.contact, gap, slide, [self.trial.scene.object.mass, h]);
-            let force = [press.normal * nx - press.tangential * ny, press.normal * ny + press.tangential * nx];
+            let slide = Slide {
+                parting: nx * vx + ny * vy,
+                slip: nx * vy - ny * vx,
+            };
+            let press = touch.press(
+                &self.rig.contact,
+                gap,
+                slide,
+                [self.trial.scene.object.mass, h],
+            );
+            let force = [
+                press.normal * nx - press.tangential * ny,
+                press.normal * ny + press.tangential * nx,
+            ];
             wrench.fx += force[0];
             wrench.fy += force[1];
             wrench.torque += rx * force[1] - ry * force[0];
-            self.contacts.push(Contact { body, point: [self.object.x + rx, self.object.y + ry], normal: gap.normal, force });
+            self.contacts.push(Contact {
+                body,
+                point: [self.object.x + rx, self.object.y + ry],
+                normal: gap.normal,
+                force,
+            });
         }
         touch.settle();
         wrench
     }
 
-    /// Adds up the contacts' impulses; the force of the object on the pusher along its direction (N).
+    /// Adds up the contacts' impulses; the force of the object on the pusher along its direction
+    /// (N).
     fn impulses(&mut self, h: f64) -> f64 {
         let mut along = 0.0;
         for contact in &self.contacts {
@@ -140,7 +188,9 @@ impl<'a> Machine<'a> {
                     self.pusher_impulse[0] += h * fx;
                     self.pusher_impulse[1] += h * fy;
                 }
-                Body::Fixel(j) => self.fixel_impulses[j] += h * (fx * contact.normal[0] + fy * contact.normal[1]),
+                Body::Fixel(j) => {
+                    self.fixel_impulses[j] += h * (fx * contact.normal[0] + fy * contact.normal[1])
+                }
             }
         }
         along
@@ -149,7 +199,11 @@ impl<'a> Machine<'a> {
     /// Pose of the pusher.
     fn pusher(&self) -> Pose {
         let Pose { x, y, theta } = self.trial.start.pusher;
-        Pose::new(x + self.drive.way * self.direction[0], y + self.drive.way * self.direction[1], theta)
+        Pose::new(
+            x + self.drive.way * self.direction[0],
+            y + self.drive.way * self.direction[1],
+            theta,
+        )
     }
 
     /// The frame at `time`, with means over the `interval` that ends here (s); begins the next one.

@@ -1,7 +1,8 @@
-//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls; steps of 80 µs or less.
+//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls; steps
+//! of 80 µs or less.
 //!
-//! Nothing here solves a complementarity problem: every force is a function of the state, and the state is integrated by
-//! semi-implicit Euler steps, v ← v + h M⁻¹ f(q, v), q ← q + h v.
+//! Nothing here solves a complementarity problem: every force is a function of the state, and the
+//! state is integrated by semi-implicit Euler steps, v ← v + h M⁻¹ f(q, v), q ← q + h v.
 
 mod chance;
 #[cfg(test)]
@@ -54,18 +55,27 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// A rig for a scene: friction as the scene has it, its feet where they are known, its stall force where it has one.
+    /// A rig for a scene: friction as the scene has it, its feet where they are known, its stall
+    /// force where it has one.
     pub fn of(scene: &Scene) -> Self {
-        let Friction { mu_s, mu_p, mu_f, .. } = scene.nominal;
+        let Friction {
+            mu_s, mu_p, mu_f, ..
+        } = scene.nominal;
         let footing = match scene.feet {
             Feet::Tripod { .. } => Footing::default(),
             Feet::Known { positions, loads } => {
-                let point = |k: usize| SupportPoint { position: positions[k], load: loads[k] };
+                let point = |k: usize| SupportPoint {
+                    position: positions[k],
+                    load: loads[k],
+                };
                 Footing::Points([0, 1, 2].map(point).to_vec())
             }
         };
         let default = Spindle::default();
-        let spindle = Spindle { stall_force: scene.pusher.stall_force.unwrap_or(default.stall_force), ..default };
+        let spindle = Spindle {
+            stall_force: scene.pusher.stall_force.unwrap_or(default.stall_force),
+            ..default
+        };
         Self {
             mu_s,
             mu_p,
@@ -74,7 +84,10 @@ impl Rig {
             table: Table::default(),
             bristles: Bristles::default(),
             contact: ContactLaw::default(),
-            drive: DriveSettings { spindle: Some(spindle), ..DriveSettings::default() },
+            drive: DriveSettings {
+                spindle: Some(spindle),
+                ..DriveSettings::default()
+            },
             touch: TouchSensors::default(),
             longest_step: 8e-5,
         }
@@ -83,9 +96,14 @@ impl Rig {
     /// Runs an experiment.
     ///
     /// # Errors
-    /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start, the object would tip.
+    /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start,
+    /// the object would tip.
     pub fn run(&self, trial: &Trial<'_>) -> Result<Trace, TrialError> {
-        trial.check([("mu_s", self.mu_s), ("mu_p", self.mu_p), ("mu_f", self.mu_f)])?;
+        trial.check([
+            ("mu_s", self.mu_s),
+            ("mu_p", self.mu_p),
+            ("mu_f", self.mu_f),
+        ])?;
         let mut machine = Machine::new(self, trial)?;
         let steps = (1.0 / (trial.rate * machine.longest_step())).ceil();
         let h = 1.0 / (trial.rate * steps);
@@ -105,8 +123,17 @@ impl Rig {
         self.touch.feel(&mut frames, trial);
 
         let mu_s = friction.value().unwrap_or_else(|| machine.mean_friction());
-        let friction = Friction { mu_s, mu_p: self.mu_p, mu_f: self.mu_f, d_tri: machine.tripod_radius() };
-        Ok(Trace { friction, frames, unsolved: 0 })
+        let friction = Friction {
+            mu_s,
+            mu_p: self.mu_p,
+            mu_f: self.mu_f,
+            d_tri: machine.tripod_radius(),
+        };
+        Ok(Trace {
+            friction,
+            frames,
+            unsolved: 0,
+        })
     }
 }
 

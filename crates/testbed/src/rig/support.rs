@@ -1,7 +1,8 @@
 //! Friction between object and table: [`Support`], bristles under every point of the face.
 //!
-//! Each point drags a bristle along the table. Per unit of load it pulls with κ z + γ s, z the stretch and s the slip velocity of the
-//! point, and with at most μ(place) φ(|s|). A bristle whose κ z reaches that limit slips: z stops growing and turns after s.
+//! Each point drags a bristle along the table. Per unit of load it pulls with κ z + γ s, z the
+//! stretch and s the slip velocity of the point, and with at most μ(place) φ(|s|). A bristle whose
+//! κ z reaches that limit slips: z stops growing and turns after s.
 
 use stickslip_dynamics::{Pose, Scene, Twist, Wrench};
 
@@ -27,7 +28,10 @@ pub struct Bristles {
 
 impl Default for Bristles {
     fn default() -> Self {
-        Self { give: 5e-6, damping_ratio: 0.5 }
+        Self {
+            give: 5e-6,
+            damping_ratio: 0.5,
+        }
     }
 }
 
@@ -77,11 +81,19 @@ struct Motion {
 
 impl Support {
     /// Relaxed bristles at these points of the scene's object.
-    pub(super) fn new(points: &[SupportPoint], surface: Surface, bristles: Bristles, scene: &Scene) -> Self {
+    pub(super) fn new(
+        points: &[SupportPoint],
+        surface: Surface,
+        bristles: Bristles,
+        scene: &Scene,
+    ) -> Self {
         let weight = scene.object.mass * scene.gravity;
         // without friction bristles hold nothing, whatever their stiffness
         let stiffness = (surface.mean() / bristles.give).max(1.0);
-        let law = Law { stiffness, damping: 2.0 * bristles.damping_ratio * (stiffness / scene.gravity).sqrt() };
+        let law = Law {
+            stiffness,
+            damping: 2.0 * bristles.damping_ratio * (stiffness / scene.gravity).sqrt(),
+        };
         let block = |points: &[SupportPoint]| {
             let mut block = Block::default();
             for (k, point) in points.iter().enumerate() {
@@ -90,11 +102,22 @@ impl Support {
             }
             block
         };
-        let reach = points.iter().map(|p| length(p.position)).fold(0.0, f64::max);
-        Self { surface, blocks: points.chunks(LANES).map(block).collect(), law, weight, looked_up: None, reach }
+        let reach = points
+            .iter()
+            .map(|p| length(p.position))
+            .fold(0.0, f64::max);
+        Self {
+            surface,
+            blocks: points.chunks(LANES).map(block).collect(),
+            law,
+            weight,
+            looked_up: None,
+            reach,
+        }
     }
 
-    /// Radius of the tripod with the same torque in pure spin (m): the mean distance of the load from the centre of mass.
+    /// Radius of the tripod with the same torque in pure spin (m): the mean distance of the load
+    /// from the centre of mass.
     pub(super) fn tripod_radius(&self) -> f64 {
         self.mean(|point, _| length(point))
     }
@@ -109,8 +132,14 @@ impl Support {
 
     /// The mean, by load, over the points in the object frame.
     fn mean(&self, value: impl Fn([f64; 2], &Surface) -> f64) -> f64 {
-        let points = self.blocks.iter().flat_map(|block| (0..LANES).map(move |k| ([block.x[k], block.y[k]], block.load[k])));
-        points.filter(|(_, load)| *load > 0.0).map(|(point, load)| load * value(point, &self.surface)).fold(0.0, |sum, x| sum + x)
+        let points = self
+            .blocks
+            .iter()
+            .flat_map(|block| (0..LANES).map(move |k| ([block.x[k], block.y[k]], block.load[k])));
+        points
+            .filter(|(_, load)| *load > 0.0)
+            .map(|(point, load)| load * value(point, &self.surface))
+            .fold(0.0, |sum, x| sum + x)
             / self.weight
     }
 
@@ -120,7 +149,11 @@ impl Support {
             self.look_up(pose);
         }
         let (sin, cos) = libm::sincos(pose.theta);
-        let motion = Motion { sin, cos, twist: *twist };
+        let motion = Motion {
+            sin,
+            cos,
+            twist: *twist,
+        };
         let mut sums = [[0.0; LANES]; 3];
         for block in &mut self.blocks {
             block.drag(&motion, &self.law, &self.surface, h, &mut sums);
@@ -139,7 +172,8 @@ impl Support {
     fn look_up(&mut self, pose: Pose) {
         self.looked_up = Some(pose);
         for block in &mut self.blocks {
-            block.mu = std::array::from_fn(|k| self.surface.at(pose.transform([block.x[k], block.y[k]])));
+            block.mu =
+                std::array::from_fn(|k| self.surface.at(pose.transform([block.x[k], block.y[k]])));
         }
     }
 }
@@ -147,10 +181,22 @@ impl Support {
 impl Block {
     /// One step of the bristles; adds their pull and its moment to `sums`.
     ///
-    /// Line by line over the lanes, with selections for branches: so it compiles to SIMD instructions.
+    /// Line by line over the lanes, with selections for branches: so it compiles to SIMD
+    /// instructions.
     #[inline(always)]
-    fn drag(&mut self, motion: &Motion, law: &Law, surface: &Surface, h: f64, sums: &mut [Lanes; 3]) {
-        let Motion { sin, cos, twist: Twist { vx, vy, omega } } = *motion;
+    fn drag(
+        &mut self,
+        motion: &Motion,
+        law: &Law,
+        surface: &Surface,
+        h: f64,
+        sums: &mut [Lanes; 3],
+    ) {
+        let Motion {
+            sin,
+            cos,
+            twist: Twist { vx, vy, omega },
+        } = *motion;
         let rx = lanes(|k| cos * self.x[k] - sin * self.y[k]);
         let ry = lanes(|k| sin * self.x[k] + cos * self.y[k]);
         let sx = lanes(|k| vx - omega * ry[k]);
@@ -165,7 +211,14 @@ impl Block {
         let tx = lanes(|k| px[k] + damping[k] * sx[k]);
         let ty = lanes(|k| py[k] + damping[k] * sy[k]);
         let size = lanes(|k| (tx[k] * tx[k] + ty[k] * ty[k]).sqrt());
-        let scale = lanes(|k| limit[k] / if size[k] > limit[k] { size[k] } else { limit[k] + f64::MIN_POSITIVE });
+        let scale = lanes(|k| {
+            limit[k]
+                / if size[k] > limit[k] {
+                    size[k]
+                } else {
+                    limit[k] + f64::MIN_POSITIVE
+                }
+        });
         let fx = lanes(|k| scale[k] * tx[k]);
         let fy = lanes(|k| scale[k] * ty[k]);
         self.pull_x = lanes(|k| if excess[k] > 0.0 { fx[k] } else { px[k] });

@@ -7,10 +7,11 @@ use super::chance::{Topic, Waves};
 pub struct Table {
     /// Standard deviation over the table, as a share of μ_s.
     pub unevenness: f64,
-    /// Length of the shortest waves of friction over the table (m); the longest are three times as long.
+    /// Length of the shortest waves of friction over the table (m); the longest are three times as
+    /// long.
     pub wavelength: f64,
-    /// Share of μ_s by which friction at high speed exceeds that at `speed`, and friction at rest falls short of it; negative
-    /// where sliding is easier than starting.
+    /// Share of μ_s by which friction at high speed exceeds that at `speed`, and friction at rest
+    /// falls short of it; negative where sliding is easier than starting.
     pub speed_effect: f64,
     /// Speed at which friction is μ_s (m/s).
     pub speed: f64,
@@ -18,7 +19,12 @@ pub struct Table {
 
 impl Default for Table {
     fn default() -> Self {
-        Self { unevenness: 0.05, wavelength: 0.05, speed_effect: -0.04, speed: 0.01 }
+        Self {
+            unevenness: 0.05,
+            wavelength: 0.05,
+            speed_effect: -0.04,
+            speed: 0.01,
+        }
     }
 }
 
@@ -33,7 +39,11 @@ pub(super) struct Surface {
 impl Table {
     /// A table of mean friction `mu_s`.
     pub(super) fn surface(&self, mu_s: f64, seed: u64) -> Surface {
-        Surface { table: *self, mu_s, waves: Waves::new(self.wavelength, Topic::Table.draw(seed)) }
+        Surface {
+            table: *self,
+            mu_s,
+            waves: Waves::new(self.wavelength, Topic::Table.draw(seed)),
+        }
     }
 }
 
@@ -43,10 +53,15 @@ impl Surface {
         self.mu_s
     }
 
-    /// The factor on friction at a slip speed whose square (m²/s²) is given: 1 + e (s² − s₀²) / (s² + s₀²).
+    /// The factor on friction at a slip speed whose square (m²/s²) is given: 1 + e (s² − s₀²) / (s²
+    /// + s₀²).
     #[inline(always)]
     pub(super) fn speed_factor(&self, slip_squared: f64) -> f64 {
-        let Table { speed_effect, speed, .. } = self.table;
+        let Table {
+            speed_effect,
+            speed,
+            ..
+        } = self.table;
         1.0 + speed_effect * (slip_squared - speed * speed) / (slip_squared + speed * speed)
     }
 
@@ -64,8 +79,16 @@ mod tests {
 
     #[test]
     fn friction_is_the_mean_at_the_reference_speed_and_bounded_at_all_others() {
-        let surface = Table { speed_effect: -0.1, speed: 0.02, ..Table::default() }.surface(0.3, 1);
-        assert_eq!([0.0, 4e-4].map(|square| surface.speed_factor(square)), [1.1, 1.0]);
+        let surface = Table {
+            speed_effect: -0.1,
+            speed: 0.02,
+            ..Table::default()
+        }
+        .surface(0.3, 1);
+        assert_eq!(
+            [0.0, 4e-4].map(|square| surface.speed_factor(square)),
+            [1.1, 1.0]
+        );
         assert!((surface.speed_factor(1e6) - 0.9).abs() < 1e-5);
     }
 
@@ -77,8 +100,21 @@ mod tests {
                 (0..50).map(move |k| surface.at([0.026 * f64::from(k), 0.0]) / 0.3 - 1.0)
             })
             .collect();
-        let variance = deviations.iter().map(|d| d * d).fold(0.0, |sum, d| sum + d) / deviations.len() as f64;
-        assert!((variance.sqrt() / 0.05 - 1.0).abs() < 0.15, "{}", variance.sqrt());
-        assert_eq!(Table { unevenness: 0.0, ..Table::default() }.surface(0.3, 0).at([0.1, 0.2]), 0.3);
+        let variance =
+            deviations.iter().map(|d| d * d).fold(0.0, |sum, d| sum + d) / deviations.len() as f64;
+        assert!(
+            (variance.sqrt() / 0.05 - 1.0).abs() < 0.15,
+            "{}",
+            variance.sqrt()
+        );
+        assert_eq!(
+            Table {
+                unevenness: 0.0,
+                ..Table::default()
+            }
+            .surface(0.3, 0)
+            .at([0.1, 0.2]),
+            0.3
+        );
     }
 }

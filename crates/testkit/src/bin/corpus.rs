@@ -1,5 +1,6 @@
-//! `cargo run --release -p stickslip-testkit --bin corpus [PROBLEMS] [SEED]`: the solver over hard random problems, a million by
-//! default. Exits with 1 where a problem was neither solved nor proven infeasible, or the proof contradicts a known solution.
+//! `cargo run --release -p stickslip-testkit --bin corpus [PROBLEMS] [SEED]`: the solver over hard
+//! random problems, a million by default. Exits with 1 where a problem was neither solved nor
+//! proven infeasible, or the proof contradicts a known solution.
 
 use std::process::ExitCode;
 
@@ -7,7 +8,10 @@ use stickslip_testkit::{Corpus, Tally, survey};
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
-    let (Ok(problems), Ok(seed)) = (arguments.next().unwrap_or(Ok(1_000_000)), arguments.next().unwrap_or(Ok(1))) else {
+    let (Ok(problems), Ok(seed)) = (
+        arguments.next().unwrap_or(Ok(1_000_000)),
+        arguments.next().unwrap_or(Ok(1)),
+    ) else {
         eprintln!("usage: corpus [PROBLEMS] [SEED], both whole numbers");
         return ExitCode::from(2);
     };
@@ -18,10 +22,15 @@ fn main() -> ExitCode {
         total.add(tally);
     }
     println!("{:<16} {total}", "all");
-    for (what, indices) in [("failed", &total.failed), ("infeasible against a known solution", &total.contradicted)] {
+    for (what, indices) in [
+        ("failed", &total.failed),
+        ("infeasible against a known solution", &total.contradicted),
+    ] {
         if !indices.is_empty() {
             println!("{what}: {:?}", &indices[..indices.len().min(20)]);
         }
     }
-    ExitCode::from(u8::from(!total.failed.is_empty() || !total.contradicted.is_empty()))
+    ExitCode::from(u8::from(
+        !total.failed.is_empty() || !total.contradicted.is_empty(),
+    ))
 }

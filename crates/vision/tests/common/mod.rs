@@ -1,14 +1,22 @@
-//! A rendered rig with known truth: a square object, a round pusher, a tag board, an overhead camera.
+//! A rendered rig with known truth: a square object, a round pusher, a tag board, an overhead
+//! camera.
 
-#![allow(dead_code, clippy::unwrap_used, reason = "each user needs a part of it; a test that cannot go on fails")]
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "each user needs a part of it; a test that cannot go on fails"
+)]
 
 use image::GrayImage;
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip_filter::Streams;
-use stickslip_testbed::camera::{self as rendered, Actors, Optics, Props, Shutter, Stage, Studio, TagMount};
+use stickslip_testbed::camera::{
+    self as rendered, Actors, Optics, Props, Shutter, Stage, Studio, TagMount,
+};
 use stickslip_vision::{
-    Board, BoardOnTable, BoardRecording, BodyTag, Calibration, CalibrationError, Camera, Measurement, Sighting, TagPlace, Tags, Track,
-    TrackError, calibrate, search_board, tag_cells, track,
+    Board, BoardOnTable, BoardRecording, BodyTag, Calibration, CalibrationError, Camera,
+    Measurement, Sighting, TagPlace, Tags, Track, TrackError, calibrate, search_board, tag_cells,
+    track,
 };
 
 pub const OBJECT_TAG: u16 = 3;
@@ -25,22 +33,53 @@ pub struct Rig {
 
 /// A square of 50 mm, a pusher with a radius of 6 mm, three fixels.
 pub fn scene() -> Scene {
-    let disc = |radius: f64| Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]).unwrap();
-    let vertices = vec![[-0.025, -0.025], [0.025, -0.025], [0.025, 0.025], [-0.025, 0.025]];
-    let fixel = |x: f64, y: f64| Fixel { pose: Pose::new(x, y, 0.0), shape: disc(0.005) };
+    let disc = |radius: f64| {
+        Shape::new(vec![Part::Disc {
+            radius,
+            centre: [0.0, 0.0],
+        }])
+        .unwrap()
+    };
+    let vertices = vec![
+        [-0.025, -0.025],
+        [0.025, -0.025],
+        [0.025, 0.025],
+        [-0.025, 0.025],
+    ];
+    let fixel = |x: f64, y: f64| Fixel {
+        pose: Pose::new(x, y, 0.0),
+        shape: disc(0.005),
+    };
     Scene {
         gravity: 9.81,
-        object: Object { mass: 0.5, inertia: 2e-4, shape: Shape::new(vec![Part::Polygon { vertices }]).unwrap() },
+        object: Object {
+            mass: 0.5,
+            inertia: 2e-4,
+            shape: Shape::new(vec![Part::Polygon { vertices }]).unwrap(),
+        },
         feet: Feet::Tripod { angle: 0.0 },
-        pusher: Pusher { shape: disc(0.006), stall_force: None },
+        pusher: Pusher {
+            shape: disc(0.006),
+            stall_force: None,
+        },
         fixels: vec![fixel(0.13, 0.018), fixel(0.13, -0.02), fixel(0.12, 0.06)],
-        nominal: Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 },
+        nominal: Friction {
+            mu_s: 0.3,
+            mu_p: 0.3,
+            mu_f: 0.3,
+            d_tri: 0.02,
+        },
     }
 }
 
 /// The true camera: 0.62 m above the table, tilted by 5.5 degrees.
 pub fn true_camera() -> rendered::Camera {
-    rendered::Camera::look_at(rendered::Lens::industrial(), [0.02, -0.06, 0.62], [0.02, 0.0]).unwrap()
+    rendered::Camera::look_at(
+        rendered::Lens::industrial(),
+        [0.02, -0.06, 0.62],
+        [0.02, 0.0],
+    )
+    .unwrap()
 }
 
 impl Rig {
@@ -52,21 +91,59 @@ impl Rig {
         mount.pose = Pose::new(0.003, -0.002, 0.2);
         let of = |id, mount: &Option<TagMount>| {
             let TagMount { tag, pose, height } = mount.unwrap();
-            BodyTag { id, place: TagPlace { size: tag.size, height, pose } }
+            BodyTag {
+                id,
+                place: TagPlace {
+                    size: tag.size,
+                    height,
+                    pose,
+                },
+            }
         };
-        let tags = Tags { object: of(OBJECT_TAG, &props.object_tag), pusher: of(PUSHER_TAG, &props.pusher_tag) };
-        Self { studio: Studio::new(true_camera(), Stage::new(&scene(), &props), optics, seed), props, tags }
+        let tags = Tags {
+            object: of(OBJECT_TAG, &props.object_tag),
+            pusher: of(PUSHER_TAG, &props.pusher_tag),
+        };
+        Self {
+            studio: Studio::new(true_camera(), Stage::new(&scene(), &props), optics, seed),
+            props,
+            tags,
+        }
     }
 
     /// Frames of a board of 7 x 5 tags, and where it lies in the first one.
     pub fn board_frames(&self, count: usize) -> (Vec<GrayImage>, BoardOnTable) {
-        let board = Board { rows: 5, columns: 7, tag_size: 0.026, gap: 0.008, first_tag: 100 };
+        let board = Board {
+            rows: 5,
+            columns: 7,
+            tag_size: 0.026,
+            gap: 0.008,
+            first_tag: 100,
+        };
         let tags = board.tags().map(|id| tag_cells(id).unwrap()).collect();
-        let print = rendered::Board { columns: 7, tag_size: board.tag_size, gap: board.gap, tags };
-        let poses = rendered::calibration_poses(self.studio.camera(), &print, BOARD_THICKNESS, count).unwrap();
-        let frames = poses.iter().zip(0..).map(|(pose, index)| self.studio.board_frame(1_000_000 + index, &print, pose)).collect();
+        let print = rendered::Board {
+            columns: 7,
+            tag_size: board.tag_size,
+            gap: board.gap,
+            tags,
+        };
+        let poses =
+            rendered::calibration_poses(self.studio.camera(), &print, BOARD_THICKNESS, count)
+                .unwrap();
+        let frames = poses
+            .iter()
+            .zip(0..)
+            .map(|(pose, index)| self.studio.board_frame(1_000_000 + index, &print, pose))
+            .collect();
         let [x, y, _] = poses[0].origin;
-        (frames, BoardOnTable { board, thickness: BOARD_THICKNESS, pose: Pose::new(x, y, 0.0) })
+        (
+            frames,
+            BoardOnTable {
+                board,
+                thickness: BOARD_THICKNESS,
+                pose: Pose::new(x, y, 0.0),
+            },
+        )
     }
 
     /// A calibration from rendered frames of the board.
@@ -77,18 +154,45 @@ impl Rig {
 
     /// Tracks rendered frames.
     pub fn track(&self, frames: &[GrayImage], camera: &Camera) -> Result<Track, TrackError> {
-        track(frames.len(), |index| Ok((format!("{index}.png"), frames[index].clone())), camera, &self.tags)
+        track(
+            frames.len(),
+            |index| Ok((format!("{index}.png"), frames[index].clone())),
+            camera,
+            &self.tags,
+        )
     }
 
-    /// Frames with object and pusher at `count` random places, moving by `way` (m, rad) while the shutter is open.
-    pub fn random_frames(&self, count: u64, way: Pose, seed: u64) -> (Vec<GrayImage>, Vec<[Pose; 2]>) {
+    /// Frames with object and pusher at `count` random places, moving by `way` (m, rad) while the
+    /// shutter is open.
+    pub fn random_frames(
+        &self,
+        count: u64,
+        way: Pose,
+        seed: u64,
+    ) -> (Vec<GrayImage>, Vec<[Pose; 2]>) {
         let truth: Vec<[Pose; 2]> = (0..count).map(|index| random_poses(index, seed)).collect();
         let at = |[object, pusher]: [Pose; 2], share: f64| {
-            let moved = |pose: Pose| Pose::new(pose.x + share * way.x, pose.y + share * way.y, pose.theta + share * way.theta);
-            Actors { object: Some(moved(object)), pusher: Some(moved(pusher)), hand: None }
+            let moved = |pose: Pose| {
+                Pose::new(
+                    pose.x + share * way.x,
+                    pose.y + share * way.y,
+                    pose.theta + share * way.theta,
+                )
+            };
+            Actors {
+                object: Some(moved(object)),
+                pusher: Some(moved(pusher)),
+                hand: None,
+            }
         };
         let frame = |(poses, index): (&[Pose; 2], u64)| {
-            self.studio.frame(seed * 10_000 + index, &Shutter { open: at(*poses, -0.5), close: at(*poses, 0.5) })
+            self.studio.frame(
+                seed * 10_000 + index,
+                &Shutter {
+                    open: at(*poses, -0.5),
+                    close: at(*poses, 0.5),
+                },
+            )
         };
         (truth.iter().zip(0..).map(frame).collect(), truth)
     }
@@ -98,13 +202,25 @@ impl Rig {
 fn random_poses(index: u64, seed: u64) -> [Pose; 2] {
     let draw = Streams::new(seed).at(index);
     let between = |k: u32, low: f64, high: f64| low + (high - low) * draw.uniform(0, k);
-    let object = Pose::new(between(0, -0.01, 0.13), between(1, -0.07, 0.07), between(2, -3.1, 3.1));
-    [object, Pose::new(object.x - 0.050, object.y + between(3, -0.015, 0.015), between(4, -0.3, 0.3))]
+    let object = Pose::new(
+        between(0, -0.01, 0.13),
+        between(1, -0.07, 0.07),
+        between(2, -3.1, 3.1),
+    );
+    [
+        object,
+        Pose::new(
+            object.x - 0.050,
+            object.y + between(3, -0.015, 0.015),
+            between(4, -0.3, 0.3),
+        ),
+    ]
 }
 
 /// The tags of frames, named by their numbers.
 pub fn found(frames: &[GrayImage]) -> BoardRecording {
-    let load = |index: usize| Ok::<_, CalibrationError>((format!("{index}.png"), frames[index].clone()));
+    let load =
+        |index: usize| Ok::<_, CalibrationError>((format!("{index}.png"), frames[index].clone()));
     search_board(frames.len(), load).unwrap()
 }
 
@@ -148,7 +264,12 @@ impl Errors {
 
     fn mean(&self, of: impl Fn(f64, f64) -> f64) -> [f64; 3] {
         let count = self.errors.len() as f64;
-        [0, 1, 2].map(|k| self.errors.iter().zip(&self.stds).fold(0.0, |sum, (error, std)| sum + of(error[k], std[k]) / count))
+        [0, 1, 2].map(|k| {
+            self.errors
+                .iter()
+                .zip(&self.stds)
+                .fold(0.0, |sum, (error, std)| sum + of(error[k], std[k]) / count)
+        })
     }
 }
 
@@ -156,5 +277,9 @@ impl Errors {
 fn error(measurement: &Measurement, truth: Pose) -> [f64; 3] {
     let turn = measurement.pose.theta - truth.theta;
     let turns = (turn / std::f64::consts::TAU).round();
-    [measurement.pose.x - truth.x, measurement.pose.y - truth.y, turn - std::f64::consts::TAU * turns]
+    [
+        measurement.pose.x - truth.x,
+        measurement.pose.y - truth.y,
+        turn - std::f64::consts::TAU * turns,
+    ]
 }
