@@ -301,8 +301,8 @@ impl Model for ContactModel<'_> {
         );
     }
 
-    /// The camera's alone: a pose drawn anew makes no touch likelier.
-    fn redrawn_log_likelihood(
+    /// The camera's alone: reinitialising the pose makes no touch likelier.
+    fn resetting_log_likelihood(
         &self,
         observation: &Observation,
         block: &Block<'_>,
@@ -321,7 +321,7 @@ impl Model for ContactModel<'_> {
 
     /// Moves every particle, its past included, so that what the camera sees is drawn around the
     /// measured pose.
-    fn redraw(&self, observation: &Observation, draw: Draw, block: &mut BlockMut<'_>) {
+    fn reinitialise(&self, observation: &Observation, draw: Draw, block: &mut BlockMut<'_>) {
         let Some(measured) = observation.pose else {
             return;
         };

@@ -29,7 +29,7 @@ pub(crate) fn track(
     let mut estimate = prepared.empty_estimate(setup);
     let mut collapses = 0;
     let mut reference = Reference::new(prepared.start, setup.scene.nominal);
-    filter.sum_anew(&StepPlan::none(reference));
+    filter.recompute_sums(&StepPlan::none(reference));
     estimate.rows[prepared.first] = EstimateRow {
         visual: true,
         ..summary(&filter, &reference)

@@ -10,7 +10,7 @@
 use std::ops::Range;
 
 use stickslip_dynamics::{Pose, PusherMotion};
-use stickslip_filter::{AxisEstimate, ConstantVelocity, VelocityBank};
+use stickslip_filter::{AxisEstimate, ConstantVelocity, InteractingMultipleModel};
 
 use crate::{Camera, Log, RunError};
 
@@ -26,7 +26,7 @@ const INITIAL_VELOCITY_STD: f64 = 0.1;
 const LIVELINESS: [f64; 3] = [10.0, 0.5, 0.05];
 
 /// Mean time for which one of these modes holds (s).
-const DWELL: f64 = 30.0;
+const MEAN_SOJOURN_TIME: f64 = 30.0;
 
 /// Standard deviations of its own that a tracked speed must exceed to tell the pusher's direction.
 const TELLING: f64 = 3.0;
@@ -225,9 +225,9 @@ fn track_axis(
                 .map(|t| model(std * std / (t * t * t)))
                 .collect();
             hold(
-                VelocityBank {
+                InteractingMultipleModel {
                     modes,
-                    dwell: DWELL,
+                    mean_sojourn_time: MEAN_SOJOURN_TIME,
                 }
                 .filter(time, measured)?
                 .rows,

@@ -9,7 +9,7 @@
 //!   pure function of (seed, purpose, step, particle, draw), and every sum runs in one fixed order,
 //!   whatever the threads;
 //! - a weight is never NaN; a set that no longer explains its observation is a counted outcome,
-//!   [`Weighing::Collapsed`];
+//!   [`WeightUpdate::Collapsed`];
 //! - after the first steps, a step on one thread allocates nothing.
 //!
 //! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them, and
@@ -17,32 +17,30 @@
 
 mod awake;
 mod box_muller;
-mod constant_velocity;
 mod exponential;
 mod filter;
-mod innovations;
 mod kalman;
 mod model;
 mod moments;
 mod parallel;
 mod particles;
-mod process_noise;
+mod report;
 mod resample;
-mod series;
+mod settings;
 mod streams;
-mod update;
-mod velocity_bank;
 mod weights;
 
 pub use awake::keep_threads_awake;
-pub use constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
-pub use filter::{ParticleFilter, Settings, SettingsError, StepReport, Weighing};
-pub use kalman::{Gaussian, Update};
+pub use filter::ParticleFilter;
+pub use kalman::constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
+pub use kalman::gaussian::{Gaussian, MeasurementUpdate};
+pub use kalman::imm::{ImmState, InteractingMultipleModel};
+pub use kalman::noise_fit::{Optimum, ProcessNoiseFit};
+pub use kalman::series::SeriesError;
 pub use model::{Model, WeightedSums};
 pub use particles::{BLOCK, Block, BlockMut, ParticleSet};
-pub use process_noise::{Optimum, ProcessNoiseFit};
+pub use report::{StepReport, WeightUpdate};
 pub use resample::Resampling;
-pub use series::SeriesError;
+pub use settings::{Settings, SettingsError};
 pub use streams::{Draw, Purpose, Streams};
-pub use velocity_bank::{BankState, VelocityBank};
 pub use weights::{LogWeights, WeightError};

@@ -1,15 +1,16 @@
-//! What a particle is, how it moves and what it makes of an observation.
+//! What a particle is, how it moves and how likely it makes an observation: [`Model`].
 
-use crate::{Block, BlockMut, Draw};
+use crate::particles::{Block, BlockMut};
+use crate::streams::Draw;
 
 /// Sums over weighted particles.
 pub trait WeightedSums: Default + Send {
     /// Back to the sums over no particle; memory is kept.
     fn clear(&mut self);
 
-    /// Adds the sums over other particles, whose weights are `share` times those that they were
+    /// Adds the sums over other particles, whose weights are `scale` times those that they were
     /// taken with.
-    fn add(&mut self, other: &Self, share: f64);
+    fn add(&mut self, other: &Self, scale: f64);
 }
 
 impl WeightedSums for () {
@@ -28,10 +29,10 @@ pub trait Model: Sync {
     type Input: Sync + ?Sized;
     /// One observation.
     type Observation: Sync + ?Sized;
-    /// Working memory of one thread, made once. It may remember nothing that a result depends on: a
-    /// thread takes up any block. What belongs to a particle is a column.
+    /// Working memory of one thread, made once. No result may depend on what it holds at the start
+    /// of a call: a thread takes any block. State of a particle belongs in a column.
     type Scratch: Send;
-    /// What the particles amount to after a step; `()` where nobody asks.
+    /// The sums that the step's estimate is made of; `()` where none is needed.
     type Sums: WeightedSums;
 
     /// The number of columns, at least 1.
@@ -54,12 +55,12 @@ pub trait Model: Sync {
 
     /// Writes the log-likelihood of the observation given each particle: finite or -inf, never NaN.
     ///
-    /// A model that proposes from something else than its transition adds the log-ratio of the two
-    /// here (carried in a column). A likelihood normalised as a density makes
-    /// [`Weighing::Weighed`](crate::Weighing) an evidence.
+    /// A model whose proposal is not its transition adds the log-ratio of the two here (carried in a
+    /// column). A likelihood normalised as a density makes
+    /// [`WeightUpdate::Weighed`](crate::WeightUpdate) an evidence.
     fn log_likelihood(&self, observation: &Self::Observation, block: &Block<'_>, out: &mut [f64]);
 
-    /// Writes the sums over one block that has made a step, while it is at hand.
+    /// Writes the weighted sums over one block.
     fn sum(&self, input: &Self::Input, block: &Block<'_>, weights: &[f64], sums: &mut Self::Sums);
 
     /// Whether no particle explains the observation, given the largest log-likelihood among
@@ -68,12 +69,12 @@ pub trait Model: Sync {
         best_log_likelihood == f64::NEG_INFINITY
     }
 
-    /// Writes the part of the log-likelihood that a redraw can raise; all of it unless the model
-    /// says otherwise.
+    /// Writes the log-likelihood of the part of the observation that
+    /// [`reinitialise`](Self::reinitialise) draws the particles around; all of it by default.
     ///
-    /// Asked for only where the whole seems to be a collapse: an observation that another sensor
-    /// makes unlikely, as a false alarm does, is no reason to draw the particles anew.
-    fn redrawn_log_likelihood(
+    /// Called only where the whole log-likelihood indicates a collapse. If this part does not, the
+    /// particles stay: no reinitialising makes, say, a false alarm of another sensor likelier.
+    fn resetting_log_likelihood(
         &self,
         observation: &Self::Observation,
         block: &Block<'_>,
@@ -85,5 +86,5 @@ pub trait Model: Sync {
     /// Draws particles anew around the observation after a collapse; the columns hold the
     /// propagated particles, resampled by their weights before the observation. The observation is
     /// not weighed again.
-    fn redraw(&self, observation: &Self::Observation, draw: Draw, block: &mut BlockMut<'_>);
+    fn reinitialise(&self, observation: &Self::Observation, draw: Draw, block: &mut BlockMut<'_>);
 }

@@ -1,87 +1,82 @@
-//! Loops over many items and sums over one fixed tree: the same bits on any number of threads.
+//! Parallel loops, and reductions over a fixed tree: the same bits on any number of threads.
 
 use std::hint::spin_loop;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Ranges of at most this many leaves are summed by one thread.
+/// Ranges of at most this many leaves are reduced by one thread.
 const SERIAL_LEAVES: usize = 16;
 
-/// Times that a thread looks whether the others are done before it lets the pool decide what it
-/// does.
+/// How often a thread without work checks whether the others are done before it returns to the
+/// pool, which may put it to sleep.
 const SPINS: u32 = 1 << 13;
 
-/// Whether more than one thread can share `tasks` pieces of work.
-pub(crate) fn shared(tasks: usize) -> bool {
+/// Whether `tasks` would run on more than one thread.
+fn is_parallel(tasks: usize) -> bool {
     tasks > 1 && rayon::current_num_threads() > 1
 }
 
-/// Working memory for the threads of a pool, one piece each.
+/// Working memory of every thread of a pool.
 pub(crate) struct PerThread<S> {
-    pieces: Vec<Mutex<S>>,
+    slots: Vec<Mutex<S>>,
 }
 
 impl<S> PerThread<S> {
-    /// As many pieces as the current pool has threads.
+    /// One slot for every thread of the current pool.
     pub fn new(make: impl Fn() -> S) -> Self {
+        let threads = 0..rayon::current_num_threads();
         Self {
-            pieces: (0..rayon::current_num_threads())
-                .map(|_| Mutex::new(make()))
-                .collect(),
+            slots: threads.map(|_| Mutex::new(make())).collect(),
         }
     }
 
-    /// Lends the thread's piece to `body`, which must not wait for other tasks: its thread might
-    /// take one up that needs the piece.
-    pub fn lend<T>(&self, body: impl FnOnce(&mut S) -> T) -> T {
+    /// Runs `body` with the thread's slot. `body` must not block on rayon: the thread could steal a
+    /// task that locks the same slot (deadlock).
+    pub fn with<T>(&self, body: impl FnOnce(&mut S) -> T) -> T {
         let worker = rayon::current_thread_index().unwrap_or(0);
-        let piece = &self.pieces[worker % self.pieces.len()];
-        body(&mut locked(piece))
+        body(&mut lock(&self.slots[worker % self.slots.len()]))
     }
 }
 
-/// Runs `body` on all items, which the threads take one after the other, from both ends: in the
-/// next loop a thread mostly finds those again that it has in its cache.
-pub(crate) fn for_all<I>(
+/// Runs `body` on all items. The threads take them one by one, the calling thread from the front
+/// and the others from the back, so that in the next loop a thread mostly gets the items that are
+/// still in its cache.
+pub(crate) fn for_each<I>(
     items: impl ExactSizeIterator<Item = I> + DoubleEndedIterator + Send,
     body: impl Fn(I) + Sync,
 ) {
     let count = items.len();
-    if !shared(count) {
+    if !is_parallel(count) {
         return items.for_each(body);
     }
     let (items, left) = (Mutex::new(items), AtomicUsize::new(count));
     let next = |end| {
-        let mut items = locked(&items);
-        if end == End::Front {
-            items.next()
-        } else {
-            items.next_back()
+        let mut items = lock(&items);
+        match end {
+            End::Front => items.next(),
+            End::Back => items.next_back(),
         }
     };
-    on_threads(
-        count.min(rayon::current_num_threads()),
-        End::Front,
-        &|end| {
-            while let Some(item) = next(end) {
-                body(item);
-                left.fetch_sub(1, Ordering::Release);
-            }
-            wait_shortly(&left);
-        },
-    );
+    let work = |end| {
+        while let Some(item) = next(end) {
+            body(item);
+            left.fetch_sub(1, Ordering::Release);
+        }
+        spin_until_none(&left);
+    };
+    on_threads(count.min(rayon::current_num_threads()), End::Front, &work);
 }
 
-/// Where a thread takes its items.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// From where a thread takes its items.
+#[derive(Clone, Copy)]
 enum End {
     Front,
     Back,
 }
 
-/// Calls `work` so many times, on as many threads as have nothing else to do; the calling thread's
-/// end is `end`.
+/// Calls `work` so many times, each on another thread if one is free; the first call, on the calling
+/// thread, with `end`.
 fn on_threads(times: usize, end: End, work: &(impl Fn(End) + Sync)) {
     if times < 2 {
         return work(end);
@@ -92,9 +87,9 @@ fn on_threads(times: usize, end: End, work: &(impl Fn(End) + Sync)) {
     );
 }
 
-/// Waits until nothing is left, if that is soon: a thread that the pool sends to sleep meanwhile
-/// takes longer to wake up than a filter step of some hundred particles.
-fn wait_shortly(left: &AtomicUsize) {
+/// Spins for a limited time until nothing is left: waking a thread that the pool has put to sleep
+/// takes longer than a filter step of some hundred particles.
+fn spin_until_none(left: &AtomicUsize) {
     for _ in 0..SPINS {
         if left.load(Ordering::Acquire) == 0 {
             return;
@@ -103,15 +98,14 @@ fn wait_shortly(left: &AtomicUsize) {
     }
 }
 
-fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// `leaf(start)` combined with ... combined with `leaf(end - 1)` over the balanced binary tree of
-/// the range.
+/// the range, which must not be empty.
 ///
-/// The tree is a function of the range alone, and nothing is allocated. The range must not be
-/// empty.
+/// The tree is a function of the range alone, and nothing is allocated.
 pub(crate) fn tree_reduce<A: Send>(
     range: Range<usize>,
     leaf: &(impl Fn(usize) -> A + Sync),
@@ -122,17 +116,12 @@ pub(crate) fn tree_reduce<A: Send>(
         return leaf(range.start);
     }
     let middle = range.start + range.len() / 2;
-    let (left, right) = (range.start..middle, middle..range.end);
-    if range.len() > SERIAL_LEAVES && shared(2) {
-        let (a, b) = rayon::join(
-            || tree_reduce(left, leaf, combine),
-            || tree_reduce(right, leaf, combine),
-        );
+    let left = || tree_reduce(range.start..middle, leaf, combine);
+    let right = || tree_reduce(middle..range.end, leaf, combine);
+    if range.len() > SERIAL_LEAVES && is_parallel(2) {
+        let (a, b) = rayon::join(left, right);
         combine(a, b)
     } else {
-        combine(
-            tree_reduce(left, leaf, combine),
-            tree_reduce(right, leaf, combine),
-        )
+        combine(left(), right())
     }
 }

@@ -15,7 +15,7 @@ pub struct ParticleSet {
     particles: usize,
     columns: usize,
     data: Vec<f64>,
-    /// The other half of the double buffer.
+    /// The other half of the double buffer: resampled particles are written here.
     spare: Vec<f64>,
 }
 
@@ -37,6 +37,20 @@ impl ParticleSet {
             spare: data.clone(),
             data,
         }
+    }
+
+    /// Appends `count` columns of zeros; the values of the others stay.
+    pub fn append_columns(&mut self, count: usize) {
+        if count == 0 {
+            return;
+        }
+        let mut grown = Self::zeros(self.particles, self.columns + count);
+        let (stride, grown_stride) = (self.columns * BLOCK, grown.columns * BLOCK);
+        let blocks = grown.data.chunks_exact_mut(grown_stride);
+        for (to, from) in blocks.zip(self.data.chunks_exact(stride)) {
+            to[..stride].copy_from_slice(from);
+        }
+        *self = grown;
     }
 
     /// The number N of particles.
@@ -75,7 +89,7 @@ impl ParticleSet {
             .flat_map(move |block| block.column(column).iter().copied())
     }
 
-    /// One number of one particle.
+    /// The value of one particle in one column.
     pub fn value(&self, particle: usize, column: usize) -> f64 {
         assert!(
             particle < self.particles,
@@ -85,15 +99,15 @@ impl ParticleSet {
         self.block(particle / BLOCK).column(column)[particle % BLOCK]
     }
 
-    /// Runs `body` on every block, in parallel where threads allow.
+    /// Runs `body` on every block, in parallel if the pool has threads.
     pub fn for_each_block(&mut self, body: impl Fn(&mut BlockMut<'_>) + Sync) {
         self.advance(None, 0..self.block_count(), |block, _| body(block));
     }
 
-    /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
+    /// Runs `body(block, its item of with)` on every block, in parallel if the pool has threads.
     ///
-    /// Where there are `ancestors`, particle i becomes a copy of particle `ancestors[i]` first,
-    /// while its block is at hand.
+    /// With `ancestors`, particle i first becomes a copy of particle `ancestors[i]`; each block is
+    /// copied just before `body` runs on it, while it is in the cache.
     pub fn advance<T>(
         &mut self,
         ancestors: Option<&[u32]>,
@@ -104,37 +118,29 @@ impl ParticleSet {
         let (particles, stride) = (self.particles, self.columns * BLOCK);
         let Some(ancestors) = ancestors else {
             let blocks = self.data.chunks_mut(stride).zip(with).enumerate();
-            return parallel::for_all(blocks, |(index, (data, item))| {
-                body(
-                    &mut BlockMut {
-                        data,
-                        span: Span::of(index, particles),
-                    },
-                    item,
-                )
+            return parallel::for_each(blocks, |(index, (data, item))| {
+                let span = Span::of(index, particles);
+                body(&mut BlockMut { data, span }, item);
             });
         };
         assert_eq!(ancestors.len(), particles);
-        let source = &self.data;
-        parallel::for_all(
-            self.spare.chunks_mut(stride).zip(with).enumerate(),
-            |(index, (target, item))| {
-                let span = Span::of(index, particles);
-                gather_block(source, &ancestors[span.range()], target);
-                body(&mut BlockMut { data: target, span }, item);
-            },
-        );
+        let (source, blocks) = (&self.data, self.spare.chunks_mut(stride));
+        parallel::for_each(blocks.zip(with).enumerate(), |(index, (data, item))| {
+            let span = Span::of(index, particles);
+            gather_block(source, &ancestors[span.range()], data);
+            body(&mut BlockMut { data, span }, item);
+        });
         std::mem::swap(&mut self.data, &mut self.spare);
     }
 
-    /// Runs `body(block, its item of with)` on every block, in parallel where threads allow.
+    /// Runs `body(block, its item of with)` on every block, in parallel if the pool has threads.
     pub fn visit<T>(
         &self,
         with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send,
         body: impl Fn(&Block<'_>, T) + Sync,
     ) {
         assert_eq!(with.len(), self.block_count(), "an item for every block");
-        parallel::for_all(with.enumerate(), |(index, item)| {
+        parallel::for_each(with.enumerate(), |(index, item)| {
             body(&self.block(index), item)
         });
     }
@@ -184,7 +190,7 @@ impl Span {
     }
 }
 
-/// Up to [`BLOCK`] neighbouring particles, to read.
+/// Up to [`BLOCK`] neighbouring particles, read-only.
 #[derive(Clone, Copy, Debug)]
 pub struct Block<'a> {
     data: &'a [f64],
@@ -214,7 +220,7 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Up to [`BLOCK`] neighbouring particles, to change.
+/// Up to [`BLOCK`] neighbouring particles, mutable.
 #[derive(Debug)]
 pub struct BlockMut<'a> {
     data: &'a mut [f64],
@@ -240,7 +246,7 @@ impl BlockMut<'_> {
         (0..self.span.len).map(move |lane| (lane, first + lane as u32))
     }
 
-    /// The block, to read.
+    /// The block, read-only.
     pub fn as_block(&self) -> Block<'_> {
         Block {
             data: self.data,
@@ -248,17 +254,17 @@ impl BlockMut<'_> {
         }
     }
 
-    /// One column, to read.
+    /// One column.
     pub fn column(&self, column: usize) -> &[f64] {
         &self.data[column * BLOCK..][..self.span.len]
     }
 
-    /// One column, to change.
+    /// One column, mutable.
     pub fn column_mut(&mut self, column: usize) -> &mut [f64] {
         &mut self.data[column * BLOCK..][..self.span.len]
     }
 
-    /// Several different columns, to change at once.
+    /// Several different columns, mutable at the same time.
     ///
     /// # Panics
     /// If a column is named twice or does not exist.
@@ -273,7 +279,7 @@ impl BlockMut<'_> {
         }
     }
 
-    /// All columns in order, to change at once.
+    /// All columns in order, mutable.
     pub fn all_columns_mut(&mut self) -> impl ExactSizeIterator<Item = &mut [f64]> {
         let len = self.span.len;
         self.data

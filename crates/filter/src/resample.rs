@@ -3,7 +3,7 @@
 //! The schemes differ in their noise (Douc, Cappé & Moulines 2005): systematic gives every particle
 //! either the integer below N w_i or the one above, from one random number.
 
-use crate::Draw;
+use crate::streams::Draw;
 
 /// A resampling scheme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

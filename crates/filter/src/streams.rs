@@ -34,9 +34,9 @@ pub enum Purpose {
     /// The filter's regular resampling.
     Resample = 3,
     /// The filter's resampling after a collapse.
-    Recover = 4,
-    /// Particles drawn anew around an observation after a collapse.
-    Redraw = 5,
+    ResampleAfterCollapse = 4,
+    /// Particles reinitialised around an observation after a collapse.
+    Reinitialise = 5,
     /// Noise of simulated sensors.
     Measure = 6,
 }
@@ -146,8 +146,8 @@ impl Draw {
     }
 
     /// The standard normal numbers `2 * pair` and `2 * pair + 1` of neighbouring particles, a
-    /// column of each: the same numbers as [`normal`](Self::normal), faster, and inlined, so that a
-    /// caller that dispatches on the instruction set has it compiled for that set.
+    /// column of each: the same numbers as [`normal`](Self::normal), faster. It is inlined, so that
+    /// inside a function compiled for wider vector instructions it uses them.
     ///
     /// # Panics
     /// If the columns differ in length.
@@ -161,7 +161,7 @@ impl Draw {
             store(odd, &v);
             first = first.wrapping_add(LANES as u32);
         }
-        // a loop of its own, over memory: fused with the one above it does not vectorise
+        // a loop of its own, over memory: fused with the one above, it does not vectorise
         for (even, odd) in even.iter_mut().zip(odd) {
             [*even, *odd] = box_muller(*even, *odd);
         }
@@ -205,7 +205,8 @@ fn store<const L: usize>(to: &mut [f64], from: &[f64; L]) {
     }
 }
 
-/// Out of line: beside it, whole chunks would be copied by a call with a number of bytes.
+/// Out of line, because a copy of run-time length compiles to a call of memcpy: inlined, whole
+/// chunks would be copied that way too.
 #[cold]
 #[inline(never)]
 fn store_last(to: &mut [f64], from: &[f64]) {
@@ -224,8 +225,8 @@ fn open_unit<const L: usize>(low: [u64; L], high: [u64; L]) -> [f64; L] {
 
 /// Philox4x32 with 10 rounds (Salmon et al. 2011, section 3.3) on L counters side by side.
 ///
-/// The 32-bit words are the low halves of u64, whose products SIMD has; what the high halves hold
-/// does not matter.
+/// The 32-bit words are the low halves of u64, because SIMD multiplies 32-bit numbers to 64 bits;
+/// the high halves are ignored.
 #[inline(always)]
 fn philox4x32_10<const L: usize>(mut counter: [[u64; L]; 4], mut key: [u32; 2]) -> [[u64; L]; 4] {
     for _ in 0..ROUNDS {

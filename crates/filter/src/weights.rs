@@ -1,16 +1,24 @@
-//! Importance weights of a particle set, as natural logarithms.
+//! Importance weights of a particle set, as natural logarithms, and Bayes' rule on them.
 //!
 //! Logarithms, because a product of many sensors' likelihoods underflows. Weights are kept
 //! normalised: the linear weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is
 //! positive, none is NaN. Sums run in a fixed order, so they do not depend on threads.
+//!
+//! The largest w L of all is known only after all blocks are weighed. So that a block can be weighed
+//! while it is in the cache, its unnormalised weights are relative to the block's own largest, and
+//! a block scale normalises them afterwards: [`UnnormalisedWeights`].
 
 use std::ops::Range;
 
-use crate::update::{BlockUpdate, Normaliser, Update, best_alive, is_broken};
-use crate::{BLOCK, parallel};
+use crate::exponential::exponentials;
+use crate::parallel;
+use crate::particles::BLOCK;
 
-/// Blocks of weights that one thread takes at least.
-const GRAIN: usize = 16;
+/// Particles whose weights one thread normalises at least.
+const GRAIN: usize = 16 * BLOCK;
+
+/// Independent partial results: a single one would wait for every operation before it.
+const PARTIAL: usize = 8;
 
 /// Why weights were refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -99,57 +107,44 @@ impl LogWeights {
     /// If a likelihood is NaN or +inf: then the model is broken.
     pub fn multiply(&mut self, log_likelihood: &[f64]) -> Option<f64> {
         assert_eq!(log_likelihood.len(), self.log.len());
-        let mut update = Update::new(self.log.len());
-        for (block, (products, sums)) in update.blocks_mut().enumerate() {
-            let range = block * BLOCK..block * BLOCK + products.len();
-            *sums = self.weigh_block(range.clone(), &log_likelihood[range], products);
+        let mut unnormalised = UnnormalisedWeights::zeros(self.log.len());
+        unnormalised.log_likelihood.copy_from_slice(log_likelihood);
+        for (index, mut block) in unnormalised.blocks_mut().enumerate() {
+            let first = index * BLOCK;
+            block.weigh(self, first..first + block.weights.len());
         }
-        self.apply(&mut update, log_likelihood)
+        self.update(&mut unnormalised)
     }
 
-    /// Writes what Bayes' rule makes of one block's weights, up to a factor.
-    pub(crate) fn weigh_block(
-        &self,
-        range: Range<usize>,
-        log_likelihood: &[f64],
-        products: &mut [f64],
-    ) -> BlockUpdate {
-        BlockUpdate::of(range.start, &self.log[range], log_likelihood, products)
-    }
-
-    /// [`LogWeights::multiply`] where every block of `update` has been weighed.
-    pub(crate) fn apply(&mut self, update: &mut Update, log_likelihood: &[f64]) -> Option<f64> {
-        let Normaliser {
+    /// [`LogWeights::multiply`] with likelihoods by which every block has been weighed.
+    pub(crate) fn update(&mut self, unnormalised: &mut UnnormalisedWeights) -> Option<f64> {
+        let Normalisation {
             log_sum,
             effective_sample_size,
-        } = update.normalise()?;
+        } = unnormalised.normalise()?;
         self.effective_sample_size = effective_sample_size;
-        let log = self
-            .log
-            .chunks_mut(GRAIN * BLOCK)
-            .zip(log_likelihood.chunks(GRAIN * BLOCK));
-        parallel::for_all(log, |(log, log_likelihood)| {
-            log.iter_mut()
-                .zip(log_likelihood)
-                .for_each(|(w, l)| *w = *w + l - log_sum);
+
+        let UnnormalisedWeights {
+            log_likelihood,
+            weights,
+            blocks,
+        } = unnormalised;
+        let log = self.log.chunks_mut(GRAIN).zip(log_likelihood.chunks(GRAIN));
+        parallel::for_each(log, |(log, log_likelihood)| {
+            for (w, l) in log.iter_mut().zip(log_likelihood) {
+                *w = *w + l - log_sum;
+            }
         });
-        parallel::for_all(
-            self.linear
-                .chunks_mut(GRAIN * BLOCK)
-                .zip(update.grains(GRAIN)),
-            |(linear, (products, blocks))| {
-                for ((linear, products), block) in linear
-                    .chunks_mut(BLOCK)
-                    .zip(products.chunks(BLOCK))
-                    .zip(blocks)
-                {
-                    linear
-                        .iter_mut()
-                        .zip(products)
-                        .for_each(|(w, product)| *w = product * block.share());
+        let linear = self.linear.chunks_mut(GRAIN).zip(weights.chunks(GRAIN));
+        let linear = linear.zip(blocks.chunks(GRAIN / BLOCK));
+        parallel::for_each(linear, |((linear, unnormalised), blocks)| {
+            let pairs = linear.chunks_mut(BLOCK).zip(unnormalised.chunks(BLOCK));
+            for ((linear, unnormalised), block) in pairs.zip(blocks) {
+                for (w, u) in linear.iter_mut().zip(unnormalised) {
+                    *w = u * block.scale;
                 }
-            },
-        );
+            }
+        });
         Some(log_sum)
     }
 
@@ -157,9 +152,9 @@ impl LogWeights {
     ///
     /// # Panics
     /// If one is NaN or +inf: then the model is broken.
-    pub fn best(&self, log_likelihood: &[f64]) -> f64 {
+    pub fn best_log_likelihood(&self, log_likelihood: &[f64]) -> f64 {
         assert_eq!(log_likelihood.len(), self.log.len());
-        best_alive(0, &self.log, log_likelihood)
+        best_log_likelihood(0, &self.log, log_likelihood)
     }
 
     /// The effective sample size `(sum w)^2 / sum w^2` (Kong, Liu & Wong 1994): N for equal
@@ -177,4 +172,210 @@ impl LogWeights {
     pub fn log_weights(&self) -> &[f64] {
         &self.log
     }
+}
+
+/// The unnormalised weights w L of a set, w the weights before and L the likelihoods, each block's
+/// up to a factor of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct UnnormalisedWeights {
+    /// ln L, (N,).
+    log_likelihood: Vec<f64>,
+    /// w L e^(-block's `log_factor`), (N,).
+    weights: Vec<f64>,
+    blocks: Vec<BlockWeights>,
+}
+
+/// One block of [`UnnormalisedWeights`].
+pub(crate) struct UnnormalisedBlock<'a> {
+    /// ln L, for the model to write before [`weigh`](Self::weigh).
+    pub log_likelihood: &'a mut [f64],
+    weights: &'a mut [f64],
+    sums: &'a mut BlockWeights,
+}
+
+/// Sums over the unnormalised weights of one block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockWeights {
+    /// Largest ln L of a particle of positive weight.
+    best_log_likelihood: f64,
+    /// Largest ln w L; relative to its exponential the weights cannot overflow.
+    log_factor: f64,
+    sum: f64,
+    sum_of_squares: f64,
+    scale: f64,
+}
+
+/// Sums over a whole set.
+struct Normalisation {
+    /// ln Σ w L.
+    log_sum: f64,
+    /// (Σ w L)² / Σ (w L)².
+    effective_sample_size: f64,
+}
+
+impl UnnormalisedWeights {
+    /// Of so many particles, to be weighed block by block.
+    pub fn zeros(particles: usize) -> Self {
+        let block = BlockWeights {
+            best_log_likelihood: f64::NEG_INFINITY,
+            log_factor: f64::NEG_INFINITY,
+            sum: 0.0,
+            sum_of_squares: 0.0,
+            scale: 0.0,
+        };
+        Self {
+            log_likelihood: vec![0.0; particles],
+            weights: vec![0.0; particles],
+            blocks: vec![block; particles.div_ceil(BLOCK)],
+        }
+    }
+
+    /// The blocks in order, to be weighed.
+    pub fn blocks_mut(
+        &mut self,
+    ) -> impl ExactSizeIterator<Item = UnnormalisedBlock<'_>> + DoubleEndedIterator + Send {
+        let numbers = self.log_likelihood.chunks_mut(BLOCK);
+        let numbers = numbers.zip(self.weights.chunks_mut(BLOCK));
+        let block = |((log_likelihood, weights), sums)| UnnormalisedBlock {
+            log_likelihood,
+            weights,
+            sums,
+        };
+        numbers.zip(&mut self.blocks).map(block)
+    }
+
+    /// The sums of every block.
+    pub fn blocks(&self) -> &[BlockWeights] {
+        &self.blocks
+    }
+
+    /// Largest ln L of a particle of positive weight.
+    pub fn best_log_likelihood(&self) -> f64 {
+        let best = self.blocks.iter().map(|block| block.best_log_likelihood);
+        best.fold(f64::NEG_INFINITY, larger)
+    }
+
+    /// Sets every block's scale; `None` if all weights are zero.
+    fn normalise(&mut self) -> Option<Normalisation> {
+        let largest = self.blocks.iter().map(|block| block.log_factor);
+        let largest = largest.fold(f64::NEG_INFINITY, larger);
+        if largest == f64::NEG_INFINITY {
+            return None;
+        }
+        let (mut sum, mut sum_of_squares) = (0.0, 0.0);
+        for block in &mut self.blocks {
+            block.scale = libm::exp(block.log_factor - largest);
+            sum += block.scale * block.sum;
+            sum_of_squares += block.scale * block.scale * block.sum_of_squares;
+        }
+        for block in &mut self.blocks {
+            block.scale /= sum;
+        }
+        Some(Normalisation {
+            log_sum: largest + libm::log(sum),
+            effective_sample_size: sum * sum / sum_of_squares,
+        })
+    }
+}
+
+impl UnnormalisedBlock<'_> {
+    /// Bayes' rule on the particles `range` of the set, whose likelihoods have been written. Returns
+    /// their unnormalised weights.
+    ///
+    /// # Panics
+    /// If a likelihood is NaN or +inf: then the model is broken.
+    pub fn weigh(&mut self, prior: &LogWeights, range: Range<usize>) -> &[f64] {
+        let (first, log_prior) = (range.start, &prior.log[range]);
+        *self.sums = BlockWeights::of(first, log_prior, self.log_likelihood, self.weights);
+        self.weights
+    }
+}
+
+impl BlockWeights {
+    /// Writes the unnormalised weights of a block whose first particle is number `first` of its set.
+    fn of(
+        first: usize,
+        log_prior: &[f64],
+        log_likelihood: &[f64],
+        unnormalised: &mut [f64],
+    ) -> Self {
+        let best_log_likelihood = best_log_likelihood(first, log_prior, log_likelihood);
+        for ((u, w), l) in unnormalised.iter_mut().zip(log_prior).zip(log_likelihood) {
+            *u = w + l;
+        }
+        let log_factor = largest(unnormalised, unnormalised, |x, _| x);
+        exponentials(unnormalised, log_factor);
+        Self {
+            best_log_likelihood,
+            log_factor,
+            sum: sum(unnormalised, |x| x),
+            sum_of_squares: sum(unnormalised, |x| x * x),
+            scale: 0.0,
+        }
+    }
+
+    /// The factor that normalises the block's weights, once all blocks have been weighed.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+}
+
+/// The largest log-likelihood of a particle of positive weight; the first particle is number
+/// `first` of its set.
+///
+/// # Panics
+/// If a likelihood is NaN or +inf: then the model is broken.
+fn best_log_likelihood(first: usize, log_weights: &[f64], log_likelihood: &[f64]) -> f64 {
+    // checks all of them: a loop that may stop early does not vectorise
+    let broken = log_likelihood
+        .iter()
+        .fold(false, |broken, &l| broken | is_broken(l));
+    if broken && let Some(i) = log_likelihood.iter().position(|&l| is_broken(l)) {
+        panic!(
+            "the log-likelihood of particle {} is {}; it must be finite or -inf",
+            first + i,
+            log_likelihood[i]
+        );
+    }
+    largest(log_weights, log_likelihood, |w, l| {
+        if w > f64::NEG_INFINITY {
+            l
+        } else {
+            f64::NEG_INFINITY
+        }
+    })
+}
+
+/// Whether `log` is no logarithm of a weight or a likelihood.
+fn is_broken(log: f64) -> bool {
+    log.is_nan() || log == f64::INFINITY
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+/// The largest f(x_i, y_i), -inf at least.
+fn largest(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut best = [f64::NEG_INFINITY; PARTIAL];
+    let ((x, last_x), (y, last_y)) = (x.as_chunks::<PARTIAL>(), y.as_chunks::<PARTIAL>());
+    for (x, y) in x.iter().zip(y) {
+        for k in 0..PARTIAL {
+            best[k] = larger(best[k], f(x[k], y[k]));
+        }
+    }
+    let last = last_x.iter().zip(last_y).map(|(x, y)| f(*x, *y));
+    best.into_iter().chain(last).fold(f64::NEG_INFINITY, larger)
+}
+
+/// Σ f(x_i).
+fn sum(x: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+    let mut partial = [0.0; PARTIAL];
+    let (x, last) = x.as_chunks::<PARTIAL>();
+    for x in x {
+        for k in 0..PARTIAL {
+            partial[k] += f(x[k]);
+        }
+    }
+    partial.into_iter().chain(last.iter().map(|x| f(*x))).sum()
 }

@@ -39,7 +39,8 @@ fn step_and_estimates_after_warm_up_allocate_nothing() {
                     let report = filter.step(&0.1, observation.as_ref());
                     resampled += usize::from(report.resampled);
                     collapsed += usize::from(report.collapsed());
-                    let _ = filter.weighted_mean(POSITION) + filter.weighted_circular_std(POSITION);
+                    let mean = filter.expectation(POSITION, |x| x);
+                    let _ = filter.weighted_circular_std_about(mean, POSITION);
                 }
             });
             assert!(resampled >= 3 && collapsed == 1, "{resampled} {collapsed}");

@@ -1,17 +1,17 @@
-//! A particle set that explains its observation no longer.
+//! A particle set that does not explain its observation.
 
 mod common;
 
-use common::{Axis, POSITION, VELOCITY, settings};
-use stickslip_filter::{Block, BlockMut, Draw, Model, ParticleFilter, Weighing};
+use common::{Axis, POSITION, VELOCITY, mean, settings, std};
+use stickslip_filter::{Block, BlockMut, Draw, Model, ParticleFilter, WeightUpdate};
 
 #[test]
-fn step_with_an_impossible_observation_collapses_and_is_redrawn_around_it() {
+fn step_with_an_impossible_observation_collapses_and_reinitialises_around_it() {
     let mut filter = ParticleFilter::new(Axis::GATED, settings(1000, 3)).unwrap();
     let report = filter.step(&0.1, Some(&50.0));
     assert_eq!(
-        report.weighing,
-        Weighing::Collapsed {
+        report.weight_update,
+        WeightUpdate::Collapsed {
             best_log_likelihood: f64::NEG_INFINITY
         }
     );
@@ -19,8 +19,8 @@ fn step_with_an_impossible_observation_collapses_and_is_redrawn_around_it() {
     assert_eq!(report.effective_sample_size, 1000.0);
 
     // 1000 draws of standard deviation 0.3 about 50: the mean's standard error is 0.0095
-    assert!((filter.weighted_mean(POSITION) - 50.0).abs() < 0.04);
-    assert!((filter.weighted_std(POSITION) - 0.3).abs() < 0.03);
+    assert!((mean(&filter, POSITION) - 50.0).abs() < 0.04);
+    assert!((std(&filter, POSITION) - 0.3).abs() < 0.03);
     assert!(filter.particles().column(VELOCITY).all(f64::is_finite));
 
     let next = filter.step(&0.1, Some(&50.0));
@@ -28,21 +28,21 @@ fn step_with_an_impossible_observation_collapses_and_is_redrawn_around_it() {
 }
 
 #[test]
-fn collapse_resamples_by_the_weights_of_the_row_before() {
+fn collapse_resamples_by_the_weights_before_the_observation() {
     let settings = stickslip_filter::Settings {
         resample_below: 0.0,
         ..settings(1000, 3)
     };
     let mut filter = ParticleFilter::new(Axis::GATED, settings).unwrap();
     let _ = filter.step(&0.5, Some(&0.5));
-    let mean = filter.weighted_mean(VELOCITY);
+    let before = mean(&filter, VELOCITY);
     let unweighted = filter.particles().column(VELOCITY).sum::<f64>() / 1000.0;
     let report = filter.step(&1e-9, Some(&50.0));
     assert!(report.collapsed() && !report.resampled);
-    let after = filter.weighted_mean(VELOCITY);
-    // velocities are not redrawn by this model; systematic resampling keeps their weighted mean to
-    // about 1/sqrt(N)
-    assert!((after - mean).abs() < 0.02, "{after} not {mean}");
+    let after = mean(&filter, VELOCITY);
+    // this model does not reinitialise velocities; systematic resampling keeps their weighted mean
+    // to about 1/sqrt(N)
+    assert!((after - before).abs() < 0.02, "{after} not {before}");
     assert!(
         (after - unweighted).abs() > 0.1,
         "{after} is {unweighted}: the weights took no part"
@@ -73,7 +73,7 @@ impl Model for Given {
     fn collapsed(&self, best: f64) -> bool {
         best < self.collapse_below
     }
-    fn redraw(&self, observation: &f64, _: Draw, block: &mut BlockMut<'_>) {
+    fn reinitialise(&self, observation: &f64, _: Draw, block: &mut BlockMut<'_>) {
         block.column_mut(0).fill(*observation);
     }
 }
@@ -85,8 +85,8 @@ fn collapsed_is_the_models_choice_but_zero_likelihood_always_collapses() {
     };
     let mut filter = ParticleFilter::new(never, settings(70, 0)).unwrap();
     assert_eq!(
-        filter.step(&(), Some(&-1e300)).weighing,
-        Weighing::Weighed {
+        filter.step(&(), Some(&-1e300)).weight_update,
+        WeightUpdate::Weighed {
             log_evidence: -1e300
         }
     );
@@ -101,13 +101,16 @@ fn collapsed_is_the_models_choice_but_zero_likelihood_always_collapses() {
     .unwrap();
     assert!(!filter.step(&(), Some(&-49.0)).collapsed());
     assert_eq!(
-        filter.step(&(), Some(&-51.0)).weighing,
-        Weighing::Collapsed {
+        filter.step(&(), Some(&-51.0)).weight_update,
+        WeightUpdate::Collapsed {
             best_log_likelihood: -51.0
         }
     );
     assert_eq!(filter.particles().value(69, 0), -51.0);
-    assert_eq!(filter.step(&(), None).weighing, Weighing::Unobserved);
+    assert_eq!(
+        filter.step(&(), None).weight_update,
+        WeightUpdate::Unobserved
+    );
 }
 
 #[test]

@@ -49,6 +49,23 @@ fn advance_copies_whole_ancestors() {
 }
 
 #[test]
+fn append_columns_adds_zeros_and_keeps_the_values() {
+    let n = 2 * BLOCK + 5;
+    let mut set = numbered(n, 2);
+    set.append_columns(0);
+    set.append_columns(3);
+    assert_eq!((set.len(), set.columns()), (n, 5));
+    for i in 0..n {
+        let particle: Vec<f64> = (0..5).map(|c| set.value(i, c)).collect();
+        assert_eq!(particle, [i as f64, (1000 + i) as f64, 0.0, 0.0, 0.0]);
+    }
+    // the other half of the double buffer has the new layout too
+    let ancestors: Vec<u32> = (0..n as u32).rev().collect();
+    set.advance(Some(&ancestors), 0..n.div_ceil(BLOCK), |_, _| ());
+    assert_eq!((set.value(0, 1), set.value(0, 4)), ((999 + n) as f64, 0.0));
+}
+
+#[test]
 fn columns_mut_lends_different_columns_in_the_order_asked() {
     let mut set = numbered(BLOCK + 3, 4);
     set.for_each_block(|block| {
@@ -68,7 +85,7 @@ fn columns_mut_with_a_column_twice_panics() {
 }
 
 #[test]
-fn weighted_circular_mean_crosses_the_seam() {
+fn weighted_circular_std_crosses_the_seam() {
     use stickslip_filter::{Block, BlockMut, Draw, Model};
     struct Angles;
     impl Model for Angles {
@@ -89,16 +106,17 @@ fn weighted_circular_mean_crosses_the_seam() {
         fn propagate(&self, (): &(), _: Draw, _: &mut BlockMut<'_>, (): &mut ()) {}
         fn log_likelihood(&self, (): &(), _: &Block<'_>, _: &mut [f64]) {}
         fn sum(&self, (): &(), _: &Block<'_>, _: &[f64], (): &mut ()) {}
-        fn redraw(&self, (): &(), _: Draw, _: &mut BlockMut<'_>) {}
+        fn reinitialise(&self, (): &(), _: Draw, _: &mut BlockMut<'_>) {}
     }
     let filter = ParticleFilter::new(Angles, common::settings(100, 0)).unwrap();
-    assert!((filter.weighted_circular_mean(0).abs() - std::f64::consts::PI).abs() < 1e-12);
-    assert!((filter.weighted_circular_std(0) - 0.1).abs() < 1e-12);
-    assert!(filter.weighted_mean(0).abs() < 1e-12);
+    for mean in [std::f64::consts::PI, -std::f64::consts::PI] {
+        assert!((filter.weighted_circular_std_about(mean, 0) - 0.1).abs() < 1e-12);
+    }
+    assert!(filter.expectation(0, |x| x).abs() < 1e-12);
 }
 
 #[test]
-fn weighted_moments_are_the_sums_over_all_particles() {
+fn expectation_is_the_weighted_sum_over_all_particles() {
     use common::{Axis, POSITION, VELOCITY};
     let mut filter = ParticleFilter::new(Axis::OPEN, common::settings(3 * BLOCK + 5, 1)).unwrap();
     assert!(!filter.step(&0.1, Some(&0.2)).collapsed());
@@ -113,10 +131,10 @@ fn weighted_moments_are_the_sums_over_all_particles() {
                 .sum()
         };
         let mean = sum(&|x| x);
-        assert!((filter.weighted_mean(column) - mean).abs() < 1e-12);
+        assert!((common::mean(&filter, column) - mean).abs() < 1e-12);
         let std = sum(&|x| (x - mean).powi(2)).sqrt();
         assert!(
-            (filter.weighted_std(column) - std).abs() < 1e-12 && std > 0.0,
+            (common::std(&filter, column) - std).abs() < 1e-12 && std > 0.0,
             "{std}"
         );
     }
@@ -125,16 +143,22 @@ fn weighted_moments_are_the_sums_over_all_particles() {
 
 #[test]
 fn sums_are_those_of_the_weighted_particles_however_the_step_ends() {
-    use common::{Axis, POSITION};
+    use common::{Axis, POSITION, VELOCITY};
     for particles in [1, BLOCK, 3 * BLOCK + 5] {
         let mut filter = ParticleFilter::new(Axis::GATED, common::settings(particles, 1)).unwrap();
         let mut check = |observation: Option<&f64>, collapses: bool| {
             assert_eq!(filter.step(&0.1, observation).collapsed(), collapses);
-            let (sums, mean) = (filter.sums(), filter.weighted_mean(POSITION));
-            assert!(
-                (sums.weight - 1.0).abs() < 1e-12 && (sums.position - mean).abs() < 1e-12,
-                "{sums:?}, mean {mean}"
-            );
+            let sums = filter.sums();
+            assert!((sums.weight - 1.0).abs() < 1e-12, "{sums:?}");
+            for column in [POSITION, VELOCITY] {
+                let mean = common::mean(&filter, column);
+                let square = filter.expectation(column, |x| x * x);
+                assert!((sums.first[column] - mean).abs() < 1e-12, "{sums:?}");
+                assert!(
+                    (sums.second[column] / square - 1.0).abs() < 1e-12,
+                    "{sums:?}"
+                );
+            }
         };
         check(Some(&0.2), false);
         check(None, false);
@@ -173,4 +197,23 @@ fn new_with_settings_out_of_range_is_refused() {
         SettingsError::Particles { particles: 0 }.to_string(),
         "`particles` is 0; it must be at least 1 and below 2^32; try 500"
     );
+}
+
+#[test]
+fn change_model_to_more_columns_keeps_the_particles_and_appends_zeros() {
+    use common::Axis;
+    let n = BLOCK + 3;
+    let mut filter = ParticleFilter::new(Axis::OPEN, common::settings(n, 1)).unwrap();
+    let _ = filter.step(&0.1, Some(&0.2));
+    let columns = |filter: &ParticleFilter<Axis>| -> Vec<Vec<f64>> {
+        let set = filter.particles();
+        (0..set.columns())
+            .map(|column| set.column(column).collect())
+            .collect()
+    };
+    let mut expected = columns(&filter);
+    expected.push(vec![0.0; n]);
+    filter.change_model(|model| model.columns = 3);
+    assert_eq!(columns(&filter), expected);
+    assert!(!filter.step(&0.1, Some(&0.2)).collapsed());
 }

@@ -84,7 +84,7 @@ fn streams_that_differ_in_one_argument_are_uncorrelated() {
             Streams::new(8 | 1 << 40).normal(step, i, draw)
         }),
         ("purpose", &|i| {
-            streams.of(Purpose::Redraw).normal(step, i, draw)
+            streams.of(Purpose::Reinitialise).normal(step, i, draw)
         }),
         ("step", &|i| streams.normal(step + 1, i, draw)),
         ("high step", &|i| streams.normal(step | 1 << 50, i, draw)),

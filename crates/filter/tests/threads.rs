@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Axis, POSITION, VELOCITY, series, settings};
+use common::{Axis, POSITION, VELOCITY, mean, series, settings, std};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, keep_threads_awake};
 
 const PARTICLES: usize = 5003;
@@ -43,11 +43,28 @@ fn numbers(filter: &ParticleFilter<Axis>) -> Vec<f64> {
         .collect();
     out.extend(filter.weights().weights());
     out.extend(filter.weights().log_weights());
-    out.push(filter.weighted_mean(POSITION));
-    out.push(filter.weighted_std(VELOCITY));
-    out.push(filter.weighted_circular_mean(POSITION));
-    out.push(filter.weighted_circular_std(POSITION));
+    let direction = circular_mean(filter, POSITION);
+    out.push(mean(filter, POSITION));
+    out.push(std(filter, VELOCITY));
+    out.push(direction);
+    out.push(filter.weighted_circular_std_about(direction, POSITION));
     out
+}
+
+/// The direction of the weighted mean unit vector of a column of angles [rad].
+fn circular_mean(filter: &ParticleFilter<Axis>, column: usize) -> f64 {
+    let weights = filter.weights().weights();
+    let [sin, cos] = filter.particles().reduce(
+        |block| {
+            let weighted = block.column(column).iter().zip(&weights[block.range()]);
+            weighted.fold([0.0, 0.0], |[s, c], (&angle, w)| {
+                let (sin, cos) = libm::sincos(angle);
+                [s + w * sin, c + w * cos]
+            })
+        },
+        |a, b| [a[0] + b[0], a[1] + b[1]],
+    );
+    libm::atan2(sin, cos)
 }
 
 #[test]

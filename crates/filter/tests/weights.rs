@@ -56,7 +56,7 @@ fn multiply_by_zero_likelihood_is_none_and_changes_nothing() {
         None
     );
     assert_eq!(weights, before);
-    assert_eq!(weights.best(&[1.0, 2.0, 3.0]), 2.0);
+    assert_eq!(weights.best_log_likelihood(&[1.0, 2.0, 3.0]), 2.0);
 }
 
 #[test]

@@ -3,7 +3,8 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use stickslip_filter::{
-    Block, BlockMut, ConstantVelocity, Draw, Model, Purpose, Settings, Streams, WeightedSums,
+    Block, BlockMut, ConstantVelocity, Draw, Model, ParticleFilter, Purpose, Settings, Streams,
+    WeightedSums,
 };
 
 /// Columns.
@@ -23,6 +24,8 @@ pub struct Axis {
     pub start: f64,
     /// A particle farther than this from a measurement has likelihood zero.
     pub gate: f64,
+    /// At least 2; what is in others is not used.
+    pub columns: usize,
 }
 
 impl Axis {
@@ -30,6 +33,7 @@ impl Axis {
         noise: AXIS,
         start: 0.0,
         gate: f64::INFINITY,
+        columns: 2,
     };
     pub const GATED: Axis = Axis {
         gate: 3.0,
@@ -37,11 +41,22 @@ impl Axis {
     };
 }
 
-/// Sum of the weights, and of weight times position.
+/// Weighted sums over particles, of position and velocity.
 #[derive(Debug, Default)]
 pub struct Sums {
+    /// Σ w.
     pub weight: f64,
-    pub position: f64,
+    /// Σ w x.
+    pub first: [f64; 2],
+    /// Σ w x².
+    pub second: [f64; 2],
+}
+
+impl Sums {
+    /// The variance of a column.
+    pub fn variance(&self, column: usize) -> f64 {
+        self.second[column] - self.first[column] * self.first[column]
+    }
 }
 
 impl WeightedSums for Sums {
@@ -49,9 +64,12 @@ impl WeightedSums for Sums {
         *self = Sums::default();
     }
 
-    fn add(&mut self, other: &Self, share: f64) {
-        self.weight += share * other.weight;
-        self.position += share * other.position;
+    fn add(&mut self, other: &Self, scale: f64) {
+        self.weight += scale * other.weight;
+        for column in [POSITION, VELOCITY] {
+            self.first[column] += scale * other.first[column];
+            self.second[column] += scale * other.second[column];
+        }
     }
 }
 
@@ -66,7 +84,7 @@ impl Model for Axis {
     type Sums = Sums;
 
     fn columns(&self) -> usize {
-        2
+        self.columns
     }
 
     fn scratch(&self) -> Noise {
@@ -112,23 +130,36 @@ impl Model for Axis {
     }
 
     fn sum(&self, _: &f64, block: &Block<'_>, weights: &[f64], sums: &mut Sums) {
-        let position = weights
-            .iter()
-            .zip(block.column(POSITION))
-            .map(|(w, x)| w * x)
-            .sum();
+        let sum = |column: usize, power: i32| {
+            let weighted = weights.iter().zip(block.column(column));
+            weighted.map(|(w, x)| w * x.powi(power)).sum()
+        };
         *sums = Sums {
             weight: weights.iter().sum(),
-            position,
+            first: [sum(POSITION, 1), sum(VELOCITY, 1)],
+            second: [sum(POSITION, 2), sum(VELOCITY, 2)],
         };
     }
 
-    fn redraw(&self, measured: &f64, draw: Draw, block: &mut BlockMut<'_>) {
+    fn reinitialise(&self, measured: &f64, draw: Draw, block: &mut BlockMut<'_>) {
         for (lane, particle) in block.particles() {
             block.column_mut(POSITION)[lane] =
                 measured + self.noise.measurement_std * draw.normal(particle, 0);
         }
     }
+}
+
+/// The weighted mean of a column.
+pub fn mean<M: Model>(filter: &ParticleFilter<M>, column: usize) -> f64 {
+    filter.expectation(column, |x| x)
+}
+
+/// The weighted standard deviation of a column.
+pub fn std<M: Model>(filter: &ParticleFilter<M>, column: usize) -> f64 {
+    let mean = mean(filter, column);
+    filter
+        .expectation(column, |x| (x - mean) * (x - mean))
+        .sqrt()
 }
 
 pub fn settings(particles: usize, seed: u64) -> Settings {

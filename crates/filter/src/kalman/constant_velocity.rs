@@ -9,8 +9,8 @@
 
 use nalgebra::{Matrix1, Matrix2, RowVector2, Vector1, Vector2};
 
-use crate::Gaussian;
-use crate::series::{Series, SeriesError};
+use crate::kalman::gaussian::Gaussian;
+use crate::kalman::series::{Series, SeriesError};
 
 /// A constant-velocity model of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +55,8 @@ struct Step {
 }
 
 impl ConstantVelocity {
-    /// The state at a first measurement: there, with its noise, and at rest give or take
-    /// `initial_velocity_std`.
+    /// The state at a first measurement: the position measured, and a velocity of 0 with a standard
+    /// deviation of `initial_velocity_std`.
     #[must_use]
     pub fn start(&self, position: f64) -> Gaussian<2> {
         Gaussian {
@@ -77,7 +77,7 @@ impl ConstantVelocity {
         state.predict(&transition(h), &noise)
     }
 
-    /// The state given a position too, and ln p(position | state).
+    /// The state given a measured position, and ln p(position | state).
     ///
     /// # Panics
     /// If `measurement_std` is not positive.

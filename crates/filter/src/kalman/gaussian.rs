@@ -23,10 +23,10 @@ pub struct Gaussian<const N: usize> {
     pub covariance: SMatrix<f64, N, N>,
 }
 
-/// What a measurement did.
+/// A measurement update.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Update<const N: usize, const M: usize> {
-    /// The state given the measurement too.
+pub struct MeasurementUpdate<const N: usize, const M: usize> {
+    /// The state given the measurement as well.
     pub posterior: Gaussian<N>,
     /// z - H m and its covariance S.
     pub innovation: Gaussian<M>,
@@ -46,14 +46,14 @@ impl<const N: usize> Gaussian<N> {
 
     /// The state given a measurement z: `sensor` is H, `noise` is R.
     ///
-    /// `None` if S = H P Hᵀ + R is not positive definite: then nothing about z is uncertain.
+    /// `None` if S = H P Hᵀ + R is not positive definite.
     #[must_use]
     pub fn update<const M: usize>(
         &self,
         measurement: &SVector<f64, M>,
         sensor: &SMatrix<f64, M, N>,
         noise: &SMatrix<f64, M, M>,
-    ) -> Option<Update<N, M>> {
+    ) -> Option<MeasurementUpdate<N, M>> {
         let innovation = Gaussian {
             mean: measurement - sensor * self.mean,
             covariance: symmetric(sensor * self.covariance * sensor.transpose() + noise),
@@ -76,9 +76,9 @@ impl<const N: usize> Gaussian<N> {
             .iter()
             .map(|l| 2.0 * libm::log(*l))
             .sum();
-        let distance = innovation.mean.dot(&s.solve(&innovation.mean));
-        let log_likelihood = -0.5 * (distance + log_determinant + M as f64 * LN_TAU);
-        Some(Update {
+        let mahalanobis = innovation.mean.dot(&s.solve(&innovation.mean));
+        let log_likelihood = -0.5 * (mahalanobis + log_determinant + M as f64 * LN_TAU);
+        Some(MeasurementUpdate {
             posterior,
             innovation,
             log_likelihood,

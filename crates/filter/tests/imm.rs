@@ -1,4 +1,4 @@
-//! The bank of constant-velocity filters against exact answers: a single filter, weights from whole
+//! The interacting multiple model filter against exact answers: a single filter, weights from whole
 //! likelihoods where modes do not change, and the sum over all histories of modes where they do.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -6,7 +6,8 @@ mod common;
 
 use common::{AXIS, series};
 use stickslip_filter::{
-    AxisEstimate, ConstantVelocity, Gaussian, Purpose, SeriesError, Streams, VelocityBank,
+    AxisEstimate, ConstantVelocity, Gaussian, InteractingMultipleModel, Purpose, SeriesError,
+    Streams,
 };
 
 fn mode(process_noise: f64) -> ConstantVelocity {
@@ -16,10 +17,10 @@ fn mode(process_noise: f64) -> ConstantVelocity {
     }
 }
 
-fn bank(dwell: f64) -> VelocityBank {
-    VelocityBank {
+fn imm(mean_sojourn_time: f64) -> InteractingMultipleModel {
+    InteractingMultipleModel {
         modes: [0.005, 0.5, 5.0].map(mode).to_vec(),
-        dwell,
+        mean_sojourn_time,
     }
 }
 
@@ -53,10 +54,10 @@ fn distance(got: AxisEstimate, exact: AxisEstimate) -> f64 {
 #[test]
 fn filter_with_one_mode_is_its_kalman_filter() {
     let (times, measurements) = series(60, 4);
-    for dwell in [0.1, f64::INFINITY] {
-        let got = VelocityBank {
+    for mean_sojourn_time in [0.1, f64::INFINITY] {
+        let got = InteractingMultipleModel {
             modes: vec![AXIS],
-            dwell,
+            mean_sojourn_time,
         }
         .filter(&times, &measurements)
         .unwrap();
@@ -74,14 +75,14 @@ fn filter_with_one_mode_is_its_kalman_filter() {
 #[test]
 fn filter_whose_modes_last_is_the_average_over_them_by_likelihood() {
     let (times, measurements) = series(40, 3);
-    let bank = bank(f64::INFINITY);
-    let got = bank.filter(&times, &measurements).unwrap();
+    let imm = imm(f64::INFINITY);
+    let got = imm.filter(&times, &measurements).unwrap();
     for row in 0..times.len() {
         let part = |mode: &ConstantVelocity| {
             let so_far = mode.filter(&times[..=row], &measurements[..=row]).unwrap();
             (libm::exp(so_far.log_likelihood), so_far.rows[row].unwrap())
         };
-        let parts: Vec<(f64, AxisEstimate)> = bank.modes.iter().map(part).collect();
+        let parts: Vec<(f64, AxisEstimate)> = imm.modes.iter().map(part).collect();
         assert!(
             distance(got.rows[row].unwrap(), mixture(&parts)) < 1e-9,
             "row {row}"
@@ -95,12 +96,12 @@ fn filter_whose_modes_last_is_the_average_over_them_by_likelihood() {
 
 /// Exact by brute force: every history of modes with its own Kalman filter, 3⁷ of them.
 fn all_histories(
-    bank: &VelocityBank,
+    imm: &InteractingMultipleModel,
     times: &[f64],
     measurements: &[Option<f64>],
 ) -> (AxisEstimate, f64) {
     let start = |mode: &ConstantVelocity| mode.start(measurements[0].unwrap());
-    let mut histories: Vec<(f64, usize, Gaussian<2>)> = bank
+    let mut histories: Vec<(f64, usize, Gaussian<2>)> = imm
         .modes
         .iter()
         .enumerate()
@@ -108,9 +109,9 @@ fn all_histories(
         .collect();
     for row in 1..times.len() {
         let h = times[row] - times[row - 1];
-        let stay = libm::exp(-h / bank.dwell);
+        let stay = libm::exp(-h / imm.mean_sojourn_time);
         let next = |&(weight, from, state): &(f64, usize, Gaussian<2>)| {
-            bank.modes.iter().enumerate().map(move |(to, mode)| {
+            imm.modes.iter().enumerate().map(move |(to, mode)| {
                 let change = if to == from { stay } else { (1.0 - stay) / 2.0 };
                 let predicted = mode.predict(&state, h);
                 let (state, log_likelihood) =
@@ -143,12 +144,12 @@ fn estimate(state: &Gaussian<2>) -> AxisEstimate {
 /// count, and they are exact.
 #[test]
 fn filter_is_the_sum_over_all_histories_of_modes_until_a_second_measurement_follows_a_change() {
-    let bank = bank(2.0);
+    let imm = imm(2.0);
     for seed in 0..20 {
         let (times, mut measurements) = series(7, seed);
         measurements[2..].fill(None);
-        let got = bank.filter(&times, &measurements).unwrap();
-        let (exact, evidence) = all_histories(&bank, &times, &measurements);
+        let got = imm.filter(&times, &measurements).unwrap();
+        let (exact, evidence) = all_histories(&imm, &times, &measurements);
         assert!(distance(got.rows[6].unwrap(), exact) < 1e-9, "seed {seed}");
         assert!((got.log_likelihood - evidence).abs() < 1e-9, "seed {seed}");
     }
@@ -158,12 +159,12 @@ fn filter_is_the_sum_over_all_histories_of_modes_until_a_second_measurement_foll
 /// not on it.
 #[test]
 fn filter_is_near_the_sum_over_all_histories_of_modes() {
-    let bank = bank(2.0);
+    let imm = imm(2.0);
     let mut sums = [0.0; 3];
     for seed in 0..50 {
         let (times, measurements) = series(7, seed);
-        let got = bank.filter(&times, &measurements).unwrap();
-        let (exact, evidence) = all_histories(&bank, &times, &measurements);
+        let got = imm.filter(&times, &measurements).unwrap();
+        let (exact, evidence) = all_histories(&imm, &times, &measurements);
         let single = AXIS.filter(&times, &measurements).unwrap().rows[6].unwrap();
         sums[0] += distance(got.rows[6].unwrap(), exact);
         sums[1] += (got.log_likelihood - evidence).abs();
@@ -176,12 +177,12 @@ fn filter_is_near_the_sum_over_all_histories_of_modes() {
     );
     assert!(
         single > 3.0 * error,
-        "the middle mode alone is {single} off, the bank {error}"
+        "the middle mode alone is {single} off, all together {error}"
     );
 }
 
-/// Rests, runs off, stops: no single liveliness tells all of it as well as the bank, which must
-/// find it on the way.
+/// The axis rests, moves and stops: no single process noise fits all of it as well as the modes
+/// together, although the filter learns the mode on the way.
 #[test]
 fn filter_predicts_a_start_and_a_stop_better_than_any_of_its_modes() {
     let draw = Streams::new(1).of(Purpose::Measure);
@@ -192,11 +193,11 @@ fn filter_predicts_a_start_and_a_stop_better_than_any_of_its_modes() {
         .enumerate()
         .map(|(row, t)| Some(20.0 * (t.clamp(4.0, 6.0) - 4.0) + noise(row)))
         .collect();
-    let bank = VelocityBank {
+    let imm = InteractingMultipleModel {
         modes: [1e-5, 0.5, 1e3].map(mode).to_vec(),
-        dwell: 30.0,
+        mean_sojourn_time: 30.0,
     };
-    let together = bank.filter(&times, &measurements).unwrap().log_likelihood;
+    let together = imm.filter(&times, &measurements).unwrap().log_likelihood;
     let best = AXIS.fit_process_noise(&times, &measurements).unwrap();
     assert!(
         together > best.log_likelihood + 10.0,
@@ -208,10 +209,10 @@ fn filter_predicts_a_start_and_a_stop_better_than_any_of_its_modes() {
 #[test]
 fn filter_row_is_a_function_of_the_rows_up_to_it() {
     let (times, measurements) = series(50, 5);
-    let all = bank(3.0).filter(&times, &measurements).unwrap().rows;
+    let all = imm(3.0).filter(&times, &measurements).unwrap().rows;
     for row in 0..times.len() {
         assert_eq!(
-            bank(3.0)
+            imm(3.0)
                 .filter(&times[..=row], &measurements[..=row])
                 .unwrap()
                 .rows,
@@ -221,25 +222,25 @@ fn filter_row_is_a_function_of_the_rows_up_to_it() {
 }
 
 #[test]
-fn bank_out_of_range_is_refused() {
-    let refuse = |bank: VelocityBank| bank.filter(&[], &[]).unwrap_err().to_string();
+fn model_out_of_range_is_refused() {
+    let refuse = |imm: InteractingMultipleModel| imm.filter(&[], &[]).unwrap_err().to_string();
     assert_eq!(
-        refuse(VelocityBank {
+        refuse(InteractingMultipleModel {
             modes: vec![],
-            dwell: 1.0
+            mean_sojourn_time: 1.0
         }),
         "`modes` is 0; it must be finite and at least 1"
     );
-    for dwell in [0.0, -1.0, f64::NAN] {
-        assert!(refuse(bank(dwell)).starts_with("`dwell` is "));
+    for mean_sojourn_time in [0.0, -1.0, f64::NAN] {
+        assert!(refuse(imm(mean_sojourn_time)).starts_with("`mean_sojourn_time` is "));
     }
     assert!(
-        refuse(VelocityBank {
+        refuse(InteractingMultipleModel {
             modes: vec![mode(-1.0)],
-            dwell: 1.0
+            mean_sojourn_time: 1.0
         })
         .starts_with("`process_noise` is -1")
     );
-    let series = bank(1.0).filter(&[0.0, 0.0], &[None, None]).unwrap_err();
+    let series = imm(1.0).filter(&[0.0, 0.0], &[None, None]).unwrap_err();
     assert!(matches!(series, SeriesError::Time { row: 1, .. }));
 }

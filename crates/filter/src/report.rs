@@ -1,0 +1,40 @@
+//! How a filter step went: [`StepReport`].
+
+/// How a step went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct StepReport {
+    /// The effective sample size at the end of the step, in [1, N].
+    pub effective_sample_size: f64,
+    /// Whether the step began with resampling.
+    pub resampled: bool,
+    /// What the observation did to the weights.
+    pub weight_update: WeightUpdate,
+}
+
+impl StepReport {
+    /// Whether no particle explained the observation.
+    pub fn collapsed(&self) -> bool {
+        matches!(self.weight_update, WeightUpdate::Collapsed { .. })
+    }
+}
+
+/// What a step's observation did to the weights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub enum WeightUpdate {
+    /// There was no observation; the weights are unchanged.
+    Unobserved,
+    /// The weights were multiplied by the observation's likelihood.
+    Weighed {
+        /// ln p(observation | observations before), as the particles estimate it.
+        log_evidence: f64,
+    },
+    /// No particle explained the observation: the particles were reinitialised around it, with
+    /// equal weights.
+    Collapsed {
+        /// The largest log-likelihood that a particle gave to the part of the observation that
+        /// reinitialising can explain.
+        best_log_likelihood: f64,
+    },
+}
