@@ -1,21 +1,20 @@
 //! From particles to their mixed NCPs, `W` side by side: [`Assembly`].
 
-use crate::contact::Contact;
-use crate::frames::Frames;
-use crate::impulses::Impulses;
-use crate::lanes::{Lanes, Mask};
-use crate::narrow::{NarrowWork, PairFrames, near};
-use crate::ncp::{ContactRow, FootRow, Ncp};
-use crate::particles::{Particles, REMEMBERED};
-use crate::plane::Frame;
-use crate::problem::{ContactPoint, Foot, Stall, StepProblem};
-use crate::scene::{Feet, Fixel, Friction, Scene};
-use crate::stage::{Moment, Stage};
-use crate::step::{Body, PusherMotion};
-use crate::{Shape, Twist, Wrench};
+use stickslip_lanes::{Lanes, Mask};
 
-/// Place of the first remembered contact among the numbers of a warm start.
-const FIRST_CONTACT: usize = 7;
+use crate::friction::Friction;
+use crate::geometry::contact::Contact;
+use crate::geometry::narrow_phase::{NarrowWork, PairFrames, near};
+use crate::geometry::shape::Shape;
+use crate::geometry::transform::{Frame, Frames};
+use crate::input::{Body, PusherMotion};
+use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
+use crate::ncp::rows::{ContactRow, FootRow, Ncp};
+use crate::ncp::unknowns::Impulses;
+use crate::particles::{ContactImpulse, Particles, REMEMBERED};
+use crate::prepared_scene::{Moment, Stage};
+use crate::scene::{Feet, Fixel, Scene};
+use crate::se2::{Pose, Twist, Wrench};
 
 /// Which contact each row of a chunk's problems stands for.
 #[derive(Clone, Debug)]
@@ -125,7 +124,7 @@ impl<const W: usize> Assembly<W> {
         let scene = &stage.scene;
         if let Some((motion, frame)) = moment.pusher {
             let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
-            let (mu, catch_up) = (particles.friction[1], particles.pusher_lag * moment.rate);
+            let (mu, catch_up) = (particles.friction.mu_p, particles.pusher_lag * moment.rate);
             let pusher = Other {
                 body: Body::Pusher,
                 shape: &scene.pusher.shape,
@@ -137,7 +136,7 @@ impl<const W: usize> Assembly<W> {
             };
             self.meet(scene, &object, &pusher, narrow, ncp);
         }
-        let mu = particles.friction[2];
+        let mu = particles.friction.mu_f;
         for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate()
         {
             let fixel = Other {
@@ -190,14 +189,14 @@ impl<const W: usize> Assembly<W> {
             stall,
         };
         ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |stall| stall.impulse / mass));
-        let [vx, vy, omega] = particles.twist;
-        let [fx, fy, torque] = particles.applied;
+        let Twist { vx, vy, omega } = particles.twist;
+        let Wrench { fx, fy, torque } = particles.applied;
         ncp.free = [
             vx + fx * per_mass,
             vy + fy * per_mass,
             (omega + torque * per_inertia) * rho,
         ];
-        let [mu_s, _, _, d_tri] = particles.friction;
+        let Friction { mu_s, d_tri, .. } = particles.friction;
         let arms = scene.foot_arms(stance, object, d_tri);
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
@@ -246,19 +245,19 @@ impl<const W: usize> Assembly<W> {
     /// The impulses and twists that the particles remember, as a start.
     #[inline(always)]
     pub fn load_warm_start(&self, rho: f64, particles: &Particles<W>, p: &mut Impulses<W>) {
-        let [vx, vy, omega] = particles.twist;
+        let Twist { vx, vy, omega } = particles.twist;
         p.v = [vx, vy, omega * rho];
         let warm = &particles.warm;
-        p.feet = [[warm[0], warm[1]], [warm[2], warm[3]], [warm[4], warm[5]]];
-        p.pusher_yield = warm[6];
+        p.feet = warm.feet;
+        p.pusher_yield = warm.pusher_yield;
         p.normal.clear();
         p.tangential.clear();
         for row in &self.rows {
             let (mut p_n, mut p_t) = (Lanes::ZERO, Lanes::ZERO);
-            for slot in warm[FIRST_CONTACT..].chunks_exact(3) {
-                let same = row.present & !(slot[0] - row.key).abs().gt(Lanes::ZERO);
-                p_n = same.select(slot[1], p_n);
-                p_t = same.select(slot[2], p_t);
+            for slot in &warm.contacts {
+                let same = row.present & !(slot.key - row.key).abs().gt(Lanes::ZERO);
+                p_n = same.select(slot.normal, p_n);
+                p_t = same.select(slot.tangential, p_t);
             }
             p.normal.push(p_n);
             p.tangential.push(p_t);
@@ -270,24 +269,21 @@ impl<const W: usize> Assembly<W> {
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Impulses<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
-        for (to, from) in warm.iter_mut().zip(p.feet.as_flattened()) {
-            *to = *from;
-        }
-        warm[6] = p.pusher_yield;
+        warm.feet = p.feet;
+        warm.pusher_yield = p.pusher_yield;
         particles.pusher_lag = p.pusher_yield * self.setting.h;
-        warm[FIRST_CONTACT..].fill(Lanes::ZERO);
+        warm.contacts = [ContactImpulse::default(); REMEMBERED];
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
             let pressed = p_n.gt(Lanes::ZERO);
-            for (k, slot) in warm[FIRST_CONTACT..].chunks_exact_mut(3).enumerate() {
+            for (k, slot) in warm.contacts.iter_mut().enumerate() {
                 let here: Mask<W> = pressed & !(filled - k as f64).abs().gt(Lanes::ZERO);
-                slot[0] = here.select(Lanes::splat(row.key), slot[0]);
-                slot[1] = here.select(*p_n, slot[1]);
-                slot[2] = here.select(*p_t, slot[2]);
+                slot.key = here.select(Lanes::splat(row.key), slot.key);
+                slot.normal = here.select(*p_n, slot.normal);
+                slot.tangential = here.select(*p_t, slot.tangential);
             }
-            filled += pressed.keep(Lanes::splat(1.0));
+            filled += pressed.zero_unless(Lanes::splat(1.0));
         }
-        debug_assert_eq!(warm[FIRST_CONTACT..].len(), 3 * REMEMBERED);
     }
 
     /// The body of each contact of one lane, in the order of its problem.
@@ -379,7 +375,7 @@ fn row<const W: usize>(
     });
     let d = other.direction;
     let (nd, td) = (nx * d[0] + ny * d[1], nx * d[1] - ny * d[0]);
-    let keep = |value: Lanes<W>| present.keep(value);
+    let keep = |value: Lanes<W>| present.zero_unless(value);
     ContactRow {
         n: [keep(nx), keep(ny), keep((x * ny - y * nx) * per_rho)],
         t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * per_rho)],
@@ -440,7 +436,7 @@ impl Scene {
     /// of `h` seconds.
     pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
         let total = friction.mu_s * self.object.mass * self.gravity * h;
-        let frames = Frames::new(&[Lanes([0.0]), Lanes([0.0]), Lanes([theta])]);
+        let frames = Frames::new(&Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
         let arms = self.foot_arms(&self.stance(), &frames, Lanes([friction.d_tri]));
         let loads = self.foot_loads();
         std::array::from_fn(|k| Foot {

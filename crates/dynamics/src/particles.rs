@@ -1,9 +1,10 @@
 //! What a step reads and writes of a particle: [`Particle`], and [`Particles`], `W` of them side by
 //! side.
 
-use crate::lanes::Lanes;
-use crate::scene::Friction;
-use crate::{Pose, Twist, Wrench};
+use stickslip_lanes::Lanes;
+
+use crate::friction::Friction;
+use crate::se2::{Pose, Twist, Wrench};
 
 /// Contacts whose impulses a particle remembers for its next step.
 pub(crate) const REMEMBERED: usize = 4;
@@ -17,127 +18,145 @@ pub struct Particle {
     pub twist: Twist,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
-    /// How far the pusher stands behind its pose, against its direction, since it gave way in the
-    /// step before (m); 0 where its pose is where it stands.
+    /// Distance by which the pusher stands behind its pose, against its direction, because it gave
+    /// way in the step before (m); 0 where it stands at its pose.
     pub pusher_lag: f64,
     /// Impulses of the step before.
     pub warm: WarmStart,
 }
 
-/// Impulses of a step, mass-normalised, from which the next one starts.
+/// Impulses of a step, mass-normalised, from which the solver starts the next one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WarmStart {
-    /// Per foot (m/s).
-    pub feet: [[f64; 2]; 3],
-    /// Speed by which the pusher gave way (m/s).
-    pub pusher_yield: f64,
-    /// Per remembered contact: its key (body and place among the body's contacts; 0: no contact),
-    /// p_n, p_t (m/s).
-    pub contacts: [[f64; 3]; REMEMBERED],
+pub struct WarmStart<T = f64> {
+    /// Friction impulse of each foot (m/s).
+    pub feet: [[T; 2]; 3],
+    /// Speed y by which the pusher gave way (m/s).
+    pub pusher_yield: T,
+    /// The contacts that pressed, at most four.
+    pub contacts: [ContactImpulse<T>; REMEMBERED],
+}
+
+/// The impulse of one contact, to be found again in the next step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactImpulse<T = f64> {
+    /// Names the contact: body and pair of features; 0 is no contact.
+    pub key: T,
+    /// p_n (m/s).
+    pub normal: T,
+    /// p_t (m/s).
+    pub tangential: T,
 }
 
 impl WarmStart {
-    /// Numbers in [`WarmStart::to_array`].
+    /// Numbers of a warm start.
     pub const LEN: usize = 7 + 3 * REMEMBERED;
+}
 
-    /// As plain numbers, to be stored in columns.
-    pub fn to_array(&self) -> [f64; Self::LEN] {
-        let mut array = [0.0; Self::LEN];
-        array[..6].copy_from_slice(self.feet.as_flattened());
-        array[6] = self.pusher_yield;
-        array[7..].copy_from_slice(self.contacts.as_flattened());
-        array
+impl<T> WarmStart<T> {
+    /// Its numbers, to be stored in columns.
+    #[inline(always)]
+    pub fn fields(&self) -> [&T; WarmStart::LEN] {
+        let [[ax, ay], [bx, by], [cx, cy]] = &self.feet;
+        let [a, b, c, d] = &self.contacts;
+        [
+            ax,
+            ay,
+            bx,
+            by,
+            cx,
+            cy,
+            &self.pusher_yield,
+            &a.key,
+            &a.normal,
+            &a.tangential,
+            &b.key,
+            &b.normal,
+            &b.tangential,
+            &c.key,
+            &c.normal,
+            &c.tangential,
+            &d.key,
+            &d.normal,
+            &d.tangential,
+        ]
     }
 
-    /// The inverse of [`WarmStart::to_array`].
-    pub fn from_array(array: &[f64; Self::LEN]) -> Self {
-        let mut warm = Self {
-            pusher_yield: array[6],
-            ..Self::default()
-        };
-        warm.feet.as_flattened_mut().copy_from_slice(&array[..6]);
-        warm.contacts
-            .as_flattened_mut()
-            .copy_from_slice(&array[7..]);
-        warm
+    /// The same, to be written.
+    #[inline(always)]
+    pub fn fields_mut(&mut self) -> [&mut T; WarmStart::LEN] {
+        let [[ax, ay], [bx, by], [cx, cy]] = &mut self.feet;
+        let [a, b, c, d] = &mut self.contacts;
+        [
+            ax,
+            ay,
+            bx,
+            by,
+            cx,
+            cy,
+            &mut self.pusher_yield,
+            &mut a.key,
+            &mut a.normal,
+            &mut a.tangential,
+            &mut b.key,
+            &mut b.normal,
+            &mut b.tangential,
+            &mut c.key,
+            &mut c.normal,
+            &mut c.tangential,
+            &mut d.key,
+            &mut d.normal,
+            &mut d.tangential,
+        ]
     }
 }
 
-/// `W` particles side by side.
-#[derive(Clone, Copy, Debug)]
+/// `W` particles side by side, each with its friction parameters.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Particles<const W: usize> {
-    /// x (m), y (m), θ (rad).
-    pub pose: [Lanes<W>; 3],
-    /// vx (m/s), vy (m/s), ω (rad/s).
-    pub twist: [Lanes<W>; 3],
+    /// Pose of the object (m, m, rad).
+    pub pose: Pose<Lanes<W>>,
+    /// Twist of the object (m/s, m/s, rad/s).
+    pub twist: Twist<Lanes<W>>,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
-    pub applied: [Lanes<W>; 3],
-    /// μ_s, μ_p, μ_f, d_tri (m).
-    pub friction: [Lanes<W>; 4],
-    /// How far the pusher stands behind its pose (m).
+    pub applied: Wrench<Lanes<W>>,
+    /// Friction parameters; d_tri in m.
+    pub friction: Friction<Lanes<W>>,
+    /// Distance by which the pusher stands behind its pose (m).
     pub pusher_lag: Lanes<W>,
-    /// Impulses of the step before, in the order of [`WarmStart::to_array`].
-    pub warm: [Lanes<W>; WarmStart::LEN],
+    /// Impulses of the step before.
+    pub warm: WarmStart<Lanes<W>>,
 }
 
-impl<const W: usize> Default for Particles<W> {
-    fn default() -> Self {
-        let o = Lanes::ZERO;
-        Self {
-            pose: [o; 3],
-            twist: [o; 3],
-            applied: [o; 3],
-            friction: [o; 4],
-            pusher_lag: o,
-            warm: [o; WarmStart::LEN],
-        }
-    }
-}
-
-/// Writes plain numbers to one lane.
-fn set_lane<const W: usize, const N: usize>(to: &mut [Lanes<W>; N], lane: usize, from: [f64; N]) {
-    to.iter_mut()
+/// Writes one lane of several numbers.
+fn set_lane<const W: usize, const N: usize>(to: [&mut Lanes<W>; N], lane: usize, from: [&f64; N]) {
+    to.into_iter()
         .zip(from)
-        .for_each(|(to, from)| to.0[lane] = from);
+        .for_each(|(to, from)| to.0[lane] = *from);
 }
 
 impl<const W: usize> Particles<W> {
     /// Overwrites one lane.
     pub fn set(&mut self, lane: usize, particle: &Particle, friction: &Friction) {
-        let Particle {
-            pose,
-            twist,
-            applied,
-            pusher_lag,
-            warm,
-        } = particle;
-        set_lane(&mut self.pose, lane, [pose.x, pose.y, pose.theta]);
-        set_lane(&mut self.twist, lane, [twist.vx, twist.vy, twist.omega]);
-        set_lane(
-            &mut self.applied,
-            lane,
-            [applied.fx, applied.fy, applied.torque],
-        );
-        set_lane(
-            &mut self.friction,
-            lane,
-            [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri],
-        );
-        self.pusher_lag.0[lane] = *pusher_lag;
-        set_lane(&mut self.warm, lane, warm.to_array());
+        set_lane(self.pose.fields_mut(), lane, particle.pose.fields());
+        set_lane(self.twist.fields_mut(), lane, particle.twist.fields());
+        set_lane(self.applied.fields_mut(), lane, particle.applied.fields());
+        set_lane(self.friction.fields_mut(), lane, friction.fields());
+        self.pusher_lag.0[lane] = particle.pusher_lag;
+        set_lane(self.warm.fields_mut(), lane, particle.warm.fields());
     }
 
     /// One lane.
     pub fn get(&self, lane: usize) -> Particle {
-        let [x, y, theta] = self.pose.map(|x| x.0[lane]);
-        let [vx, vy, omega] = self.twist.map(|x| x.0[lane]);
-        let [fx, fy, torque] = self.applied.map(|x| x.0[lane]);
+        let mut warm = WarmStart::default();
+        for (to, from) in warm.fields_mut().into_iter().zip(self.warm.fields()) {
+            *to = from.0[lane];
+        }
         Particle {
-            pose: Pose { x, y, theta },
-            twist: Twist { vx, vy, omega },
-            applied: Wrench { fx, fy, torque },
+            pose: self.pose.map(|x| x.0[lane]),
+            twist: self.twist.map(|x| x.0[lane]),
+            applied: self.applied.map(|x| x.0[lane]),
             pusher_lag: self.pusher_lag.0[lane],
-            warm: WarmStart::from_array(&self.warm.map(|x| x.0[lane])),
+            warm,
         }
     }
 }

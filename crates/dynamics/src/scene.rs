@@ -1,20 +1,9 @@
-//! What is known before an experiment: object, support, pusher, fixels ([`Scene`]) and the friction
-//! parameters ([`Friction`]).
+//! What is known before an experiment: object, support, pusher, fixels and nominal friction
+//! ([`Scene`]).
 
-use crate::{Pose, Shape};
-
-/// The four friction parameters β of the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
-    /// μ_s, object–support.
-    pub mu_s: f64,
-    /// μ_p, object–pusher.
-    pub mu_p: f64,
-    /// μ_f, object–fixel.
-    pub mu_f: f64,
-    /// Radius of the support tripod (m); unused where the feet are known.
-    pub d_tri: f64,
-}
+use crate::friction::Friction;
+use crate::geometry::shape::Shape;
+use crate::se2::Pose;
 
 /// The pushed object; the origin of its frame is its centre of mass.
 #[derive(Clone, Debug)]

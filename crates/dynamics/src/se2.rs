@@ -1,39 +1,87 @@
-//! Planar rigid-body quantities: [`Pose`], [`Twist`], [`Wrench`], all in the world frame, SI units.
+//! Planar rigid-body quantities [`Pose`], [`Twist`] and [`Wrench`], in the world frame, SI units.
+//!
+//! Each is generic over its number: `f64` for one body, [`Lanes`](stickslip_lanes::Lanes) for
+//! several particles side by side. `map`, `fields` and `fields_mut` visit the numbers in the order in
+//! which they are declared, so that no caller has to know that order.
+
+use std::ops::{Add, Mul};
 
 /// Pose of a body: position of its frame's origin (m) and angle of its x axis, counter-clockwise
 /// (rad), not wrapped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pose {
+pub struct Pose<T = f64> {
     /// x of the origin (m).
-    pub x: f64,
+    pub x: T,
     /// y of the origin (m).
-    pub y: f64,
+    pub y: T,
     /// Angle, counter-clockwise (rad).
-    pub theta: f64,
+    pub theta: T,
 }
 
 /// Planar twist: velocity of the body's origin in the world frame (m/s) and angular velocity
 /// (rad/s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Twist {
+pub struct Twist<T = f64> {
     /// x velocity (m/s).
-    pub vx: f64,
+    pub vx: T,
     /// y velocity (m/s).
-    pub vy: f64,
+    pub vy: T,
     /// Angular velocity (rad/s).
-    pub omega: f64,
+    pub omega: T,
 }
 
 /// Planar wrench, or the impulse of one: force (N) or impulse (N s), and torque about the origin (N
 /// m) or (N m s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wrench {
+pub struct Wrench<T = f64> {
     /// x component (N) or (N s).
-    pub fx: f64,
+    pub fx: T,
     /// y component (N) or (N s).
-    pub fy: f64,
+    pub fy: T,
     /// Torque (N m) or (N m s).
-    pub torque: f64,
+    pub torque: T,
+}
+
+/// Visits the numbers of a struct in the order of its declaration.
+macro_rules! fields {
+    ($name:ident, $n:literal: $($field:ident),*) => {
+        impl<T> $name<T> {
+            /// The same quantity with every number replaced by a function of it.
+            #[inline(always)]
+            pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> $name<U> {
+                $name { $($field: f(self.$field)),* }
+            }
+
+            /// Its numbers, in the order of the declaration.
+            #[inline(always)]
+            pub fn fields(&self) -> [&T; $n] {
+                [$(&self.$field),*]
+            }
+
+            /// The same, to be written.
+            #[inline(always)]
+            pub fn fields_mut(&mut self) -> [&mut T; $n] {
+                [$(&mut self.$field),*]
+            }
+        }
+    };
+}
+pub(crate) use fields;
+
+fields!(Pose, 3: x, y, theta);
+fields!(Twist, 3: vx, vy, omega);
+fields!(Wrench, 3: fx, fy, torque);
+
+impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Pose<T> {
+    /// The pose after moving with `twist` for `h` seconds: q + h v (eq. 6, last line).
+    #[inline(always)]
+    pub fn advance(&self, twist: Twist<T>, h: f64) -> Self {
+        Self {
+            x: self.x + twist.vx * h,
+            y: self.y + twist.vy * h,
+            theta: self.theta + twist.omega * h,
+        }
+    }
 }
 
 impl Pose {
@@ -61,15 +109,6 @@ impl Pose {
             cos * vector[0] - sin * vector[1],
             sin * vector[0] + cos * vector[1],
         ]
-    }
-
-    /// The pose after moving with `twist` for `h` seconds: q + h v (eq. 6, last line).
-    pub fn advance(&self, twist: Twist, h: f64) -> Self {
-        Self::new(
-            self.x + h * twist.vx,
-            self.y + h * twist.vy,
-            self.theta + h * twist.omega,
-        )
     }
 
     /// The mean twist that leads from `self` to `next` within `h` seconds.

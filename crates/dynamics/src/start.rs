@@ -1,6 +1,6 @@
 //! How an experiment begins, and what the pusher is told to do: [`Start`].
 
-use crate::Pose;
+use crate::se2::Pose;
 
 /// How an experiment begins, and what the pusher is told to do: `[start]` of a scene file.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,20 +6,22 @@
 
 use std::ops::Range;
 
-use fearless_simd::Level;
+use stickslip_lanes::{Lanes, Level, on_widest};
 
 use crate::assembly::Assembly;
-use crate::impulses::Impulses;
-use crate::instructions::on_widest;
-use crate::lanes::Lanes;
-use crate::narrow::NarrowWork;
-use crate::ncp::Ncp;
+use crate::friction::Friction;
+use crate::geometry::narrow_phase::NarrowWork;
+use crate::input::{Body, StepInput};
+use crate::ncp::problem::{StepProblem, StepSolution};
+use crate::ncp::report::Report;
+use crate::ncp::rows::Ncp;
+use crate::ncp::unknowns::Impulses;
 use crate::particles::{Particle, Particles};
-use crate::problem::{StepProblem, StepSolution};
-use crate::scene::{Friction, Scene};
-use crate::solver::{Report, Solver, Source};
-use crate::stage::{Moment, Stage};
-use crate::{Pose, Twist};
+use crate::prepared_scene::{Moment, Stage};
+use crate::scene::Scene;
+use crate::se2::{Twist, Wrench};
+use crate::solver::chain::Solver;
+use crate::solver::source::Source;
 
 /// Added to the distance that bodies can close within one step when contacts are sought (m).
 const MARGIN: f64 = 5e-4;
@@ -30,36 +32,6 @@ const WIDEST: f64 = 1e3;
 /// Lanes from which on vector instructions wider than the baseline's are worth their own copy of
 /// the step.
 const WIDE: usize = 4;
-
-/// The pusher during one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PusherMotion {
-    /// Pose at the start of the step.
-    pub pose: Pose,
-    /// Commanded twist during the step.
-    pub twist: Twist,
-    /// Unit vector of its commanded translation (the last one where it stands): the direction in
-    /// which it may give way.
-    pub direction: [f64; 2],
-}
-
-/// What drives one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepInput {
-    /// Step (s).
-    pub h: f64,
-    /// The pusher; `None` while it is off the plane.
-    pub pusher: Option<PusherMotion>,
-}
-
-/// A body that the object may touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
-    /// The pusher.
-    Pusher,
-    /// The fixel of this index.
-    Fixel(usize),
-}
 
 /// Γ for one scene.
 #[derive(Clone, Debug)]
@@ -283,15 +255,13 @@ impl Dynamics {
         work: &StepWork<W>,
     ) {
         particles.twist = work.twist(chunk, self.stage.per_rho);
-        for (q, v) in particles.pose.iter_mut().zip(&particles.twist) {
-            *q += *v * h;
-        }
+        particles.pose = particles.pose.advance(particles.twist, h);
         work.chunks[chunk].store_warm_start(&work.impulses[chunk], particles);
     }
 
     /// No point of the object is faster.
     #[inline(always)]
-    fn point_speed<const W: usize>(&self, [vx, vy, omega]: &[Lanes<W>; 3]) -> Lanes<W> {
+    fn point_speed<const W: usize>(&self, Twist { vx, vy, omega }: &Twist<Lanes<W>>) -> Lanes<W> {
         length_at_most(vx, vy) + omega.abs() * self.reach
     }
 
@@ -308,7 +278,7 @@ impl Dynamics {
         input: &StepInput,
         particles: &Particles<W>,
     ) -> Lanes<W> {
-        let [fx, fy, torque] = &particles.applied;
+        let Wrench { fx, fy, torque } = &particles.applied;
         let kick = length_at_most(fx, fy) * self.stage.per_mass
             + torque.abs() * (self.stage.per_inertia * self.reach);
         let pusher = self.pusher_speed(input);
@@ -356,9 +326,13 @@ impl<const W: usize> Source<W> for Problems<'_, W> {
 impl<const W: usize> StepWork<W> {
     /// Solved twists of one chunk.
     #[inline(always)]
-    fn twist(&self, chunk: usize, per_rho: f64) -> [Lanes<W>; 3] {
+    fn twist(&self, chunk: usize, per_rho: f64) -> Twist<Lanes<W>> {
         let [vx, vy, scaled] = self.impulses[chunk].v;
-        [vx, vy, scaled * per_rho]
+        Twist {
+            vx,
+            vy,
+            omega: scaled * per_rho,
+        }
     }
 }
 

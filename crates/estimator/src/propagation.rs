@@ -1,7 +1,9 @@
 //! Γ' for a block of particles (eq. 6): noise, the step, and Φ, which keeps of the parameters what
 //! took part.
 
-use stickslip_dynamics::{Body, Lanes, Level, Mask, Outcome, Particles, StepWork, on_widest};
+use stickslip_dynamics::{
+    Body, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
+};
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::Limits;
@@ -28,21 +30,21 @@ const FORCE_PAIR: u32 = 2;
 pub struct Propagation {
     work: StepWork<LANES>,
     particles: [Particles<LANES>; CHUNKS],
-    touched: [Touched; CHUNKS],
+    involved: [Involved; CHUNKS],
     normals: [[f64; BLOCK]; 4],
     level: Level,
 }
 
 /// What took part in a step (Φ) and how it ended, by lane of a chunk.
 #[derive(Clone, Copy, Debug)]
-struct Touched {
+struct Involved {
     pusher: Mask<LANES>,
     fixel: Mask<LANES>,
     moved: Mask<LANES>,
     unsolved: Mask<LANES>,
 }
 
-impl Touched {
+impl Involved {
     const NOTHING: Self = {
         let no = Mask::splat(false);
         Self {
@@ -52,6 +54,17 @@ impl Touched {
             unsolved: no,
         }
     };
+
+    /// Φ: the parameters that took part (Table I).
+    #[inline(always)]
+    fn phi(&self) -> Friction<Mask<LANES>> {
+        Friction {
+            mu_s: self.moved,
+            mu_p: self.pusher,
+            mu_f: self.fixel,
+            d_tri: self.moved,
+        }
+    }
 }
 
 impl Default for Propagation {
@@ -59,7 +72,7 @@ impl Default for Propagation {
         Self {
             work: StepWork::default(),
             particles: [Particles::default(); CHUNKS],
-            touched: [Touched::NOTHING; CHUNKS],
+            involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
             level: Level::new(),
         }
@@ -127,28 +140,38 @@ impl Propagation {
         let most_lag = Lanes::splat(model.setup.most_pusher_lag());
         let settings = &model.setup.filter;
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();
-        let limits = [
-            &settings.mu_s,
-            &settings.mu_p,
-            &settings.mu_f,
-            &settings.d_tri,
-        ];
+        let limits = settings.limits.fields();
         for chunk in 0..block.len().div_ceil(LANES) {
             let particles = &mut self.particles[chunk];
-            load_columns(block, Columns::POSE, chunk, &mut particles.pose);
-            load_columns(block, Columns::TWIST, chunk, &mut particles.twist);
-            load_columns(block, Columns::FRICTION, chunk, &mut particles.friction);
+            load_columns(block, Columns::POSE, chunk, particles.pose.fields_mut());
+            load_columns(block, Columns::TWIST, chunk, particles.twist.fields_mut());
+            load_columns(
+                block,
+                Columns::FRICTION,
+                chunk,
+                particles.friction.fields_mut(),
+            );
             load_columns(
                 block,
                 Columns::PUSHER_LAG,
                 chunk,
-                std::array::from_mut(&mut particles.pusher_lag),
+                [&mut particles.pusher_lag],
             );
             particles.pusher_lag = particles.pusher_lag.min(most_lag);
-            load_columns(block, Columns::WARM_START, chunk, &mut particles.warm);
-            self.touched[chunk] = Touched::NOTHING;
+            load_columns(
+                block,
+                Columns::WARM_START,
+                chunk,
+                particles.warm.fields_mut(),
+            );
+            self.involved[chunk] = Involved::NOTHING;
             if drawn {
-                for (k, value) in self.particles[chunk].friction.iter_mut().enumerate() {
+                for (k, value) in self.particles[chunk]
+                    .friction
+                    .fields_mut()
+                    .into_iter()
+                    .enumerate()
+                {
                     *value = disturbed(*value, part(&self.normals[k], chunk, 0.0) * std, limits[k]);
                 }
             }
@@ -189,11 +212,17 @@ impl Propagation {
             .enumerate()
             .take(block.len().div_ceil(LANES))
         {
-            let std = particles.friction[0] * share;
-            for (k, arm) in [1.0, 1.0, rho].into_iter().enumerate() {
-                particles.applied[k] = std * arm * part(&self.normals[k], chunk, 0.0);
+            let std = particles.friction.mu_s * share;
+            for (k, (impulse, arm)) in particles
+                .applied
+                .fields_mut()
+                .into_iter()
+                .zip([1.0, 1.0, rho])
+                .enumerate()
+            {
+                *impulse = std * arm * part(&self.normals[k], chunk, 0.0);
             }
-            self.touched[chunk].moved = self.touched[chunk].moved | moving(&particles.twist, rho);
+            self.involved[chunk].moved = self.involved[chunk].moved | moving(&particles.twist, rho);
         }
     }
 
@@ -217,15 +246,15 @@ impl Propagation {
         let pressed =
             |work: &StepWork<LANES>, chunk, body| work.normal_impulses(chunk, body).gt(Lanes::ZERO);
         for chunk in 0..chunks {
-            let touched = &mut self.touched[chunk];
-            touched.moved = touched.moved | moving(&self.particles[chunk].twist, rho);
-            touched.pusher = touched.pusher | pressed(&self.work, chunk, Body::Pusher);
+            let involved = &mut self.involved[chunk];
+            involved.moved = involved.moved | moving(&self.particles[chunk].twist, rho);
+            involved.pusher = involved.pusher | pressed(&self.work, chunk, Body::Pusher);
             for j in 0..scene.fixels.len() {
-                touched.fixel = touched.fixel | pressed(&self.work, chunk, Body::Fixel(j));
+                involved.fixel = involved.fixel | pressed(&self.work, chunk, Body::Fixel(j));
             }
             for (lane, report) in self.work.reports()[chunk].iter().enumerate() {
                 if report.outcome != Outcome::Solved {
-                    touched.unsolved.set(lane, true);
+                    involved.unsolved.set(lane, true);
                 }
             }
         }
@@ -239,24 +268,25 @@ impl Propagation {
         let rho = model.setup.scene.object.gyration_radius();
         let driven = Mask::splat(plan.driven);
         for chunk in 0..block.len().div_ceil(LANES) {
-            let (particles, touched) = (&self.particles[chunk], &self.touched[chunk]);
-            store_columns(block, Columns::POSE, chunk, &particles.pose);
-            store_columns(block, Columns::TWIST, chunk, &particles.twist);
-            store_columns(block, Columns::PUSHER_LAG, chunk, &[particles.pusher_lag]);
-            store_columns(block, Columns::WARM_START, chunk, &particles.warm);
-            let took_part = [touched.moved, touched.pusher, touched.fixel, touched.moved];
-            for (k, took_part) in took_part.into_iter().enumerate() {
-                let mut kept = [Lanes::ZERO];
-                load_columns(block, Columns::FRICTION + k, chunk, &mut kept);
-                store_columns(
-                    block,
-                    Columns::FRICTION + k,
-                    chunk,
-                    &[took_part.select(particles.friction[k], kept[0])],
-                );
+            let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
+            store_columns(block, Columns::POSE, chunk, particles.pose.fields());
+            store_columns(block, Columns::TWIST, chunk, particles.twist.fields());
+            store_columns(block, Columns::PUSHER_LAG, chunk, [&particles.pusher_lag]);
+            store_columns(block, Columns::WARM_START, chunk, particles.warm.fields());
+            let mut friction = Friction::default();
+            load_columns(block, Columns::FRICTION, chunk, friction.fields_mut());
+            let proposed = particles.friction.fields().into_iter();
+            for ((kept, proposed), took_part) in friction
+                .fields_mut()
+                .into_iter()
+                .zip(proposed)
+                .zip(involved.phi().fields())
+            {
+                *kept = took_part.select(*proposed, *kept);
             }
+            store_columns(block, Columns::FRICTION, chunk, friction.fields());
             let mut flags = FlagsMut::new(block, chunk);
-            flags.set(Columns::UNSOLVED, touched.unsolved);
+            flags.set(Columns::UNSOLVED, involved.unsolved);
             let pusher = self
                 .work
                 .normal_impulses(chunk, Body::Pusher)
@@ -280,7 +310,7 @@ impl Propagation {
                     block,
                     model.columns.past_pose(plan.slot),
                     chunk,
-                    &particles.pose,
+                    particles.pose.fields(),
                 );
             }
         }
@@ -289,7 +319,7 @@ impl Propagation {
 
 /// Where ‖v‖, mass-normalised, is above [`MOVING`].
 #[inline(always)]
-fn moving([vx, vy, omega]: &[Column; 3], rho: f64) -> Mask<LANES> {
+fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
     let turn = *omega * rho;
     (*vx * *vx + *vy * *vy + turn * turn).gt(Lanes::splat(MOVING * MOVING))
 }
@@ -308,9 +338,9 @@ fn load_columns<const N: usize>(
     block: &BlockMut<'_>,
     first_column: usize,
     chunk: usize,
-    to: &mut [Column; N],
+    to: [&mut Column; N],
 ) {
-    for (k, to) in to.iter_mut().enumerate() {
+    for (k, to) in to.into_iter().enumerate() {
         let column = block.column(first_column + k);
         *to = part(column, chunk, column[column.len() - 1]);
     }
@@ -322,9 +352,9 @@ fn store_columns<const N: usize>(
     block: &mut BlockMut<'_>,
     first_column: usize,
     chunk: usize,
-    from: &[Column; N],
+    from: [&Column; N],
 ) {
-    for (k, from) in from.iter().enumerate() {
+    for (k, from) in from.into_iter().enumerate() {
         store_part(block.column_mut(first_column + k), chunk, from);
     }
 }

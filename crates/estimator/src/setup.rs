@@ -1,7 +1,7 @@
 //! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as
 //! `scene.toml` holds it.
 
-use stickslip_dynamics::{Feet, Scene, Start};
+use stickslip_dynamics::{Feet, Friction, Scene, Start};
 
 /// Noise of the camera and of the pusher's tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,14 +60,8 @@ pub struct FilterSettings {
     pub resample_below: f64,
     /// Widens the camera's standard deviations.
     pub likelihood_scale: f64,
-    /// Physical limits of μ_s.
-    pub mu_s: Limits,
-    /// Physical limits of μ_p.
-    pub mu_p: Limits,
-    /// Physical limits of μ_f.
-    pub mu_f: Limits,
-    /// Physical limits of d_tri (m).
-    pub d_tri: Limits,
+    /// Physical limits of the friction parameters, of d_tri in m: τ clamps to them.
+    pub limits: Friction<Limits>,
 }
 
 impl Default for FilterSettings {
@@ -77,21 +71,23 @@ impl Default for FilterSettings {
             parameter_std: 0.05,
             resample_below: 0.5,
             likelihood_scale: 1.5,
-            mu_s: Limits {
-                min: 0.05,
-                max: 1.0,
-            },
-            mu_p: Limits {
-                min: 0.02,
-                max: 1.0,
-            },
-            mu_f: Limits {
-                min: 0.02,
-                max: 1.0,
-            },
-            d_tri: Limits {
-                min: 0.003,
-                max: 0.04,
+            limits: Friction {
+                mu_s: Limits {
+                    min: 0.05,
+                    max: 1.0,
+                },
+                mu_p: Limits {
+                    min: 0.02,
+                    max: 1.0,
+                },
+                mu_f: Limits {
+                    min: 0.02,
+                    max: 1.0,
+                },
+                d_tri: Limits {
+                    min: 0.003,
+                    max: 0.04,
+                },
             },
         }
     }

@@ -105,8 +105,8 @@ impl Sums {
             for (sum, value) in angle.iter_mut().zip([sin, cos, d, d * d]) {
                 *sum += w * value;
             }
-            widest = widest.max(w.gt(o).keep(d.abs()));
-            unsolved += flag(block, Columns::UNSOLVED, chunk).keep(Lanes::splat(1.0));
+            widest = widest.max(w.gt(o).zero_unless(d.abs()));
+            unsolved += flag(block, Columns::UNSOLVED, chunk).zero_unless(Lanes::splat(1.0));
         }
         self.first = first.map(total);
         self.second = second.map(total);
@@ -135,7 +135,7 @@ impl Sums {
 fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
     let mut sum = Column::ZERO;
     for chunk in 0..block.len().div_ceil(LANES) {
-        sum += flag(block, which, chunk).keep(part(weights, chunk, 0.0));
+        sum += flag(block, which, chunk).zero_unless(part(weights, chunk, 0.0));
     }
     total(sum)
 }

@@ -156,21 +156,23 @@ fn full_scene_sensing_arrives() {
         parameter_std: 0.04,
         resample_below: 0.6,
         likelihood_scale: 1.25,
-        mu_s: Limits {
-            min: 0.06,
-            max: 0.9,
-        },
-        mu_p: Limits {
-            min: 0.03,
-            max: 0.8,
-        },
-        mu_f: Limits {
-            min: 0.04,
-            max: 0.7,
-        },
-        d_tri: Limits {
-            min: 0.004,
-            max: 0.03,
+        limits: Friction {
+            mu_s: Limits {
+                min: 0.06,
+                max: 0.9,
+            },
+            mu_p: Limits {
+                min: 0.03,
+                max: 0.8,
+            },
+            mu_f: Limits {
+                min: 0.04,
+                max: 0.7,
+            },
+            d_tri: Limits {
+                min: 0.004,
+                max: 0.03,
+            },
         },
     };
     assert_eq!(setup.filter, filter);
@@ -331,21 +333,23 @@ fn least_scene_takes_the_defaults_of_the_contract() {
         parameter_std: 0.05,
         resample_below: 0.5,
         likelihood_scale: 1.5,
-        mu_s: Limits {
-            min: 0.05,
-            max: 1.0,
-        },
-        mu_p: Limits {
-            min: 0.02,
-            max: 1.0,
-        },
-        mu_f: Limits {
-            min: 0.02,
-            max: 1.0,
-        },
-        d_tri: Limits {
-            min: 0.003,
-            max: 0.04,
+        limits: Friction {
+            mu_s: Limits {
+                min: 0.05,
+                max: 1.0,
+            },
+            mu_p: Limits {
+                min: 0.02,
+                max: 1.0,
+            },
+            mu_f: Limits {
+                min: 0.02,
+                max: 1.0,
+            },
+            d_tri: Limits {
+                min: 0.003,
+                max: 0.04,
+            },
         },
     };
     assert_eq!(setup.filter, filter);

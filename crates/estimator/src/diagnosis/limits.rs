@@ -10,15 +10,15 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let (nominal, filter) = (&evidence.setup.scene.nominal, &evidence.setup.filter);
     let tripod = matches!(evidence.setup.scene.feet, Feet::Tripod { .. });
     let parameters = [
-        ("mu_s", nominal.mu_s, filter.mu_s, true),
-        ("mu_p", nominal.mu_p, filter.mu_p, true),
+        ("mu_s", nominal.mu_s, filter.limits.mu_s, true),
+        ("mu_p", nominal.mu_p, filter.limits.mu_p, true),
         (
             "mu_f",
             nominal.mu_f,
-            filter.mu_f,
+            filter.limits.mu_f,
             !evidence.setup.scene.fixels.is_empty(),
         ),
-        ("d_tri", nominal.d_tri, filter.d_tri, tripod),
+        ("d_tri", nominal.d_tri, filter.limits.d_tri, tripod),
     ];
     let used = parameters.iter().filter(|(_, _, _, used)| *used);
     let mut found: Vec<Finding> = used

@@ -1,5 +1,6 @@
 //! `[camera]`, `[tactile]` and `[filter]`.
 
+use stickslip::dynamics::Friction;
 use stickslip::{Camera, FilterSettings, Limits, Tactile};
 
 use super::document::{Quantity, Rule, Table};
@@ -135,10 +136,12 @@ pub(super) fn filter(table: &Table<'_>) -> Result<FilterSettings> {
         parameter_std: table.number_or(&PARAMETER_STD, default.parameter_std)?,
         resample_below: table.number_or(&RESAMPLE_BELOW, default.resample_below)?,
         likelihood_scale: table.number_or(&LIKELIHOOD_SCALE, default.likelihood_scale)?,
-        mu_s: limits(table, &MU_S, default.mu_s)?,
-        mu_p: limits(table, &MU_P, default.mu_p)?,
-        mu_f: limits(table, &MU_F, default.mu_f)?,
-        d_tri: limits(table, &D_TRI, default.d_tri)?,
+        limits: Friction {
+            mu_s: limits(table, &MU_S, default.limits.mu_s)?,
+            mu_p: limits(table, &MU_P, default.limits.mu_p)?,
+            mu_f: limits(table, &MU_F, default.limits.mu_f)?,
+            d_tri: limits(table, &D_TRI, default.limits.d_tri)?,
+        },
     })
 }
 

@@ -1,0 +1,250 @@
+//! What makes parts no shape: [`ShapeError`], and the checks.
+
+use crate::geometry::shape::{Part, TOLERANCE};
+use crate::geometry::vec2::{Vec2, cross, dot, length, sub};
+
+/// Why parts do not make a shape. Parts and vertices are counted from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ShapeError {
+    /// No part.
+    #[error("the shape has no parts; give at least one polygon, disc or ellipse")]
+    Empty,
+    /// A number is NaN or infinite.
+    #[error(
+        "part {part}: {what} is {value}; it must be a finite number. Give metres and radians as plain numbers"
+    )]
+    NotFinite {
+        /// The part.
+        part: usize,
+        /// Which number.
+        what: String,
+        /// The value found.
+        value: f64,
+    },
+    /// A radius or semi-axis is not positive.
+    #[error(
+        "part {part}: {what} is {value} m; it must be positive. Give the half width of the part in metres"
+    )]
+    Size {
+        /// The part.
+        part: usize,
+        /// Which number.
+        what: String,
+        /// The value found (m).
+        value: f64,
+    },
+    /// Fewer than three vertices.
+    #[error(
+        "part {part} is a polygon of {vertices} vertices; it needs at least 3. Add the missing ones or use a disc or an ellipse"
+    )]
+    TooFewVertices {
+        /// The part.
+        part: usize,
+        /// Vertices found.
+        vertices: usize,
+    },
+    /// Two neighbouring vertices coincide.
+    #[error(
+        "part {part}: vertex {vertex} at ({x}, {y}) m repeats the one before it; an edge must have a length. Leave it out (a polygon closes by itself)"
+    )]
+    RepeatedVertex {
+        /// The part.
+        part: usize,
+        /// The vertex.
+        vertex: usize,
+        /// x of the vertex (m).
+        x: f64,
+        /// y of the vertex (m).
+        y: f64,
+    },
+    /// Clockwise.
+    #[error(
+        "part {part} is a polygon in clockwise order (signed area {area:e} m^2); list its vertices counter-clockwise, that is, reverse them"
+    )]
+    Clockwise {
+        /// The part.
+        part: usize,
+        /// Signed area (m²).
+        area: f64,
+    },
+    /// No area.
+    #[error(
+        "part {part} is a polygon without area ({area:e} m^2): its vertices lie on one line or its outline crosses itself. Check their order"
+    )]
+    Flat {
+        /// The part.
+        part: usize,
+        /// Signed area (m²).
+        area: f64,
+    },
+    /// Not convex.
+    #[error(
+        "part {part} is not convex at vertex {vertex}, ({x}, {y}) m, which lies {dent:e} m inside the line of its neighbours; \
+         cut a concave outline into convex parts that share edges"
+    )]
+    NotConvex {
+        /// The part.
+        part: usize,
+        /// The vertex.
+        vertex: usize,
+        /// x of the vertex (m).
+        x: f64,
+        /// y of the vertex (m).
+        y: f64,
+        /// Depth of the dent (m).
+        dent: f64,
+    },
+    /// The outline winds more than once.
+    #[error(
+        "part {part} is a polygon whose outline crosses itself (it winds {turns} times); list its vertices in the order of its boundary"
+    )]
+    SelfIntersecting {
+        /// The part.
+        part: usize,
+        /// How often it winds about its inside.
+        turns: i64,
+    },
+}
+
+/// Checks every part.
+pub(crate) fn check(parts: &[Part]) -> Result<(), ShapeError> {
+    if parts.is_empty() {
+        return Err(ShapeError::Empty);
+    }
+    parts
+        .iter()
+        .enumerate()
+        .try_for_each(|(index, part)| match part {
+            Part::Polygon { vertices } => check_polygon(vertices, index + 1),
+            Part::Disc { radius, centre } => {
+                check_oval(&[("the radius", *radius)], centre, 0.0, index + 1)
+            }
+            Part::Ellipse {
+                semi_axes: [a, b],
+                centre,
+                angle,
+            } => check_oval(
+                &[("the first semi-axis", *a), ("the second semi-axis", *b)],
+                centre,
+                *angle,
+                index + 1,
+            ),
+        })
+}
+
+fn check_oval(
+    sizes: &[(&str, f64)],
+    centre: &Vec2,
+    angle: f64,
+    part: usize,
+) -> Result<(), ShapeError> {
+    let others = [
+        ("x of the centre", centre[0]),
+        ("y of the centre", centre[1]),
+        ("the angle", angle),
+    ];
+    let all = sizes.iter().chain(&others);
+    if let Some((what, value)) = all.clone().find(|(_, value)| !value.is_finite()) {
+        return Err(ShapeError::NotFinite {
+            part,
+            what: (*what).to_owned(),
+            value: *value,
+        });
+    }
+    match sizes.iter().find(|(_, size)| *size <= 0.0) {
+        Some((what, value)) => Err(ShapeError::Size {
+            part,
+            what: (*what).to_owned(),
+            value: *value,
+        }),
+        None => Ok(()),
+    }
+}
+
+fn check_polygon(vertices: &[Vec2], part: usize) -> Result<(), ShapeError> {
+    if let Some(k) = vertices.as_flattened().iter().position(|x| !x.is_finite()) {
+        let what = format!("{} of vertex {}", ["x", "y"][k % 2], k / 2 + 1);
+        return Err(ShapeError::NotFinite {
+            part,
+            what,
+            value: vertices[k / 2][k % 2],
+        });
+    }
+    let count = vertices.len();
+    if count < 3 {
+        return Err(ShapeError::TooFewVertices {
+            part,
+            vertices: count,
+        });
+    }
+    let extent = vertices
+        .iter()
+        .map(|v| length(sub(*v, vertices[0])))
+        .fold(0.0, f64::max);
+    let before = |k: usize| vertices[(k + count - 1) % count];
+    if let Some(k) = (0..count)
+        .rev()
+        .find(|&k| length(sub(vertices[k], before(k))) <= 1e-9 * extent)
+    {
+        return Err(ShapeError::RepeatedVertex {
+            part,
+            vertex: k + 1,
+            x: vertices[k][0],
+            y: vertices[k][1],
+        });
+    }
+    check_turns(vertices, extent, part)
+}
+
+/// Area, then dents, then the number of turns.
+fn check_turns(vertices: &[Vec2], extent: f64, part: usize) -> Result<(), ShapeError> {
+    let count = vertices.len();
+    let area: f64 = (1..count - 1)
+        .map(|k| {
+            0.5 * cross(
+                sub(vertices[k], vertices[0]),
+                sub(vertices[k + 1], vertices[0]),
+            )
+        })
+        .sum();
+    if area.abs() <= 1e-9 * extent * extent {
+        return Err(ShapeError::Flat { part, area });
+    }
+    if area < 0.0 {
+        return Err(ShapeError::Clockwise { part, area });
+    }
+    let mut angle = 0.0;
+    for k in 0..count {
+        let vertex = vertices[k];
+        let (t, u) = (
+            sub(vertex, vertices[(k + count - 1) % count]),
+            sub(vertices[(k + 1) % count], vertex),
+        );
+        let chord = [t[0] + u[0], t[1] + u[1]];
+        // a dent of the size of rounding is forgiven; a spike, where the boundary turns back, is
+        // not
+        let dent = if length(chord) > 0.0 {
+            -cross(t, u) / length(chord)
+        } else {
+            length(t)
+        };
+        let turns_back = dot(t, u) < 0.0 && cross(t, u).abs() <= 1e-9 * length(t) * length(u);
+        if dent > TOLERANCE * extent || turns_back {
+            return Err(ShapeError::NotConvex {
+                part,
+                vertex: k + 1,
+                x: vertex[0],
+                y: vertex[1],
+                dent,
+            });
+        }
+        angle += libm::atan2(cross(t, u), dot(t, u));
+    }
+    let turns = (angle / std::f64::consts::TAU).round() as i64;
+    if turns == 1 {
+        Ok(())
+    } else {
+        Err(ShapeError::SelfIntersecting { part, turns })
+    }
+}

@@ -1,0 +1,132 @@
+//! Gauss elimination, `W` systems side by side: [`solve_three`] and [`solve_four`].
+//!
+//! The equations are the three momentum balances, then the stall pair. They are eliminated as they
+//! stand: the balances' matrix is the identity and what resists motion, whose pivots stay large,
+//! however much stiffer some directions are held than others; only a sliding contact may bring one
+//! near zero. Such a step is badly off, and it is for the certificate to say so: looking for better
+//! pivots costs every step a tenth and leaves as many problems of the recorded logs to the
+//! homotopy.
+//!
+//! Written out, so that no number of it leaves the registers.
+
+use stickslip_lanes::Lanes;
+
+/// The unknowns of three equations: three coefficients each, then the right-hand side.
+#[inline(always)]
+pub fn solve_three<const W: usize>([a, b, c]: &[[Lanes<W>; 4]; 3]) -> [Lanes<W>; 3] {
+    let [per_a, per_b] = inverse_pivots(a, b);
+    let [b, c]: [[_; 3]; 2] = [without_first(b, a, per_a), without_first(c, a, per_a)];
+    let c: [_; 2] = without_first(&c, &b, per_b);
+
+    let z = c[1] * (Lanes::splat(1.0) / c[0]);
+    let y = b[2].sub_mul(b[1], z) * per_b;
+    let x = a[3].sub_mul(a[1], y).sub_mul(a[2], z) * per_a;
+    [x, y, z]
+}
+
+/// The unknowns of four equations: four coefficients each, then the right-hand side. Where the last
+/// unknown is zero, the others are those of [`solve_three`] to the bit.
+#[inline(always)]
+pub fn solve_four<const W: usize>([a, b, c, d]: &[[Lanes<W>; 5]; 4]) -> [Lanes<W>; 4] {
+    let [per_a, per_b] = inverse_pivots(a, b);
+    let [b, c, d]: [[_; 4]; 3] = [
+        without_first(b, a, per_a),
+        without_first(c, a, per_a),
+        without_first(d, a, per_a),
+    ];
+    let [c, d]: [[_; 3]; 2] = [without_first(&c, &b, per_b), without_first(&d, &b, per_b)];
+    let [per_c, per_d] = inverse_pivots(&c, &d);
+    let d: [_; 2] = without_first(&d, &c, per_c);
+
+    let w = d[1] * per_d;
+    let z = c[2].sub_mul(c[1], w) * per_c;
+    let y = b[3].sub_mul(b[1], z).sub_mul(b[2], w) * per_b;
+    let x = a[4].sub_mul(a[1], y).sub_mul(a[2], z).sub_mul(a[3], w) * per_a;
+    [x, y, z, w]
+}
+
+/// One over the first coefficient of `a`, and over what eliminating with it leaves of the second
+/// one of `b`: two divisions at once.
+#[inline(always)]
+fn inverse_pivots<const N: usize, const W: usize>(
+    a: &[Lanes<W>; N],
+    b: &[Lanes<W>; N],
+) -> [Lanes<W>; 2] {
+    [
+        Lanes::splat(1.0) / a[0],
+        a[0] / (a[0] * b[1]).sub_mul(a[1], b[0]),
+    ]
+}
+
+/// An equation less its first unknown, by means of `pivot`, `inverse` one over its first
+/// coefficient; M is N − 1.
+#[inline(always)]
+fn without_first<const N: usize, const M: usize, const W: usize>(
+    equation: &[Lanes<W>; N],
+    pivot: &[Lanes<W>; N],
+    inverse: Lanes<W>,
+) -> [Lanes<W>; M] {
+    let factor = equation[0] * inverse;
+    let mut rest = [Lanes::ZERO; M];
+    for k in 0..M {
+        rest[k] = equation[k + 1].sub_mul(factor, pivot[k + 1]);
+    }
+    rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::mode_rows::solve_dense;
+
+    /// A matrix like those of the balances: the identity, and two directions held with stiffness k.
+    fn equations<const N: usize, const M: usize>(k: f64) -> [[f64; M]; N] {
+        let held = |i: usize, j: usize| {
+            libm::sin((i + 1) as f64) * libm::sin((j + 1) as f64) + 0.3 * libm::cos((i * j) as f64)
+        };
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                if j == N {
+                    1.0 + i as f64
+                } else {
+                    f64::from(u8::from(i == j)) + k * held(i, j)
+                }
+            })
+        })
+    }
+
+    #[track_caller]
+    fn agrees<const N: usize, const M: usize>(
+        equations: [[f64; M]; N],
+        found: [Lanes<1>; N],
+        accuracy: f64,
+    ) {
+        let matrix = equations.map(|row| std::array::from_fn(|j| row[j]));
+        let exact =
+            solve_dense(matrix, equations.map(|row| row[N]), 0.0).expect("a regular matrix");
+        for (found, exact) in found.iter().zip(exact) {
+            assert!(
+                (found.0[0] - exact).abs() <= accuracy * exact.abs(),
+                "{}, not {exact}",
+                found.0[0]
+            );
+        }
+    }
+
+    #[test]
+    fn unknowns_agree_with_elimination_with_pivots_up_to_stiff_rows() {
+        for (k, accuracy) in [(0.0, 1e-15), (1.0, 1e-13), (1e4, 1e-10), (1e8, 1e-6)] {
+            let (three, four) = (equations::<3, 4>(k), equations::<4, 5>(k));
+            agrees(
+                three,
+                solve_three(&three.map(|row| row.map(|x| Lanes([x])))),
+                accuracy,
+            );
+            agrees(
+                four,
+                solve_four(&four.map(|row| row.map(|x| Lanes([x])))),
+                accuracy,
+            );
+        }
+    }
+}

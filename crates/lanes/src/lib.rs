@@ -1,0 +1,16 @@
+//! Numbers of several particles side by side ([`Lanes`], [`Mask`]), compiled for the widest vector
+//! instructions of the machine ([`on_widest`]).
+//!
+//! Every operation is lane-wise and exactly rounded, so a result depends neither on the number of
+//! lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same code.
+
+mod dispatch;
+mod lanes;
+mod mask;
+mod trig;
+
+pub use dispatch::on_widest;
+pub use fearless_simd::Level;
+pub use lanes::{Lanes, copy_lane};
+pub use mask::Mask;
+pub use trig::sin_cos;
