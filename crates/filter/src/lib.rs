@@ -16,8 +16,6 @@
 //! inside [`keep_threads_awake`] where one filter has them to itself.
 
 mod awake;
-mod box_muller;
-mod exponential;
 mod filter;
 mod kalman;
 mod model;

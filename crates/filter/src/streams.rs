@@ -12,7 +12,7 @@
 //! so different arguments never share a counter. One counter gives 128 bits: two uniform numbers,
 //! or by Box–Muller two independent normal ones; the kind keeps the two families apart.
 
-use crate::box_muller::box_muller;
+use stickslip_lanes::box_muller;
 
 const STEP_BITS: u32 = 56;
 const ROUNDS: usize = 10;

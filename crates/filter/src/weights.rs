@@ -10,7 +10,8 @@
 
 use std::ops::Range;
 
-use crate::exponential::exponentials;
+use stickslip_lanes::exponentials;
+
 use crate::parallel;
 use crate::particles::BLOCK;
 

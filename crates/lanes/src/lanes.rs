@@ -10,6 +10,9 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use crate::mask::{Mask, YES};
 
+/// 1.5 2⁵²: adding it rounds to the nearest whole number and leaves that in the low bits.
+pub(crate) const ROUND: f64 = 6_755_399_441_055_744.0;
+
 /// `W` numbers, one per particle; no vector of them crosses a line of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
@@ -71,9 +74,7 @@ impl<const W: usize> Lanes<W> {
     /// The nearest whole number, of sizes below 2⁵⁰; halves go to the even one.
     #[inline(always)]
     pub fn round(self) -> Self {
-        // from here on doubles are whole numbers
-        const WHOLE: f64 = 6_755_399_441_055_744.0;
-        (self + WHOLE) - WHOLE
+        (self + ROUND) - ROUND
     }
 
     /// self + a b, rounded once.

@@ -2,14 +2,21 @@
 //! instructions of the machine ([`on_widest`]).
 //!
 //! Every operation is lane-wise and exactly rounded, so a result depends neither on the number of
-//! lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same code.
+//! lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same code. The functions
+//! on plain f64 ([`exponentials`], [`box_muller`]) are written so that loops over them vectorise.
 
+mod box_muller;
 mod dispatch;
+mod exp;
 mod lanes;
+mod ln;
 mod mask;
+mod polynomial;
 mod trig;
 
+pub use box_muller::box_muller;
 pub use dispatch::on_widest;
+pub use exp::exponentials;
 pub use fearless_simd::Level;
 pub use lanes::{Lanes, copy_lane};
 pub use mask::Mask;

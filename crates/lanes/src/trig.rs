@@ -12,7 +12,8 @@ const QUARTER: [f64; 3] = [
     2.022_266_248_795_95e-21,
 ];
 
-const SIN: [f64; 6] = [
+/// sin x = x + x³ p(x²): coefficients of p, the highest power first.
+pub(crate) const SIN: [f64; 6] = [
     1.589_690_995_211_55e-10,
     -2.505_076_025_340_686_3e-8,
     2.755_731_370_707_006_8e-6,
@@ -21,7 +22,8 @@ const SIN: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
 ];
 
-const COS: [f64; 6] = [
+/// cos x = 1 − x²/2 + x⁴ p(x²): coefficients of p, the highest power first.
+pub(crate) const COS: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
     2.087_572_321_298_175e-9,
     -2.755_731_435_139_066_3e-7,
@@ -31,6 +33,8 @@ const COS: [f64; 6] = [
 ];
 
 /// (sin x, cos x) to a few units in the last place, for |x| up to 10⁶ rad.
+///
+/// Products are fused; [`box_muller`](crate::box_muller) has a sine and cosine without.
 #[inline(always)]
 pub fn sin_cos<const W: usize>(x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
     let turns = (x * std::f64::consts::FRAC_2_PI).round();

@@ -1,18 +1,26 @@
 //! e^x of many numbers at once: [`exponentials`].
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::Level;
 
-use crate::box_muller::{LN2_HIGH, LN2_LOW, ROUND, polynomial};
+use crate::dispatch::on_widest;
+use crate::lanes::ROUND;
+use crate::ln::{LN2_HIGH, LN2_LOW};
+use crate::polynomial::polynomial;
 
-/// Turns every x of `exponents` into e^(x − most); none of them may exceed `most` or be NaN.
-pub(crate) fn exponentials(exponents: &mut [f64], most: f64) {
-    dispatch!(Level::new(), simd => simd.vectorize(
+/// Turns every x of `exponents` into e^(x − largest); none of them may exceed `largest` or be NaN.
+pub fn exponentials(exponents: &mut [f64], largest: f64) {
+    on_widest(
+        Level::new(),
         #[inline(always)]
-        || exponents.iter_mut().for_each(|x| *x = exp(*x - most)),
-    ));
+        || {
+            for x in exponents {
+                *x = exp(*x - largest);
+            }
+        },
+    );
 }
 
-/// e^x of an x of at most 0: fdlibm's (Sun Microsystems 1993), bit by bit, without its branches.
+/// e^x of an x of at most 0: fdlibm's (Sun Microsystems 1993) bit for bit, without its branches.
 ///
 /// x = k ln 2 + r with |r| <= ln 2 / 2, and e^r = 1 + 2 r / (R(r²) - r), R a polynomial.
 #[inline(always)]
@@ -42,12 +50,13 @@ fn power_of_two(k: f64) -> f64 {
     f64::from_bits((k + (ROUND + 1023.0)).to_bits() << 52)
 }
 
+/// The highest power first.
 const EXP: [f64; 5] = [
-    1.666_666_666_666_660_2e-1,
-    -2.777_777_777_701_559_3e-3,
-    6.613_756_321_437_934e-5,
-    -1.653_390_220_546_525_2e-6,
     4.138_136_797_057_238_5e-8,
+    -1.653_390_220_546_525_2e-6,
+    6.613_756_321_437_934e-5,
+    -2.777_777_777_701_559_3e-3,
+    1.666_666_666_666_660_2e-1,
 ];
 
 #[cfg(test)]
@@ -70,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn exponentials_are_relative_to_the_most() {
+    fn exponentials_are_relative_to_the_largest() {
         let mut numbers = [1000.0, 999.0, f64::NEG_INFINITY];
         exponentials(&mut numbers, 1000.0);
         assert_eq!(numbers, [1.0, libm::exp(-1.0), 0.0]);
