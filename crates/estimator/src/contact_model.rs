@@ -12,8 +12,8 @@ use crate::sums::{Reference, Sums};
 use crate::watch::StepWatch;
 use crate::{Camera, Setup};
 
-/// Best log-likelihood below which no particle explains the observation: the particles are redrawn
-/// around it.
+/// Best log-likelihood below which no particle explains the observation: the particles are
+/// reinitialised around it.
 const COLLAPSED: f64 = -6.0;
 
 /// Whether the friction parameters take a random step.

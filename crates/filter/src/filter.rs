@@ -61,28 +61,29 @@ impl<M: Model> ParticleFilter<M> {
     ///
     /// ```text
     /// If satisfies resample condition
-    ///     Resample all particles                                                     resample
+    ///     Resample all particles                      choose_ancestors, ParticleSet::advance
     /// For each particle i = 1, ..., N_p:
-    ///     Run the system transition model                                            propagate
-    ///     Run observation model                                                      weigh
+    ///     Run the system transition model             Model::propagate
+    ///     Run observation model                       Model::log_likelihood
     ///     if sensory data is available
-    ///         Update particle weight g_i
+    ///         Update particle weight g_i              UnnormalisedBlock::weigh, LogWeights::update
     ///     else
     ///         Particle weight is unchanged
     ///     end
-    /// Calculate estimated mean using {g_i}                                           estimate
+    /// Calculate estimated mean using {g_i}            Model::sum, combine_sums
     /// ```
     ///
-    /// All of it happens in one parallel pass over the blocks, [`pass`](Self::pass); what takes all
-    /// blocks comes before (ancestors) and after it (normalising the weights, adding the sums).
-    /// Where no particle explains the observation, the particles are reinitialised around it.
+    /// What concerns one block of particles happens in one parallel pass over the blocks; what needs
+    /// all of them comes before it (choosing ancestors) and after it (normalising the weights, adding
+    /// the blocks' sums). If no particle explains the observation, the particles are reinitialised
+    /// around it.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
         let resampled = self.satisfies_resample_condition();
         if resampled {
             self.choose_ancestors(Purpose::Resample);
         }
-        self.pass(resampled, input, observation);
+        self.pass_over_blocks(resampled, input, observation);
         let weight_update = match observation {
             Some(observation) => self.update_weights(observation),
             None => WeightUpdate::Unobserved,
@@ -113,8 +114,13 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.reset();
     }
 
-    /// The step's one pass over the blocks: all stages of a block while it is in the cache.
-    fn pass(&mut self, resample: bool, input: &M::Input, observation: Option<&M::Observation>) {
+    /// All stages of the step on one block after the other, while the block is in the cache.
+    fn pass_over_blocks(
+        &mut self,
+        resample: bool,
+        input: &M::Input,
+        observation: Option<&M::Observation>,
+    ) {
         let draw = self.draw(Purpose::Propagate);
         let (model, scratch, weights) = (&self.model, &self.scratch, &self.weights);
         let outputs = self.unnormalised.blocks_mut().zip(&mut self.block_sums);

@@ -125,19 +125,19 @@ impl LogWeights {
         } = unnormalised.normalise()?;
         self.effective_sample_size = effective_sample_size;
 
-        let UnnormalisedWeights {
-            log_likelihood,
-            weights,
-            blocks,
-        } = unnormalised;
-        let log = self.log.chunks_mut(GRAIN).zip(log_likelihood.chunks(GRAIN));
+        // ln w + ln L − ln Σ w L
+        let log = self.log.chunks_mut(GRAIN);
+        let log = log.zip(unnormalised.log_likelihood.chunks(GRAIN));
         parallel::for_each(log, |(log, log_likelihood)| {
             for (w, l) in log.iter_mut().zip(log_likelihood) {
                 *w = *w + l - log_sum;
             }
         });
-        let linear = self.linear.chunks_mut(GRAIN).zip(weights.chunks(GRAIN));
-        let linear = linear.zip(blocks.chunks(GRAIN / BLOCK));
+
+        // w L times the scale of its block
+        let linear = self.linear.chunks_mut(GRAIN);
+        let linear = linear.zip(unnormalised.weights.chunks(GRAIN));
+        let linear = linear.zip(unnormalised.blocks.chunks(GRAIN / BLOCK));
         parallel::for_each(linear, |((linear, unnormalised), blocks)| {
             let pairs = linear.chunks_mut(BLOCK).zip(unnormalised.chunks(BLOCK));
             for ((linear, unnormalised), block) in pairs.zip(blocks) {

@@ -123,21 +123,12 @@ fn all_histories(
     }
     let parts: Vec<(f64, AxisEstimate)> = histories
         .iter()
-        .map(|(w, _, state)| (*w, estimate(state)))
+        .map(|(w, _, state)| (*w, AxisEstimate::from(*state)))
         .collect();
     (
         mixture(&parts),
         libm::log(parts.iter().map(|(w, _)| w).sum()),
     )
-}
-
-fn estimate(state: &Gaussian<2>) -> AxisEstimate {
-    AxisEstimate {
-        position: state.mean[0],
-        velocity: state.mean[1],
-        position_variance: state.covariance[(0, 0)],
-        velocity_variance: state.covariance[(1, 1)],
-    }
 }
 
 /// As long as no mode starts a row with a measurement from a true mixture, moments are all that

@@ -58,7 +58,7 @@ pub enum SeriesError {
         /// The row.
         row: usize,
     },
-    /// Too few measurements to tell the process noise.
+    /// Too few measurements to fit the process noise.
     #[error("there are {measurements} measurements; fitting the process noise takes at least 3")]
     TooFew {
         /// Their number.
@@ -66,7 +66,7 @@ pub enum SeriesError {
     },
 }
 
-/// Times \[s\] that rise, and a measurement or none at each.
+/// Rising times \[s\], each with a measurement or none.
 pub(crate) struct Series<'a> {
     times: &'a [f64],
     measurements: &'a [Option<f64>],
