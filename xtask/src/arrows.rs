@@ -39,10 +39,14 @@ pub const CRATES: [Rules; 14] = [
         ..Rules::of("crates/dynamics", &["crates/lanes"])
     },
     Rules::of("crates/filter", &["crates/lanes"]),
-    Rules::of(
-        "crates/estimator",
-        &["crates/lanes", "crates/dynamics", "crates/filter"],
-    ),
+    // examples in the documentation read a log
+    Rules {
+        may_test_with: &["crates/formats"],
+        ..Rules::of(
+            "crates/estimator",
+            &["crates/lanes", "crates/dynamics", "crates/filter"],
+        )
+    },
     Rules::of("crates/formats", &["crates/estimator", "crates/dynamics"]),
     Rules {
         must_not_use: CHANCE_AND_THREADS,
