@@ -19,7 +19,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings.extend(missing_names(tree, method));
     let known = Known {
         tree,
-        equations: equations.len(),
+        equations: equations.iter().map(|(n, _)| *n).max().unwrap_or(0),
     };
     let mut add = |path: &str, text: &str, wrong: Vec<Wrong>| {
         for (at, rule, next) in wrong {
@@ -33,6 +33,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         add(path, &text, known.wrong(&text));
         add(path, &text, known.wrong_in_comments(&text));
     }
+    add(METHOD, method, known.wrong_numbers(method));
     for (path, text) in tree.texts(".md") {
         add(path, text, known.wrong(text));
         add(path, text, known.wrong_links(path, text));
@@ -135,6 +136,7 @@ fn comments_of(source: &str) -> String {
 /// What can be cited.
 struct Known<'a> {
     tree: &'a Tree,
+    /// The largest number of an equation.
     equations: usize,
 }
 
@@ -163,6 +165,17 @@ impl Known<'_> {
             }
         }
         wrong
+    }
+
+    /// Numbers in brackets that no equation of the method has, in the method itself.
+    fn wrong_numbers(&self, method: &str) -> Vec<Wrong> {
+        let number = |after: &str| after.split(')').next()?.parse::<usize>().ok();
+        let unknown = |(at, after)| {
+            let number = number(after).filter(|n| !(1..=self.equations).contains(n))?;
+            let rule = format!("there is no equation ({number})");
+            Some((at, rule, "name one that is there"))
+        };
+        occurrences(method, "(").filter_map(unknown).collect()
     }
 
     fn wrong_decisions(&self, text: &str) -> Vec<Wrong> {
@@ -300,7 +313,7 @@ fn resolved(from: &str, link: &str) -> String {
 mod tests {
     use super::*;
 
-    const THE_METHOD: &str = "# The method\n## Jamming\n```text\na = b (1)  [paper eq. 1]\nsee (2)\n```\n```algorithm\nstep (7)\n```\n| x | `Pose::advance` | `crates/a/src/lib.rs` |\n";
+    const THE_METHOD: &str = "# The method\n## Jamming\n```text\na = b (1)  [paper eq. 1]\nsee (2)\n```\n```algorithm\nstep (1)\n```\n| x | `Pose::advance` | `crates/a/src/lib.rs` |\n";
 
     fn found(path: &str, text: &str) -> Vec<String> {
         let tree = Tree::from([
@@ -387,9 +400,14 @@ mod tests {
 
     #[test]
     fn check_finds_gaps_in_the_numbers_and_names_that_moved() {
+        let unknown = THE_METHOD.replace("step (1)", "step (7)");
         let renumbered = THE_METHOD.replace("see (2)", "see (3)");
         let moved = THE_METHOD.replace("advance", "retreat");
-        for (method, word) in [(renumbered, "(2) is missing"), (moved, "`retreat`")] {
+        for (method, word) in [
+            (unknown, "no equation (7)"),
+            (renumbered, "(2) is missing"),
+            (moved, "`retreat`"),
+        ] {
             let found = found(METHOD, &method);
             assert!(found.len() == 1 && found[0].contains(word), "{found:?}");
         }
