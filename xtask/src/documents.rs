@@ -1,9 +1,9 @@
 //! The documents: paths that they name exist, every crate has its section and invariant, the README
 //! is short.
 //!
-//! A path is what stands in backticks or is linked to, and either begins with a name at the root
-//! (`crates/...`), ends in `/`, or has an ending; in fenced blocks only the first counts. A lone
-//! `name.rs` belongs to the folder in the heading above it.
+//! A path is what stands in backticks and either begins with a name at the root (`crates/...`),
+//! ends in `/`, or has an ending; in fenced blocks only the first counts. Of `name.rs` and
+//! `folder/name.rs` there must be a file, in the folder in the heading above where that names one.
 
 use crate::arrows::CRATES;
 use crate::finding::Finding;
@@ -18,18 +18,18 @@ const README_LINES: usize = 150;
 /// Endings by which a slashed word is known as a path.
 const ENDINGS: [&str; 8] = ["rs", "md", "toml", "csv", "json", "svg", "png", "txt"];
 
-/// Both documents against the rules.
+/// All documents against the rules.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for file in [README, ARCHITECTURE] {
-        match tree.text(file) {
-            Some(text) => findings.extend(missing_paths(tree, file, text)),
-            None => findings.push(finding(
-                file,
-                1,
-                "there is no such file".to_string(),
-                "write it",
-            )),
+        if tree.text(file).is_none() {
+            let rule = "there is no such file".to_string();
+            findings.push(finding(file, 1, rule, "write it"));
+        }
+    }
+    for (file, text) in tree.texts(".md") {
+        if [README, ARCHITECTURE].contains(&file) || file.starts_with("docs/") {
+            findings.extend(missing_paths(tree, file, text));
         }
     }
     let lines = tree.text(README).map_or(0, |text| text.lines().count());
@@ -106,43 +106,30 @@ fn missing_paths(tree: &Tree, file: &str, text: &str) -> Vec<Finding> {
         if !fenced && line.starts_with('#') {
             folder = heading_folder(line);
         }
-        let words = if fenced {
+        let words: Vec<&str> = if fenced {
             line.split_whitespace().collect()
         } else {
-            marked(line)
+            line.split('`').skip(1).step_by(2).collect()
         };
-        for word in words {
-            let Some(path) = path_of(tree, word, fenced, folder) else {
-                continue;
-            };
-            if !tree.exists(&path) {
-                let next = "name what is there now, or put it there";
-                findings.push(finding(
-                    file,
-                    index + 1,
-                    format!("`{path}` does not exist"),
-                    next,
-                ));
-            }
+        for path in words
+            .into_iter()
+            .filter_map(|word| missing(tree, word, fenced, folder))
+        {
+            let next = "name what is there now, or put it there";
+            findings.push(finding(
+                file,
+                index + 1,
+                format!("`{path}` does not exist"),
+                next,
+            ));
         }
     }
     findings
 }
 
-/// What stands in backticks, and what is linked to.
-fn marked(line: &str) -> Vec<&str> {
-    let mut words: Vec<&str> = line.split('`').skip(1).step_by(2).collect();
-    words.extend(
-        line.split("](")
-            .skip(1)
-            .filter_map(|rest| rest.split(')').next()),
-    );
-    words
-}
-
-/// The path from the root that a word names; `None` where it is none.
-fn path_of(tree: &Tree, word: &str, fenced: bool, folder: Option<&str>) -> Option<String> {
-    let word = word.split('#').next()?.trim_start_matches("./");
+/// The path that a word names, where there is no such file or folder.
+fn missing(tree: &Tree, word: &str, fenced: bool, folder: Option<&str>) -> Option<String> {
+    let word = word.trim_start_matches("./");
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/".contains(c);
     if word.is_empty()
         || !word.chars().all(plain)
@@ -152,18 +139,22 @@ fn path_of(tree: &Tree, word: &str, fenced: bool, folder: Option<&str>) -> Optio
         return None;
     }
     let ending = word.rsplit_once('.').map(|(_, ending)| ending);
-    let Some((first, _)) = word.split_once('/') else {
-        let source = !fenced && ending == Some("rs");
-        let document = !fenced && (ending == Some("md") || word.starts_with("LICENSE"));
-        return match (source, folder) {
-            (true, Some(folder)) => Some(format!("{folder}/src/{word}")),
-            _ => (source || document).then(|| word.to_string()),
-        };
+    let first = word.split_once('/').map(|(first, _)| first);
+    if first.is_some_and(|first| first != "target" && tree.exists(first)) {
+        return (!tree.exists(word)).then(|| word.to_string());
+    }
+    if fenced {
+        return None;
+    }
+    if ending == Some("rs") {
+        let there = tree.has_file(folder.unwrap_or_default(), word);
+        return (!there).then(|| word.to_string());
+    }
+    let names_one = match first {
+        Some(_) => word.ends_with('/') || ending.is_some_and(|e| ENDINGS.contains(&e)),
+        None => ending == Some("md") || word.starts_with("LICENSE"),
     };
-    let at_root = first != "target" && tree.exists(first);
-    let looks_like_one =
-        word.ends_with('/') || ending.is_some_and(|ending| ENDINGS.contains(&ending));
-    (at_root || (!fenced && looks_like_one)).then(|| word.to_string())
+    (names_one && !tree.exists(word)).then(|| word.to_string())
 }
 
 #[cfg(test)]
@@ -186,8 +177,8 @@ mod tests {
     #[test]
     fn missing_paths_passes_what_exists_and_what_is_no_path() {
         for text in [
-            "`crates/a`, `crates/a/`, `./crates/a/src/lib.rs`, [p](docs/p.svg), [b](README.md#top) and [w](https://a.b/c/d.md)",
-            "## `crates/a`\nsee `lib.rs` and `x/mod.rs-less` speeds of 1 `m/s`, `I/O`, `scene.toml`, `../shared/data`, `/tmp/x.csv`",
+            "`crates/a`, `crates/a/`, `./crates/a/src/lib.rs`, `lib.rs`, `x/mod.rs`",
+            "## `crates/a`\nsee `lib.rs`, `mod.rs` and `x/mod.rs-less` speeds of 1 `m/s`, `I/O`, `scene.toml`, `../shared/data`, `/tmp/x.csv`",
             "```\ncargo run -- filter my/log.csv --out out/\ncrates/a/src\n```",
         ] {
             assert!(missing(text).is_empty(), "{:?}", missing(text));
@@ -199,12 +190,12 @@ mod tests {
         for text in [
             "\n`crates/b`",
             "\n`crates/a/src/gone.rs`",
-            "\n[p](docs/gone.svg)",
             "\n`gone/`",
             "\n`gone/a.md`",
             "\n`GONE.md`",
             "\n`gone.rs`",
             "# `crates/a`\n`gone.rs`",
+            "# `docs`\n`lib.rs`",
             "```\ncrates/gone  # a crate\n```",
         ] {
             let found = missing(text);

@@ -1,12 +1,17 @@
-//! The project's own checks: `cargo xtask tidy` and `cargo xtask determinism`.
+//! The project's own checks: `cargo xtask tidy` and its neighbours.
 //!
 //! Exit codes: 0 all well, 1 something was found, 2 bad arguments.
 
 mod arrows;
+mod citations;
 mod determinism;
+mod digest;
 mod documents;
 mod finding;
+mod layers;
+mod program;
 mod rust_text;
+mod sizes;
 mod sources;
 mod tree;
 
@@ -16,10 +21,15 @@ use std::process::ExitCode;
 use finding::Finding;
 use tree::Tree;
 
-const USAGE: &str = "usage: cargo xtask tidy | determinism
+const USAGE: &str =
+    "usage: cargo xtask tidy | sizes | determinism | digest FOLDER... [--against FILE]
 
-tidy         crate arrows, what libraries must not name, file lengths, paths in the documents
-determinism  the same estimate, byte for byte, in debug and release and on 1, 2 and 3 threads";
+tidy         crate arrows, layers inside crates, what libraries must not name, file lengths,
+             paths and citations in sources and documents
+sizes        files, lines, public items, circles of files and lengths of functions
+determinism  the same estimate, byte for byte, in debug and release and on 1, 2 and 3 threads
+digest       one line per experiment below the folders and way of filtering it, with a hash of the
+             estimate; fails where a line differs from that in FILE";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -29,7 +39,14 @@ fn main() -> ExitCode {
     };
     let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["tidy"] => tidy(root),
+        ["sizes"] => Tree::read(root).map(|tree| sizes::report(&tree)),
         ["determinism"] => determinism::check(root),
+        ["digest", ref folders @ .., "--against", file] if !folders.is_empty() => {
+            digest::check(root, folders, Some(Path::new(file)))
+        }
+        ["digest", ref folders @ ..] if !folders.is_empty() && !folders.contains(&"--against") => {
+            digest::check(root, folders, None)
+        }
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
@@ -49,9 +66,11 @@ fn main() -> ExitCode {
 
 fn tidy(root: &Path) -> Result<String, String> {
     let tree = Tree::read(root)?;
-    let mut findings = arrows::check(&tree);
+    let mut findings = arrows::check(&arrows::packages(root)?);
+    findings.extend(layers::check(&tree));
     findings.extend(sources::check(&tree));
     findings.extend(documents::check(&tree));
+    findings.extend(citations::check(&tree));
     if findings.is_empty() {
         return Ok(format!("tidy: {} files, nothing found", tree.len()));
     }

@@ -1,5 +1,6 @@
 //! Rust source as text: without comments and literals ([`code_only`]), without its tests
-//! ([`without_tests`]), and its names ([`names`]).
+//! ([`without_tests`]), its names ([`names`]), what it names of its own crate ([`own_paths`]) and
+//! its functions ([`functions`]).
 
 /// The source with every comment, string and character literal blanked out; lines stay where they
 /// are.
@@ -133,6 +134,123 @@ pub fn names(code: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
+/// Every path into the own crate that code names, with its line from 1: `crate::a::B` as `a::B`,
+/// `super::c` of module `a::b` as `a::c`, groups taken apart.
+pub fn own_paths(code: &str, module: &[&str]) -> Vec<(usize, String)> {
+    let mut paths = Vec::new();
+    for (word, up) in [("crate::", None), ("super::", Some(1))] {
+        for (at, _) in code.match_indices(word) {
+            let before = code[..at].chars().next_back();
+            if before.is_some_and(|c| c.is_alphanumeric() || "_:$".contains(c)) {
+                continue;
+            }
+            let (mut rest, mut keep) = (&code[at + word.len()..], 0);
+            if let Some(up) = up {
+                let more = rest.len() - rest.trim_start_matches("super::").len();
+                rest = &rest[more..];
+                keep = module.len().saturating_sub(up + more / "super::".len());
+            }
+            let line = code[..at].matches('\n').count() + 1;
+            let prefix = if keep > 0 {
+                module[..keep].join("::") + "::"
+            } else {
+                String::new()
+            };
+            let mut found = Vec::new();
+            leaves(rest, &prefix, &mut found);
+            paths.extend(found.into_iter().map(|path| (line, path)));
+        }
+    }
+    paths.sort();
+    paths
+}
+
+/// Adds the paths that begin `text`, a path or a group in braces; returns what follows them.
+fn leaves<'a>(text: &'a str, prefix: &str, paths: &mut Vec<String>) -> &'a str {
+    let text = text.trim_start();
+    if let Some(mut rest) = text.strip_prefix('{') {
+        loop {
+            rest = rest.trim_start().trim_start_matches(',').trim_start();
+            if let Some(after) = rest.strip_prefix('}') {
+                return after;
+            }
+            let before = rest.len();
+            rest = leaves(rest, prefix, paths);
+            if rest.len() == before {
+                return rest;
+            }
+        }
+    }
+    let end = text
+        .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .unwrap_or(text.len());
+    let (name, mut rest) = text.split_at(end);
+    if let Some(more) = rest.strip_prefix("::") {
+        if more.starts_with(|c: char| c.is_alphabetic() || "_{".contains(c)) {
+            return leaves(more, &format!("{prefix}{name}::"), paths);
+        }
+        rest = more.trim_start_matches('*');
+    }
+    if !name.is_empty() {
+        paths.push(format!("{prefix}{name}"));
+    }
+    match rest.strip_prefix(" as ") {
+        Some(alias) => alias.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'),
+        None => rest,
+    }
+}
+
+/// A function with a body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Function<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// First line, from 1.
+    pub line: usize,
+    /// Lines from the signature to the closing brace.
+    pub lines: usize,
+}
+
+/// The functions of code without comments and literals.
+pub fn functions(code: &str) -> Vec<Function<'_>> {
+    let mut functions = Vec::new();
+    for (at, _) in code.match_indices("fn ") {
+        if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
+            continue;
+        }
+        let rest = &code[at + 3..];
+        let end = rest
+            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .unwrap_or(0);
+        let Some(length) = body_end(rest).filter(|_| end > 0) else {
+            continue;
+        };
+        functions.push(Function {
+            name: &rest[..end],
+            line: code[..at].matches('\n').count() + 1,
+            lines: rest[..length].matches('\n').count() + 1,
+        });
+    }
+    functions
+}
+
+/// Bytes up to the end of the body of the function whose name begins `text`; `None` without a body.
+fn body_end(text: &str) -> Option<usize> {
+    let (mut round, mut curly) = (0, 0);
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' => round += 1,
+            ')' | ']' => round -= 1,
+            '{' => curly += 1,
+            '}' if curly == 1 => return Some(at),
+            '}' => curly -= 1,
+            ';' if round == 0 && curly == 0 => return None,
+            _ => {}
+        }
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -196,5 +314,33 @@ mod tests {
             names("a::b\nc_1(d)").collect::<Vec<_>>(),
             [(1, "a"), (1, "b"), (2, "c_1"), (2, "d")]
         );
+    }
+
+    #[test]
+    fn own_paths_are_taken_apart_and_resolved() {
+        let code = "use crate::a::{b::C, d as e, self};\nuse crate::{F,\n g::*};\nx.y(super::h::i(1));\nuse std::crate_::no; $crate::no!();";
+        let found = own_paths(code, &["m", "n"]);
+        let expected = ["a::b::C", "a::d", "a::self", "F", "g", "m::h::i"];
+        let lines = [1, 1, 1, 2, 2, 4];
+        let mut expected: Vec<(usize, String)> = lines
+            .into_iter()
+            .zip(expected.map(str::to_string))
+            .collect();
+        expected.sort();
+        assert_eq!(found, expected);
+        assert_eq!(
+            own_paths("super::super::k", &["m", "n", "o"]),
+            [(1, "m::k".to_string())]
+        );
+    }
+
+    #[test]
+    fn functions_have_lengths_where_they_have_bodies() {
+        let code = "fn a<const N: usize>(x: [f64; N]) -> u8 {\n if x { y }\n}\ntrait T {\n fn b();\n pub fn c() {}\n}\nlet f: fn (u8);";
+        let found: Vec<(&str, usize, usize)> = functions(code)
+            .iter()
+            .map(|f| (f.name, f.line, f.lines))
+            .collect();
+        assert_eq!(found, [("a", 1, 3), ("c", 6, 1)]);
     }
 }

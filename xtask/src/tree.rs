@@ -52,6 +52,14 @@ impl Tree {
         Ok(())
     }
 
+    /// Whether a file below `folder` has a path that ends with this one, whole names only.
+    pub fn has_file(&self, folder: &str, path: &str) -> bool {
+        let ending = format!("/{path}");
+        self.files
+            .keys()
+            .any(|file| file.starts_with(folder) && file.ends_with(&ending))
+    }
+
     /// How many files.
     pub fn len(&self) -> usize {
         self.files.len()
@@ -83,13 +91,20 @@ impl Tree {
 }
 
 #[cfg(test)]
+impl Tree {
+    /// Of these paths and texts.
+    pub fn of(files: &[(&str, &str)]) -> Self {
+        let entry = |(path, text): &(&str, &str)| (path.to_string(), Some(text.to_string()));
+        Self {
+            files: files.iter().map(entry).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
 impl<const N: usize> From<[(&str, &str); N]> for Tree {
     fn from(files: [(&str, &str); N]) -> Self {
-        Self {
-            files: files
-                .map(|(path, text)| (path.to_string(), Some(text.to_string())))
-                .into(),
-        }
+        Self::of(&files)
     }
 }
 

@@ -9,7 +9,7 @@ use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use stickslip::{Occlusion, RunOptions, SolvedStep, StepWatch, run_watched};
+use stickslip::{Observer, Occlusion, RunOptions, SolvedStep, run_observed};
 use stickslip_bench::{BlockOf64, LANES, Results, Tally, instruction_sets, median, quantile};
 use stickslip_dynamics::{Dynamics, Level, Particles, StepInput, StepWork};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
@@ -29,10 +29,10 @@ struct Captured {
 #[derive(Debug, Default)]
 struct Capture(Mutex<Vec<Captured>>);
 
-impl StepWatch for Capture {
-    fn see(&self, _step: &SolvedStep<'_>) {}
+impl Observer for Capture {
+    fn on_step(&self, _step: &SolvedStep<'_>) {}
 
-    fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
+    fn before_step(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let mut kept = Captured {
             input: *input,
             chunks: particles.len(),
@@ -110,7 +110,7 @@ fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
         ..RunOptions::default()
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    pool.install(|| run_watched(&case.setup, &case.log, &options, &capture, &mut |_| ()))?;
+    pool.install(|| run_observed(&case.setup, &case.log, &options, &capture, &mut |_| ()))?;
     Ok(capture
         .0
         .into_inner()

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use stickslip::{
-    Method, Occlusion, Run, RunOptions, Scores, StepWatch, TactileUse, Tracking, run, run_watched,
+    Method, Observer, Occlusion, Run, RunOptions, Scores, TactileUse, Tracking, run, run_observed,
     score,
 };
 use stickslip_formats::Experiment;
@@ -119,7 +119,7 @@ impl Rival {
         occlusion: Occlusion,
         rules: &Rules,
         seed: u64,
-        watch: Option<&dyn StepWatch>,
+        watch: Option<&dyn Observer>,
     ) -> Result<Attempt> {
         let run = self.run(experiment, occlusion, rules, seed, watch)?;
         let hidden = occlusion.hidden(&experiment.log);
@@ -139,12 +139,12 @@ impl Rival {
         occlusion: Occlusion,
         rules: &Rules,
         seed: u64,
-        watch: Option<&dyn StepWatch>,
+        watch: Option<&dyn Observer>,
     ) -> Result<Run> {
         let Experiment { setup, log, .. } = experiment;
         let options = self.options(occlusion, rules, seed);
         Ok(match watch {
-            Some(watch) => run_watched(setup, log, &options, watch, &mut |_| ())?,
+            Some(watch) => run_observed(setup, log, &options, watch, &mut |_| ())?,
             None => run(setup, log, &options, &mut |_| ())?,
         })
     }

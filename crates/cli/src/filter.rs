@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Occlusion, Run, Scores, keep_threads_awake, run, run_watched, score};
+use stickslip::{Estimate, Occlusion, Run, Scores, keep_threads_awake, run, run_observed, score};
 use stickslip_formats::{Experiment, write_estimate};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
@@ -120,7 +120,7 @@ fn timed_run(
     let Experiment { setup, log, .. } = experiment;
     let mut advance = |row: usize| progress.set_position(row as u64);
     let mut track = || match args.report {
-        Some(_) => run_watched(setup, log, &options, sample, &mut advance),
+        Some(_) => run_observed(setup, log, &options, sample, &mut advance),
         None => run(setup, log, &options, &mut advance),
     };
     let result = pool.install(|| keep_threads_awake(&mut track));

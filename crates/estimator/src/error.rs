@@ -2,6 +2,8 @@
 
 use stickslip_filter::{SeriesError, SettingsError};
 
+use crate::row::RowError;
+
 /// Why a method could not be run on a log.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -17,7 +19,7 @@ pub enum RunError {
     /// Two rows are so far apart that nothing can be said of what happened between them.
     #[error(
         "row {row} is at {to} s and the row before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or cut the log in the pause",
-        longest = crate::schedule::LONGEST_PAUSE
+        longest = crate::pusher::schedule::LONGEST_PAUSE
     )]
     Pause {
         /// The later row, from 0.
@@ -35,6 +37,9 @@ pub enum RunError {
     /// The pusher's or the object's poses could not be filtered.
     #[error("tracking by the constant-velocity Kalman filter failed: {0}")]
     Track(#[from] SeriesError),
+    /// A row that no tracker can use.
+    #[error(transparent)]
+    Row(#[from] RowError),
     /// Filter settings out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),

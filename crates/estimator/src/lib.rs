@@ -1,43 +1,42 @@
 //! Tracks a pushed object through contact and visual occlusion and learns the friction that governs
 //! it.
+//!
+//! [`Tracker`] takes one row at a time; [`run`] takes a whole [`Log`].
 
 mod angle;
-mod chunk;
-mod cloud;
-mod columns;
-mod contact_model;
+mod baseline;
 pub mod diagnosis;
 mod error;
 mod estimate;
-mod kalman_baseline;
 mod log;
-mod nominal;
 mod occlusion;
-mod particle_run;
-mod propagation;
+mod options;
+mod particle;
+mod prepared_log;
+mod pusher;
+mod row;
 mod run;
-mod schedule;
 mod score;
 mod setup;
 mod statistics;
-mod summary;
-mod sums;
-mod track;
+mod tracker;
 mod trajectory;
-mod watch;
 
-pub use cloud::Cloud;
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
 pub use log::Log;
 pub use occlusion::Occlusion;
-pub use run::{Method, Run, RunOptions, TactileUse, run, run_watched};
-pub use schedule::Schedule;
+pub use options::{Method, RunOptions, TactileUse};
+pub use particle::observer::{Observer, SolvedStep};
+pub use particle::view::ParticleView;
+pub use pusher::schedule::Schedule;
+pub use pusher::track::{PusherTrack, TrackedPose, Tracking};
+pub use row::{Row, RowError};
+pub use run::{Run, run, run_observed};
 pub use score::{Reference, Scores, score};
 pub use setup::{Camera, FilterSettings, Limits, Setup, Tactile};
 pub use statistics::{Band, Direction, PairedDifference, quantile};
 pub use stickslip_dynamics as dynamics;
 pub use stickslip_filter::keep_threads_awake;
-pub use track::{PusherTrack, TrackedPose, Tracking};
+pub use tracker::{Tracker, TrackerOptions};
 pub use trajectory::Trajectory;
-pub use watch::{SolvedStep, StepWatch};

@@ -2,6 +2,8 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::row::Row;
+
 /// A recorded experiment; every column has one entry per row, `None` where nothing was measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Log {
@@ -27,6 +29,20 @@ impl Log {
     /// Time from the first row to the last (s); 0 where there is none.
     pub fn duration(&self) -> f64 {
         self.time.last().copied().unwrap_or(0.0) - self.time.first().copied().unwrap_or(0.0)
+    }
+
+    /// What was measured at row `row`.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    pub fn row(&self, row: usize) -> Row {
+        Row {
+            time: self.time[row],
+            object: self.object[row],
+            pusher: self.pusher[row],
+            tactile: self.tactile.iter().map(|sensor| sensor[row]).collect(),
+            force: self.force.get(row).copied().flatten(),
+        }
     }
 
     /// True where there is no row.

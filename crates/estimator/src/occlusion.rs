@@ -1,6 +1,6 @@
 //! Which rows' object poses are hidden from a method: [`Occlusion`].
 
-use crate::Log;
+use crate::log::Log;
 
 /// A blackout of the camera; the hidden poses are still scored against.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -1,70 +1,17 @@
-//! Runs a method over a recorded log: [`run`], the particle filter and its baselines behind one
-//! door.
+//! Runs a method over a recorded log: [`run`].
 
-use stickslip_dynamics::Pose;
-
-use crate::schedule::{LONGEST_PAUSE, Schedule};
-use crate::track::PusherTrack;
-use crate::watch::StepWatch;
-use crate::{
-    Estimate, EstimateRow, Log, Occlusion, RunError, Setup, Tracking, kalman_baseline, nominal,
-    particle_run,
-};
-
-/// How a log is turned into estimates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Method {
-    /// The particle filter over contact dynamics.
-    #[default]
-    Particle,
-    /// A constant-velocity Kalman filter that knows nothing of contact.
-    Kalman,
-    /// The nominal simulation, which never looks at the camera after the first pose.
-    Nominal,
-}
-
-/// Whether tactile data is used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum TactileUse {
-    /// Tactile readings weigh the particles.
-    #[default]
-    Used,
-    /// They are ignored.
-    Ignored,
-}
-
-/// Options of a run; the defaults are those of the program.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RunOptions {
-    /// Method.
-    pub method: Method,
-    /// Number of particles.
-    pub particles: usize,
-    /// Seed of all random numbers.
-    pub seed: u64,
-    /// Use of tactile data.
-    pub tactile: TactileUse,
-    /// How the pusher is tracked.
-    pub tracking: Tracking,
-    /// Forced number of substeps per row; `None`: by the length of the step.
-    pub substeps: Option<u32>,
-    /// What is hidden from the method.
-    pub occlusion: Occlusion,
-}
-
-impl Default for RunOptions {
-    fn default() -> Self {
-        Self {
-            method: Method::Particle,
-            particles: 500,
-            seed: 0,
-            tactile: TactileUse::Used,
-            tracking: Tracking::Smoothed,
-            substeps: None,
-            occlusion: Occlusion::None,
-        }
-    }
-}
+use crate::baseline::{kalman, nominal};
+use crate::error::RunError;
+use crate::estimate::Estimate;
+use crate::log::Log;
+use crate::options::{Method, RunOptions, TactileUse};
+use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::observer::Observer;
+use crate::prepared_log::PreparedLog;
+use crate::pusher::track::Tracking;
+use crate::row::Row;
+use crate::setup::{Camera, Setup};
+use crate::tracker::{Tracker, TrackerOptions};
 
 /// What a run produced.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,138 +37,139 @@ pub fn run(
 ) -> Result<Run, RunError> {
     run_prepared(
         setup,
-        &Prepared::new(setup, log, options)?,
+        &PreparedLog::new(setup, log, options)?,
         options,
         progress,
     )
 }
 
-/// The same, with a `watch` that is shown every time step solved on the way; it changes no result.
+/// The same, with an `observer` that is shown every time step solved on the way and the particles
+/// after every row; it changes no result.
 ///
 /// # Errors
 /// Those of [`run`].
-pub fn run_watched(
+pub fn run_observed(
     setup: &Setup,
     log: &Log,
     options: &RunOptions,
-    watch: &dyn StepWatch,
+    observer: &dyn Observer,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Run, RunError> {
-    let prepared = Prepared {
-        watch: Some(watch),
-        ..Prepared::new(setup, log, options)?
+    let prepared = PreparedLog {
+        observer: Some(observer),
+        ..PreparedLog::new(setup, log, options)?
     };
     run_prepared(setup, &prepared, options, progress)
 }
 
 fn run_prepared(
     setup: &Setup,
-    prepared: &Prepared<'_>,
+    prepared: &PreparedLog<'_>,
     options: &RunOptions,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Run, RunError> {
     let camera = || setup.camera.ok_or(RunError::NoCamera);
-    let (estimate, collapses) = match options.method {
-        Method::Particle => particle_run::track(setup, camera()?, prepared, options, progress)?,
-        Method::Kalman => (kalman_baseline::track(setup, &camera()?, prepared)?, 0),
-        Method::Nominal => (nominal::simulate(setup, prepared, progress), 0),
+    let (estimate, collapses) = match (options.method, options.tracking) {
+        (Method::Particle, Tracking::Smoothed) => {
+            track_smoothed(setup, camera()?, prepared, options, progress)?
+        }
+        (Method::Particle, Tracking::Causal) => track_causal(setup, prepared, options, progress)?,
+        (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, 0),
+        (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), 0),
     };
-    let unsolved = estimate
-        .rows
-        .iter()
-        .filter_map(|row| row.unsolved)
-        .map(u64::from)
-        .sum();
+    let unsolved = estimate.rows.iter().filter_map(|row| row.unsolved);
     Ok(Run {
+        unsolved: unsolved.map(u64::from).sum(),
         estimate,
-        unsolved,
         collapses,
     })
 }
 
-/// Refuses a log whose steps no substeps can follow.
-fn check_pauses(time: &[f64]) -> Result<(), RunError> {
-    match time
-        .array_windows()
-        .position(|[from, to]| to - from > LONGEST_PAUSE)
-    {
-        Some(row) => Err(RunError::Pause {
-            row: row + 1,
-            from: time[row],
-            to: time[row + 1],
-        }),
-        None => Ok(()),
+/// The particle filter, driven by the pusher's smoothed track; also the number of collapses.
+fn track_smoothed(
+    setup: &Setup,
+    camera: Camera,
+    prepared: &PreparedLog<'_>,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(usize),
+) -> Result<(Estimate, u32), RunError> {
+    let PreparedLog {
+        log,
+        first,
+        start,
+        schedule,
+        observer,
+        ..
+    } = prepared;
+    let filter_options = FilterOptions {
+        particles: options.particles,
+        seed: options.seed,
+        late: 0.0,
+        observer: *observer,
+    };
+    let start = (log.time[*first], *start);
+    let mut filter = ContactFilter::new(setup, camera, start, &filter_options)?;
+    let mut estimate = prepared.empty_estimate(setup);
+    estimate.rows[*first].clone_from(filter.latest());
+    if let Some(observer) = observer {
+        observer.on_row(*first, &filter.particles());
     }
+    let mut row_at = Row::default();
+    for row in first + 1..log.len() {
+        prepared.read(row, options.tactile, &mut row_at);
+        let measured = Measured {
+            time: row_at.time,
+            object: row_at.object,
+            tactile: &row_at.tactile,
+        };
+        let drive = Drive {
+            substeps: schedule.step(row - 1),
+            moves: schedule.driven(row - 1),
+        };
+        estimate.rows[row].clone_from(filter.step(measured, drive));
+        if let Some(observer) = observer {
+            observer.on_row(row, &filter.particles());
+        }
+        progress(row);
+    }
+    Ok((estimate, filter.collapses()))
 }
 
-/// A log made ready: who sees what, from where it starts, and the steps between its rows.
-pub(crate) struct Prepared<'a> {
-    pub log: &'a Log,
-    pub hidden: Vec<bool>,
-    /// First row with a visible object pose: row 0 of the estimate.
-    pub first: usize,
-    pub start: Pose,
-    pub schedule: Schedule,
-    pub watch: Option<&'a dyn StepWatch>,
+/// The particle filter row by row, as a [`Tracker`] takes them; also the number of collapses.
+fn track_causal(
+    setup: &Setup,
+    prepared: &PreparedLog<'_>,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(usize),
+) -> Result<(Estimate, u32), RunError> {
+    let tracker_options = TrackerOptions::of(options);
+    let mut tracker = Tracker::build(setup, &tracker_options, prepared.observer)?;
+    let mut estimate = prepared.empty_estimate(setup);
+    let mut row_at = Row::default();
+    for row in 0..prepared.log.len() {
+        prepared.read(row, options.tactile, &mut row_at);
+        estimate.rows[row].clone_from(tracker.push(&row_at)?);
+        if let Some((observer, particles)) = prepared.observer.zip(tracker.particles()) {
+            observer.on_row(row, &particles);
+        }
+        if row > prepared.first {
+            progress(row);
+        }
+    }
+    Ok((estimate, tracker.collapses()))
 }
 
-impl<'a> Prepared<'a> {
-    fn new(setup: &Setup, log: &'a Log, options: &RunOptions) -> Result<Self, RunError> {
-        let fixels = setup.scene.fixels.len();
-        if log.tactile.len() > fixels {
-            return Err(RunError::Sensors {
-                sensors: log.tactile.len(),
-                fixels,
-            });
+impl PreparedLog<'_> {
+    /// Writes what was measured at `row` and is not hidden; memory is reused.
+    fn read(&self, row: usize, tactile: TactileUse, to: &mut Row) {
+        to.time = self.log.time[row];
+        to.object = self.visible(row);
+        to.pusher = self.log.pusher[row];
+        to.force = self.log.force.get(row).copied().flatten();
+        to.tactile.clear();
+        if tactile == TactileUse::Used {
+            to.tactile
+                .extend(self.log.tactile.iter().map(|sensor| sensor[row]));
         }
-        check_pauses(&log.time)?;
-        let hidden = options.occlusion.hidden(log);
-        let seen = (0..log.len()).find_map(|row| {
-            log.object[row]
-                .filter(|_| !hidden[row])
-                .map(|pose| (row, pose))
-        });
-        let (first, start) = seen.ok_or(RunError::NoObjectPose { rows: log.len() })?;
-        let track = PusherTrack::new(log, setup.camera.as_ref(), options.tracking)?;
-        Ok(Self {
-            log,
-            hidden,
-            first,
-            start,
-            schedule: Schedule::new(&log.time, &track, options.substeps),
-            watch: None,
-        })
-    }
-
-    /// The object pose of a row, where it was measured and is not hidden.
-    pub fn visible(&self, row: usize) -> Option<Pose> {
-        self.log.object[row].filter(|_| !self.hidden[row])
-    }
-
-    /// Empty rows for every row of the log.
-    pub fn empty_estimate(&self, setup: &Setup) -> Estimate {
-        Estimate {
-            time: self.log.time.clone(),
-            rows: vec![EstimateRow::default(); self.log.len()],
-            fixels: setup.scene.fixels.len(),
-            has_tripod: setup.has_tripod(),
-        }
-    }
-
-    /// Most rows of the log that lie within `latency` of each other, and two more: the past poses a
-    /// particle must keep.
-    pub fn rows_within(&self, latency: f64) -> usize {
-        if latency <= 0.0 {
-            return 0;
-        }
-        let time = &self.log.time;
-        let mut earlier = 0;
-        let spans = time.iter().enumerate().map(|(row, t)| {
-            while t - time[earlier] > latency {
-                earlier += 1;
-            }
-            row - earlier
-        });
-        spans.max().unwrap_or(0) + 3
     }
 }

@@ -3,8 +3,11 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::Trajectory;
 use crate::angle::wrapped;
-use crate::{Camera, Estimate, Log, Trajectory};
+use crate::estimate::Estimate;
+use crate::log::Log;
+use crate::setup::Camera;
 
 /// Standard deviation of an object position where no camera is described (m).
 const POSITION_STD: f64 = 3e-4;

@@ -164,6 +164,27 @@ impl<M: Model> ParticleFilter<M> {
         }
     }
 
+    /// Weighs the particles by one more observation of the step just made, such as one that arrives
+    /// late. Where no particle explains it, it changes nothing.
+    pub fn observe(&mut self, input: &M::Input, observation: &M::Observation) -> WeightUpdate {
+        let (model, weights) = (&self.model, &self.weights);
+        self.particles
+            .visit(self.unnormalised.blocks_mut(), |block, mut unnormalised| {
+                model.log_likelihood(observation, block, unnormalised.log_likelihood);
+                unnormalised.weigh(weights, block.range());
+            });
+        let best_log_likelihood = self.unnormalised.best_log_likelihood();
+        if !self.model.collapsed(best_log_likelihood)
+            && let Some(log_evidence) = self.weights.update(&mut self.unnormalised)
+        {
+            self.recompute_sums(input);
+            return WeightUpdate::Weighed { log_evidence };
+        }
+        WeightUpdate::Collapsed {
+            best_log_likelihood,
+        }
+    }
+
     fn best_resetting_log_likelihood(&mut self, observation: &M::Observation) -> f64 {
         let model = &self.model;
         self.particles

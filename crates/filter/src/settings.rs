@@ -29,7 +29,11 @@ impl Default for Settings {
 }
 
 impl Settings {
-    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+    /// Refuses settings out of range.
+    ///
+    /// # Errors
+    /// If the number of particles or the threshold is out of range.
+    pub fn check(&self) -> Result<(), SettingsError> {
         let (particles, share) = (self.particles, self.resample_below);
         if particles == 0 || u32::try_from(particles).is_err() {
             return Err(SettingsError::Particles { particles });

@@ -17,9 +17,9 @@ fn mode(process_noise: f64) -> ConstantVelocity {
     }
 }
 
-fn imm(mean_sojourn_time: f64) -> InteractingMultipleModel {
+fn imm(mean_sojourn_time: f64) -> InteractingMultipleModel<3> {
     InteractingMultipleModel {
-        modes: [0.005, 0.5, 5.0].map(mode).to_vec(),
+        modes: [0.005, 0.5, 5.0].map(mode),
         mean_sojourn_time,
     }
 }
@@ -56,7 +56,7 @@ fn filter_with_one_mode_is_its_kalman_filter() {
     let (times, measurements) = series(60, 4);
     for mean_sojourn_time in [0.1, f64::INFINITY] {
         let got = InteractingMultipleModel {
-            modes: vec![AXIS],
+            modes: [AXIS],
             mean_sojourn_time,
         }
         .filter(&times, &measurements)
@@ -96,7 +96,7 @@ fn filter_whose_modes_last_is_the_average_over_them_by_likelihood() {
 
 /// Exact by brute force: every history of modes with its own Kalman filter, 3⁷ of them.
 fn all_histories(
-    imm: &InteractingMultipleModel,
+    imm: &InteractingMultipleModel<3>,
     times: &[f64],
     measurements: &[Option<f64>],
 ) -> (AxisEstimate, f64) {
@@ -185,7 +185,7 @@ fn filter_predicts_a_start_and_a_stop_better_than_any_of_its_modes() {
         .map(|(row, t)| Some(20.0 * (t.clamp(4.0, 6.0) - 4.0) + noise(row)))
         .collect();
     let imm = InteractingMultipleModel {
-        modes: [1e-5, 0.5, 1e3].map(mode).to_vec(),
+        modes: [1e-5, 0.5, 1e3].map(mode),
         mean_sojourn_time: 30.0,
     };
     let together = imm.filter(&times, &measurements).unwrap().log_likelihood;
@@ -214,10 +214,12 @@ fn filter_row_is_a_function_of_the_rows_up_to_it() {
 
 #[test]
 fn model_out_of_range_is_refused() {
-    let refuse = |imm: InteractingMultipleModel| imm.filter(&[], &[]).unwrap_err().to_string();
+    fn refuse<const M: usize>(imm: InteractingMultipleModel<M>) -> String {
+        imm.filter(&[], &[]).unwrap_err().to_string()
+    }
     assert_eq!(
         refuse(InteractingMultipleModel {
-            modes: vec![],
+            modes: [],
             mean_sojourn_time: 1.0
         }),
         "`modes` is 0; it must be finite and at least 1"
@@ -227,7 +229,7 @@ fn model_out_of_range_is_refused() {
     }
     assert!(
         refuse(InteractingMultipleModel {
-            modes: vec![mode(-1.0)],
+            modes: [mode(-1.0)],
             mean_sojourn_time: 1.0
         })
         .starts_with("`process_noise` is -1")

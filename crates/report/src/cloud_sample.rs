@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use stickslip::dynamics::Pose;
-use stickslip::{Cloud, SolvedStep, StepWatch};
+use stickslip::{Observer, ParticleView, SolvedStep};
 
 /// Watches a run and keeps the poses of some particles after every row, drawn by their weights, so
 /// that all kept ones count the same.
@@ -40,10 +40,10 @@ impl CloudSample {
     }
 }
 
-impl StepWatch for CloudSample {
-    fn see(&self, _: &SolvedStep<'_>) {}
+impl Observer for CloudSample {
+    fn on_step(&self, _: &SolvedStep<'_>) {}
 
-    fn after(&self, row: usize, cloud: &Cloud<'_>) {
+    fn on_row(&self, row: usize, cloud: &ParticleView<'_>) {
         let poses = systematic(cloud.weights(), self.kept)
             .into_iter()
             .map(|particle| cloud.pose(particle))

@@ -5,7 +5,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
-use stickslip::{RunError, RunOptions, SolvedStep, StepWatch, run_watched};
+use stickslip::{Observer, RunError, RunOptions, SolvedStep, run_observed};
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution};
 
 use crate::rng::{SplitMix64, scatter};
@@ -74,7 +74,7 @@ pub fn harvest(case: &RecordedCase, options: &HarvestOptions) -> Result<Harvest,
         options: *options,
         harvest: Mutex::default(),
     };
-    run_watched(&case.setup, &case.log, &run_options, &reaper, &mut |_| ())?;
+    run_observed(&case.setup, &case.log, &run_options, &reaper, &mut |_| ())?;
     Ok(reaper
         .harvest
         .into_inner()
@@ -87,8 +87,8 @@ struct Reaper {
     harvest: Mutex<Harvest>,
 }
 
-impl StepWatch for Reaper {
-    fn see(&self, step: &SolvedStep<'_>) {
+impl Observer for Reaper {
+    fn on_step(&self, step: &SolvedStep<'_>) {
         let mut harvest = self.harvest.lock().unwrap_or_else(PoisonError::into_inner);
         let mut tally = Tally::of_report(harvest.tally.problems, &step.report);
         let solved = step.report.outcome == Outcome::Solved;

@@ -2,7 +2,7 @@
 //! after the blackout begins.
 
 use anyhow::Result;
-use stickslip::{Occlusion, Run, StepWatch};
+use stickslip::{Observer, Occlusion, Run};
 use stickslip_formats::Experiment;
 use stickslip_report::Colour;
 
@@ -106,7 +106,7 @@ impl Participant {
         blackout: Occlusion,
         rules: &Rules,
         seed: u64,
-        watch: Option<&dyn StepWatch>,
+        watch: Option<&dyn Observer>,
     ) -> Result<Run> {
         let hidden = match self.sight {
             Sight::Dark => blackout,

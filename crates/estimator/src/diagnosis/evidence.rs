@@ -2,8 +2,9 @@
 
 use stickslip_dynamics::{Placed, Pose, Shape, narrow_phase};
 
-use crate::track::LONGEST_BRIDGE;
-use crate::{Log, Setup};
+use crate::log::Log;
+use crate::pusher::track::LONGEST_BRIDGE;
+use crate::setup::Setup;
 
 /// Half the time over which an object's motion is judged (s).
 const HALF_WINDOW: f64 = 0.15;

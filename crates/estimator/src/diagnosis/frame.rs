@@ -10,7 +10,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, median, mm, quantile};
 use super::finding::{Finding, Subject};
-use crate::Log;
+use crate::log::Log;
 
 /// Gaps above this share of the object's radius are no contact.
 const APART: f64 = 0.35;

@@ -4,7 +4,7 @@ use stickslip_dynamics::Feet;
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
-use crate::Limits;
+use crate::setup::Limits;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let (nominal, filter) = (&evidence.setup.scene.nominal, &evidence.setup.filter);

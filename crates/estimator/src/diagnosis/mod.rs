@@ -22,8 +22,10 @@ mod units;
 
 pub use finding::{Finding, Severity, Subject};
 
-use crate::{Log, Setup};
 use evidence::Evidence;
+
+use crate::log::Log;
+use crate::setup::Setup;
 
 /// Checks a log against its scene.
 ///

@@ -13,6 +13,8 @@
 //!
 //! The estimate is the mixture's mean and variance. Every row is a function of the rows up to it.
 
+use std::array::from_fn;
+
 use nalgebra::Vector2;
 
 use crate::kalman::constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
@@ -20,36 +22,40 @@ use crate::kalman::gaussian::Gaussian;
 use crate::kalman::series::{Series, SeriesError};
 
 /// Constant-velocity models of one axis, one of which holds at a time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct InteractingMultipleModel {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InteractingMultipleModel<const M: usize> {
     /// The modes, at least one.
-    pub modes: Vec<ConstantVelocity>,
+    pub modes: [ConstantVelocity; M],
     /// Mean time that the axis stays in a mode \[s\], > 0; infinite where the mode is unknown but
     /// never changes.
     pub mean_sojourn_time: f64,
 }
 
 /// The state at one row: (probability, state) of every mode.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImmState {
-    modes: Vec<(f64, Gaussian<2>)>,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImmState<const M: usize> {
+    modes: [(f64, Gaussian<2>); M],
 }
 
-impl InteractingMultipleModel {
+impl<const M: usize> InteractingMultipleModel<M> {
     /// The state at a first measurement: all modes equally probable.
     #[must_use]
-    pub fn start(&self, position: f64) -> ImmState {
-        let probability = 1.0 / self.modes.len() as f64;
-        let start = |mode: &ConstantVelocity| (probability, mode.start(position));
+    pub fn start(&self, position: f64) -> ImmState<M> {
+        let probability = 1.0 / M as f64;
         ImmState {
-            modes: self.modes.iter().map(start).collect(),
+            modes: self.modes.map(|mode| (probability, mode.start(position))),
         }
     }
 
     /// The state `h` \[s\] later, given the measurement there if there is one, and
     /// ln p(measurement | rows before), 0 without one.
     #[must_use]
-    pub fn step(&self, state: &ImmState, h: f64, measurement: Option<f64>) -> (ImmState, f64) {
+    pub fn step(
+        &self,
+        state: &ImmState<M>,
+        h: f64,
+        measurement: Option<f64>,
+    ) -> (ImmState<M>, f64) {
         // interact
         let mut modes = self.interact(state, h);
 
@@ -81,22 +87,19 @@ impl InteractingMultipleModel {
     }
 
     /// Probability c_j and state of each mode after the mode may have changed.
-    fn interact(&self, state: &ImmState, h: f64) -> Vec<(f64, Gaussian<2>)> {
-        let count = state.modes.len();
-        let (stay, change) = if count == 1 {
+    fn interact(&self, state: &ImmState<M>, h: f64) -> [(f64, Gaussian<2>); M] {
+        let (stay, change) = if M == 1 {
             (1.0, 0.0)
         } else {
             let stay = libm::exp(-h / self.mean_sojourn_time);
-            (stay, (1.0 - stay) / (count - 1) as f64)
+            (stay, (1.0 - stay) / (M - 1) as f64)
         };
         let into = |j: usize| {
             let transition = |i: usize| if i == j { stay } else { change };
-            let parts: Vec<(f64, Gaussian<2>)> = state
-                .modes
-                .iter()
-                .enumerate()
-                .map(|(i, (weight, state))| (transition(i) * weight, *state))
-                .collect();
+            let parts: [(f64, Gaussian<2>); M] = from_fn(|i| {
+                let (weight, state) = state.modes[i];
+                (transition(i) * weight, state)
+            });
             let weight: f64 = parts.iter().map(|(weight, _)| weight).sum();
             // a mode of probability 0 keeps its state
             if weight > 0.0 {
@@ -105,7 +108,7 @@ impl InteractingMultipleModel {
                 (0.0, state.modes[j].1)
             }
         };
-        (0..count).map(into).collect()
+        from_fn(into)
     }
 
     /// The filter over a series: `times` \[s\] rise, a measurement may be missing; missing rows are
@@ -114,7 +117,7 @@ impl InteractingMultipleModel {
     /// ```
     /// # use stickslip_filter::{ConstantVelocity, InteractingMultipleModel};
     /// let mode = |process_noise| ConstantVelocity { process_noise, measurement_std: 1e-4, initial_velocity_std: 0.1 };
-    /// let imm = InteractingMultipleModel { modes: vec![mode(1e-9), mode(1e-4)], mean_sojourn_time: 30.0 };
+    /// let imm = InteractingMultipleModel { modes: [mode(1e-9), mode(1e-4)], mean_sojourn_time: 30.0 };
     /// let rows = imm.filter(&[0.0, 0.1, 0.2, 0.3], &[Some(0.0), Some(0.01), Some(0.02), None])?.rows;
     /// assert!((rows[3].unwrap().position - 0.03).abs() < 1e-4);
     /// # Ok::<(), stickslip_filter::SeriesError>(())
@@ -133,7 +136,7 @@ impl InteractingMultipleModel {
             rows: vec![None; times.len()],
             log_likelihood: 0.0,
         };
-        let mut before: Option<(f64, ImmState)> = None;
+        let mut before: Option<(f64, ImmState<M>)> = None;
         for (row, time, measurement) in series.rows() {
             let (state, log_likelihood) = match (before.take(), measurement) {
                 (Some((then, state)), _) => self.step(&state, time - then, measurement),
@@ -147,10 +150,14 @@ impl InteractingMultipleModel {
         Ok(filtered)
     }
 
-    fn check(&self) -> Result<(), SeriesError> {
+    /// Refuses parameters out of range.
+    ///
+    /// # Errors
+    /// If a mode or the mean sojourn time is out of range, or there is no mode.
+    pub fn check(&self) -> Result<(), SeriesError> {
         self.modes.iter().try_for_each(ConstantVelocity::check)?;
         let refused = |name, value, rule| Err(SeriesError::Parameter { name, value, rule });
-        match (self.modes.len(), self.mean_sojourn_time) {
+        match (M, self.mean_sojourn_time) {
             (0, _) => refused("modes", 0.0, "at least 1"),
             (_, time) if time.is_nan() || time <= 0.0 => refused("mean_sojourn_time", time, "> 0"),
             _ => Ok(()),
@@ -158,7 +165,7 @@ impl InteractingMultipleModel {
     }
 }
 
-impl ImmState {
+impl<const M: usize> ImmState<M> {
     /// Mean and variance over the modes.
     #[must_use]
     pub fn estimate(&self) -> AxisEstimate {

@@ -3,13 +3,13 @@
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 
-/// Flags in a column.
+/// Flags in a column: the bits of a mantissa, so that a column of flags is never NaN.
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel.
 const SINGLE: usize = 3;
 
-/// A yes or no of every particle: a bit of a column, whose numbers mean nothing else.
+/// A condition of every particle: one bit of a column that holds nothing but such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flag {
     /// The column.
@@ -32,7 +32,7 @@ impl Columns {
     pub const TWIST: usize = 3;
     /// μ_s, μ_p, μ_f, d_tri.
     pub const FRICTION: usize = 6;
-    /// How far the pusher stands behind its pose (m).
+    /// Distance by which the pusher stands behind its pose (m).
     pub const PUSHER_LAG: usize = 10;
     /// First column of the warm start.
     pub const WARM_START: usize = 11;
@@ -42,8 +42,8 @@ impl Columns {
     pub const CONTACT_PUSHER: Flag = Self::flag(0);
     /// Whether the last step of a particle had no certified solution.
     pub const UNSOLVED: Flag = Self::flag(1);
-    /// Whether nothing drove the particle in its last step: the pusher stands, or the particle is
-    /// at rest and out of its way.
+    /// Whether nothing drove the particle in its last step: the pusher stood, or the particle rested
+    /// out of its way.
     pub const IDLE: Flag = Self::flag(2);
 
     /// For `fixels` fixels and `history` past poses.
@@ -68,9 +68,8 @@ impl Columns {
         Self::flag(SINGLE + fixel)
     }
 
-    /// c_j in the particle's last step under the pusher or in motion: whether fixel j bears it when
-    /// it is pressed on.
-    pub fn against_fixel(&self, fixel: usize) -> Flag {
+    /// Contact flag of fixel j in the last step in which the object was driven.
+    pub fn driven_contact_fixel(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + self.fixels + fixel)
     }
 
@@ -98,7 +97,8 @@ mod tests {
     #[test]
     fn flags_of_many_fixels_lie_apart_and_before_the_past_poses() {
         let columns = Columns::new(50, 1);
-        let of_fixels = (0..50).flat_map(|j| [columns.contact_fixel(j), columns.against_fixel(j)]);
+        let of_fixels =
+            (0..50).flat_map(|j| [columns.contact_fixel(j), columns.driven_contact_fixel(j)]);
         let flags: Vec<Flag> = of_fixels
             .chain([Columns::CONTACT_PUSHER, Columns::UNSOLVED, Columns::IDLE])
             .collect();

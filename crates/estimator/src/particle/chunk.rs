@@ -1,9 +1,9 @@
 //! Particles side by side: [`Column`], one number of each.
 
-use stickslip_dynamics::{Lanes, Mask};
+use stickslip_dynamics::{Lanes, Mask, Pose};
 use stickslip_filter::{Block, BlockMut};
 
-use crate::columns::{Columns, Flag};
+use crate::particle::columns::{Columns, Flag};
 
 /// Particles of a chunk.
 pub(crate) const LANES: usize = 8;
@@ -13,28 +13,39 @@ pub(crate) type Column = Lanes<LANES>;
 
 /// Chunk `chunk` of a column; `past` beyond its end.
 #[inline(always)]
-pub(crate) fn part(column: &[f64], chunk: usize, past: f64) -> Column {
+pub(crate) fn load_chunk(column: &[f64], chunk: usize, past: f64) -> Column {
     let rest = &column[chunk * LANES..];
     match rest.first_chunk() {
         Some(lanes) => Lanes(*lanes),
-        None => last_part(rest, past),
+        None => last_chunk(rest, past),
     }
 }
 
 /// Overwrites chunk `chunk` of a column.
 #[inline(always)]
-pub(crate) fn store_part(column: &mut [f64], chunk: usize, from: &Column) {
+pub(crate) fn store_chunk(column: &mut [f64], chunk: usize, from: &Column) {
     let rest = &mut column[chunk * LANES..];
     match rest.first_chunk_mut() {
         Some(lanes) => *lanes = from.0,
-        None => store_last_part(rest, from),
+        None => store_last_chunk(rest, from),
+    }
+}
+
+/// Chunk `chunk` of three neighbouring columns, a pose.
+#[inline(always)]
+pub(crate) fn load_pose(block: &Block<'_>, first_column: usize, chunk: usize) -> Pose<Column> {
+    // field by field: an array made by a closure is made by baseline code, and copied
+    Pose {
+        x: load_chunk(block.column(first_column), chunk, 0.0),
+        y: load_chunk(block.column(first_column + 1), chunk, 0.0),
+        theta: load_chunk(block.column(first_column + 2), chunk, 0.0),
     }
 }
 
 /// Where a flag is set in chunk `chunk`.
 #[inline(always)]
 pub(crate) fn flag(block: &Block<'_>, which: Flag, chunk: usize) -> Mask<LANES> {
-    set_in(&part(block.column(which.column), chunk, 0.0), which)
+    set_in(&load_chunk(block.column(which.column), chunk, 0.0), which)
 }
 
 /// Where a flag is set in the numbers of its column.
@@ -60,7 +71,7 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     #[inline(always)]
     pub fn new(block: &'a mut BlockMut<'b>, chunk: usize) -> Self {
         let column = Columns::UNSOLVED.column;
-        let bits = part(block.column(column), chunk, 0.0);
+        let bits = load_chunk(block.column(column), chunk, 0.0);
         Self {
             block,
             chunk,
@@ -91,7 +102,7 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     fn go_to(&mut self, column: usize) {
         if column != self.column {
             self.write();
-            self.bits = part(self.block.column(column), self.chunk, 0.0);
+            self.bits = load_chunk(self.block.column(column), self.chunk, 0.0);
             self.column = column;
         }
     }
@@ -99,22 +110,23 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     /// Writes the column at hand: the last thing to be done.
     #[inline(always)]
     pub fn write(&mut self) {
-        store_part(self.block.column_mut(self.column), self.chunk, &self.bits);
+        store_chunk(self.block.column_mut(self.column), self.chunk, &self.bits);
     }
 }
 
-/// Out of line: beside it, a whole chunk would be copied by a call with a number of bytes.
+/// Out of line: copying a tail of run-time length compiles to memcpy, and every live vector register
+/// is spilled around the call; so full chunks take a separate branch.
 #[cold]
 #[inline(never)]
-fn last_part(rest: &[f64], past: f64) -> Column {
+fn last_chunk(rest: &[f64], past: f64) -> Column {
     let mut part = Column::splat(past);
     part.0[..rest.len()].copy_from_slice(rest);
     part
 }
 
-/// See [`last_part`].
+/// See [`last_chunk`].
 #[cold]
 #[inline(never)]
-fn store_last_part(rest: &mut [f64], from: &Column) {
+fn store_last_chunk(rest: &mut [f64], from: &Column) {
     rest.copy_from_slice(&from.0[..rest.len()]);
 }

@@ -9,14 +9,16 @@ use stickslip_dynamics::{Pose, Twist};
 use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::angle::unwrapped;
-use crate::run::Prepared;
-use crate::{Camera, Estimate, EstimateRow, RunError, Setup, Spread};
+use crate::error::RunError;
+use crate::estimate::{Estimate, EstimateRow, Spread};
+use crate::prepared_log::PreparedLog;
+use crate::setup::{Camera, Setup};
 
 /// Filters the visible object poses of `prepared`.
 pub(crate) fn track(
     setup: &Setup,
     camera: &Camera,
-    prepared: &Prepared<'_>,
+    prepared: &PreparedLog<'_>,
 ) -> Result<Estimate, RunError> {
     let poses = unwrapped_poses(prepared);
     let axis =
@@ -52,7 +54,7 @@ pub(crate) fn track(
 }
 
 /// Visible poses with θ unwrapped from one to the next.
-fn unwrapped_poses(prepared: &Prepared<'_>) -> Vec<Option<Pose>> {
+fn unwrapped_poses(prepared: &PreparedLog<'_>) -> Vec<Option<Pose>> {
     let mut near = prepared.start.theta;
     let rows = (0..prepared.log.len()).map(|row| {
         let pose = prepared.visible(row)?;
@@ -66,7 +68,7 @@ fn unwrapped_poses(prepared: &Prepared<'_>) -> Vec<Option<Pose>> {
 }
 
 fn track_axis(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedLog<'_>,
     poses: &[Option<Pose>],
     pick: fn(&Pose) -> f64,
     std: f64,

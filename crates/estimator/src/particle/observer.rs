@@ -1,12 +1,12 @@
-//! Looking over a run's shoulder: a [`StepWatch`] is shown every time step that is solved, and the
+//! Looking over a run's shoulder: a [`Observer`] is shown every time step that is solved, and the
 //! particles after every row.
 
 use std::fmt::Debug;
 
 use stickslip_dynamics::{Particles, Report, StepInput, StepProblem, StepSolution};
 
-use crate::chunk::LANES;
-use crate::cloud::Cloud;
+use crate::particle::chunk::LANES;
+use crate::particle::view::ParticleView;
 
 /// One particle's time step.
 #[derive(Clone, Copy, Debug)]
@@ -24,20 +24,20 @@ pub struct SolvedStep<'a> {
 ///
 /// The steps of 64 particles that follow each other come in order from one thread; those of a
 /// larger set come from several threads at once, in no fixed order.
-pub trait StepWatch: Debug + Sync {
+pub trait Observer: Debug + Sync {
     /// One step.
-    fn see(&self, step: &SolvedStep<'_>);
+    fn on_step(&self, step: &SolvedStep<'_>);
 
     /// What the coming step of up to 64 particles starts from, noise included; lanes past the last
     /// particle repeat it.
-    fn before(&self, input: &StepInput, particles: &[Particles<LANES>]) {
+    fn before_step(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let _ = (input, particles);
     }
 
     /// The particles after a row, weighed by what was measured there; the first one is the row
     /// where the estimate begins. Rows come in order, from one thread. Only the particle filter has
     /// any.
-    fn after(&self, row: usize, cloud: &Cloud<'_>) {
+    fn on_row(&self, row: usize, cloud: &ParticleView<'_>) {
         let _ = (row, cloud);
     }
 }

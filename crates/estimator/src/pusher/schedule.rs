@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::{PusherMotion, StepInput};
 
-use crate::track::PusherTrack;
+use crate::pusher::track::PusherTrack;
 
 /// A step is split where it is longer than this (s).
 const LONGEST_STEP: f64 = 0.055;
@@ -31,7 +31,7 @@ impl Schedule {
             if let Some(motion) = &motion {
                 direction = motion.direction;
             }
-            split(h, motion, substeps.unwrap_or_else(|| parts(h)))
+            split(h, motion, substeps).collect()
         });
         Self {
             steps: steps.collect(),
@@ -53,7 +53,7 @@ impl Schedule {
     }
 }
 
-fn parts(h: f64) -> u32 {
+fn parts_of(h: f64) -> u32 {
     if h > LONGEST_STEP {
         (h / SPLIT_TO).ceil() as u32
     } else {
@@ -61,18 +61,22 @@ fn parts(h: f64) -> u32 {
     }
 }
 
-fn split(h: f64, motion: Option<PusherMotion>, parts: u32) -> Vec<StepInput> {
+/// The substeps of a step of `h` seconds: `parts` of equal length, or as many as the length asks for.
+pub(crate) fn split(
+    h: f64,
+    motion: Option<PusherMotion>,
+    parts: Option<u32>,
+) -> impl Iterator<Item = StepInput> {
+    let parts = parts.unwrap_or_else(|| parts_of(h));
     let h = h / f64::from(parts);
-    let at = |part: u32| {
+    let at = move |part: u32| {
         motion.map(|m| PusherMotion {
             pose: m.pose.advance(m.twist, h * f64::from(part)),
             ..m
         })
     };
-    (0..parts)
-        .map(|part| StepInput {
-            h,
-            pusher: at(part),
-        })
-        .collect()
+    (0..parts).map(move |part| StepInput {
+        h,
+        pusher: at(part),
+    })
 }

@@ -6,11 +6,11 @@ use stickslip_dynamics::{
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
-use crate::Limits;
-use crate::chunk::{Column, FlagsMut, LANES, part, store_part};
-use crate::columns::Columns;
-use crate::contact_model::{ContactModel, ParameterNoise, StepPlan};
-use crate::watch::{SolvedStep, StepWatch};
+use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
+use crate::particle::columns::Columns;
+use crate::particle::model::{ContactModel, ParameterNoise, StepPlan};
+use crate::particle::observer::{Observer, SolvedStep};
+use crate::setup::Limits;
 
 /// Chunks of particles in a block.
 const CHUNKS: usize = BLOCK / LANES;
@@ -101,8 +101,8 @@ impl Propagation {
                 #[inline(always)]
                 || self.apply_force(model, input.h, draw, pair, block),
             );
-            if let Some(watch) = model.watch {
-                watch.before(input, &self.particles[..chunks]);
+            if let Some(observer) = model.observer {
+                observer.before_step(input, &self.particles[..chunks]);
             }
             model
                 .dynamics
@@ -112,8 +112,8 @@ impl Propagation {
                 #[inline(always)]
                 || self.note_contacts(model, chunks),
             );
-            if let Some(watch) = model.watch {
-                self.show(watch, block.len());
+            if let Some(observer) = model.observer {
+                self.show(observer, block.len());
             }
         }
         on_widest(
@@ -172,7 +172,11 @@ impl Propagation {
                     .into_iter()
                     .enumerate()
                 {
-                    *value = disturbed(*value, part(&self.normals[k], chunk, 0.0) * std, limits[k]);
+                    *value = disturbed(
+                        *value,
+                        load_chunk(&self.normals[k], chunk, 0.0) * std,
+                        limits[k],
+                    );
                 }
             }
         }
@@ -220,17 +224,17 @@ impl Propagation {
                 .zip([1.0, 1.0, rho])
                 .enumerate()
             {
-                *impulse = std * arm * part(&self.normals[k], chunk, 0.0);
+                *impulse = std * arm * load_chunk(&self.normals[k], chunk, 0.0);
             }
             self.involved[chunk].moved = self.involved[chunk].moved | moving(&particles.twist, rho);
         }
     }
 
     /// Shows a watch the block's last step.
-    fn show(&self, watch: &dyn StepWatch, particles: usize) {
+    fn show(&self, observer: &dyn Observer, particles: usize) {
         let reports = self.work.reports().as_flattened();
         for (i, report) in reports.iter().enumerate().take(particles) {
-            watch.see(&SolvedStep {
+            observer.on_step(&SolvedStep {
                 problem: &self.work.problem(i),
                 solution: &self.work.solution(i),
                 report: *report,
@@ -300,7 +304,7 @@ impl Propagation {
                     .normal_impulses(chunk, Body::Fixel(j))
                     .gt(touch_impulse);
                 flags.set(model.columns.contact_fixel(j), touches);
-                let against = model.columns.against_fixel(j);
+                let against = model.columns.driven_contact_fixel(j);
                 let before = flags.get(against);
                 flags.set(against, pressed & touches | !pressed & before);
             }
@@ -342,7 +346,7 @@ fn load_columns<const N: usize>(
 ) {
     for (k, to) in to.into_iter().enumerate() {
         let column = block.column(first_column + k);
-        *to = part(column, chunk, column[column.len() - 1]);
+        *to = load_chunk(column, chunk, column[column.len() - 1]);
     }
 }
 
@@ -355,6 +359,6 @@ fn store_columns<const N: usize>(
     from: [&Column; N],
 ) {
     for (k, from) in from.into_iter().enumerate() {
-        store_part(block.column_mut(first_column + k), chunk, from);
+        store_chunk(block.column_mut(first_column + k), chunk, from);
     }
 }

@@ -5,8 +5,8 @@ use std::sync::Mutex;
 
 use stickslip::dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
-    Camera, Cloud, FilterSettings, Log, Occlusion, Run, RunOptions, Setup, SolvedStep, StepWatch,
-    Tactile, run, run_watched,
+    Camera, FilterSettings, Log, Observer, Occlusion, ParticleView, Run, RunOptions, Setup,
+    SolvedStep, Tactile, run, run_observed,
 };
 
 const ROWS: usize = 40;
@@ -26,10 +26,10 @@ struct Moments {
 #[derive(Debug, Default)]
 struct Sums(Mutex<Vec<Moments>>);
 
-impl StepWatch for Sums {
-    fn see(&self, _: &SolvedStep<'_>) {}
+impl Observer for Sums {
+    fn on_step(&self, _: &SolvedStep<'_>) {}
 
-    fn after(&self, row: usize, cloud: &Cloud<'_>) {
+    fn on_row(&self, row: usize, cloud: &ParticleView<'_>) {
         let values = |particle: usize| {
             let (pose, friction) = (cloud.pose(particle), cloud.friction(particle));
             [pose.x, pose.y, pose.theta, friction.mu_s]
@@ -116,7 +116,7 @@ fn log() -> Log {
 
 fn watched(options: &RunOptions) -> (Run, Vec<Moments>) {
     let sums = Sums::default();
-    let run = run_watched(&setup(), &log(), options, &sums, &mut |_| ()).expect("a run");
+    let run = run_observed(&setup(), &log(), options, &sums, &mut |_| ()).expect("a run");
     (run, sums.0.into_inner().expect("one thread"))
 }
 

@@ -1,18 +1,18 @@
-//! The particle set after a row, as a watch sees it: [`Cloud`].
+//! The particle set after a row, as a watch sees it: [`ParticleView`].
 
 use stickslip_dynamics::{Friction, Pose};
 use stickslip_filter::{LogWeights, ParticleSet};
 
-use crate::columns::Columns;
+use crate::particle::columns::Columns;
 
 /// Particles with their weights; it can be looked at, not changed.
 #[derive(Clone, Copy, Debug)]
-pub struct Cloud<'a> {
+pub struct ParticleView<'a> {
     particles: &'a ParticleSet,
     weights: &'a LogWeights,
 }
 
-impl<'a> Cloud<'a> {
+impl<'a> ParticleView<'a> {
     pub(crate) fn new(particles: &'a ParticleSet, weights: &'a LogWeights) -> Self {
         Self { particles, weights }
     }

@@ -3,14 +3,15 @@
 
 use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepWork};
 
-use crate::run::Prepared;
-use crate::watch::SolvedStep;
-use crate::{Estimate, EstimateRow, Setup};
+use crate::estimate::{Estimate, EstimateRow};
+use crate::particle::observer::SolvedStep;
+use crate::prepared_log::PreparedLog;
+use crate::setup::Setup;
 
 /// Simulates the rows of `prepared` once.
 pub(crate) fn simulate(
     setup: &Setup,
-    prepared: &Prepared<'_>,
+    prepared: &PreparedLog<'_>,
     progress: &mut dyn FnMut(usize),
 ) -> Estimate {
     let dynamics = Dynamics::new(setup.scene.clone());
@@ -38,7 +39,7 @@ pub(crate) fn simulate(
 /// Runs the substeps from row `k` to the next; true where one of them had no certified solution.
 fn advance(
     dynamics: &Dynamics,
-    prepared: &Prepared<'_>,
+    prepared: &PreparedLog<'_>,
     k: usize,
     particle: &mut Particle,
     work: &mut StepWork<1>,
@@ -50,8 +51,8 @@ fn advance(
         let [report] = dynamics.step(input, &friction, &mut one, work);
         unsolved |= report.outcome != Outcome::Solved;
         [*particle] = one;
-        if let Some(watch) = prepared.watch {
-            watch.see(&SolvedStep {
+        if let Some(observer) = prepared.observer {
+            observer.on_step(&SolvedStep {
                 problem: &work.problem(0),
                 solution: &work.solution(0),
                 report,

@@ -1,0 +1,173 @@
+//! The particle filter over contact dynamics, one row at a time: [`ContactFilter`], grasp
+//! acquisition as the paper's section III-D has it.
+
+use stickslip_dynamics::{Pose, StepInput};
+use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
+
+use crate::error::RunError;
+use crate::estimate::EstimateRow;
+use crate::particle::history::PoseHistory;
+use crate::particle::model::{ContactModel, ParameterNoise, StepPlan};
+use crate::particle::observation::Observation;
+use crate::particle::observer::Observer;
+use crate::particle::summary::summarise;
+use crate::particle::sums::Reference;
+use crate::particle::view::ParticleView;
+use crate::setup::{Camera, Setup};
+
+/// What a row brings to the particles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measured<'a> {
+    /// Time (s).
+    pub time: f64,
+    /// Pose of the object, where the camera saw it.
+    pub object: Option<Pose>,
+    /// Tactile readings that count, one per sensor.
+    pub tactile: &'a [Option<bool>],
+}
+
+/// How the pusher drives the step to a row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drive<'a> {
+    /// Substeps; their lengths sum to the step's.
+    pub substeps: &'a [StepInput],
+    /// Whether the pusher moves.
+    pub moves: bool,
+}
+
+/// The particle filter, with the estimate at the latest row.
+pub(crate) struct ContactFilter<'o> {
+    filter: ParticleFilter<ContactModel<'o>>,
+    history: PoseHistory,
+    latency: f64,
+    plan: StepPlan,
+    observation: Observation,
+    latest: EstimateRow,
+    collapses: u32,
+}
+
+/// What a contact filter is made with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FilterOptions<'o> {
+    /// Number of particles.
+    pub particles: usize,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// How far before the latest row late poses may show the object (s).
+    pub late: f64,
+    /// Is shown every time step.
+    pub observer: Option<&'o dyn Observer>,
+}
+
+impl FilterOptions<'_> {
+    /// Settings of the particle filter.
+    pub fn settings(&self, setup: &Setup) -> Settings {
+        Settings {
+            particles: self.particles,
+            seed: self.seed,
+            resample_below: setup.filter.resample_below,
+            resampling: Resampling::Systematic,
+        }
+    }
+}
+
+impl<'o> ContactFilter<'o> {
+    /// Particles around `start`, the first pose, which is measured at `time` (s).
+    ///
+    /// # Errors
+    /// Where the filter's settings are out of range.
+    pub fn new(
+        setup: &Setup,
+        camera: Camera,
+        (time, start): (f64, Pose),
+        options: &FilterOptions<'o>,
+    ) -> Result<Self, RunError> {
+        let history = PoseHistory::new(camera.latency + options.late, time);
+        let model = ContactModel::new(setup, camera, start, history.slots());
+        let model = model.observed(options.observer);
+        let reference = Reference::new(start, setup.scene.nominal);
+        let mut this = Self {
+            filter: ParticleFilter::new(model, options.settings(setup))?,
+            history,
+            latency: camera.latency,
+            plan: StepPlan::none(reference),
+            observation: Observation::default(),
+            latest: EstimateRow::default(),
+            collapses: 0,
+        };
+        this.filter.recompute_sums(&this.plan);
+        summarise(&this.filter, &this.plan.reference, &mut this.latest);
+        this.latest.visual = true;
+        Ok(this)
+    }
+
+    /// One row: the step that leads to it, then what was measured there.
+    pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        self.plan_step(&measured, drive);
+        self.observation.pose = measured.object;
+        self.observation.latency = self.history.at(measured.time - self.latency);
+        self.observation.tactile.clear();
+        let tactile = measured.tactile.iter().copied();
+        self.observation.tactile.extend(tactile);
+
+        let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
+        let report = self.filter.step(&self.plan, observation);
+        self.collapses += u32::from(report.collapsed());
+        self.report(&report, measured.object.is_some());
+        &self.latest
+    }
+
+    /// Writes the plan of the step to a row.
+    fn plan_step(&mut self, measured: &Measured<'_>, drive: Drive<'_>) {
+        let plan = &mut self.plan;
+        plan.substeps.clear();
+        plan.substeps.extend_from_slice(drive.substeps);
+        plan.driven = drive.moves;
+        plan.parameter_noise = match measured.object {
+            Some(_) => ParameterNoise::Drawn,
+            None => ParameterNoise::Frozen,
+        };
+        if let Some(reference) = Reference::of(&self.latest) {
+            plan.reference = reference;
+        }
+        plan.slot = self.history.push(measured.time);
+        let slots = self.history.slots();
+        if slots > self.filter.model().columns.history() {
+            self.filter.change_model(|model| model.keep_history(slots));
+        }
+    }
+
+    /// Weighs the particles by a pose that arrives late, against their own poses at `time` (s), from
+    /// which the latency has not been taken yet. A pose that no particle explains changes nothing.
+    pub fn weigh_late(&mut self, time: f64, pose: Pose) -> &EstimateRow {
+        self.observation.pose = Some(pose);
+        self.observation.latency = self.history.at(time - self.latency);
+        self.observation.tactile.clear();
+        let _ = self.filter.observe(&self.plan, &self.observation);
+        summarise(&self.filter, &self.plan.reference, &mut self.latest);
+        &self.latest
+    }
+
+    /// Writes the estimate at the row just made.
+    fn report(&mut self, report: &StepReport, visual: bool) {
+        summarise(&self.filter, &self.plan.reference, &mut self.latest);
+        self.latest.ess = Some(report.effective_sample_size);
+        self.latest.resampled = Some(report.resampled);
+        self.latest.visual = visual;
+    }
+
+    /// The estimate at the latest row.
+    pub fn latest(&self) -> &EstimateRow {
+        &self.latest
+    }
+
+    /// The particles after the latest row.
+    pub fn particles(&self) -> ParticleView<'_> {
+        ParticleView::new(self.filter.particles(), self.filter.weights())
+    }
+
+    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    pub fn collapses(&self) -> u32 {
+        self.collapses
+    }
+}

@@ -1,0 +1,15 @@
+//! The particle filter over contact dynamics: the model, its columns, and what they amount to.
+
+mod camera_likelihood;
+mod chunk;
+mod columns;
+pub(crate) mod contact_filter;
+mod history;
+mod model;
+mod observation;
+pub(crate) mod observer;
+mod propagation;
+mod summary;
+mod sums;
+mod tactile_likelihood;
+pub(crate) mod view;

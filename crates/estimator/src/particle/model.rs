@@ -1,0 +1,253 @@
+//! The particle filter's model of a pushed object (eq. 6): Γ' as transition, camera and tactile
+//! sensors as observation.
+
+use stickslip_dynamics::{Dynamics, Level, Pose, StepInput, on_widest};
+use stickslip_filter::{Block, BlockMut, Draw, Model};
+
+use crate::angle::wrapped;
+use crate::particle::camera_likelihood::{CameraLikelihood, shown};
+use crate::particle::chunk::{Column, LANES, store_chunk};
+use crate::particle::columns::Columns;
+use crate::particle::observation::Observation;
+use crate::particle::observer::Observer;
+use crate::particle::propagation::Propagation;
+use crate::particle::sums::{Reference, Sums};
+use crate::particle::tactile_likelihood::TactileLikelihood;
+use crate::setup::{Camera, Setup};
+
+/// Best log-likelihood below which no particle explains the observation: the particles are
+/// reinitialised around it.
+const COLLAPSED: f64 = -6.0;
+
+/// Whether the friction parameters take a random step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterNoise {
+    /// β̂ = β + w_β τ(β).
+    Drawn,
+    /// β̂ = β, while the camera is occluded.
+    Frozen,
+}
+
+/// The step to one row.
+#[derive(Clone, Debug)]
+pub struct StepPlan {
+    /// Substeps; their lengths sum to the step's.
+    pub substeps: Vec<StepInput>,
+    /// Whether the pusher moves.
+    pub driven: bool,
+    /// Whether the parameters take a random step.
+    pub parameter_noise: ParameterNoise,
+    /// History slot for the pose at the end of the step, where past poses are kept.
+    pub slot: usize,
+    /// Values near the estimate, about which sums are taken.
+    pub reference: Reference,
+}
+
+impl StepPlan {
+    /// No step at all.
+    pub(crate) fn none(reference: Reference) -> Self {
+        Self {
+            substeps: Vec::new(),
+            driven: false,
+            parameter_noise: ParameterNoise::Frozen,
+            slot: 0,
+            reference,
+        }
+    }
+}
+
+/// The model of one setup, started at one pose.
+///
+/// A new sensor is one more field of [`Observation`] and one more term of
+/// [`log_likelihood`](Model::log_likelihood), in a file beside [`CameraLikelihood`] and
+/// [`TactileLikelihood`].
+#[derive(Clone, Debug)]
+pub struct ContactModel<'o> {
+    pub(crate) dynamics: Dynamics,
+    pub(crate) setup: Setup,
+    pub(crate) columns: Columns,
+    pub(crate) observer: Option<&'o dyn Observer>,
+    camera: Camera,
+    start: Pose,
+    camera_likelihood: CameraLikelihood,
+    tactile_likelihood: TactileLikelihood,
+}
+
+impl<'o> ContactModel<'o> {
+    /// A model whose particles start around `start`, with `history` past poses per particle.
+    pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
+        let columns = Columns::new(setup.scene.fixels.len(), history);
+        Self {
+            dynamics: Dynamics::new(setup.scene.clone()),
+            setup: setup.clone(),
+            columns,
+            observer: None,
+            camera,
+            start,
+            camera_likelihood: CameraLikelihood::new(&camera, &setup.filter, columns),
+            tactile_likelihood: TactileLikelihood::new(&setup.tactile, columns),
+        }
+    }
+
+    /// The same, with an `observer` that is shown every step solved.
+    #[must_use]
+    pub fn observed(self, observer: Option<&'o dyn Observer>) -> Self {
+        Self { observer, ..self }
+    }
+
+    /// From now on each particle keeps `poses` past poses, at least as many as before.
+    pub fn keep_history(&mut self, poses: usize) {
+        let setup = &self.setup;
+        self.columns = Columns::new(self.columns.fixels(), poses);
+        self.camera_likelihood = CameraLikelihood::new(&self.camera, &setup.filter, self.columns);
+        self.tactile_likelihood = TactileLikelihood::new(&setup.tactile, self.columns);
+    }
+
+    /// A camera pose's worth of noise around `pose`.
+    fn drawn_around(&self, pose: &Pose, [x, y, theta]: [f64; 3]) -> Pose {
+        let camera = &self.camera;
+        Pose {
+            x: pose.x + camera.position_std * x,
+            y: pose.y + camera.position_std * y,
+            theta: pose.theta + camera.orientation_std * theta,
+        }
+    }
+}
+
+impl Model for ContactModel<'_> {
+    type Input = StepPlan;
+    type Observation = Observation;
+    type Scratch = Propagation;
+    type Sums = Sums;
+
+    fn columns(&self) -> usize {
+        self.columns.count()
+    }
+
+    fn scratch(&self) -> Propagation {
+        Propagation::default()
+    }
+
+    /// Poses as noisy as the camera's first one, at rest, all with the nominal friction.
+    fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
+        for (i, particle) in block.particles() {
+            let pose = self.drawn_around(&self.start, draw.normals::<3>(particle, 0));
+            write(block, Columns::POSE, i, pose.fields());
+            write(
+                block,
+                Columns::FRICTION,
+                i,
+                self.setup.scene.nominal.fields(),
+            );
+            for slot in 0..self.columns.history() {
+                write(block, self.columns.past_pose(slot), i, pose.fields());
+            }
+        }
+    }
+
+    fn propagate(
+        &self,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+        scratch: &mut Propagation,
+    ) {
+        scratch.propagate(self, plan, draw, block);
+    }
+
+    fn log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
+        by_chunk(
+            out,
+            #[inline(always)]
+            |chunk| {
+                let camera = &self.camera_likelihood;
+                let tactile = &self.tactile_likelihood;
+                camera.log_likelihood(observation, block, chunk)
+                    + tactile.log_likelihood(&observation.tactile, block, chunk)
+            },
+        );
+    }
+
+    fn sum(&self, plan: &StepPlan, block: &Block<'_>, weights: &[f64], sums: &mut Sums) {
+        on_widest(
+            Level::new(),
+            #[inline(always)]
+            || sums.evaluate(block, weights, &plan.reference, self.columns),
+        );
+    }
+
+    /// The camera's alone: reinitialising the pose makes no touch likelier.
+    fn resetting_log_likelihood(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        out: &mut [f64],
+    ) {
+        by_chunk(
+            out,
+            #[inline(always)]
+            |chunk| {
+                self.camera_likelihood
+                    .log_likelihood(observation, block, chunk)
+            },
+        );
+    }
+
+    fn collapsed(&self, best_log_likelihood: f64) -> bool {
+        best_log_likelihood < COLLAPSED
+    }
+
+    /// Moves every particle, its past included, so that what the camera sees is drawn around the
+    /// measured pose.
+    fn reinitialise(&self, observation: &Observation, draw: Draw, block: &mut BlockMut<'_>) {
+        let Some(measured) = observation.pose else {
+            return;
+        };
+        for (i, particle) in block.particles() {
+            let chunk = shown(
+                self.columns,
+                observation.latency,
+                &block.as_block(),
+                i / LANES,
+            );
+            let shown = chunk.map(|column| column.0[i % LANES]);
+            let drawn = self.drawn_around(&measured, draw.normals::<3>(particle, 0));
+            let shift = Pose {
+                x: drawn.x - shown.x,
+                y: drawn.y - shown.y,
+                theta: wrapped(drawn.theta - shown.theta),
+            };
+            let past = (0..self.columns.history()).map(|slot| self.columns.past_pose(slot));
+            for column in std::iter::once(Columns::POSE).chain(past) {
+                for (axis, shift) in shift.fields().into_iter().enumerate() {
+                    block.column_mut(column + axis)[i] += shift;
+                }
+            }
+        }
+    }
+}
+
+/// Writes `value(chunk)` for every chunk of particles, on the widest instructions.
+fn by_chunk(out: &mut [f64], value: impl Fn(usize) -> Column) {
+    on_widest(
+        Level::new(),
+        #[inline(always)]
+        || {
+            for chunk in 0..out.len().div_ceil(LANES) {
+                store_chunk(out, chunk, &value(chunk));
+            }
+        },
+    );
+}
+
+/// Writes neighbouring columns of particle `i`.
+fn write<const N: usize>(
+    block: &mut BlockMut<'_>,
+    first_column: usize,
+    i: usize,
+    values: [&f64; N],
+) {
+    for (k, value) in values.into_iter().enumerate() {
+        block.column_mut(first_column + k)[i] = *value;
+    }
+}

@@ -1,0 +1,32 @@
+//! What the sensors read at one row: [`Observation`].
+
+use stickslip_dynamics::Pose;
+
+/// Where in a particle's past the camera looks: between two slots of its history.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatencyCompensation {
+    /// Slot of the earlier pose.
+    pub earlier: usize,
+    /// Slot of the later pose.
+    pub later: usize,
+    /// Fraction of the way from the earlier to the later.
+    pub fraction: f64,
+}
+
+/// What the sensors read at one row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Observation {
+    /// Camera pose.
+    pub pose: Option<Pose>,
+    /// Which past pose of each particle the camera shows; `None` is the present one.
+    pub latency: Option<LatencyCompensation>,
+    /// Tactile readings, one per sensor.
+    pub tactile: Vec<Option<bool>>,
+}
+
+impl Observation {
+    /// True where nothing was read.
+    pub fn is_empty(&self) -> bool {
+        self.pose.is_none() && self.tactile.iter().all(Option::is_none)
+    }
+}

@@ -1,0 +1,50 @@
+//! What a particle set amounts to: weighted means and standard deviations of its columns:
+//! [`summarise`].
+
+use std::f64::consts::FRAC_PI_2;
+
+use stickslip_dynamics::Pose;
+use stickslip_filter::ParticleFilter;
+
+use crate::estimate::{EstimateRow, Spread};
+use crate::particle::model::ContactModel;
+use crate::particle::sums::{ANGLE, Reference};
+
+/// Writes weighted means and standard deviations, from sums about `reference`, to `row`; θ is the
+/// angle nearest to that of the reference.
+pub(crate) fn summarise(
+    filter: &ParticleFilter<ContactModel<'_>>,
+    reference: &Reference,
+    row: &mut EstimateRow,
+) {
+    let sums = filter.sums();
+
+    // position and friction, from deviations about the reference
+    let means = reference.linear.zip(sums.first, |near, d| near + d);
+    let variances = sums.second.zip(sums.first, |square, d| square - d * d);
+    let stds = variances.map(|variance| variance.max(0.0).sqrt());
+
+    // θ on the circle
+    let turn = libm::atan2(sums.angle.sin, sums.angle.cos);
+    let theta = reference.angle + turn;
+    let theta_std = if sums.widest <= FRAC_PI_2 {
+        sums.angle.std_about(turn)
+    } else {
+        filter.weighted_circular_std_about(theta, ANGLE)
+    };
+
+    let pose = |[x, y]: [f64; 2], theta: f64| Pose { x, y, theta };
+    row.pose = Some(pose(means.position, theta));
+    row.twist = Some(sums.twist);
+    row.friction = Some(means.friction);
+    row.spread = Some(Spread {
+        pose: pose(stds.position, theta_std),
+        friction: Some(stds.friction),
+    });
+    row.contact_pusher = Some(sums.contact_pusher);
+    row.contact_fixels
+        .get_or_insert_default()
+        .clone_from(&sums.contact_fixels);
+    row.unsolved = Some(sums.unsolved as u32);
+    row.ess = Some(filter.weights().effective_sample_size());
+}

@@ -1,0 +1,269 @@
+//! Sums over weighted particles, block by block: [`Sums`].
+
+use stickslip_dynamics::{Friction, Lanes, Pose, Twist, sin_cos};
+use stickslip_filter::{Block, WeightedSums};
+
+use crate::angle::nearest_zero;
+use crate::estimate::EstimateRow;
+use crate::particle::chunk::{Column, LANES, flag, load_chunk};
+use crate::particle::columns::{Columns, Flag};
+
+/// θ.
+pub(crate) const ANGLE: usize = Columns::POSE + 2;
+
+/// What is averaged on the line, not on the circle: one thing for each of these columns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Linear<T> {
+    /// x and y of the object.
+    pub position: [T; 2],
+    /// The friction parameters.
+    pub friction: Friction<T>,
+}
+
+impl<T> Linear<T> {
+    /// In the order of [`Linear::COLUMNS`].
+    #[inline(always)]
+    fn fields(&self) -> [&T; 6] {
+        let ([x, y], [mu_s, mu_p, mu_f, d_tri]) = (&self.position, self.friction.fields());
+        [x, y, mu_s, mu_p, mu_f, d_tri]
+    }
+
+    #[inline(always)]
+    fn fields_mut(&mut self) -> [&mut T; 6] {
+        let ([x, y], [mu_s, mu_p, mu_f, d_tri]) = (&mut self.position, self.friction.fields_mut());
+        [x, y, mu_s, mu_p, mu_f, d_tri]
+    }
+
+    pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> Linear<U> {
+        Linear {
+            position: self.position.map(&mut f),
+            friction: self.friction.map(f),
+        }
+    }
+}
+
+impl Linear<f64> {
+    /// The columns that hold them.
+    const COLUMNS: [usize; 6] = {
+        let friction = Columns::FRICTION;
+        let (x, y) = (Columns::POSE, Columns::POSE + 1);
+        [x, y, friction, friction + 1, friction + 2, friction + 3]
+    };
+
+    /// Combines two, number by number.
+    pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut zipped = self;
+        for (to, other) in zipped.fields_mut().into_iter().zip(other.fields()) {
+            *to = f(*to, *other);
+        }
+        zipped
+    }
+}
+
+/// Reference values near the mean; sums of deviations from them avoid cancellation.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference {
+    /// Position and friction.
+    pub linear: Linear<f64>,
+    /// θ.
+    pub angle: f64,
+}
+
+impl Reference {
+    /// The means of a row.
+    pub fn of(row: &EstimateRow) -> Option<Self> {
+        row.pose
+            .zip(row.friction)
+            .map(|(pose, friction)| Self::new(pose, friction))
+    }
+
+    /// A pose and friction values.
+    pub fn new(pose: Pose, friction: Friction) -> Self {
+        let position = [pose.x, pose.y];
+        Self {
+            linear: Linear { position, friction },
+            angle: pose.theta,
+        }
+    }
+}
+
+/// Sums over angles of particles; d is the deviation from the reference.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AngleSums<T> {
+    /// Σ w sin d.
+    pub sin: T,
+    /// Σ w cos d.
+    pub cos: T,
+    /// Σ w d.
+    pub first: T,
+    /// Σ w d².
+    pub second: T,
+}
+
+impl<T> AngleSums<T> {
+    #[inline(always)]
+    fn fields(&self) -> [&T; 4] {
+        [&self.sin, &self.cos, &self.first, &self.second]
+    }
+
+    #[inline(always)]
+    fn fields_mut(&mut self) -> [&mut T; 4] {
+        let Self {
+            sin,
+            cos,
+            first,
+            second,
+        } = self;
+        [sin, cos, first, second]
+    }
+}
+
+impl AngleSums<f64> {
+    /// Standard deviation of the angles about their mean direction, `turn` from the reference, if
+    /// none is on the other side of the circle.
+    pub fn std_about(&self, turn: f64) -> f64 {
+        (self.second - 2.0 * turn * self.first + turn * turn)
+            .max(0.0)
+            .sqrt()
+    }
+}
+
+/// Weighted sums over some particles; d is the deviation from the reference.
+#[derive(Clone, Debug, Default)]
+pub struct Sums {
+    /// Σ w d.
+    pub first: Linear<f64>,
+    /// Σ w d².
+    pub second: Linear<f64>,
+    /// Σ w v.
+    pub twist: Twist,
+    /// Those over θ.
+    pub angle: AngleSums<f64>,
+    /// Largest |d| of the angles (rad).
+    pub widest: f64,
+    /// Number of particles whose last step was not solved.
+    pub unsolved: f64,
+    /// Σ w c_p.
+    pub contact_pusher: f64,
+    /// Σ w c_j of every fixel.
+    pub contact_fixels: Vec<f64>,
+}
+
+impl Sums {
+    /// Sums over one block.
+    #[inline(always)]
+    pub fn evaluate(
+        &mut self,
+        block: &Block<'_>,
+        weights: &[f64],
+        reference: &Reference,
+        columns: Columns,
+    ) {
+        let o = Column::ZERO;
+        let mut first = Linear::<Column>::default();
+        let mut second = Linear::<Column>::default();
+        let mut twist = Twist::<Column>::default();
+        let mut angle = AngleSums::<Column>::default();
+        let (mut widest, mut unsolved) = (o, o);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let of_column = |column: usize| load_chunk(block.column(column), chunk, 0.0);
+            let w = load_chunk(weights, chunk, 0.0);
+
+            // position and friction
+            let (first, second) = (first.fields_mut(), second.fields_mut());
+            let near = reference.linear.fields();
+            for (k, (first, second)) in first.into_iter().zip(second).enumerate() {
+                let d = of_column(Linear::COLUMNS[k]) - *near[k];
+                *first += w * d;
+                *second += w * d * d;
+            }
+
+            // twist
+            for (k, sum) in twist.fields_mut().into_iter().enumerate() {
+                *sum += w * of_column(Columns::TWIST + k);
+            }
+
+            // angle, on the circle
+            let d = nearest_zero(of_column(ANGLE) - reference.angle);
+            let (sin, cos) = sin_cos(d);
+            for (sum, value) in angle.fields_mut().into_iter().zip([sin, cos, d, d * d]) {
+                *sum += w * value;
+            }
+            widest = widest.max(w.gt(o).zero_unless(d.abs()));
+
+            // how the steps ended
+            unsolved += flag(block, Columns::UNSOLVED, chunk).zero_unless(Lanes::splat(1.0));
+        }
+        self.first = first.map(total);
+        self.second = second.map(total);
+        self.twist = twist.map(total);
+        let [sin, cos, d, square] = angle.fields().map(|sum| total(*sum));
+        self.angle = AngleSums {
+            sin,
+            cos,
+            first: d,
+            second: square,
+        };
+        self.widest = widest.0.into_iter().fold(0.0, f64::max);
+        self.unsolved = total(unsolved);
+        self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
+        self.contact_fixels.clear();
+        for j in 0..columns.fixels() {
+            let contact = columns.contact_fixel(j);
+            self.contact_fixels.push(share(block, weights, contact));
+        }
+    }
+}
+
+/// Weight of the particles whose flag is set.
+#[inline(always)]
+fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
+    let mut sum = Column::ZERO;
+    for chunk in 0..block.len().div_ceil(LANES) {
+        sum += flag(block, which, chunk).zero_unless(load_chunk(weights, chunk, 0.0));
+    }
+    total(sum)
+}
+
+#[inline(always)]
+fn total(lanes: Column) -> f64 {
+    lanes.0.iter().sum()
+}
+
+impl WeightedSums for Sums {
+    fn clear(&mut self) {
+        let mut contact_fixels = std::mem::take(&mut self.contact_fixels);
+        contact_fixels.clear();
+        *self = Self {
+            contact_fixels,
+            ..Self::default()
+        };
+    }
+
+    fn add(&mut self, other: &Self, share: f64) {
+        let add = |to: &mut f64, from: &f64| *to += share * from;
+        let linear = [
+            (&mut self.first, &other.first),
+            (&mut self.second, &other.second),
+        ];
+        for (to, from) in linear {
+            let pairs = to.fields_mut().into_iter().zip(from.fields());
+            pairs.for_each(|(to, from)| add(to, from));
+        }
+        let twist = self.twist.fields_mut().into_iter();
+        twist
+            .zip(other.twist.fields())
+            .for_each(|(to, from)| add(to, from));
+        let angle = self.angle.fields_mut().into_iter();
+        angle
+            .zip(other.angle.fields())
+            .for_each(|(to, from)| add(to, from));
+        add(&mut self.contact_pusher, &other.contact_pusher);
+        let fixels = other.contact_fixels.len();
+        self.contact_fixels.resize(fixels, 0.0);
+        let fixels = self.contact_fixels.iter_mut().zip(&other.contact_fixels);
+        fixels.for_each(|(to, from)| add(to, from));
+        self.widest = self.widest.max(other.widest);
+        self.unsolved += other.unsolved;
+    }
+}

@@ -1,0 +1,87 @@
+//! A log made ready for a method: [`PreparedLog`].
+
+use stickslip_dynamics::Pose;
+
+use crate::error::RunError;
+use crate::estimate::{Estimate, EstimateRow};
+use crate::log::Log;
+use crate::options::RunOptions;
+use crate::particle::observer::Observer;
+use crate::pusher::schedule::{LONGEST_PAUSE, Schedule};
+use crate::pusher::track::PusherTrack;
+use crate::setup::Setup;
+
+/// Refuses a log whose steps no substeps can follow.
+fn check_pauses(time: &[f64]) -> Result<(), RunError> {
+    match time
+        .array_windows()
+        .position(|[from, to]| to - from > LONGEST_PAUSE)
+    {
+        Some(row) => Err(RunError::Pause {
+            row: row + 1,
+            from: time[row],
+            to: time[row + 1],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// A log with its occlusion mask, start pose and step schedule.
+pub(crate) struct PreparedLog<'a> {
+    /// The log.
+    pub log: &'a Log,
+    /// Whether the object's pose is hidden, row by row.
+    pub hidden: Vec<bool>,
+    /// First row with a visible object pose: row 0 of the estimate.
+    pub first: usize,
+    /// The pose there.
+    pub start: Pose,
+    /// The substeps from row to row.
+    pub schedule: Schedule,
+    /// Is shown every time step.
+    pub observer: Option<&'a dyn Observer>,
+}
+
+impl<'a> PreparedLog<'a> {
+    pub fn new(setup: &Setup, log: &'a Log, options: &RunOptions) -> Result<Self, RunError> {
+        let fixels = setup.scene.fixels.len();
+        if log.tactile.len() > fixels {
+            return Err(RunError::Sensors {
+                sensors: log.tactile.len(),
+                fixels,
+            });
+        }
+        check_pauses(&log.time)?;
+        let hidden = options.occlusion.hidden(log);
+        let seen = (0..log.len()).find_map(|row| {
+            log.object[row]
+                .filter(|_| !hidden[row])
+                .map(|pose| (row, pose))
+        });
+        let (first, start) = seen.ok_or(RunError::NoObjectPose { rows: log.len() })?;
+        let track = PusherTrack::new(log, setup.camera.as_ref(), options.tracking)?;
+        Ok(Self {
+            log,
+            hidden,
+            first,
+            start,
+            schedule: Schedule::new(&log.time, &track, options.substeps),
+            observer: None,
+        })
+    }
+
+    /// The object pose of a row, where it was measured and is not hidden.
+    pub fn visible(&self, row: usize) -> Option<Pose> {
+        self.log.object[row].filter(|_| !self.hidden[row])
+    }
+
+    /// Empty rows for every row of the log.
+    pub fn empty_estimate(&self, setup: &Setup) -> Estimate {
+        Estimate {
+            time: self.log.time.clone(),
+            rows: vec![EstimateRow::default(); self.log.len()],
+            fixels: setup.scene.fixels.len(),
+            has_tripod: setup.has_tripod(),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The pusher's track over a whole log: the fixed-interval smoother of a constant-velocity Kalman
+//! filter, axis by axis ([`smoothed_track`]).
+
+use std::ops::Range;
+
+use stickslip_dynamics::Pose;
+use stickslip_filter::{AxisEstimate, ConstantVelocity};
+
+use crate::error::RunError;
+use crate::log::Log;
+use crate::pusher::track::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
+use crate::setup::Camera;
+
+/// Tracks the pusher of `log`, one pose per row; without a `camera` its poses count as exact.
+pub(crate) fn smoothed_track(
+    log: &Log,
+    camera: Option<&Camera>,
+) -> Result<Vec<Option<TrackedPose>>, RunError> {
+    let mut rows = vec![None; log.len()];
+    for span in spans(log) {
+        let poses = track_span(&log.time[span.clone()], &log.pusher[span.clone()], camera)?;
+        for (row, pose) in rows[span].iter_mut().zip(poses) {
+            *row = Some(pose);
+        }
+    }
+    Ok(rows)
+}
+
+/// Row ranges in which the pusher is on the plane: from a first pose to the last before a gap that
+/// is too long.
+/// A gap that runs to the end of the log is bridged like any other.
+fn spans(log: &Log) -> Vec<Range<usize>> {
+    let bridged = |from: usize, to: usize| bridged(log.time[from], log.time[to]);
+    let mut spans: Vec<Range<usize>> = Vec::new();
+    for row in (0..log.len()).filter(|&row| log.pusher[row].is_some()) {
+        match spans.last_mut() {
+            Some(span) if bridged(span.end - 1, row) => span.end = row + 1,
+            _ => spans.push(row..row + 1),
+        }
+    }
+    for span in &mut spans {
+        let last = span.end - 1;
+        let held = (span.end..log.len())
+            .take_while(|&row| bridged(last, row))
+            .count();
+        if span.end + held == log.len() {
+            span.end += held;
+        }
+    }
+    spans
+}
+
+fn track_span(
+    time: &[f64],
+    seen: &[Option<Pose>],
+    camera: Option<&Camera>,
+) -> Result<Vec<TrackedPose>, RunError> {
+    let axis = |pick: fn(&Pose) -> f64, std: f64| {
+        let measured: Vec<Option<f64>> = seen.iter().map(|pose| pose.as_ref().map(pick)).collect();
+        track_axis(time, &measured, std)
+    };
+    let (position_std, orientation_std) = camera.map_or((0.0, 0.0), |c| {
+        (c.pusher_position_std, c.pusher_orientation_std)
+    });
+    let position = || {
+        rayon::join(
+            || axis(|p| p.x, position_std),
+            || axis(|p| p.y, position_std),
+        )
+    };
+    let ((x, y), theta) = rayon::join(position, || axis(|p| p.theta, orientation_std));
+    let tracked = x?
+        .into_iter()
+        .zip(y?)
+        .zip(theta?)
+        .map(|((x, y), theta)| TrackedPose::of([x, y, theta]));
+    Ok(tracked.collect())
+}
+
+fn track_axis(
+    time: &[f64],
+    measured: &[Option<f64>],
+    std: f64,
+) -> Result<Vec<AxisEstimate>, RunError> {
+    let too_few = measured.iter().flatten().count() < 3;
+    if std == 0.0 || too_few {
+        return Ok(bridge(time, measured));
+    }
+    let model = |process_noise: f64| ConstantVelocity {
+        process_noise,
+        measurement_std: std,
+        initial_velocity_std: INITIAL_VELOCITY_STD,
+    };
+    let fitted = model(0.0).fit_process_noise(time, measured)?.process_noise;
+    let rows = model(fitted).smooth(time, measured)?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// Exact poses: gaps are interpolated, and held at the end. The first row is measured.
+fn bridge(time: &[f64], measured: &[Option<f64>]) -> Vec<AxisEstimate> {
+    let mut before = (time[0], measured[0].unwrap_or(0.0));
+    let positions = (0..time.len()).map(|row| {
+        if let Some(value) = measured[row] {
+            before = (time[row], value);
+            return value;
+        }
+        let after =
+            (row..time.len()).find_map(|later| measured[later].map(|value| (time[later], value)));
+        match after {
+            Some((t, value)) => {
+                before.1 + (value - before.1) * (time[row] - before.0) / (t - before.0)
+            }
+            None => before.1,
+        }
+    });
+    let positions: Vec<f64> = positions.collect();
+    let velocity = |row: usize| {
+        if row == 0 {
+            0.0
+        } else {
+            (positions[row] - positions[row - 1]) / (time[row] - time[row - 1])
+        }
+    };
+    let at = |row: usize| AxisEstimate {
+        position: positions[row],
+        velocity: velocity(row),
+        position_variance: 0.0,
+        velocity_variance: 0.0,
+    };
+    (0..time.len()).map(at).collect()
+}

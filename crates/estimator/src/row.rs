@@ -1,0 +1,103 @@
+//! What one camera frame brings: [`Row`].
+
+use stickslip_dynamics::Pose;
+
+/// The measurements of one instant, `None` where there is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Time (s).
+    pub time: f64,
+    /// Pose of the object as the camera measured it; it shows the object one latency earlier.
+    pub object: Option<Pose>,
+    /// Pose of the pusher.
+    pub pusher: Option<Pose>,
+    /// Tactile readings over the interval that ends here, sensor k on fixel k; sensors past the end
+    /// are silent.
+    pub tactile: Vec<Option<bool>>,
+    /// Force of the pusher on the object over the same interval, world frame (N).
+    pub force: Option<[f64; 2]>,
+}
+
+/// Why a row was refused; the tracker is as it was before.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RowError {
+    /// The time is NaN or infinite.
+    #[error("the row's time is {time} s; it must be finite")]
+    Time {
+        /// The time found (s).
+        time: f64,
+    },
+    /// A number of a pose is NaN or infinite.
+    #[error(
+        "the {body}'s pose at {time} s is ({x}, {y}, {theta}); all three must be finite; give None where nothing was measured",
+        x = pose.x, y = pose.y, theta = pose.theta
+    )]
+    Pose {
+        /// `object` or `pusher`.
+        body: &'static str,
+        /// Time of the row (s).
+        time: f64,
+        /// The pose found.
+        pose: Pose,
+    },
+    /// More sensors than fixels.
+    #[error(
+        "the row at {time} s has {sensors} tactile readings but the scene has {fixels} fixels; sensor k is on the k-th [[fixel]]"
+    )]
+    Sensors {
+        /// Time of the row (s).
+        time: f64,
+        /// Readings found.
+        sensors: usize,
+        /// Fixels of the scene.
+        fixels: usize,
+    },
+    /// Nothing can be said of what happened since the row before.
+    #[error(
+        "the row is at {to} s and the latest before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or start a new tracker",
+        longest = crate::pusher::schedule::LONGEST_PAUSE
+    )]
+    Pause {
+        /// Time of the latest row (s).
+        from: f64,
+        /// Time of the row (s).
+        to: f64,
+    },
+    /// The row is older than the particles' history.
+    #[error(
+        "the row is at {time} s but the tracker is at {latest} s and remembers {remembered} s; leave such rows out, or raise `late` in the tracker's options"
+    )]
+    TooLate {
+        /// Time of the row (s).
+        time: f64,
+        /// Time of the latest row (s).
+        latest: f64,
+        /// How far back a row may lie (s).
+        remembered: f64,
+    },
+}
+
+impl Row {
+    /// Refuses what no tracker can use.
+    pub(crate) fn check(&self, fixels: usize) -> Result<(), RowError> {
+        let time = self.time;
+        if !time.is_finite() {
+            return Err(RowError::Time { time });
+        }
+        for (body, pose) in [("object", self.object), ("pusher", self.pusher)] {
+            if let Some(pose) = pose.filter(|pose| !pose.is_finite()) {
+                return Err(RowError::Pose { body, time, pose });
+            }
+        }
+        let sensors = self.tactile.len();
+        if sensors > fixels {
+            return Err(RowError::Sensors {
+                time,
+                sensors,
+                fixels,
+            });
+        }
+        Ok(())
+    }
+}

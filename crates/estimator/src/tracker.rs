@@ -1,0 +1,255 @@
+//! Tracks the object row by row, as a robot needs it: [`Tracker`].
+
+use stickslip_dynamics::StepInput;
+
+use crate::error::RunError;
+use crate::estimate::EstimateRow;
+use crate::options::{RunOptions, TactileUse};
+use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::observer::Observer;
+use crate::particle::view::ParticleView;
+use crate::pusher::causal::CausalTrack;
+use crate::pusher::schedule::{LONGEST_PAUSE, split};
+use crate::pusher::track::{TrackedPose, motion};
+use crate::row::{Row, RowError};
+use crate::setup::{Camera, Setup};
+
+/// Direction in which a pusher that has not moved yet may give way.
+const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
+
+/// How a tracker works; the defaults are those of the program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackerOptions {
+    /// Number of particles.
+    pub particles: usize,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Use of tactile readings.
+    pub tactile: TactileUse,
+    /// Forced number of substeps from row to row; `None`: by the length of the step.
+    pub substeps: Option<u32>,
+    /// How far behind the latest row a row may come and still count (s); the particles keep their
+    /// poses for as long.
+    pub late: f64,
+}
+
+impl Default for TrackerOptions {
+    fn default() -> Self {
+        Self {
+            late: 0.2,
+            ..Self::of(&RunOptions::default())
+        }
+    }
+}
+
+impl TrackerOptions {
+    /// Those of a run over a whole log, whose rows are never late.
+    pub fn of(options: &RunOptions) -> Self {
+        Self {
+            particles: options.particles,
+            seed: options.seed,
+            tactile: options.tactile,
+            substeps: options.substeps,
+            late: 0.0,
+        }
+    }
+}
+
+/// The particle filter over contact dynamics, one row at a time.
+///
+/// It gives what [`run`](crate::run) gives with [`Tracking::Causal`](crate::Tracking), bit for bit:
+/// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the first
+/// rows, on one thread, a row allocates nothing.
+///
+/// ```
+/// use stickslip::{Row, Tracker, TrackerOptions};
+/// # let folder = "../cli/demo/slide-ell-disc-110";
+/// let scene = std::fs::read_to_string(format!("{folder}/scene.toml"))?;
+/// let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;
+/// let mut tracker = Tracker::new(&setup, &TrackerOptions::default())?;
+/// # let csv = std::fs::read(format!("{folder}/log.csv"))?;
+/// # let (log, _) = stickslip_formats::read_log(&csv[..], "log.csv")?;
+/// # let camera = (0..20).map(|row| log.row(row));
+/// for row in camera {
+///     let estimate = tracker.push(&row)?;
+///     println!("{:.3} s: {:?}", row.time, estimate.pose);
+/// }
+/// let particles = tracker.particles().expect("there was a pose");
+/// assert_eq!(particles.len(), 500);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Tracker<'o> {
+    setup: Setup,
+    camera: Camera,
+    options: TrackerOptions,
+    observer: Option<&'o dyn Observer>,
+    pusher: CausalTrack,
+    /// The pusher at the latest row.
+    tracked: Option<TrackedPose>,
+    direction: [f64; 2],
+    substeps: Vec<StepInput>,
+    /// Time of the latest row (s).
+    time: Option<f64>,
+    /// From the first object pose on.
+    filter: Option<ContactFilter<'o>>,
+    /// The row before there is a pose.
+    nothing: EstimateRow,
+}
+
+impl Tracker<'static> {
+    /// A tracker that waits for its first row.
+    ///
+    /// # Errors
+    /// Where the scene has no camera, or its numbers or the options are out of range.
+    pub fn new(setup: &Setup, options: &TrackerOptions) -> Result<Self, RunError> {
+        Self::build(setup, options, None)
+    }
+}
+
+impl<'o> Tracker<'o> {
+    /// The same, with an `observer` that is shown every time step solved; it changes no result.
+    ///
+    /// # Errors
+    /// Those of [`Tracker::new`].
+    pub fn observed(
+        setup: &Setup,
+        options: &TrackerOptions,
+        observer: &'o dyn Observer,
+    ) -> Result<Self, RunError> {
+        Self::build(setup, options, Some(observer))
+    }
+
+    pub(crate) fn build(
+        setup: &Setup,
+        options: &TrackerOptions,
+        observer: Option<&'o dyn Observer>,
+    ) -> Result<Self, RunError> {
+        let camera = setup.camera.ok_or(RunError::NoCamera)?;
+        let tracker = Self {
+            setup: setup.clone(),
+            camera,
+            options: *options,
+            observer,
+            pusher: CausalTrack::new(Some(&camera))?,
+            tracked: None,
+            direction: FIRST_DIRECTION,
+            substeps: Vec::new(),
+            time: None,
+            filter: None,
+            nothing: EstimateRow::default(),
+        };
+        tracker.filter_options().settings(setup).check()?;
+        Ok(tracker)
+    }
+
+    fn filter_options(&self) -> FilterOptions<'o> {
+        FilterOptions {
+            particles: self.options.particles,
+            seed: self.options.seed,
+            late: self.options.late,
+            observer: self.observer,
+        }
+    }
+
+    /// Takes one row; returns the estimate at the latest row, whose cells are empty before the first
+    /// object pose.
+    ///
+    /// A row without an object pose is blacked out. A row that is not later than the latest one is
+    /// late: its object pose is weighed against each particle's own pose at that time, up to
+    /// [`TrackerOptions::late`] back; the rest of it is not used, since the step that it would have
+    /// driven is made.
+    ///
+    /// # Errors
+    /// [`RowError`] where the row cannot be used; the tracker then is as it was before.
+    pub fn push(&mut self, row: &Row) -> Result<&EstimateRow, RowError> {
+        row.check(self.setup.scene.fixels.len())?;
+        match self.time {
+            Some(latest) if row.time <= latest => return self.push_late(row, latest),
+            Some(from) if row.time - from > LONGEST_PAUSE => {
+                return Err(RowError::Pause { from, to: row.time });
+            }
+            _ => {}
+        }
+
+        // the pusher, and the substeps over which it drives the object
+        let tracked = self.pusher.push(row.time, row.pusher);
+        let moves = tracked.is_some_and(|tracked| tracked.moves());
+        self.plan_substeps(row.time, tracked);
+        (self.time, self.tracked) = (Some(row.time), tracked);
+
+        // the particles, which begin at the first pose of the object
+        match (&mut self.filter, row.object) {
+            (Some(filter), object) => {
+                let tactile = match self.options.tactile {
+                    TactileUse::Used => &row.tactile[..],
+                    TactileUse::Ignored => &[],
+                };
+                let measured = Measured {
+                    time: row.time,
+                    object,
+                    tactile,
+                };
+                let substeps = &self.substeps;
+                filter.step(measured, Drive { substeps, moves });
+            }
+            (None, Some(pose)) => {
+                let options = self.filter_options();
+                let start = (row.time, pose);
+                let filter = ContactFilter::new(&self.setup, self.camera, start, &options);
+                self.filter = Some(filter.expect("the settings were checked"));
+            }
+            (None, None) => {}
+        }
+        Ok(self.estimate())
+    }
+
+    /// Writes the substeps from the latest row to `time`, at whose end the pusher is `next`.
+    fn plan_substeps(&mut self, time: f64, next: Option<TrackedPose>) {
+        self.substeps.clear();
+        let Some(from) = self.time else { return };
+        let h = time - from;
+        let motion = motion(self.tracked, next, h, self.direction);
+        if let Some(motion) = &motion {
+            self.direction = motion.direction;
+        }
+        self.substeps
+            .extend(split(h, motion, self.options.substeps));
+    }
+
+    fn push_late(&mut self, row: &Row, latest: f64) -> Result<&EstimateRow, RowError> {
+        let remembered = self.options.late;
+        if row.time < latest - remembered {
+            return Err(RowError::TooLate {
+                time: row.time,
+                latest,
+                remembered,
+            });
+        }
+        if let (Some(filter), Some(pose)) = (&mut self.filter, row.object) {
+            filter.weigh_late(row.time, pose);
+        }
+        Ok(self.estimate())
+    }
+
+    /// The estimate at the latest row; its cells are empty before the first object pose.
+    pub fn estimate(&self) -> &EstimateRow {
+        self.filter
+            .as_ref()
+            .map_or(&self.nothing, ContactFilter::latest)
+    }
+
+    /// The particles after the latest row; `None` before the first object pose.
+    pub fn particles(&self) -> Option<ParticleView<'_>> {
+        self.filter.as_ref().map(ContactFilter::particles)
+    }
+
+    /// Time of the latest row (s).
+    pub fn time(&self) -> Option<f64> {
+        self.time
+    }
+
+    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    pub fn collapses(&self) -> u32 {
+        self.filter.as_ref().map_or(0, ContactFilter::collapses)
+    }
+}
