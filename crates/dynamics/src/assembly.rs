@@ -6,13 +6,13 @@ use crate::friction::Friction;
 use crate::geometry::contact::Contact;
 use crate::geometry::narrow_phase::{NarrowWork, PairFrames, near};
 use crate::geometry::shape::Shape;
-use crate::geometry::transform::{Frame, Frames};
+use crate::geometry::transform::Frames;
 use crate::input::{Body, PusherMotion};
 use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Impulses;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
-use crate::prepared_scene::{Moment, Stage};
+use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
 use crate::scene::{Feet, Fixel, Scene};
 use crate::se2::{Pose, Twist, Wrench};
 
@@ -21,7 +21,7 @@ use crate::se2::{Pose, Twist, Wrench};
 pub struct Assembly<const W: usize> {
     rows: Vec<Row<W>>,
     reach: Lanes<W>,
-    setting: Setting,
+    scaling: Scaling<W>,
 }
 
 /// What one row stands for.
@@ -38,15 +38,16 @@ struct Row<const W: usize> {
 
 /// What turns SI units into those of rows, and back.
 #[derive(Clone, Copy, Debug, Default)]
-struct Setting {
+struct Scaling<const W: usize> {
     mass: f64,
     inertia: f64,
     h: f64,
     /// 1/ρ.
-    per_rho: f64,
+    inv_rho: f64,
     /// 1/h.
     rate: f64,
-    stall: Option<Stall>,
+    /// F_stall h (N s) and the direction in which the pusher gives way, lane by lane.
+    stall: Option<(f64, [Lanes<W>; 2])>,
 }
 
 impl<const W: usize> Default for Assembly<W> {
@@ -54,7 +55,7 @@ impl<const W: usize> Default for Assembly<W> {
         Self {
             rows: Vec::new(),
             reach: Lanes::ZERO,
-            setting: Setting::default(),
+            scaling: Scaling::default(),
         }
     }
 }
@@ -73,11 +74,13 @@ impl Body {
 struct Other<'a, const W: usize> {
     body: Body,
     shape: &'a Shape,
-    frame: Frame,
+    frames: Frames<W>,
     mu: Lanes<W>,
-    motion: Option<&'a PusherMotion>,
+    motion: Option<&'a PusherMotion<Lanes<W>>>,
     /// Direction in which it may give way.
-    direction: [f64; 2],
+    direction: [Lanes<W>; 2],
+    /// The lanes in which it is there.
+    present: Mask<W>,
     /// Commanded speed along it from where the body stands to its pose (m/s).
     catch_up: Lanes<W>,
 }
@@ -104,15 +107,15 @@ impl<const W: usize> Assembly<W> {
                 sum += *p_n;
             }
         }
-        sum * self.setting.mass
+        sum * self.scaling.mass
     }
 
     /// Writes the step's problems.
     #[inline(always)]
     pub fn collect(
         &mut self,
-        stage: &Stage,
-        moment: &Moment<'_>,
+        prepared: &PreparedScene,
+        (context, pusher): (&StepContext<'_, W>, Option<&PusherContext<W>>),
         particles: &Particles<W>,
         narrow: &mut NarrowWork<W>,
         ncp: &mut Ncp<W>,
@@ -120,32 +123,39 @@ impl<const W: usize> Assembly<W> {
         self.rows.clear();
         ncp.clear();
         let object = Frames::new(&particles.pose);
-        self.set_body(stage, moment, (particles, &object), ncp);
-        let scene = &stage.scene;
-        if let Some((motion, frame)) = moment.pusher {
-            let direction = self.setting.stall.map_or([0.0; 2], |stall| stall.direction);
-            let (mu, catch_up) = (particles.friction.mu_p, particles.pusher_lag * moment.rate);
+        self.set_body(prepared, (context, pusher), (particles, &object), ncp);
+        let scene = &prepared.scene;
+
+        // contacts with the pusher, which may stall
+        if let Some(pusher) = pusher {
             let pusher = Other {
                 body: Body::Pusher,
                 shape: &scene.pusher.shape,
-                frame,
-                mu,
-                motion: Some(motion),
-                direction,
-                catch_up,
+                frames: pusher.frames,
+                mu: particles.friction.mu_p,
+                motion: Some(&pusher.motion),
+                direction: self
+                    .scaling
+                    .stall
+                    .map_or([Lanes::ZERO; 2], |(_, direction)| direction),
+                present: pusher.present,
+                catch_up: particles.pusher_lag * context.rate,
             };
             self.meet(scene, &object, &pusher, narrow, ncp);
         }
-        let mu = particles.friction.mu_f;
-        for (j, (Fixel { shape, .. }, frame)) in scene.fixels.iter().zip(&stage.fixels).enumerate()
+
+        // contacts with the fixels
+        for (j, (Fixel { shape, .. }, frame)) in
+            scene.fixels.iter().zip(&prepared.fixels).enumerate()
         {
             let fixel = Other {
                 body: Body::Fixel(j),
                 shape,
-                frame: *frame,
-                mu,
+                frames: frame.splat(),
+                mu: particles.friction.mu_f,
                 motion: None,
-                direction: [0.0; 2],
+                direction: [Lanes::ZERO; 2],
+                present: Mask::splat(true),
                 catch_up: Lanes::ZERO,
             };
             self.meet(scene, &object, &fixel, narrow, ncp);
@@ -156,54 +166,47 @@ impl<const W: usize> Assembly<W> {
     #[inline(always)]
     fn set_body(
         &mut self,
-        &Stage {
+        &PreparedScene {
             ref scene,
             rho,
-            per_rho,
-            per_mass,
-            per_inertia,
+            inv_rho,
+            inv_mass,
+            inv_inertia,
             ref stance,
             ..
-        }: &Stage,
-        &Moment { input, rate, .. }: &Moment<'_>,
+        }: &PreparedScene,
+        (&StepContext { h, rate, .. }, pusher): (&StepContext<'_, W>, Option<&PusherContext<W>>),
         (particles, object): (&Particles<W>, &Frames<W>),
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
-        let limit = input.pusher.and_then(|pusher| {
-            scene
-                .pusher
-                .stall_force
-                .map(|force| (force, pusher.direction))
-        });
-        let stall = limit.map(|(force, direction)| Stall {
-            impulse: force * input.h,
-            direction,
-        });
-        self.setting = Setting {
+        let stall = pusher
+            .zip(scene.pusher.stall_force)
+            .map(|(pusher, force)| (force * h, pusher.motion.direction));
+        self.scaling = Scaling {
             mass,
             inertia,
-            h: input.h,
-            per_rho,
+            h,
+            inv_rho,
             rate,
             stall,
         };
-        ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |stall| stall.impulse / mass));
+        ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |(impulse, _)| impulse / mass));
         let Twist { vx, vy, omega } = particles.twist;
         let Wrench { fx, fy, torque } = particles.applied;
         ncp.free = [
-            vx + fx * per_mass,
-            vy + fy * per_mass,
-            (omega + torque * per_inertia) * rho,
+            vx + fx * inv_mass,
+            vy + fy * inv_mass,
+            (omega + torque * inv_inertia) * rho,
         ];
         let Friction { mu_s, d_tri, .. } = particles.friction;
         let arms = scene.foot_arms(stance, object, d_tri);
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
             *row = FootRow {
-                jx: -y * per_rho,
-                jy: x * per_rho,
-                bound: mu_s * (scene.gravity * input.h * load),
+                jx: -y * inv_rho,
+                jy: x * inv_rho,
+                bound: mu_s * (scene.gravity * h * load),
             };
         }
     }
@@ -219,13 +222,13 @@ impl<const W: usize> Assembly<W> {
         ncp: &mut Ncp<W>,
     ) {
         let shapes = [&scene.object.shape, other.shape];
-        let near = near(shapes, &object.origin, other.frame.origin, self.reach);
+        let near = other.present & near(shapes, &object.origin, &other.frames.origin, self.reach);
         if !near.any() {
             return;
         }
         let frames = PairFrames {
             object: *object,
-            other: other.frame.splat(),
+            other: other.frames,
         };
         narrow.meet(shapes, &frames, self.reach, near);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
@@ -238,7 +241,7 @@ impl<const W: usize> Assembly<W> {
                 gap: contact.gap,
             });
             ncp.contacts
-                .push(row(&self.setting, object, other, contact));
+                .push(row(&self.scaling, object, other, contact));
         }
     }
 
@@ -271,7 +274,7 @@ impl<const W: usize> Assembly<W> {
         let warm = &mut particles.warm;
         warm.feet = p.feet;
         warm.pusher_yield = p.pusher_yield;
-        particles.pusher_lag = p.pusher_yield * self.setting.h;
+        particles.pusher_lag = p.pusher_yield * self.scaling.h;
         warm.contacts = [ContactImpulse::default(); REMEMBERED];
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
@@ -297,13 +300,13 @@ impl<const W: usize> Assembly<W> {
 
     /// One lane's problem in SI units; the applied impulse is part of its twist.
     pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
-        let Setting {
+        let Scaling {
             mass,
             inertia,
             h,
             stall,
             ..
-        } = self.setting;
+        } = self.scaling;
         let rho = (inertia / mass).sqrt();
         let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
         let foot = |row: &FootRow<W>| Foot {
@@ -344,7 +347,10 @@ impl<const W: usize> Assembly<W> {
             applied: Wrench::default(),
             contacts: contacts.collect(),
             feet: ncp.feet.each_ref().map(foot),
-            stall,
+            stall: stall.map(|(impulse, direction)| Stall {
+                impulse,
+                direction: direction.map(|d| d.0[lane]),
+            }),
         }
     }
 }
@@ -352,12 +358,12 @@ impl<const W: usize> Assembly<W> {
 /// The row of one contact.
 #[inline(always)]
 fn row<const W: usize>(
-    setting: &Setting,
+    scaling: &Scaling<W>,
     object: &Frames<W>,
     other: &Other<'_, W>,
     contact: &Contact<W>,
 ) -> ContactRow<W> {
-    let Setting { per_rho, rate, .. } = *setting;
+    let Scaling { inv_rho, rate, .. } = *scaling;
     let Contact {
         present,
         normal: [nx, ny],
@@ -377,8 +383,8 @@ fn row<const W: usize>(
     let (nd, td) = (nx * d[0] + ny * d[1], nx * d[1] - ny * d[0]);
     let keep = |value: Lanes<W>| present.zero_unless(value);
     ContactRow {
-        n: [keep(nx), keep(ny), keep((x * ny - y * nx) * per_rho)],
-        t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * per_rho)],
+        n: [keep(nx), keep(ny), keep((x * ny - y * nx) * inv_rho)],
+        t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * inv_rho)],
         gap: present.select(
             gap * rate - (nx * u[0] + ny * u[1]),
             ContactRow::<W>::OPEN.gap,

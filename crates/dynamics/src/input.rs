@@ -1,17 +1,32 @@
 //! What drives one time step: [`StepInput`].
 
+use stickslip_lanes::Lanes;
+
 use crate::se2::{Pose, Twist};
 
 /// The pusher during one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PusherMotion {
+pub struct PusherMotion<T = f64> {
     /// Pose at the start of the step.
-    pub pose: Pose,
+    pub pose: Pose<T>,
     /// Commanded twist during the step.
-    pub twist: Twist,
+    pub twist: Twist<T>,
     /// Unit vector of its commanded translation (the last one where it stands): the direction in
     /// which it may give way.
-    pub direction: [f64; 2],
+    pub direction: [T; 2],
+}
+
+impl PusherMotion {
+    /// The same motion in every lane.
+    #[inline(always)]
+    pub(crate) fn splat<const W: usize>(&self) -> PusherMotion<Lanes<W>> {
+        let [dx, dy] = self.direction;
+        PusherMotion {
+            pose: self.pose.map(Lanes::splat),
+            twist: self.twist.map(Lanes::splat),
+            direction: [Lanes::splat(dx), Lanes::splat(dy)],
+        }
+    }
 }
 
 /// What drives one step.

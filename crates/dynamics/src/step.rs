@@ -11,13 +11,13 @@ use stickslip_lanes::{Lanes, Level, on_widest};
 use crate::assembly::Assembly;
 use crate::friction::Friction;
 use crate::geometry::narrow_phase::NarrowWork;
-use crate::input::{Body, StepInput};
+use crate::input::{Body, PusherMotion, StepInput};
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::Report;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Impulses;
 use crate::particles::{Particle, Particles};
-use crate::prepared_scene::{Moment, Stage};
+use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
 use crate::solver::chain::Solver;
@@ -36,8 +36,9 @@ const WIDE: usize = 4;
 /// Γ for one scene.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
-    stage: Stage,
-    reach: f64,
+    scene: PreparedScene,
+    /// Radius of the object's bounding circle about its centre of mass (m).
+    object_radius: f64,
     level: Level,
 }
 
@@ -51,6 +52,8 @@ pub struct StepWork<const W: usize> {
     impulses: Vec<Impulses<W>>,
     reports: Vec<[Report; W]>,
     solver: Solver<W>,
+    /// Of steps in which every particle has its own.
+    pushers: Vec<Option<PusherContext<W>>>,
 }
 
 impl<const W: usize> Default for StepWork<W> {
@@ -62,6 +65,7 @@ impl<const W: usize> Default for StepWork<W> {
             impulses: Vec::new(),
             reports: Vec::new(),
             solver: Solver::default(),
+            pushers: Vec::new(),
         }
     }
 }
@@ -120,8 +124,8 @@ impl Dynamics {
     /// The dynamics of one scene, on the widest vector instructions that the machine has.
     pub fn new(scene: Scene) -> Self {
         Self {
-            reach: scene.object.shape.bounding_radius(),
-            stage: Stage::new(scene),
+            object_radius: scene.object.shape.bounding_radius(),
+            scene: PreparedScene::new(scene),
             level: Level::new(),
         }
     }
@@ -133,7 +137,7 @@ impl Dynamics {
 
     /// The scene.
     pub fn scene(&self) -> &Scene {
-        &self.stage.scene
+        &self.scene.scene
     }
 
     /// Advances `W` particles by one step; `friction` holds each one's parameters.
@@ -159,36 +163,75 @@ impl Dynamics {
     ///
     /// Every contact that could act takes part: where the solved twist could have closed a larger
     /// gap than was looked for, the step is solved again with a wider search. A particle's result
-    /// depends on nothing but the particle.
+    /// depends on nothing but the particle and the input.
     pub fn step_block<const W: usize>(
         &self,
         input: &StepInput,
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
     ) {
+        self.dispatch::<W>(
+            #[inline(always)]
+            || {
+                let context = StepContext::shared(&self.scene, input);
+                self.step_lanes(&context, particles, work);
+            },
+        );
+    }
+
+    /// The same for particles of which each has a pusher of its own: `pushers` holds those of a
+    /// chunk side by side, `None` off the plane; `h` is the step (s).
+    ///
+    /// A particle's result is that of [`step_block`](Self::step_block) with its pusher, bit for bit.
+    ///
+    /// # Panics
+    /// If there are not as many chunks of pushers as of particles.
+    pub fn step_block_each<const W: usize>(
+        &self,
+        h: f64,
+        pushers: &[[Option<PusherMotion>; W]],
+        particles: &mut [Particles<W>],
+        work: &mut StepWork<W>,
+    ) {
+        assert_eq!(
+            pushers.len(),
+            particles.len(),
+            "as many chunks of pushers as of particles"
+        );
+        let mut contexts = std::mem::take(&mut work.pushers);
+        contexts.clear();
+        contexts.extend(pushers.iter().map(|pushers| self.scene.pushers(pushers)));
+        self.dispatch::<W>(
+            #[inline(always)]
+            || self.step_lanes(&StepContext::each(h, &contexts), particles, work),
+        );
+        work.pushers = contexts;
+    }
+
+    /// Runs a step of `W` particles side by side on the vector instructions that pay for it.
+    #[inline(always)]
+    fn dispatch<const W: usize>(&self, step: impl FnOnce()) {
         if W < WIDE {
-            self.step_lanes(input, particles, work);
+            step();
         } else {
-            on_widest(
-                self.level,
-                #[inline(always)]
-                || self.step_lanes(input, particles, work),
-            );
+            on_widest(self.level, step);
         }
     }
 
     #[inline(always)]
     fn step_lanes<const W: usize>(
         &self,
-        input: &StepInput,
+        context: &StepContext<'_, W>,
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
     ) {
+        // how far apart contacts are looked for
         work.resize(particles.len());
-        let moment = &Moment::new(input);
         for (chunk, particles) in particles.iter().enumerate() {
-            work.chunks[chunk].seek(self.search_distance(input, particles));
+            work.chunks[chunk].seek(self.search_distance(context, chunk, particles));
         }
+
+        // solve all chunks, then again those that moved farther than was looked for
         let mut asked = 0..particles.len();
         while !asked.is_empty() {
             let StepWork {
@@ -198,13 +241,14 @@ impl Dynamics {
                 impulses,
                 reports,
                 solver,
+                ..
             } = work;
-            let (particles, chunks) = (&particles[asked.clone()], &mut chunks[asked.clone()]);
             let mut problems = Problems {
-                stage: &self.stage,
-                moment,
-                particles,
-                chunks,
+                scene: &self.scene,
+                context,
+                first: asked.start,
+                particles: &particles[asked.clone()],
+                chunks: &mut chunks[asked.clone()],
                 narrow,
             };
             solver.solve(
@@ -213,10 +257,12 @@ impl Dynamics {
                 &mut impulses[asked.clone()],
                 &mut reports[asked.clone()],
             );
-            asked = self.too_narrow(moment.input, asked.start, work);
+            asked = self.too_narrow(context, asked.start, work);
         }
+
+        // q⁺ = q + h v⁺, and what the particles remember
         for (chunk, particles) in particles.iter_mut().enumerate() {
-            self.integrate(input.h, particles, chunk, work);
+            self.integrate(context.h, particles, chunk, work);
         }
     }
 
@@ -225,21 +271,20 @@ impl Dynamics {
     #[inline(always)]
     fn too_narrow<const W: usize>(
         &self,
-        input: &StepInput,
+        context: &StepContext<'_, W>,
         first: usize,
         work: &mut StepWork<W>,
     ) -> Range<usize> {
         let count = work.reports.len();
         for chunk in first..count {
-            let reach = work.chunks[chunk].reach();
-            let needed = (self.point_speed(&work.twist(chunk, self.stage.per_rho))
-                + self.pusher_speed(input))
-                * input.h;
-            let wider = needed.gt(reach)
+            let searched = work.chunks[chunk].reach();
+            let object = self.point_speed(&work.twist(chunk, self.scene.inv_rho));
+            let needed = (object + pusher_speed(context, chunk)) * context.h;
+            let wider = needed.gt(searched)
                 & needed.lt(Lanes::splat(f64::INFINITY))
-                & reach.lt(Lanes::splat(WIDEST));
+                & searched.lt(Lanes::splat(WIDEST));
             if wider.any() {
-                work.chunks[chunk].seek(wider.select(needed * 2.0, reach));
+                work.chunks[chunk].seek(wider.select(needed * 2.0, searched));
                 return chunk..chunk + 1;
             }
         }
@@ -254,7 +299,7 @@ impl Dynamics {
         chunk: usize,
         work: &StepWork<W>,
     ) {
-        particles.twist = work.twist(chunk, self.stage.per_rho);
+        particles.twist = work.twist(chunk, self.scene.inv_rho);
         particles.pose = particles.pose.advance(particles.twist, h);
         work.chunks[chunk].store_warm_start(&work.impulses[chunk], particles);
     }
@@ -262,28 +307,33 @@ impl Dynamics {
     /// No point of the object is faster.
     #[inline(always)]
     fn point_speed<const W: usize>(&self, Twist { vx, vy, omega }: &Twist<Lanes<W>>) -> Lanes<W> {
-        length_at_most(vx, vy) + omega.abs() * self.reach
+        length_at_most(vx, vy) + omega.abs() * self.object_radius
     }
 
-    /// Fastest point of the pusher.
-    fn pusher_speed(&self, input: &StepInput) -> f64 {
-        let radius = self.stage.scene.pusher.shape.bounding_radius();
-        let speed = |v: &Twist| (v.vx * v.vx + v.vy * v.vy).sqrt() + v.omega.abs() * radius;
-        input.pusher.map_or(0.0, |pusher| speed(&pusher.twist))
-    }
-
+    /// Gap below which contacts of a chunk are looked for (m): what object and pusher can close
+    /// within the step, with room for the velocity that the contacts add.
     #[inline(always)]
     fn search_distance<const W: usize>(
         &self,
-        input: &StepInput,
+        context: &StepContext<'_, W>,
+        chunk: usize,
         particles: &Particles<W>,
     ) -> Lanes<W> {
         let Wrench { fx, fy, torque } = &particles.applied;
-        let kick = length_at_most(fx, fy) * self.stage.per_mass
-            + torque.abs() * (self.stage.per_inertia * self.reach);
-        let pusher = self.pusher_speed(input);
-        let object = (self.point_speed(&particles.twist) + kick).max(Lanes::splat(pusher));
-        (object * 1.5 + pusher) * input.h + MARGIN
+        let kick = length_at_most(fx, fy) * self.scene.inv_mass
+            + torque.abs() * (self.scene.inv_inertia * self.object_radius);
+        let pusher = pusher_speed(context, chunk);
+        let object = (self.point_speed(&particles.twist) + kick).max(pusher);
+        (object * 1.5 + pusher) * context.h + MARGIN
+    }
+}
+
+/// Speed of the fastest point of each pusher of a chunk (m/s).
+#[inline(always)]
+fn pusher_speed<const W: usize>(context: &StepContext<'_, W>, chunk: usize) -> Lanes<W> {
+    match context.pusher(chunk) {
+        Some(pusher) => pusher.speed,
+        None => Lanes::ZERO,
     }
 }
 
@@ -298,8 +348,10 @@ fn length_at_most<const W: usize>(x: &Lanes<W>, y: &Lanes<W>) -> Lanes<W> {
 
 /// The problems of some chunks of particles.
 struct Problems<'a, const W: usize> {
-    stage: &'a Stage,
-    moment: &'a Moment<'a>,
+    scene: &'a PreparedScene,
+    context: &'a StepContext<'a, W>,
+    /// Number of the first chunk.
+    first: usize,
     particles: &'a [Particles<W>],
     chunks: &'a mut [Assembly<W>],
     narrow: &'a mut NarrowWork<W>,
@@ -309,8 +361,8 @@ impl<const W: usize> Source<W> for Problems<'_, W> {
     #[inline(always)]
     fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
         self.chunks[chunk].collect(
-            self.stage,
-            self.moment,
+            self.scene,
+            (self.context, self.context.pusher(self.first + chunk)),
             &self.particles[chunk],
             self.narrow,
             ncp,
@@ -319,19 +371,19 @@ impl<const W: usize> Source<W> for Problems<'_, W> {
 
     #[inline(always)]
     fn start(&self, chunk: usize, _: &Ncp<W>, p: &mut Impulses<W>) {
-        self.chunks[chunk].load_warm_start(self.stage.rho, &self.particles[chunk], p);
+        self.chunks[chunk].load_warm_start(self.scene.rho, &self.particles[chunk], p);
     }
 }
 
 impl<const W: usize> StepWork<W> {
     /// Solved twists of one chunk.
     #[inline(always)]
-    fn twist(&self, chunk: usize, per_rho: f64) -> Twist<Lanes<W>> {
+    fn twist(&self, chunk: usize, inv_rho: f64) -> Twist<Lanes<W>> {
         let [vx, vy, scaled] = self.impulses[chunk].v;
         Twist {
             vx,
             vy,
-            omega: scaled * per_rho,
+            omega: scaled * inv_rho,
         }
     }
 }

@@ -19,7 +19,7 @@ fn push() -> (Setup, Log) {
         (!lost(t, 0.7, 0.8) && !lost(t, 2.0, 2.5)).then(|| Pose::new(-0.043 + 0.02 * t, 0.001, 0.0))
     };
     let mut log = log(90, object, pusher);
-    let reading = |row: usize| (row % 7 != 0).then_some(row > 60);
+    let reading = |row: usize| (!row.is_multiple_of(7)).then_some(row > 60);
     log.tactile = vec![(0..90).map(reading).collect()];
     (setup, log)
 }
@@ -153,7 +153,7 @@ fn late_poses_are_weighed_as_if_the_object_had_been_seen_then() {
         "{} {exact}",
         mean(&late)
     );
-    let ratio = spread(&late) / precision.powf(-0.5);
+    let ratio = spread(&late) * precision.sqrt();
     assert!((0.85..1.15).contains(&ratio), "{ratio}");
     assert_eq!(none.time(), late.time());
 }

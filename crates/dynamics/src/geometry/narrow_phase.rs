@@ -27,7 +27,6 @@ use crate::geometry::edge_search::Stand;
 use crate::geometry::pair::Pair;
 use crate::geometry::shape::Shape;
 use crate::geometry::transform::{Frame, Frames, Vec2s, dot};
-use crate::geometry::vec2::Vec2;
 use crate::se2::Pose;
 
 /// A shape at a pose, with the pose's sine and cosine.
@@ -69,7 +68,7 @@ pub fn narrow_phase(object: &Placed<'_>, other: &Placed<'_>, reach: f64, out: &m
         other: other.frame.splat(),
     };
     let (shapes, reach) = ([object.shape, other.shape], Lanes([reach]));
-    let near = near(shapes, &frames.object.origin, other.frame.origin, reach);
+    let near = near(shapes, &frames.object.origin, &frames.other.origin, reach);
     if !near.any() {
         return;
     }
@@ -95,7 +94,7 @@ pub(crate) struct PairFrames<const W: usize> {
 pub(crate) fn near<const W: usize>(
     [object, other]: [&Shape; 2],
     at: &Vec2s<W>,
-    other_at: Vec2,
+    other_at: &Vec2s<W>,
     reach: Lanes<W>,
 ) -> Mask<W> {
     let apart = [at[0] - other_at[0], at[1] - other_at[1]];
