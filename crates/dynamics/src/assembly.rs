@@ -4,9 +4,10 @@ use stickslip_lanes::{Lanes, Mask};
 
 use crate::friction::Friction;
 use crate::geometry::contact::Contact;
-use crate::geometry::narrow_phase::{NarrowWork, PairFrames, near};
+use crate::geometry::narrow_phase::NarrowPhase;
+use crate::geometry::placed::Placed;
 use crate::geometry::shape::Shape;
-use crate::geometry::transform::{Frame, Frames};
+use crate::geometry::transform::Transform;
 use crate::input::{Body, PusherMotion};
 use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
@@ -73,7 +74,7 @@ impl Body {
 struct Other<'a, const W: usize> {
     body: Body,
     shape: &'a Shape,
-    frame: Frame,
+    frame: Transform,
     mu: Lanes<W>,
     motion: Option<&'a PusherMotion>,
     /// Direction in which it may give way.
@@ -114,12 +115,12 @@ impl<const W: usize> Assembly<W> {
         stage: &Stage,
         moment: &Moment<'_>,
         particles: &Particles<W>,
-        narrow: &mut NarrowWork<W>,
+        narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
     ) {
         self.rows.clear();
         ncp.clear();
-        let object = Frames::new(&particles.pose);
+        let object = Transform::from(particles.pose);
         self.set_body(stage, moment, (particles, &object), ncp);
         let scene = &stage.scene;
         if let Some((motion, frame)) = moment.pusher {
@@ -166,7 +167,7 @@ impl<const W: usize> Assembly<W> {
             ..
         }: &Stage,
         &Moment { input, rate, .. }: &Moment<'_>,
-        (particles, object): (&Particles<W>, &Frames<W>),
+        (particles, object): (&Particles<W>, &Transform<Lanes<W>>),
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
@@ -213,23 +214,22 @@ impl<const W: usize> Assembly<W> {
     fn meet(
         &mut self,
         scene: &Scene,
-        object: &Frames<W>,
+        object: &Transform<Lanes<W>>,
         other: &Other<'_, W>,
-        narrow: &mut NarrowWork<W>,
+        narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
     ) {
-        let shapes = [&scene.object.shape, other.shape];
-        let near = near(shapes, &object.origin, other.frame.origin, self.reach);
-        if !near.any() {
-            return;
-        }
-        let frames = PairFrames {
-            object: *object,
-            other: other.frame.splat(),
+        let placed = Placed {
+            shape: &scene.object.shape,
+            transform: *object,
         };
-        narrow.meet(shapes, &frames, self.reach, near);
+        let other_placed = Placed {
+            shape: other.shape,
+            transform: other.frame.splat(),
+        };
+        narrow.collide(placed, other_placed, self.reach);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
-            let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize)
+            let key = (other.body.number() * Contact::<W>::ID_COUNT as usize + contact.id as usize)
                 as f64;
             self.rows.push(Row {
                 body: other.body,
@@ -353,7 +353,7 @@ impl<const W: usize> Assembly<W> {
 #[inline(always)]
 fn row<const W: usize>(
     setting: &Setting,
-    object: &Frames<W>,
+    object: &Transform<Lanes<W>>,
     other: &Other<'_, W>,
     contact: &Contact<W>,
 ) -> ContactRow<W> {
@@ -409,7 +409,7 @@ impl Scene {
     fn foot_arms<const W: usize>(
         &self,
         stance: &[[f64; 2]; 3],
-        frames: &Frames<W>,
+        frames: &Transform<Lanes<W>>,
         d_tri: Lanes<W>,
     ) -> [[Lanes<W>; 2]; 3] {
         let radius = match self.feet {
@@ -418,7 +418,7 @@ impl Scene {
         };
         let mut arms = [[Lanes::ZERO; 2]; 3];
         for (arm, place) in arms.iter_mut().zip(stance) {
-            let [x, y] = frames.turn_fixed(*place);
+            let [x, y] = frames.rotate(*place);
             *arm = [radius * x, radius * y];
         }
         arms
@@ -436,7 +436,7 @@ impl Scene {
     /// of `h` seconds.
     pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
         let total = friction.mu_s * self.object.mass * self.gravity * h;
-        let frames = Frames::new(&Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
+        let frames = Transform::from(Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
         let arms = self.foot_arms(&self.stance(), &frames, Lanes([friction.d_tri]));
         let loads = self.foot_loads();
         std::array::from_fn(|k| Foot {

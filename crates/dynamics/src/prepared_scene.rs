@@ -1,6 +1,6 @@
 //! What steps have in common: [`Stage`] of all, [`Moment`] of one for all its particles.
 
-use crate::geometry::transform::Frame;
+use crate::geometry::transform::Transform;
 use crate::input::{PusherMotion, StepInput};
 use crate::scene::Scene;
 
@@ -18,7 +18,7 @@ pub(crate) struct Stage {
     /// Where the feet stand, see [`Scene::stance`].
     pub stance: [[f64; 2]; 3],
     /// Where the fixels stand.
-    pub fixels: Vec<Frame>,
+    pub fixels: Vec<Transform>,
 }
 
 impl Stage {
@@ -31,7 +31,7 @@ impl Stage {
         let fixels = scene
             .fixels
             .iter()
-            .map(|fixel| Frame::new(fixel.pose))
+            .map(|fixel| Transform::from(fixel.pose))
             .collect();
         Self {
             rho,
@@ -52,7 +52,7 @@ pub(crate) struct Moment<'a> {
     /// 1/h (1/s).
     pub rate: f64,
     /// The pusher's motion and where it stands.
-    pub pusher: Option<(&'a PusherMotion, Frame)>,
+    pub pusher: Option<(&'a PusherMotion, Transform)>,
 }
 
 impl<'a> Moment<'a> {
@@ -63,7 +63,7 @@ impl<'a> Moment<'a> {
             pusher: input
                 .pusher
                 .as_ref()
-                .map(|motion| (motion, Frame::new(motion.pose))),
+                .map(|motion| (motion, Transform::from(motion.pose))),
         }
     }
 }

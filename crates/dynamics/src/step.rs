@@ -10,7 +10,7 @@ use stickslip_lanes::{Lanes, Level, on_widest};
 
 use crate::assembly::Assembly;
 use crate::friction::Friction;
-use crate::geometry::narrow_phase::NarrowWork;
+use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::{Body, StepInput};
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::Report;
@@ -45,7 +45,7 @@ pub struct Dynamics {
 /// it has grown.
 #[derive(Clone, Debug)]
 pub struct StepWork<const W: usize> {
-    narrow: NarrowWork<W>,
+    narrow: NarrowPhase<W>,
     chunks: Vec<Assembly<W>>,
     ncps: Vec<Ncp<W>>,
     impulses: Vec<Impulses<W>>,
@@ -56,7 +56,7 @@ pub struct StepWork<const W: usize> {
 impl<const W: usize> Default for StepWork<W> {
     fn default() -> Self {
         Self {
-            narrow: NarrowWork::default(),
+            narrow: NarrowPhase::default(),
             chunks: Vec::new(),
             ncps: Vec::new(),
             impulses: Vec::new(),
@@ -302,7 +302,7 @@ struct Problems<'a, const W: usize> {
     moment: &'a Moment<'a>,
     particles: &'a [Particles<W>],
     chunks: &'a mut [Assembly<W>],
-    narrow: &'a mut NarrowWork<W>,
+    narrow: &'a mut NarrowPhase<W>,
 }
 
 impl<const W: usize> Source<W> for Problems<'_, W> {

@@ -1,8 +1,8 @@
 //! Numbers of several particles side by side ([`Lanes`], [`Mask`]), compiled for the widest vector
 //! instructions of the machine ([`on_widest`]).
 //!
-//! Every operation is lane-wise and exactly rounded, so a result depends neither on the number of
-//! lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same code.
+//! Every operation acts on each lane alone and is correctly rounded, so a result depends neither on
+//! the number of lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same code.
 
 mod dispatch;
 mod lanes;
