@@ -4,9 +4,10 @@ use stickslip_lanes::{Lanes, Mask};
 
 use crate::friction::Friction;
 use crate::geometry::contact::Contact;
-use crate::geometry::narrow_phase::{NarrowWork, PairFrames, near};
+use crate::geometry::narrow_phase::NarrowPhase;
+use crate::geometry::placed::Placed;
 use crate::geometry::shape::Shape;
-use crate::geometry::transform::Frames;
+use crate::geometry::transform::Transform;
 use crate::input::{Body, PusherMotion};
 use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
@@ -20,7 +21,7 @@ use crate::se2::{Pose, Twist, Wrench};
 #[derive(Clone, Debug)]
 pub struct Assembly<const W: usize> {
     rows: Vec<Row<W>>,
-    reach: Lanes<W>,
+    search_distance: Lanes<W>,
     scaling: Scaling<W>,
 }
 
@@ -54,7 +55,7 @@ impl<const W: usize> Default for Assembly<W> {
     fn default() -> Self {
         Self {
             rows: Vec::new(),
-            reach: Lanes::ZERO,
+            search_distance: Lanes::ZERO,
             scaling: Scaling::default(),
         }
     }
@@ -74,7 +75,7 @@ impl Body {
 struct Other<'a, const W: usize> {
     body: Body,
     shape: &'a Shape,
-    frames: Frames<W>,
+    transform: Transform<Lanes<W>>,
     mu: Lanes<W>,
     motion: Option<&'a PusherMotion<Lanes<W>>>,
     /// Direction in which it may give way.
@@ -86,16 +87,16 @@ struct Other<'a, const W: usize> {
 }
 
 impl<const W: usize> Assembly<W> {
-    /// Contacts with gaps below `reach` (m) take part from now on.
+    /// Contacts with gaps below `search_distance` (m) take part from now on.
     #[inline(always)]
-    pub fn seek(&mut self, reach: Lanes<W>) {
-        self.reach = reach;
+    pub fn seek(&mut self, search_distance: Lanes<W>) {
+        self.search_distance = search_distance;
     }
 
     /// Gap below which contacts are sought (m).
     #[inline(always)]
-    pub fn reach(&self) -> Lanes<W> {
-        self.reach
+    pub fn search_distance(&self) -> Lanes<W> {
+        self.search_distance
     }
 
     /// Normal impulses (N s) of one body.
@@ -117,12 +118,12 @@ impl<const W: usize> Assembly<W> {
         prepared: &PreparedScene,
         (context, pusher): (&StepContext<'_, W>, Option<&PusherContext<W>>),
         particles: &Particles<W>,
-        narrow: &mut NarrowWork<W>,
+        narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
     ) {
         self.rows.clear();
         ncp.clear();
-        let object = Frames::new(&particles.pose);
+        let object = Transform::from(particles.pose);
         self.set_body(prepared, (context, pusher), (particles, &object), ncp);
         let scene = &prepared.scene;
 
@@ -131,7 +132,7 @@ impl<const W: usize> Assembly<W> {
             let pusher = Other {
                 body: Body::Pusher,
                 shape: &scene.pusher.shape,
-                frames: pusher.frames,
+                transform: pusher.transform,
                 mu: particles.friction.mu_p,
                 motion: Some(&pusher.motion),
                 direction: self
@@ -141,24 +142,24 @@ impl<const W: usize> Assembly<W> {
                 present: pusher.present,
                 catch_up: particles.pusher_lag * context.rate,
             };
-            self.meet(scene, &object, &pusher, narrow, ncp);
+            self.collide(scene, &object, &pusher, narrow, ncp);
         }
 
         // contacts with the fixels
-        for (j, (Fixel { shape, .. }, frame)) in
+        for (j, (Fixel { shape, .. }, transform)) in
             scene.fixels.iter().zip(&prepared.fixels).enumerate()
         {
             let fixel = Other {
                 body: Body::Fixel(j),
                 shape,
-                frames: frame.splat(),
+                transform: transform.splat(),
                 mu: particles.friction.mu_f,
                 motion: None,
                 direction: [Lanes::ZERO; 2],
                 present: Mask::splat(true),
                 catch_up: Lanes::ZERO,
             };
-            self.meet(scene, &object, &fixel, narrow, ncp);
+            self.collide(scene, &object, &fixel, narrow, ncp);
         }
     }
 
@@ -176,7 +177,7 @@ impl<const W: usize> Assembly<W> {
             ..
         }: &PreparedScene,
         (&StepContext { h, rate, .. }, pusher): (&StepContext<'_, W>, Option<&PusherContext<W>>),
-        (particles, object): (&Particles<W>, &Frames<W>),
+        (particles, object): (&Particles<W>, &Transform<Lanes<W>>),
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
@@ -213,26 +214,27 @@ impl<const W: usize> Assembly<W> {
 
     /// Adds the contacts of the object with one body.
     #[inline(always)]
-    fn meet(
+    fn collide(
         &mut self,
         scene: &Scene,
-        object: &Frames<W>,
+        object: &Transform<Lanes<W>>,
         other: &Other<'_, W>,
-        narrow: &mut NarrowWork<W>,
+        narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
     ) {
-        let shapes = [&scene.object.shape, other.shape];
-        let near = other.present & near(shapes, &object.origin, &other.frames.origin, self.reach);
-        if !near.any() {
-            return;
-        }
-        let frames = PairFrames {
-            object: *object,
-            other: other.frames,
+        let placed = Placed {
+            shape: &scene.object.shape,
+            transform: *object,
         };
-        narrow.meet(shapes, &frames, self.reach, near);
+        let other_placed = Placed {
+            shape: other.shape,
+            transform: other.transform,
+        };
+        let nowhere = Lanes::splat(f64::NEG_INFINITY);
+        let search_distance = other.present.select(self.search_distance, nowhere);
+        narrow.collide(placed, other_placed, search_distance);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
-            let key = (other.body.number() * Contact::<W>::PLACES as usize + contact.place as usize)
+            let key = (other.body.number() * Contact::<W>::ID_COUNT as usize + contact.id as usize)
                 as f64;
             self.rows.push(Row {
                 body: other.body,
@@ -359,7 +361,7 @@ impl<const W: usize> Assembly<W> {
 #[inline(always)]
 fn row<const W: usize>(
     scaling: &Scaling<W>,
-    object: &Frames<W>,
+    object: &Transform<Lanes<W>>,
     other: &Other<'_, W>,
     contact: &Contact<W>,
 ) -> ContactRow<W> {
@@ -415,7 +417,7 @@ impl Scene {
     fn foot_arms<const W: usize>(
         &self,
         stance: &[[f64; 2]; 3],
-        frames: &Frames<W>,
+        object: &Transform<Lanes<W>>,
         d_tri: Lanes<W>,
     ) -> [[Lanes<W>; 2]; 3] {
         let radius = match self.feet {
@@ -424,7 +426,7 @@ impl Scene {
         };
         let mut arms = [[Lanes::ZERO; 2]; 3];
         for (arm, place) in arms.iter_mut().zip(stance) {
-            let [x, y] = frames.turn_fixed(*place);
+            let [x, y] = object.rotate(*place);
             *arm = [radius * x, radius * y];
         }
         arms
@@ -442,8 +444,8 @@ impl Scene {
     /// of `h` seconds.
     pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
         let total = friction.mu_s * self.object.mass * self.gravity * h;
-        let frames = Frames::new(&Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
-        let arms = self.foot_arms(&self.stance(), &frames, Lanes([friction.d_tri]));
+        let object = Transform::from(Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
+        let arms = self.foot_arms(&self.stance(), &object, Lanes([friction.d_tri]));
         let loads = self.foot_loads();
         std::array::from_fn(|k| Foot {
             arm: arms[k].map(|x| x.0[0]),

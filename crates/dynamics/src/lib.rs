@@ -16,8 +16,10 @@ mod step;
 
 pub use friction::Friction;
 pub use geometry::contact::Gap;
-pub use geometry::narrow_phase::{Placed, narrow_phase};
-pub use geometry::shape::{Part, Shape};
+pub use geometry::narrow_phase::narrow_phase;
+pub use geometry::part::Part;
+pub use geometry::placed::Placed;
+pub use geometry::shape::Shape;
 pub use geometry::shape_error::ShapeError;
 pub use input::{Body, PusherMotion, StepInput};
 pub use ncp::problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};

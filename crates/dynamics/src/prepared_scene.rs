@@ -3,7 +3,7 @@
 
 use stickslip_lanes::{Lanes, Mask};
 
-use crate::geometry::transform::{Frame, Frames};
+use crate::geometry::transform::Transform;
 use crate::input::{PusherMotion, StepInput};
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
@@ -22,7 +22,7 @@ pub(crate) struct PreparedScene {
     /// Where the feet stand, see [`Scene::stance`].
     pub stance: [[f64; 2]; 3],
     /// Where the fixels stand.
-    pub fixels: Vec<Frame>,
+    pub fixels: Vec<Transform>,
 }
 
 impl PreparedScene {
@@ -36,7 +36,7 @@ impl PreparedScene {
             inv_mass: 1.0 / mass,
             inv_inertia: 1.0 / inertia,
             stance: scene.stance(),
-            fixels: fixels.map(|fixel| Frame::new(fixel.pose)).collect(),
+            fixels: fixels.map(|fixel| Transform::from(fixel.pose)).collect(),
             scene,
         }
     }
@@ -81,7 +81,7 @@ pub(crate) enum Pushers<'a, const W: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PusherContext<const W: usize> {
     pub motion: PusherMotion<Lanes<W>>,
-    pub frames: Frames<W>,
+    pub transform: Transform<Lanes<W>>,
     /// Speed of its fastest point (m/s).
     pub speed: Lanes<W>,
     /// The lanes in which it is on the plane.
@@ -126,7 +126,7 @@ impl<const W: usize> PusherContext<W> {
     fn same(scene: &PreparedScene, pusher: &PusherMotion) -> Self {
         Self {
             motion: pusher.splat(),
-            frames: Frame::new(pusher.pose).splat(),
+            transform: Transform::from(pusher.pose).splat(),
             speed: Lanes::splat(fastest_point(scene, &pusher.twist)),
             present: Mask::splat(true),
         }
@@ -146,11 +146,11 @@ impl<const W: usize> PusherContext<W> {
             twist: Twist { vx, vy, omega },
             direction: [dx, dy],
         } = &self.motion;
-        let Frames {
+        let Transform {
             origin: [ox, oy],
             cos,
             sin,
-        } = &self.frames;
+        } = &self.transform;
         let speed = &self.speed;
         [x, y, theta, vx, vy, omega, dx, dy, ox, oy, cos, sin, speed]
     }
@@ -161,11 +161,11 @@ impl<const W: usize> PusherContext<W> {
             twist: Twist { vx, vy, omega },
             direction: [dx, dy],
         } = &mut self.motion;
-        let Frames {
+        let Transform {
             origin: [ox, oy],
             cos,
             sin,
-        } = &mut self.frames;
+        } = &mut self.transform;
         let speed = &mut self.speed;
         [x, y, theta, vx, vy, omega, dx, dy, ox, oy, cos, sin, speed]
     }

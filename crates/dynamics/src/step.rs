@@ -10,7 +10,7 @@ use stickslip_lanes::{Lanes, Level, on_widest};
 
 use crate::assembly::Assembly;
 use crate::friction::Friction;
-use crate::geometry::narrow_phase::NarrowWork;
+use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::{Body, PusherMotion, StepInput};
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::Report;
@@ -46,7 +46,7 @@ pub struct Dynamics {
 /// it has grown.
 #[derive(Clone, Debug)]
 pub struct StepWork<const W: usize> {
-    narrow: NarrowWork<W>,
+    narrow: NarrowPhase<W>,
     chunks: Vec<Assembly<W>>,
     ncps: Vec<Ncp<W>>,
     impulses: Vec<Impulses<W>>,
@@ -59,7 +59,7 @@ pub struct StepWork<const W: usize> {
 impl<const W: usize> Default for StepWork<W> {
     fn default() -> Self {
         Self {
-            narrow: NarrowWork::default(),
+            narrow: NarrowPhase::default(),
             chunks: Vec::new(),
             ncps: Vec::new(),
             impulses: Vec::new(),
@@ -277,7 +277,7 @@ impl Dynamics {
     ) -> Range<usize> {
         let count = work.reports.len();
         for chunk in first..count {
-            let searched = work.chunks[chunk].reach();
+            let searched = work.chunks[chunk].search_distance();
             let object = self.point_speed(&work.twist(chunk, self.scene.inv_rho));
             let needed = (object + pusher_speed(context, chunk)) * context.h;
             let wider = needed.gt(searched)
@@ -354,7 +354,7 @@ struct Problems<'a, const W: usize> {
     first: usize,
     particles: &'a [Particles<W>],
     chunks: &'a mut [Assembly<W>],
-    narrow: &'a mut NarrowWork<W>,
+    narrow: &'a mut NarrowPhase<W>,
 }
 
 impl<const W: usize> Source<W> for Problems<'_, W> {

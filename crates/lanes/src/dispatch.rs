@@ -4,12 +4,13 @@ use fearless_simd::Level;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Simd;
 
-/// Runs `work`, compiled for AVX-512, for AVX2 and for the baseline, on the widest of the three
-/// that `level` has.
+/// Runs `work` with the widest vector instructions that `level` has: it is compiled for AVX-512,
+/// for AVX2 and for the baseline.
 ///
-/// What `work` calls must be inlined into it to be compiled so. No result depends on the choice:
-/// nothing is reordered, and what is fused is so everywhere, see [`Lanes`](crate::Lanes), if slowly
-/// on processors of before 2013.
+/// Everything that `work` calls must be inlined into it, because a function of its own is compiled
+/// for the baseline only. No result depends on the choice: the compiler reorders nothing, and
+/// [`Lanes`](crate::Lanes) fuse the same operations everywhere (in software, and slowly, on
+/// processors from before 2013).
 #[inline(always)]
 pub fn on_widest<R>(level: Level, work: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]

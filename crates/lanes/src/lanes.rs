@@ -1,9 +1,9 @@
-//! `W` particles side by side: [`Lanes`] and [`Mask`].
+//! One number of `W` particles side by side: [`Lanes`].
 //!
-//! Element i of every `Lanes` of a block belongs to particle i. All operations are lane-wise and
-//! exactly rounded, on any machine; where a product and a sum are rounded together, [`Lanes::add_mul`]
-//! and [`Lanes::sub_mul`] say so. A particle's result does not depend on `W` nor on its neighbours;
-//! `Lanes<1>` is the scalar reference.
+//! Element i of every `Lanes` of a block belongs to particle i. Every operation acts on each lane
+//! alone and is correctly rounded on any machine; only [`Lanes::add_mul`] and [`Lanes::sub_mul`]
+//! round a product and a sum once. So a particle's result depends neither on `W` nor on its
+//! neighbours, and `Lanes<1>` is the scalar reference.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -13,7 +13,7 @@ use crate::mask::{Mask, YES};
 /// 1.5 2⁵²: adding it rounds to the nearest whole number and leaves that in the low bits.
 pub(crate) const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// `W` numbers, one per particle; no vector of them crosses a line of the cache.
+/// `W` numbers, one per particle, aligned so that no vector of them straddles two cache lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
@@ -52,11 +52,12 @@ impl<const W: usize> Lanes<W> {
         Self(from_fn(|i| self.0[i].sqrt()))
     }
 
-    /// 1/√x of positive normal numbers, to 3e-12; finite where x is 0, not finite where it is not.
-    /// Nothing waits for the divider.
+    /// 1/√x of positive normal numbers, with a relative error below 3e-12 and without the slow
+    /// divider. It is finite where x is 0, and not finite where x is not.
     ///
-    /// Halving the exponent gives 1/√x to 3.4 % (Lomont 2003). A Newton step leaves 3/2 of the
-    /// error's square, always on one side: half of that is added to the first.
+    /// Halving the exponent gives a guess within 3.4 % (Lomont 2003). A Newton step leaves a
+    /// relative error of 3/2 of the old one's square, and always a value that is too small; so the
+    /// first step's result is made longer by half of its largest error.
     #[inline(always)]
     pub fn inverse_sqrt(self) -> Self {
         const FIRST_GUESS: u64 = 0x5fe6_eb50_c7b5_37a9;
@@ -71,13 +72,13 @@ impl<const W: usize> Lanes<W> {
         newton(newton(y, half, 1.0), half, 1.0)
     }
 
-    /// The nearest whole number, of sizes below 2⁵⁰; halves go to the even one.
+    /// The nearest integer, for |x| below 2⁵⁰; ties go to the even one.
     #[inline(always)]
     pub fn round(self) -> Self {
         (self + ROUND) - ROUND
     }
 
-    /// self + a b, rounded once.
+    /// self + a b, rounded once (a fused multiply-add).
     #[inline(always)]
     #[expect(
         clippy::disallowed_methods,
@@ -123,7 +124,7 @@ impl<const W: usize> Default for Lanes<W> {
     }
 }
 
-/// Copies lane `lane` of several numbers into lane `slot` of as many others.
+/// Copies lane `lane` of each number in `from` into lane `slot` of its partner in `to`.
 #[inline(always)]
 pub fn copy_lane<const N: usize, const V: usize, const W: usize>(
     to: [&mut Lanes<V>; N],

@@ -5,13 +5,13 @@ use std::ops::{BitAnd, BitOr, Not};
 
 use crate::lanes::Lanes;
 
-/// `W` conditions, one per particle; as wide as the numbers that they choose between, so that
-/// choosing is bitwise.
+/// `W` conditions, one per particle; each is as wide as the numbers that it selects, so that
+/// selecting is bitwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(64))]
 pub struct Mask<const W: usize>(pub(crate) [u64; W]);
 
-/// A condition that holds.
+/// The bits of a condition that holds.
 pub(crate) const YES: u64 = u64::MAX;
 
 impl<const W: usize> Mask<W> {
@@ -21,7 +21,7 @@ impl<const W: usize> Mask<W> {
         Self([if value { YES } else { 0 }; W])
     }
 
-    /// The condition of each lane.
+    /// Each lane's condition as a function of its number.
     #[inline(always)]
     pub fn from_fn(lane: impl Fn(usize) -> bool) -> Self {
         Self(from_fn(|i| if lane(i) { YES } else { 0 }))

@@ -41,7 +41,7 @@ pub fn sin_cos<const W: usize>(x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
     let reduced = x - turns * QUARTER[0] - turns * QUARTER[1] - turns * QUARTER[2];
     let (sin, cos) = sin_cos_eighth(reduced);
 
-    // the quarter turn, in −2..=2: odd ones swap sine and cosine, both signs follow
+    // number of quarter turns, −2..=2: odd ones swap sine and cosine, and it gives both signs
     let quarter = turns - (turns * 0.25).round() * 4.0;
     let odd = equal(quarter.abs(), 1.0);
     let half = equal(quarter.abs(), 2.0);
@@ -56,7 +56,7 @@ fn equal<const W: usize>(x: Lanes<W>, value: f64) -> Mask<W> {
     !(x - value).abs().gt(Lanes::ZERO)
 }
 
-/// On [−π/4, π/4].
+/// [`sin_cos`] on [−π/4, π/4].
 #[inline(always)]
 fn sin_cos_eighth<const W: usize>(x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
     let z = x * x;

@@ -1,17 +1,16 @@
-//! Neighbouring features of a polygon with many corners, looked at together: [`Cluster`].
+//! Neighbouring features of a polygon with many corners, culled together: [`Cluster`].
 
 use std::ops::Range;
 
 use stickslip_lanes::{Lanes, Mask};
 
-use crate::geometry::feature::Edge;
-use crate::geometry::transform::{Vec2s, dot};
-use crate::geometry::vec2::{Vec2, length, sub};
+use crate::geometry::edge::Edge;
+use crate::geometry::vec2::{Vec2, bounding_disc, dot, sub};
 
 /// Features in a cluster.
 const SIZE: usize = 8;
 
-/// Outlines of fewer edges are looked at edge by edge.
+/// Outlines of fewer edges are not divided.
 const FEWEST: usize = 2 * SIZE;
 
 /// Share of its radius by which a cluster's disc is widened, so that rounding hides nothing.
@@ -20,7 +19,7 @@ const SLACK: f64 = 1e-9;
 /// Edges that follow each other, with the corners at their ends, and a disc that holds them.
 #[derive(Clone, Debug)]
 pub(crate) struct Cluster {
-    /// Numbers of the edges, and of the round vertices, in the outline.
+    /// Numbers of the edges, and of the vertices, in the outline.
     members: Range<usize>,
     centre: Vec2,
     /// Radius (m).
@@ -50,34 +49,26 @@ impl Cluster {
     }
 
     fn new(edges: &[Edge], members: Range<usize>) -> Self {
-        let ends = || {
-            edges[members.clone()]
-                .iter()
-                .flat_map(|edge| [edge.start, edge.at(edge.length)])
-        };
-        let count = 2.0 * members.len() as f64;
-        let centre = ends().fold([0.0; 2], |sum, p| {
-            [sum[0] + p[0] / count, sum[1] + p[1] / count]
-        });
-        let radius = ends().map(|p| length(sub(p, centre))).fold(0.0, f64::max) * (1.0 + SLACK);
+        let ends = |edge: &Edge| [edge.start, edge.at(edge.length)];
+        let (centre, radius) = bounding_disc(edges[members.clone()].iter().flat_map(ends));
         Self {
             members,
             centre,
-            radius,
+            radius: radius * (1.0 + SLACK),
         }
     }
 
-    /// Its members among `count` edges, or round vertices.
+    /// Its members among `count` edges, or vertices.
     #[inline(always)]
-    pub fn among(&self, count: usize) -> Range<usize> {
+    pub fn members(&self, count: usize) -> Range<usize> {
         self.members.start..self.members.end.min(count)
     }
 
     /// Where some of its features may be less than `limit` (m) from a point.
     #[inline(always)]
-    pub fn is_near<const W: usize>(&self, point: &Vec2s<W>, limit: Lanes<W>) -> Mask<W> {
-        let d = [point[0] - self.centre[0], point[1] - self.centre[1]];
+    pub fn is_within<const W: usize>(&self, limit: Lanes<W>, point: Vec2<Lanes<W>>) -> Mask<W> {
+        let d = sub(point, self.centre);
         let limit = limit + self.radius;
-        limit.gt(Lanes::ZERO) & !dot(&d, &d).gt(limit * limit)
+        limit.gt(Lanes::ZERO) & !dot(d, d).gt(limit * limit)
     }
 }

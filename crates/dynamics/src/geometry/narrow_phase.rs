@@ -5,16 +5,16 @@
 //! the twists v of the object and v' of the other body, the rate of the gap is (n, r × n)·v − n·u,
 //! r the contact's arm and u the other surface's velocity there.
 //!
-//! Pairs that can touch: an edge with a round vertex (corner or disc) or an ellipse, either way
-//! round, and two of the latter.
-//! - A corner meets every edge that it stands over and faces, its normal cone widened a little:
+//! Two kinds of pairs of features touch: an edge with a rounded vertex (corner or disc) or an
+//! ellipse, of either body; and two of the latter.
+//! - A corner touches every edge that it projects onto and faces, its normal cone widened a little:
 //!   faces that meet give two points.
-//! - Two corners meet along the line of their centres where it lies in both cones; the borders of a
-//!   cone are those of the edges beside it, so that a corner that is passed is always answered for
-//!   by one of them.
-//! - A centre inside the other body meets only the edge of least penetration (and those in a reflex
-//!   corner with it); edges whose back it sees from outside are not met.
-//! - A point of a disc or an ellipse that lies inside a sibling part touches only where an overlap
+//! - Two corners touch along the line of their centres where it lies in both cones. The borders of
+//!   a cone are those of the edges beside it, so that a corner that is passed always has a contact
+//!   with one of them.
+//! - A centre inside the other body touches only the edge of least penetration (and those in a
+//!   reflex corner with it); from outside, edges that are seen from behind do not count.
+//! - A point of a disc or an ellipse that lies inside a sibling part counts only where an overlap
 //!   would have no contact else.
 //! - Where polygons overlap with no corner of one in the other, their parts' least penetration (by
 //!   separating axes) is a contact; of two convex polygons no gap is deeper than that, and one is
@@ -22,31 +22,22 @@
 
 use stickslip_lanes::{Lanes, Mask};
 
-use crate::geometry::contact::{Contact, Contacts, Gap};
-use crate::geometry::edge_search::Stand;
-use crate::geometry::pair::Pair;
-use crate::geometry::shape::Shape;
-use crate::geometry::transform::{Frame, Frames, Vec2s, dot};
-use crate::se2::Pose;
+use crate::geometry::contact::{Contact, Gap};
+use crate::geometry::contact_manifold::ContactManifold;
+use crate::geometry::edge_search::EdgeProjection;
+use crate::geometry::ellipse_collider::collide_ellipses;
+use crate::geometry::ellipse_contact::EllipseContact;
+use crate::geometry::pair::{FirstIds, Pair};
+use crate::geometry::placed::Placed;
+use crate::geometry::polygon_collider::PolygonCollider;
+use crate::geometry::vertex_collider::VertexCollider;
 
-/// A shape at a pose, with the pose's sine and cosine.
-#[derive(Clone, Copy, Debug)]
-pub struct Placed<'a> {
-    shape: &'a Shape,
-    frame: Frame,
-}
+/// Ids after all others: of the contact for an overlap that no feature shows, and of the one whose
+/// point a sibling part hides.
+const LEAST_PENETRATION: u32 = Contact::<1>::ID_COUNT - 2;
+const HIDDEN: u32 = Contact::<1>::ID_COUNT - 1;
 
-impl<'a> Placed<'a> {
-    /// Places a shape.
-    pub fn new(shape: &'a Shape, pose: Pose) -> Self {
-        Self {
-            shape,
-            frame: Frame::new(pose),
-        }
-    }
-}
-
-/// Appends every contact of `object` with `other` whose gap is below `reach` (m).
+/// Appends every contact of `object` with `other` whose gap is below `search_distance` (m).
 ///
 /// The order of contacts is fixed by the shapes' features.
 ///
@@ -61,84 +52,86 @@ impl<'a> Placed<'a> {
 /// assert!((gaps[0].gap - 0.001).abs() < 1e-15);
 /// # Ok::<(), stickslip_dynamics::ShapeError>(())
 /// ```
-pub fn narrow_phase(object: &Placed<'_>, other: &Placed<'_>, reach: f64, out: &mut Vec<Gap>) {
-    let mut work = NarrowWork::<1>::default();
-    let frames = Frames1 {
-        object: object.frame.splat(),
-        other: other.frame.splat(),
-    };
-    let (shapes, reach) = ([object.shape, other.shape], Lanes([reach]));
-    let near = near(shapes, &frames.object.origin, &frames.other.origin, reach);
-    if !near.any() {
-        return;
-    }
-    work.meet(shapes, &frames, reach, near);
-    out.extend(
-        work.contacts()
-            .filter(|contact| contact.present.lane(0))
-            .map(|contact| contact.lane(0)),
-    );
+pub fn narrow_phase(
+    object: &Placed<'_>,
+    other: &Placed<'_>,
+    search_distance: f64,
+    out: &mut Vec<Gap>,
+) {
+    let mut narrow = NarrowPhase::<1>::default();
+    let [object, other] = [object, other].map(Placed::splat);
+    narrow.collide(object, other, Lanes([search_distance]));
+    let contacts = narrow.contacts().filter(|found| found.present.lane(0));
+    out.extend(contacts.map(|found| found.lane(0)));
 }
 
-type Frames1 = PairFrames<1>;
-
-/// Where the two bodies of a pair are.
-pub(crate) struct PairFrames<const W: usize> {
-    pub object: Frames<W>,
-    pub other: Frames<W>,
+/// Finds the contacts of two shapes, and keeps the memory that this takes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NarrowPhase<const W: usize> {
+    manifold: ContactManifold<W>,
+    projections: Vec<EdgeProjection<W>>,
+    ellipses: Vec<EllipseContact>,
 }
 
-/// Where two bodies come so near to each other, by their bounding discs, that a gap may be below
-/// `reach` (m).
-#[inline(always)]
-pub(crate) fn near<const W: usize>(
-    [object, other]: [&Shape; 2],
-    at: &Vec2s<W>,
-    other_at: &Vec2s<W>,
-    reach: Lanes<W>,
-) -> Mask<W> {
-    let apart = [at[0] - other_at[0], at[1] - other_at[1]];
-    let limit = reach + (object.bounding_radius() + other.bounding_radius());
-    limit.gt(Lanes::ZERO) & dot(&apart, &apart).lt(limit * limit)
-}
-
-/// Working memory of the narrow phase, and the contacts that it found.
-#[derive(Clone, Debug)]
-pub(crate) struct NarrowWork<const W: usize> {
-    pub found: Contacts<W>,
-    pub near: Vec<Stand<W>>,
-    pub ellipses: Vec<(Gap, bool)>,
-}
-
-impl<const W: usize> Default for NarrowWork<W> {
-    fn default() -> Self {
-        Self {
-            found: Contacts::default(),
-            near: Vec::new(),
-            ellipses: Vec::new(),
+impl<const W: usize> NarrowPhase<W> {
+    /// Finds the contacts of two bodies whose gap is below `search_distance` (m).
+    #[inline(always)]
+    pub fn collide(
+        &mut self,
+        object: Placed<'_, Lanes<W>>,
+        other: Placed<'_, Lanes<W>>,
+        search_distance: Lanes<W>,
+    ) {
+        self.manifold.clear(object.shape.bounding_radius());
+        let active = object.may_touch(&other, search_distance);
+        if active.any() {
+            let pair = Pair::new(object, other, search_distance);
+            self.collide_pair(&pair, active);
         }
     }
-}
 
-impl<const W: usize> NarrowWork<W> {
-    /// Finds the contacts of two shapes whose gap is below `reach` (m), in the lanes of [`near`],
-    /// of which there is one.
     #[inline(always)]
-    pub fn meet(
-        &mut self,
-        [object, other]: [&Shape; 2],
-        frames: &PairFrames<W>,
-        reach: Lanes<W>,
-        near: Mask<W>,
-    ) {
-        self.found.clear(object.bounding_radius());
-        Pair::new([object, other], frames, reach, near, self).meet();
-        self.found.sort();
+    fn collide_pair(&mut self, pair: &Pair<'_, Lanes<W>>, active: Mask<W>) {
+        let (object, other) = (pair.object.shape.outline(), pair.other.shape.outline());
+        let (ids, manifold) = (FirstIds::new(pair), &mut self.manifold);
+
+        // corners and discs
+        let mut vertices = VertexCollider {
+            pair,
+            ids,
+            active,
+            projections: &mut self.projections,
+            manifold,
+        };
+        vertices.collide_other_vertices();
+        if !other.edges.is_empty() {
+            vertices.collide_object_vertices();
+        }
+
+        // ellipses
+        if !object.ellipses.is_empty() || !other.ellipses.is_empty() {
+            collide_ellipses(pair, ids.ellipses, active, &mut self.ellipses, manifold);
+        }
+
+        // overlaps that no feature shows
+        if !object.edges.is_empty() && !other.edges.is_empty() {
+            let id = LEAST_PENETRATION;
+            PolygonCollider {
+                pair,
+                id,
+                active,
+                manifold,
+            }
+            .collide();
+        }
+
+        manifold.settle_hidden(HIDDEN);
+        manifold.sort();
     }
 
-    /// The contacts found last; those without a lane are none.
+    /// The contacts found last; some may be present in no lane.
     #[inline(always)]
     pub fn contacts(&self) -> impl Iterator<Item = &Contact<W>> {
-        self.found.iter()
+        self.manifold.iter()
     }
 }

@@ -3,33 +3,23 @@
 
 use stickslip_lanes::{Lanes, Mask};
 
-use crate::geometry::part::{Polygon, Side, Solid};
-use crate::geometry::transform::{Frame, Frames, dot_fixed};
+use crate::geometry::contact::Gap;
+use crate::geometry::convex_part::ConvexPart;
+use crate::geometry::polygon::{Polygon, Side};
+use crate::geometry::transform::Transform;
 use crate::geometry::vec2::{Vec2, add, dot, length, negate, scale, sub};
 
-/// A contact in the object's frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Overlap {
-    /// Unit normal into the object.
-    pub normal: Vec2,
-    /// Point of the object's boundary.
-    pub touch: Vec2,
-    /// Gap (m), negative.
-    pub gap: f64,
-}
-
-/// The deepest one of the least penetrations of all pairs of polygons that overlap; `frame` is that
-/// of `theirs` seen from `mine`.
+/// The deepest one of the least penetrations of all pairs of polygons that overlap, in the object's
+/// frame; `other_in_object` places the other body there.
 pub(crate) fn least_penetration(
-    mine: &[Solid],
-    theirs: &[Solid],
-    frame: &Frame,
-) -> Option<Overlap> {
-    let inverse = frame.inverse();
-    let mut deepest: Option<Overlap> = None;
-    for a in mine.iter().filter_map(polygon) {
-        for b in theirs.iter().filter_map(polygon) {
-            let overlap = of_pair(a, b, frame, &inverse);
+    [object, other]: [&[ConvexPart]; 2],
+    other_in_object: &Transform,
+) -> Option<Gap> {
+    let object_in_other = other_in_object.inverse();
+    let mut deepest: Option<Gap> = None;
+    for a in object.iter().filter_map(ConvexPart::polygon) {
+        for b in other.iter().filter_map(ConvexPart::polygon) {
+            let overlap = of_polygons([a, b], other_in_object, &object_in_other);
             if overlap.is_some_and(|new| deepest.is_none_or(|old| new.gap < old.gap)) {
                 deepest = overlap;
             }
@@ -38,48 +28,40 @@ pub(crate) fn least_penetration(
     deepest
 }
 
-fn polygon(solid: &Solid) -> Option<&Polygon> {
-    if let Solid::Polygon(polygon) = solid {
-        Some(polygon)
-    } else {
-        None
-    }
-}
-
-fn of_pair(a: &Polygon, b: &Polygon, frame: &Frame, inverse: &Frame) -> Option<Overlap> {
-    if length(sub(frame.point(b.centre), a.centre)) >= a.radius + b.radius {
+/// The least penetration of two polygons, in the frame of `a`.
+fn of_polygons([a, b]: [&Polygon; 2], b_in_a: &Transform, a_in_b: &Transform) -> Option<Gap> {
+    if length(sub(b_in_a.transform_point(b.centre), a.centre)) >= a.radius + b.radius {
         return None;
     }
-    let (normal, corner, gap) = shallowest(a, b, inverse)?;
-    let by_a = Overlap {
+    let (normal, corner, gap) = shallowest(a, b, a_in_b)?;
+    let by_a = Gap {
         normal: negate(normal),
-        touch: add(frame.point(corner), scale(-gap, normal)),
+        arm: add(b_in_a.transform_point(corner), scale(-gap, normal)),
         gap,
     };
-    let (normal, corner, gap) = shallowest(b, a, frame)?;
-    let by_b = Overlap {
-        normal: frame.turn(normal),
-        touch: corner,
+    let (normal, corner, gap) = shallowest(b, a, b_in_a)?;
+    let by_b = Gap {
+        normal: b_in_a.rotate(normal),
+        arm: corner,
         gap,
     };
     Some(if by_a.gap >= by_b.gap { by_a } else { by_b })
 }
 
 /// Among the sides of `a`, the one that `b` reaches least far behind: its normal in a's frame, b's
-/// deepest corner in b's frame, and the gap. `None` where a side has all of `b` before it. Seams
-/// are no way out. `frame` is that of `a` seen from `b`.
-fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f64)> {
+/// deepest corner in b's frame, and the gap. `None` where a side has all of `b` in front. Seams are
+/// no way out.
+fn shallowest(a: &Polygon, b: &Polygon, a_in_b: &Transform) -> Option<(Vec2, Vec2, f64)> {
     let mut best: Option<(Vec2, Vec2, f64)> = None;
-    for (side, start) in a.sides.iter().zip(&a.corners) {
-        let (normal, on_line) = (frame.turn(side.normal), frame.point(*start));
-        let mut deepest = (b.corners[0], f64::INFINITY);
-        for corner in &b.corners {
+    for (side, start) in a.sides.iter().zip(&a.vertices) {
+        let normal = a_in_b.rotate(side.normal);
+        let on_line = a_in_b.transform_point(*start);
+        let mut deepest = (b.vertices[0], f64::INFINITY);
+        for corner in &b.vertices {
             let height = dot(normal, sub(*corner, on_line));
-            deepest = if height < deepest.1 {
-                (*corner, height)
-            } else {
-                deepest
-            };
+            if height < deepest.1 {
+                deepest = (*corner, height);
+            }
         }
         if deepest.1 >= 0.0 {
             return None;
@@ -92,53 +74,54 @@ fn shallowest(a: &Polygon, b: &Polygon, frame: &Frame) -> Option<(Vec2, Vec2, f6
 }
 
 /// The gap of [`least_penetration`] of two convex polygons (m), not negative where they do not
-/// overlap; `frames` are those of `b` seen from `a`, and the inverse.
+/// overlap; `transforms` place `b` in the frame of `a`, and `a` in that of `b`.
 #[inline(always)]
 pub(crate) fn least_gap<const W: usize>(
-    [a, b]: [&Solid; 2],
-    [in_a, in_b]: [&Frames<W>; 2],
+    [a, b]: [&ConvexPart; 2],
+    [b_in_a, a_in_b]: [&Transform<Lanes<W>>; 2],
 ) -> Lanes<W> {
     let mut least = Lanes::splat(f64::NEG_INFINITY);
-    for (mine, theirs, frame) in [(a, b, in_a), (b, a, in_b)] {
-        if let (Solid::Polygon(mine), Solid::Polygon(theirs)) = (mine, theirs) {
-            for side in &mine.sides {
-                least = least.max(lowest(side, &theirs.corners, frame));
+    for (a, b, b_in_a) in [(a, b, b_in_a), (b, a, a_in_b)] {
+        if let (ConvexPart::Polygon(a), ConvexPart::Polygon(b)) = (a, b) {
+            for side in &a.sides {
+                least = least.max(lowest(side, &b.vertices, b_in_a));
             }
         }
     }
     least
 }
 
-/// Height of the lowest corner above the line of a side (m); `frame` is that of the corners seen
-/// from the side's body.
+/// Height of the lowest corner above the line of a side (m); `transform` places the corners in the
+/// side's frame.
 #[inline(always)]
-fn lowest<const W: usize>(side: &Side, corners: &[Vec2], frame: &Frames<W>) -> Lanes<W> {
-    let turned = frame.turn_back_fixed(side.normal);
+fn lowest<const W: usize>(
+    side: &Side,
+    corners: &[Vec2],
+    transform: &Transform<Lanes<W>>,
+) -> Lanes<W> {
+    let normal = transform.inv_rotate(side.normal);
     let mut lowest = Lanes::splat(f64::INFINITY);
     for corner in corners {
-        lowest = lowest.min(dot_fixed(&turned, *corner));
+        lowest = lowest.min(dot(normal, *corner));
     }
-    lowest + (dot_fixed(&frame.origin, side.normal) - side.offset)
+    lowest + (dot(transform.origin, side.normal) - side.offset)
 }
 
 /// The lanes of `asked` in which every pair of polygons has a side that the other one does not
-/// reach deeper than `depth` (m, negative) behind; `frames` are those of `theirs` seen from `mine`,
-/// and the inverse.
+/// reach deeper than `depth` (m, negative) behind; `transforms` as in [`least_gap`].
 #[inline(always)]
 pub(crate) fn separated<const W: usize>(
-    mine: &[Solid],
-    theirs: &[Solid],
-    frames: [&Frames<W>; 2],
+    [object, other]: [&[ConvexPart]; 2],
+    [other_in_object, object_in_other]: [&Transform<Lanes<W>>; 2],
     asked: Mask<W>,
     depth: f64,
 ) -> Mask<W> {
-    let [in_mine, in_theirs] = frames;
     let mut all = asked;
-    for a in mine.iter().filter_map(polygon) {
-        for b in theirs.iter().filter_map(polygon) {
-            let mut apart = has_clear_side(a, b, in_mine, all, depth);
+    for a in object.iter().filter_map(ConvexPart::polygon) {
+        for b in other.iter().filter_map(ConvexPart::polygon) {
+            let mut apart = has_clear_side(a, b, other_in_object, all, depth);
             if (all & !apart).any() {
-                apart = apart | has_clear_side(b, a, in_theirs, all & !apart, depth);
+                apart = apart | has_clear_side(b, a, object_in_other, all & !apart, depth);
             }
             all = all & apart;
         }
@@ -146,13 +129,12 @@ pub(crate) fn separated<const W: usize>(
     all
 }
 
-/// The lanes of `asked` in which a side of `a` has all of `b` above `depth`; `frame` is that of `b`
-/// seen from `a`.
+/// The lanes of `asked` in which a side of `a` has all of `b` above `depth`.
 #[inline(always)]
 fn has_clear_side<const W: usize>(
     a: &Polygon,
     b: &Polygon,
-    frame: &Frames<W>,
+    b_in_a: &Transform<Lanes<W>>,
     asked: Mask<W>,
     depth: f64,
 ) -> Mask<W> {
@@ -160,13 +142,13 @@ fn has_clear_side<const W: usize>(
         return asked;
     };
     // the side that faces the other's centre is the likely one
-    let centre = frame.lane(lane).point(b.centre);
+    let centre = b_in_a.lane(lane).transform_point(b.centre);
     let above = |k: usize| dot(a.sides[k].normal, centre) - a.sides[k].offset;
     let likely =
         (1..a.sides.len()).fold(0, |best, k| if above(k) > above(best) { k } else { best });
     let mut clear = Mask::splat(false);
     for k in std::iter::once(likely).chain(0..a.sides.len()) {
-        clear = clear | lowest(&a.sides[k], &b.corners, frame).gt(Lanes::splat(depth));
+        clear = clear | lowest(&a.sides[k], &b.vertices, b_in_a).gt(Lanes::splat(depth));
         if !(asked & !clear).any() {
             break;
         }

@@ -2,51 +2,21 @@
 
 use stickslip_lanes::{Lanes, Mask};
 
+use crate::geometry::convex_part::ConvexPart;
 use crate::geometry::outline::Outline;
-use crate::geometry::part::Solid;
+use crate::geometry::part::{Part, TOLERANCE, extent};
 use crate::geometry::shape_error::{ShapeError, check};
-use crate::geometry::transform::Vec2s;
 use crate::geometry::vec2::Vec2;
-
-/// Two boundary points nearer than this share of the shape's extent are one point; files are
-/// rounded to 1 µm.
-pub(crate) const TOLERANCE: f64 = 2e-5;
 
 /// A part's boundary point deeper than this share of the shape's size in another part is not on the
 /// union's boundary.
 const HIDDEN: f64 = 1e-9;
 
-/// One convex part of a [`Shape`], in the body frame.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Part {
-    /// Convex polygon, vertices counter-clockwise.
-    Polygon {
-        /// Vertices (m).
-        vertices: Vec<[f64; 2]>,
-    },
-    /// Disc.
-    Disc {
-        /// Radius (m).
-        radius: f64,
-        /// Centre (m).
-        centre: [f64; 2],
-    },
-    /// Ellipse.
-    Ellipse {
-        /// Half lengths of the two axes (m).
-        semi_axes: [f64; 2],
-        /// Centre (m).
-        centre: [f64; 2],
-        /// Angle of the first axis (rad).
-        angle: f64,
-    },
-}
-
 /// A union of convex parts, with the features of its boundary that can touch.
 #[derive(Clone, Debug)]
 pub struct Shape {
     parts: Vec<Part>,
-    solids: Vec<Solid>,
+    convex_parts: Vec<ConvexPart>,
     outline: Outline,
     bounding_radius: f64,
     tolerance: f64,
@@ -69,18 +39,18 @@ impl Shape {
     /// ```
     pub fn new(parts: Vec<Part>) -> Result<Self, ShapeError> {
         check(&parts)?;
-        let bounding_radius = parts.iter().map(Part::reach).fold(0.0, f64::max);
         let tolerance = TOLERANCE * extent(&parts);
-        let mut solids: Vec<Solid> = parts.iter().map(Solid::new).collect();
-        let outline = Outline::new(&parts, &mut solids, tolerance);
-        solids
-            .iter_mut()
-            .for_each(|solid| solid.close_seams(tolerance));
+        let mut convex_parts: Vec<ConvexPart> = parts.iter().map(ConvexPart::new).collect();
+        let outline = Outline::new(&parts, &mut convex_parts, tolerance);
+        for part in &mut convex_parts {
+            part.close_seams(tolerance);
+        }
+        let radii = parts.iter().map(Part::bounding_radius);
         Ok(Self {
+            bounding_radius: radii.fold(0.0, f64::max),
             parts,
-            solids,
+            convex_parts,
             outline,
-            bounding_radius,
             tolerance,
         })
     }
@@ -102,9 +72,9 @@ impl Shape {
         &self.outline
     }
 
-    /// The parts as solids.
-    pub(crate) fn solids(&self) -> &[Solid] {
-        &self.solids
+    /// The parts, in the order of [`parts`](Self::parts), with their insides.
+    pub(crate) fn convex_parts(&self) -> &[ConvexPart] {
+        &self.convex_parts
     }
 
     /// Lengths below this are rounding of the input (m).
@@ -116,69 +86,23 @@ impl Shape {
     /// Where a boundary point of one part lies inside another one, and so not on the union's
     /// boundary.
     #[inline(always)]
-    pub(crate) fn hides<const W: usize>(&self, points: &Vec2s<W>) -> Mask<W> {
-        self.holds_deeper(points, HIDDEN * self.bounding_radius)
+    pub(crate) fn hides<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Mask<W> {
+        self.contains_deeper(points, HIDDEN * self.bounding_radius)
     }
 
     /// Where a point lies inside the union, seams included.
     #[inline(always)]
-    pub(crate) fn contains<const W: usize>(&self, points: &Vec2s<W>) -> Mask<W> {
-        self.holds_deeper(points, 0.0)
+    pub(crate) fn contains<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Mask<W> {
+        self.contains_deeper(points, 0.0)
     }
 
     /// Where a point lies deeper than `depth` (m) in some part.
     #[inline(always)]
-    fn holds_deeper<const W: usize>(&self, points: &Vec2s<W>, depth: f64) -> Mask<W> {
-        let mut held = Mask::splat(false);
-        for solid in &self.solids {
-            held = held | solid.depths(points).gt(Lanes::splat(depth));
+    fn contains_deeper<const W: usize>(&self, points: Vec2<Lanes<W>>, depth: f64) -> Mask<W> {
+        let mut inside = Mask::splat(false);
+        for part in &self.convex_parts {
+            inside = inside | part.depth(points).gt(Lanes::splat(depth));
         }
-        held
+        inside
     }
-}
-
-impl Part {
-    /// Largest distance of its points from the frame's origin (m).
-    fn reach(&self) -> f64 {
-        match self {
-            Part::Polygon { vertices } => vertices
-                .iter()
-                .map(|v| v[0].hypot(v[1]))
-                .fold(0.0, f64::max),
-            Part::Disc { radius, centre } => radius + centre[0].hypot(centre[1]),
-            Part::Ellipse {
-                semi_axes, centre, ..
-            } => semi_axes[0].max(semi_axes[1]) + centre[0].hypot(centre[1]),
-        }
-    }
-
-    /// Corners of a box that holds it.
-    fn bounds(&self) -> [Vec2; 2] {
-        let about = |c: &Vec2, r: f64| [[c[0] - r, c[1] - r], [c[0] + r, c[1] + r]];
-        match self {
-            Part::Polygon { vertices } => {
-                let fold = |f: fn(f64, f64) -> f64| {
-                    vertices
-                        .iter()
-                        .skip(1)
-                        .fold(vertices[0], |m, v| [f(m[0], v[0]), f(m[1], v[1])])
-                };
-                [fold(f64::min), fold(f64::max)]
-            }
-            Part::Disc { radius, centre } => about(centre, *radius),
-            Part::Ellipse {
-                semi_axes, centre, ..
-            } => about(centre, semi_axes[0].max(semi_axes[1])),
-        }
-    }
-}
-
-/// The longer side of a box about all parts (m).
-fn extent(parts: &[Part]) -> f64 {
-    let boxes = || parts.iter().map(Part::bounds);
-    let side = |k: usize| {
-        boxes().map(|b| b[1][k]).fold(f64::MIN, f64::max)
-            - boxes().map(|b| b[0][k]).fold(f64::MAX, f64::min)
-    };
-    side(0).max(side(1))
 }

@@ -1,6 +1,6 @@
-//! What makes parts no shape: [`ShapeError`], and the checks.
+//! Why parts do not make a shape: [`ShapeError`], and the checks.
 
-use crate::geometry::shape::{Part, TOLERANCE};
+use crate::geometry::part::{Part, TOLERANCE};
 use crate::geometry::vec2::{Vec2, cross, dot, length, sub};
 
 /// Why parts do not make a shape. Parts and vertices are counted from 1.
@@ -118,13 +118,13 @@ pub(crate) fn check(parts: &[Part]) -> Result<(), ShapeError> {
         .try_for_each(|(index, part)| match part {
             Part::Polygon { vertices } => check_polygon(vertices, index + 1),
             Part::Disc { radius, centre } => {
-                check_oval(&[("the radius", *radius)], centre, 0.0, index + 1)
+                check_ellipse(&[("the radius", *radius)], centre, 0.0, index + 1)
             }
             Part::Ellipse {
                 semi_axes: [a, b],
                 centre,
                 angle,
-            } => check_oval(
+            } => check_ellipse(
                 &[("the first semi-axis", *a), ("the second semi-axis", *b)],
                 centre,
                 *angle,
@@ -133,7 +133,7 @@ pub(crate) fn check(parts: &[Part]) -> Result<(), ShapeError> {
         })
 }
 
-fn check_oval(
+fn check_ellipse(
     sizes: &[(&str, f64)],
     centre: &Vec2,
     angle: f64,
@@ -144,32 +144,26 @@ fn check_oval(
         ("y of the centre", centre[1]),
         ("the angle", angle),
     ];
-    let all = sizes.iter().chain(&others);
-    if let Some((what, value)) = all.clone().find(|(_, value)| !value.is_finite()) {
-        return Err(ShapeError::NotFinite {
-            part,
-            what: (*what).to_owned(),
-            value: *value,
-        });
+    for &(what, value) in sizes.iter().chain(&others) {
+        if !value.is_finite() {
+            let what = what.to_owned();
+            return Err(ShapeError::NotFinite { part, what, value });
+        }
     }
-    match sizes.iter().find(|(_, size)| *size <= 0.0) {
-        Some((what, value)) => Err(ShapeError::Size {
-            part,
-            what: (*what).to_owned(),
-            value: *value,
-        }),
-        None => Ok(()),
+    for &(what, value) in sizes {
+        if value <= 0.0 {
+            let what = what.to_owned();
+            return Err(ShapeError::Size { part, what, value });
+        }
     }
+    Ok(())
 }
 
 fn check_polygon(vertices: &[Vec2], part: usize) -> Result<(), ShapeError> {
     if let Some(k) = vertices.as_flattened().iter().position(|x| !x.is_finite()) {
         let what = format!("{} of vertex {}", ["x", "y"][k % 2], k / 2 + 1);
-        return Err(ShapeError::NotFinite {
-            part,
-            what,
-            value: vertices[k / 2][k % 2],
-        });
+        let value = vertices[k / 2][k % 2];
+        return Err(ShapeError::NotFinite { part, what, value });
     }
     let count = vertices.len();
     if count < 3 {
@@ -183,30 +177,25 @@ fn check_polygon(vertices: &[Vec2], part: usize) -> Result<(), ShapeError> {
         .map(|v| length(sub(*v, vertices[0])))
         .fold(0.0, f64::max);
     let before = |k: usize| vertices[(k + count - 1) % count];
-    if let Some(k) = (0..count)
-        .rev()
-        .find(|&k| length(sub(vertices[k], before(k))) <= 1e-9 * extent)
-    {
+    let repeats = |k: &usize| length(sub(vertices[*k], before(*k))) <= 1e-9 * extent;
+    if let Some(k) = (0..count).rev().find(repeats) {
+        let [x, y] = vertices[k];
         return Err(ShapeError::RepeatedVertex {
             part,
             vertex: k + 1,
-            x: vertices[k][0],
-            y: vertices[k][1],
+            x,
+            y,
         });
     }
     check_turns(vertices, extent, part)
 }
 
-/// Area, then dents, then the number of turns.
+/// Checks the area, then each vertex for dents, then the number of turns.
 fn check_turns(vertices: &[Vec2], extent: f64, part: usize) -> Result<(), ShapeError> {
     let count = vertices.len();
+    let arm = |k: usize| sub(vertices[k], vertices[0]);
     let area: f64 = (1..count - 1)
-        .map(|k| {
-            0.5 * cross(
-                sub(vertices[k], vertices[0]),
-                sub(vertices[k + 1], vertices[0]),
-            )
-        })
+        .map(|k| 0.5 * cross(arm(k), arm(k + 1)))
         .sum();
     if area.abs() <= 1e-9 * extent * extent {
         return Err(ShapeError::Flat { part, area });
@@ -217,10 +206,8 @@ fn check_turns(vertices: &[Vec2], extent: f64, part: usize) -> Result<(), ShapeE
     let mut angle = 0.0;
     for k in 0..count {
         let vertex = vertices[k];
-        let (t, u) = (
-            sub(vertex, vertices[(k + count - 1) % count]),
-            sub(vertices[(k + 1) % count], vertex),
-        );
+        let t = sub(vertex, vertices[(k + count - 1) % count]);
+        let u = sub(vertices[(k + 1) % count], vertex);
         let chord = [t[0] + u[0], t[1] + u[1]];
         // a dent of the size of rounding is forgiven; a spike, where the boundary turns back, is
         // not
@@ -241,10 +228,8 @@ fn check_turns(vertices: &[Vec2], extent: f64, part: usize) -> Result<(), ShapeE
         }
         angle += libm::atan2(cross(t, u), dot(t, u));
     }
-    let turns = (angle / std::f64::consts::TAU).round() as i64;
-    if turns == 1 {
-        Ok(())
-    } else {
-        Err(ShapeError::SelfIntersecting { part, turns })
+    match (angle / std::f64::consts::TAU).round() as i64 {
+        1 => Ok(()),
+        turns => Err(ShapeError::SelfIntersecting { part, turns }),
     }
 }

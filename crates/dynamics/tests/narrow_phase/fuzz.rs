@@ -1,5 +1,5 @@
-//! Any valid shapes at any finite poses: no panic, finite contacts with unit normals, all below the
-//! reach.
+//! Any valid shapes at any finite poses: no panic, finite contacts with unit normals, all gaps below
+//! the search distance.
 
 use proptest::prelude::*;
 use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};
@@ -39,8 +39,8 @@ fn body() -> impl Strategy<Value = Vec<Part>> {
     prop::collection::vec(part(), 1..5)
 }
 
-/// Two bodies without what is known to be weak: an ellipse that engulfs one part of a union may be
-/// free of it.
+/// Two bodies without a known weakness: an ellipse that engulfs one part of a union may have no
+/// contact with it.
 fn bodies() -> impl Strategy<Value = (Vec<Part>, Vec<Part>)> {
     let round_off = |parts: Vec<Part>| -> Vec<Part> {
         let of = |part| {
@@ -85,17 +85,17 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
-    fn contacts_are_finite_with_unit_normals(a in body(), b in body(), p in pose(), q in pose(), reach in prop_oneof![-0.05..0.1, Just(f64::INFINITY)]) {
+    fn contacts_are_finite_with_unit_normals(a in body(), b in body(), p in pose(), q in pose(), search_distance in prop_oneof![-0.05..0.1, Just(f64::INFINITY)]) {
         let (a, b) = (shape(a), shape(b));
         let mut out = Vec::new();
-        narrow_phase(&Placed::new(&a, p), &Placed::new(&b, q), reach, &mut out);
+        narrow_phase(&Placed::new(&a, p), &Placed::new(&b, q), search_distance, &mut out);
         for gap in &out {
             let [x, y] = gap.normal;
             // far from the origin the bodies' offset itself is rounded, and may overflow
             let near = p.x.abs().max(p.y.abs()).max(q.x.abs()).max(q.y.abs()) < 1e3;
             prop_assert!(!near || (x.hypot(y) - 1.0).abs() < 1e-12, "{gap:?}");
             prop_assert!(!near || gap.arm.iter().all(|r| r.abs() < 1.0), "{gap:?}");
-            prop_assert!(gap.gap < reach || !near, "{gap:?}");
+            prop_assert!(gap.gap < search_distance || !near, "{gap:?}");
         }
     }
 

@@ -145,7 +145,7 @@ fn swapping_the_bodies_mirrors_the_contacts() {
 }
 
 #[test]
-fn contacts_are_appended_and_fewer_within_less_reach() {
+fn contacts_are_appended_and_fewer_within_a_shorter_search_distance() {
     let mut random = Random(3);
     for round in 0..3000 {
         let (a, b) = (random_shape(&mut random), random_shape(&mut random));

@@ -66,26 +66,27 @@ fn random_pair(random: &mut Random, a: &Shape, b: &Shape) -> [Pose; 2] {
 }
 
 /// The smallest gap is parry's signed distance, which is exact for these shapes (GJK apart,
-/// SAT-like EPA in overlap) to rounding; and no contact is missed within a shorter reach.
+/// SAT-like EPA in overlap) to rounding; and no contact is missed within a shorter search
+/// distance.
 fn compare(seed: u64, pairs: usize, part: impl Fn(&mut Random) -> [Part; 2]) {
     let mut random = Random(seed);
     let (mut apart, mut overlapping) = (0, 0);
     for _ in 0..pairs {
         let [a, b] = part(&mut random);
-        let (mine, theirs) = (single(&a), single(&b));
-        let [p, q] = random_pair(&mut random, &mine, &theirs);
+        let (object, other) = (single(&a), single(&b));
+        let [p, q] = random_pair(&mut random, &object, &other);
         let expected = parry_distance((&a, p), (&b, q));
-        let found = contacts((&mine, p), (&theirs, q), 1.0);
+        let found = contacts((&object, p), (&other, q), 1.0);
         assert!(
             (smallest(&found) - expected).abs() < 1e-11,
             "{a:?} {p:?}\n{b:?} {q:?}\n{found:?}, not {expected}"
         );
-        let reach = random.range(-0.002, 0.01);
-        let near = contacts((&mine, p), (&theirs, q), reach);
+        let distance = random.range(-0.002, 0.01);
+        let near = contacts((&object, p), (&other, q), distance);
         assert_eq!(
             !near.is_empty(),
-            smallest(&found) < reach,
-            "{a:?} {p:?}\n{b:?} {q:?}\n{near:?}, reach {reach}"
+            smallest(&found) < distance,
+            "{a:?} {p:?}\n{b:?} {q:?}\n{near:?}, distance {distance}"
         );
         if expected > 0.0 {
             apart += 1

@@ -98,12 +98,15 @@ fn contact_points_lie_on_both_boundaries() {
             .iter()
             .filter(|contact| contact.gap > 0.0)
         {
-            let mine = [poses[0].x + contact.arm[0], poses[0].y + contact.arm[1]];
-            let theirs = [
-                mine[0] - contact.gap * contact.normal[0],
-                mine[1] - contact.gap * contact.normal[1],
+            let object_point = [poses[0].x + contact.arm[0], poses[0].y + contact.arm[1]];
+            let other_point = [
+                object_point[0] - contact.gap * contact.normal[0],
+                object_point[1] - contact.gap * contact.normal[1],
             ];
-            for (body, [x, y]) in [((object, poses[0]), mine), ((other, poses[1]), theirs)] {
+            for (body, [x, y]) in [
+                ((object, poses[0]), object_point),
+                ((other, poses[1]), other_point),
+            ] {
                 let found = contacts(body, (&dot, Pose::new(x, y, 0.0)), 1e-4);
                 assert!(
                     found.iter().any(|g| g.gap.abs() < 2e-9),

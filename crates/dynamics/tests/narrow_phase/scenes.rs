@@ -125,7 +125,7 @@ fn recorded_shapes_are_as_far_as_their_nearest_part() {
 }
 
 #[test]
-fn a_point_round_a_recorded_shape_meets_no_seam() {
+fn a_point_round_a_recorded_shape_touches_no_seam() {
     let mut random = Random(2);
     for list in recorded() {
         let whole = shape(list.clone());

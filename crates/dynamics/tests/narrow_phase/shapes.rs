@@ -1,4 +1,4 @@
-//! Shapes, random numbers and short hands for the tests.
+//! Shapes, random numbers and shorthands for the tests.
 
 use stickslip_dynamics::{Gap, Part, Placed, Pose, Shape, narrow_phase};
 
@@ -21,10 +21,11 @@ impl Random {
         (self.bits() % n as u64) as usize
     }
 
-    pub fn pose(&mut self, reach: f64) -> Pose {
+    /// A pose in the square of half side `size` (m).
+    pub fn pose(&mut self, size: f64) -> Pose {
         Pose::new(
-            self.range(-reach, reach),
-            self.range(-reach, reach),
+            self.range(-size, size),
+            self.range(-size, size),
             self.range(-7.0, 7.0),
         )
     }
@@ -84,13 +85,13 @@ fn polygon_of(count: usize, random: &mut Random) -> Part {
     )
 }
 
-/// All contacts below `reach`.
-pub fn contacts(object: (&Shape, Pose), other: (&Shape, Pose), reach: f64) -> Vec<Gap> {
+/// All contacts whose gap is below `search_distance` (m).
+pub fn contacts(object: (&Shape, Pose), other: (&Shape, Pose), search_distance: f64) -> Vec<Gap> {
     let mut gaps = Vec::new();
     narrow_phase(
         &Placed::new(object.0, object.1),
         &Placed::new(other.0, other.1),
-        reach,
+        search_distance,
         &mut gaps,
     );
     gaps

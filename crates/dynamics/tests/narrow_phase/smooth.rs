@@ -71,13 +71,13 @@ fn compare(seed: u64, parts: impl Fn(&mut Random) -> [Part; 2]) {
     let (mut apart, mut overlapping) = (0, 0);
     for _ in 0..2500 {
         let [a, b] = parts(&mut random);
-        let [mine, theirs] = [a.clone(), b.clone()].map(|part| shape(vec![part]));
-        let (pose, other) = (random.pose(0.05), random.pose(0.05));
-        let expected = brute_force((&a, pose), (&b, other));
-        let found = contacts((&mine, pose), (&theirs, other), 1.0);
+        let [object, other] = [a.clone(), b.clone()].map(|part| shape(vec![part]));
+        let [p, q] = [random.pose(0.05), random.pose(0.05)];
+        let expected = brute_force((&a, p), (&b, q));
+        let found = contacts((&object, p), (&other, q), 1.0);
         assert!(
             found.len() == 1 && (found[0].gap - expected).abs() < 1e-12,
-            "{a:?} {pose:?}\n{b:?} {other:?}\n{found:?}, not {expected}"
+            "{a:?} {p:?}\n{b:?} {q:?}\n{found:?}, not {expected}"
         );
         if expected > 0.0 {
             apart += 1

@@ -1,4 +1,4 @@
-//! Unions: cut into parts or whole, a body is the same body.
+//! Unions: a body touches alike however it is cut into parts.
 
 use stickslip_dynamics::{Gap, Part, Pose, Shape};
 
@@ -127,7 +127,7 @@ fn an_ell_touches_alike_however_it_is_cut() {
 }
 
 #[test]
-fn disc_along_a_straight_seam_meets_one_edge() {
+fn disc_along_a_straight_seam_touches_one_edge() {
     let ell = &ells()[0];
     let tip = shape(vec![disc(0.003, [0.0; 2])]);
     for k in 0..=1000 {
@@ -146,7 +146,7 @@ fn disc_along_a_straight_seam_meets_one_edge() {
 }
 
 #[test]
-fn disc_in_a_reentrant_corner_meets_both_edges() {
+fn disc_in_a_reentrant_corner_touches_both_edges() {
     for ell in &ells() {
         for (radius, gap) in [(0.005, 1e-4), (0.005, -1e-4), (1e-5, 1e-4), (1e-5, -1e-4)] {
             let tip = shape(vec![disc(radius, [0.0; 2])]);
@@ -169,7 +169,7 @@ fn disc_in_a_reentrant_corner_meets_both_edges() {
 }
 
 #[test]
-fn a_corner_pushed_into_a_reentrant_corner_meets_both_edges() {
+fn a_corner_pushed_into_a_reentrant_corner_touches_both_edges() {
     let square = shape(vec![rectangle([0.0, 0.01], [0.0, 0.01])]);
     for ell in &ells() {
         for gap in [1e-4, 0.0, -1e-6, -1e-4] {
@@ -256,7 +256,7 @@ fn a_stadium_of_rectangle_and_discs_has_no_corners() {
 }
 
 #[test]
-fn the_back_of_a_thin_bar_never_answers() {
+fn the_back_of_a_thin_bar_is_never_a_contact() {
     let bar = shape(vec![rectangle([-0.02, 0.02], [-0.0005, 0.0005])]);
     let tip = shape(vec![disc(0.003, [0.0; 2])]);
     for height in [0.003, 0.002, 1e-3, 2e-4, 1e-9] {
