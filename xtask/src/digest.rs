@@ -41,7 +41,7 @@ pub fn check(root: &Path, folders: &[&str], against: Option<&Path>) -> Result<St
         return Ok(format!("digest: {} estimates, all as before", lines.len()));
     }
     Err(format!(
-        "{}\ndigest: {} of {} differ",
+        "{}\ndigest: {} differences in {} estimates",
         differences.join("\n"),
         differences.len(),
         lines.len()
