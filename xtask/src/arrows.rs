@@ -26,8 +26,8 @@ pub struct Rules {
 const TESTKIT: &str = "crates/testkit";
 
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, which
-/// know of nobody; the testbed and vision stand beside the estimator.
-pub const CRATES: [Rules; 11] = [
+/// know of nobody; testbed, rendering and vision stand beside the estimator.
+pub const CRATES: [Rules; 12] = [
     Rules {
         must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
         ..Rules::of("crates/dynamics", &[])
@@ -40,9 +40,13 @@ pub const CRATES: [Rules; 11] = [
         must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
         ..Rules::of("crates/testbed", &["crates/dynamics", "crates/filter"])
     },
+    Rules {
+        must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
+        ..Rules::of("crates/rendering", &["crates/dynamics", "crates/filter"])
+    },
     // rendered frames have a truth to be judged by; random numbers are the filter's
     Rules {
-        may_test_with: &["crates/testbed", "crates/filter"],
+        may_test_with: &["crates/rendering", "crates/filter"],
         ..Rules::of("crates/vision", &["crates/dynamics"])
     },
     Rules::of(
@@ -52,6 +56,7 @@ pub const CRATES: [Rules; 11] = [
             "crates/filter",
             "crates/estimator",
             "crates/formats",
+            "crates/rendering",
             "crates/report",
             "crates/testbed",
             "crates/vision",
@@ -352,16 +357,16 @@ mod tests {
     fn check_lets_some_crates_into_tests_only() {
         let vision = |section: &str| {
             let manifest = format!(
-                "[package]\nname = \"stickslip-vision\"\n[{section}]\nstickslip-testbed.workspace = true\n"
+                "[package]\nname = \"stickslip-vision\"\n[{section}]\nstickslip-rendering.workspace = true\n"
             );
             let tree = Tree::from([
                 (
                     "Cargo.toml",
-                    "[workspace]\nmembers = [\"crates/testbed\", \"crates/vision\"]\n",
+                    "[workspace]\nmembers = [\"crates/rendering\", \"crates/vision\"]\n",
                 ),
                 (
-                    "crates/testbed/Cargo.toml",
-                    "[package]\nname = \"stickslip-testbed\"\n",
+                    "crates/rendering/Cargo.toml",
+                    "[package]\nname = \"stickslip-rendering\"\n",
                 ),
                 ("crates/vision/Cargo.toml", &manifest),
             ]);
@@ -374,7 +379,7 @@ mod tests {
         assert_one(
             &vision("dependencies"),
             "crates/vision/Cargo.toml:4: ",
-            "must not depend on `stickslip-testbed`",
+            "must not depend on `stickslip-rendering`",
         );
     }
 
