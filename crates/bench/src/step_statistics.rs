@@ -1,8 +1,8 @@
-//! How many steps went how: [`Tally`].
+//! How a set of particle-steps ended: [`StepStatistics`].
 
 use stickslip_dynamics::{Outcome, Report, Route};
 
-/// Steps with as many iterations as this or more are counted together.
+/// Steps with this many iterations or more are counted together.
 const MOST_ITERATIONS: usize = 255;
 
 /// Routes in the order in which the solver tries them, with their names.
@@ -13,9 +13,9 @@ const ROUTES: [(Route, &str); 4] = [
     (Route::Modes, "modes"),
 ];
 
-/// Counts over particle-steps.
+/// Outcomes, routes, iterations and residuals of particle-steps.
 #[derive(Clone, Debug)]
-pub struct Tally {
+pub struct StepStatistics {
     steps: u64,
     unsolved: u64,
     routes: [u64; 4],
@@ -23,7 +23,7 @@ pub struct Tally {
     worst_residual: f64,
 }
 
-impl Default for Tally {
+impl Default for StepStatistics {
     fn default() -> Self {
         Self {
             steps: 0,
@@ -35,7 +35,7 @@ impl Default for Tally {
     }
 }
 
-impl Tally {
+impl StepStatistics {
     /// Counts one particle-step.
     pub fn count(&mut self, report: &Report) {
         self.steps += 1;
