@@ -5,8 +5,8 @@
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Occlusion, RunOptions, keep_threads_awake, run};
-use stickslip_bench::{Results, median, quantile};
+use stickslip::{Occlusion, RunOptions, keep_threads_awake, quantile, run};
+use stickslip_bench::Results;
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
 /// Rounds that are counted.
@@ -55,10 +55,10 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
     }
     for (k, threads) in ["1 thread", "2 threads"].into_iter().enumerate() {
         let name = format!("job / {log} / {threads}");
-        results.write(&format!("{name} / wall"), median(&walls[k]), "ms")?;
+        results.write(&format!("{name} / wall"), quantile(&walls[k], 0.5), "ms")?;
         results.write(
             &format!("{name} / frame; median"),
-            median(&latencies[k]),
+            quantile(&latencies[k], 0.5),
             "ms",
         )?;
         results.write(
@@ -72,9 +72,10 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
             "ms",
         )?;
     }
+    let [one, two] = walls.each_ref().map(|wall| quantile(wall, 0.5));
     results.write(
         &format!("job / {log} / 1 thread over 2"),
-        median(&walls[0]) / median(&walls[1]),
+        one.zip(two).map(|(one, two)| one / two),
         "1",
     )?;
     Ok(())

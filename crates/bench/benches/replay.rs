@@ -9,8 +9,8 @@ use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use stickslip::{Observer, Occlusion, RunOptions, SolvedStep, run_observed};
-use stickslip_bench::{BlockOf64, LANES, Results, Tally, instruction_sets, median, quantile};
+use stickslip::{Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
+use stickslip_bench::{BlockOf64, LANES, Results, StepStatistics, instruction_sets};
 use stickslip_dynamics::{Dynamics, Level, Particles, StepInput, StepWork};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
@@ -53,7 +53,7 @@ struct Cost {
     blocks: Vec<f64>,
     /// All time (ns) and all particle-steps, rounds together.
     total: [f64; 2],
-    tally: Tally,
+    statistics: StepStatistics,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -118,7 +118,7 @@ fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
 }
 
 /// Adds to `cost`; returns the mean time per particle-step of the median round (ns).
-fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost) -> f64 {
+fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost) -> Option<f64> {
     let dynamics = Dynamics::new(case.setup.scene.clone()).with_level(level);
     let mut work = StepWork::default();
     let mut rounds = Vec::new();
@@ -136,7 +136,7 @@ fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost
                 work.reports()
                     .as_flattened()
                     .iter()
-                    .for_each(|report| cost.tally.count(report));
+                    .for_each(|report| cost.statistics.count(report));
             }
         }
         if round > 0 {
@@ -144,7 +144,7 @@ fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost
             cost.total = [cost.total[0] + time, cost.total[1] + count];
         }
     }
-    median(&rounds)
+    quantile(&rounds, 0.5)
 }
 
 fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> {
@@ -156,7 +156,7 @@ fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> 
     )?;
     results.write(
         &format!("{name} / median of blocks"),
-        median(&cost.blocks),
+        quantile(&cost.blocks, 0.5),
         "ns/particle-step",
     )?;
     results.write(
@@ -166,30 +166,30 @@ fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> 
     )?;
     results.write(
         &format!("{name} / iterations"),
-        cost.tally.mean_iterations(),
+        cost.statistics.mean_iterations(),
         "1",
     )?;
     results.write(
         &format!("{name} / p99 of iterations"),
-        cost.tally.iterations_quantile(0.99) as f64,
+        cost.statistics.iterations_quantile(0.99) as f64,
         "1",
     )?;
     results.write(
         &format!("{name} / worst residual"),
-        cost.tally.worst_residual(),
+        cost.statistics.worst_residual(),
         "m/s",
     )?;
     results.write(
         &format!("{name} / fallback"),
-        cost.tally.fallback_share(),
+        cost.statistics.fallback_share(),
         "1",
     )?;
     results.write(
         &format!("{name} / unsolved"),
-        cost.tally.unsolved() as f64 / cost.tally.steps() as f64,
+        cost.statistics.unsolved() as f64 / cost.statistics.steps() as f64,
         "1",
     )?;
-    for (route, share) in cost.tally.route_shares() {
+    for (route, share) in cost.statistics.route_shares() {
         results.write(&format!("{name} / by {route}"), share, "1")?;
     }
     Ok(())

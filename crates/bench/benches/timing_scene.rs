@@ -4,7 +4,8 @@
 use std::error::Error;
 
 use stickslip_bench::{
-    Case, FRAMES, MOVING, PHASES, Results, instruction_sets, measure, timing_input, timing_scene,
+    FRAMES, MOVING, PHASES, Results, TimedScene, instruction_sets, time_scenes, timing_input,
+    timing_scene,
 };
 use stickslip_dynamics::Dynamics;
 
@@ -13,17 +14,17 @@ const ROUNDS: usize = 9;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let scene = timing_scene()?;
-    let case = |(name, level)| Case {
+    let timed = |(name, level)| TimedScene {
         name: format!("timing scene / {name}"),
         dynamics: Dynamics::new(scene.clone()).with_level(level),
         inputs: (0..FRAMES).map(timing_input).collect(),
     };
-    let cases: Vec<Case> = instruction_sets().into_iter().map(case).collect();
+    let scenes: Vec<TimedScene> = instruction_sets().into_iter().map(timed).collect();
     let mut results = Results::open()?;
-    for course in measure(&cases, ROUNDS) {
-        course.write("moving", MOVING, &mut results)?;
+    for timing in time_scenes(&scenes, ROUNDS) {
+        timing.write("moving", MOVING, &mut results)?;
         for (phase, frames) in PHASES {
-            course.write(phase, frames, &mut results)?;
+            timing.write(phase, frames, &mut results)?;
         }
     }
     Ok(())

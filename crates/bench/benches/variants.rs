@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 use std::fs::read_to_string;
 
 use stickslip_bench::{
-    Case, FRAMES, MOVING, PHASES, Results, measure, pushed_object, timing_input, timing_scene,
+    FRAMES, MOVING, PHASES, Results, TimedScene, pushed_object, time_scenes, timing_input,
+    timing_scene,
 };
 use stickslip_dynamics::{Dynamics, Fixel, Part, Pose, Scene, Shape, ShapeError};
 use stickslip_formats::read_scene;
@@ -48,21 +49,21 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn write(scenes: Vec<(String, Scene)>) -> Result<(), Box<dyn Error>> {
-    let case = |(name, scene)| Case {
+    let timed = |(name, scene)| TimedScene {
         name: format!("variants / {name}"),
         dynamics: Dynamics::new(scene),
         inputs: (0..FRAMES).map(timing_input).collect(),
     };
-    let cases: Vec<Case> = scenes.into_iter().map(case).collect();
-    let courses = measure(&cases, ROUNDS);
+    let scenes: Vec<TimedScene> = scenes.into_iter().map(timed).collect();
+    let timings = time_scenes(&scenes, ROUNDS);
     let [(pushed, pushed_frames), ..] = PHASES;
     let mut results = Results::open()?;
-    for (case, course) in cases.iter().zip(&courses) {
-        course.write("moving", MOVING, &mut results)?;
-        course.write(pushed, pushed_frames.clone(), &mut results)?;
-        let ratio = course.over(MOVING).nanoseconds / courses[0].over(MOVING).nanoseconds;
+    for (scene, timing) in scenes.iter().zip(&timings) {
+        timing.write("moving", MOVING, &mut results)?;
+        timing.write(pushed, pushed_frames.clone(), &mut results)?;
+        let ratio = timing.over(MOVING).nanoseconds / timings[0].over(MOVING).nanoseconds;
         results.write(
-            &format!("{} / moving / of the square with 3 fixels", case.name),
+            &format!("{} / moving / of the square with 3 fixels", scene.name),
             ratio,
             "1",
         )?;
@@ -113,7 +114,7 @@ fn concave() -> Result<Option<Shape>, Box<dyn Error>> {
     ))
 }
 
-/// The scene with more fixels, all out of reach, `count` in all.
+/// The scene with `count` fixels; the added ones are out of reach.
 fn with_far_fixels(base: &Scene, count: usize) -> Scene {
     let mut scene = base.clone();
     for k in scene.fixels.len()..count {

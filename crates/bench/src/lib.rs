@@ -5,21 +5,19 @@
 //! otherwise, after a warm-up, medians of several rounds.
 
 mod batch;
-mod course;
 mod instruction_sets;
 mod machine;
-mod quantile;
 mod results;
+mod scene_timing;
 mod scenes;
-mod tally;
+mod step_statistics;
 
 pub use batch::{Batch, BlockOf64, LANES};
-pub use course::{Case, Course, Summary, measure};
 pub use instruction_sets::instruction_sets;
 pub use machine::{date, processor};
-pub use quantile::{median, quantile};
 pub use results::Results;
+pub use scene_timing::{SceneTiming, TimedScene, TimingSummary, time_scenes};
 pub use scenes::{
     FRAME, FRAMES, MOVING, PHASES, pushed_object, scattered, timing_input, timing_scene,
 };
-pub use tally::Tally;
+pub use step_statistics::StepStatistics;

@@ -35,11 +35,17 @@ impl Results {
         Ok(Self { file })
     }
 
-    /// One figure; `name` holds no comma.
+    /// One figure, NaN for `None`; `name` holds no comma.
     ///
     /// # Errors
     /// The file or standard output cannot be written.
-    pub fn write(&mut self, name: &str, value: f64, unit: &str) -> io::Result<()> {
+    pub fn write(
+        &mut self,
+        name: &str,
+        value: impl Into<Option<f64>>,
+        unit: &str,
+    ) -> io::Result<()> {
+        let value: f64 = value.into().unwrap_or(f64::NAN);
         let value = if value != 0.0 && value.abs() < 1e-3 {
             format!("{value:.3e}")
         } else {

@@ -61,7 +61,7 @@ pub fn pushed_object(object: Shape, pusher: Shape, fixels: Vec<Fixel>) -> Scene 
 /// The timing scene: a square of 50 mm, a disc as its pusher, three fixels.
 ///
 /// # Errors
-/// None in fact: the shapes are sound.
+/// None: the shapes are valid.
 pub fn timing_scene() -> Result<Scene, ShapeError> {
     let a = 0.025;
     let square = Shape::new(vec![Part::Polygon {

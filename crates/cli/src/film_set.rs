@@ -4,9 +4,9 @@ use anyhow::Result;
 use image::GrayImage;
 use rayon::prelude::*;
 use stickslip::dynamics::{Pose, Scene};
-use stickslip_testbed::camera::{
-    self, BoardPose, Camera, Lens, Optics, Props, Recorded, Stage, Studio, TagMount,
-    calibration_poses,
+use stickslip_rendering::{
+    self as rendering, Appearance, BoardPose, Camera, Lens, Optics, RecordedMotion, RenderScene,
+    Renderer, TagMount, calibration_poses,
 };
 use stickslip_vision::{Board, BoardOnTable, BodyTag, TagPlace, Tags, tag_cells};
 
@@ -30,8 +30,8 @@ const THICKNESS: f64 = 0.003;
 /// A scene before a camera.
 #[derive(Clone, Debug)]
 pub struct FilmSet {
-    /// The camera before the stage.
-    pub studio: Studio,
+    /// The camera before the scene.
+    pub renderer: Renderer,
     /// Which tag is on which body, and where.
     pub tags: Tags,
     /// Height of the hand (m).
@@ -41,7 +41,7 @@ pub struct FilmSet {
 /// A recording of the calibration board.
 #[derive(Clone, Debug)]
 pub struct BoardFilm {
-    print: camera::Board,
+    print: rendering::Board,
     poses: Vec<BoardPose>,
     /// How the board lies in the first frame.
     pub on_table: BoardOnTable,
@@ -49,12 +49,19 @@ pub struct BoardFilm {
 
 impl FilmSet {
     /// A camera that sees all that happens in `recordings`; `seed` is that of all noise.
-    pub fn new(scene: &Scene, recordings: &[Recorded], optics: Optics, seed: u64) -> Result<Self> {
-        let push = recordings.first().map_or(0.0, Recorded::push_direction);
-        let mut props = Props::of(scene, cells(OBJECT_TAG), cells(PUSHER_TAG), push);
+    pub fn new(
+        scene: &Scene,
+        recordings: &[RecordedMotion],
+        optics: Optics,
+        seed: u64,
+    ) -> Result<Self> {
+        let push = recordings
+            .first()
+            .map_or(0.0, RecordedMotion::push_direction);
+        let mut appearance = Appearance::of(scene, cells(OBJECT_TAG), cells(PUSHER_TAG), push);
         let seen = recordings
             .iter()
-            .map(|recorded| recorded.bounds(scene, &props));
+            .map(|recorded| recorded.bounds(scene, &appearance));
         let [low, high] = seen.fold(
             [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
             |[low, high], [l, h]| {
@@ -64,25 +71,25 @@ impl FilmSet {
                 ]
             },
         );
-        props.plate = [low.map(|x| x - PLATE_ROOM), high.map(|x| x + PLATE_ROOM)];
+        appearance.plate = [low.map(|x| x - PLATE_ROOM), high.map(|x| x + PLATE_ROOM)];
         let camera = Camera::over(Lens::industrial(), [low, high])?;
         Ok(Self {
-            studio: Studio::new(camera, Stage::new(scene, &props), optics, seed),
-            tags: tags(&props),
-            hand_height: (props.hand.heights[0] + props.hand.heights[1]) / 2.0,
+            renderer: Renderer::new(camera, RenderScene::new(scene, &appearance), optics, seed),
+            tags: tags(&appearance),
+            hand_height: (appearance.hand.heights[0] + appearance.hand.heights[1]) / 2.0,
         })
     }
 
     /// The calibration board in `count` poses.
     pub fn board(&self, count: usize) -> Result<BoardFilm> {
         let tags = BOARD.tags().map(cells).collect();
-        let print = camera::Board {
+        let print = rendering::Board {
             columns: usize::from(BOARD.columns),
             tag_size: BOARD.tag_size,
             gap: BOARD.gap,
             tags,
         };
-        let poses = calibration_poses(self.studio.camera(), &print, THICKNESS, count)?;
+        let poses = calibration_poses(self.renderer.camera(), &print, THICKNESS, count)?;
         let [x, y, _] = poses[0].origin;
         Ok(BoardFilm {
             print,
@@ -106,7 +113,7 @@ impl BoardFilm {
         let frame = |(index, pose): (usize, &BoardPose)| {
             make(
                 index,
-                set.studio
+                set.renderer
                     .board_frame(BOARD_FRAMES + index as u64, &self.print, pose),
             )
         };
@@ -114,13 +121,13 @@ impl BoardFilm {
     }
 }
 
-fn cells(id: u16) -> camera::TagCells {
+fn cells(id: u16) -> rendering::TagCells {
     tag_cells(id).expect("the family has this tag")
 }
 
-fn tags(props: &Props) -> Tags {
+fn tags(appearance: &Appearance) -> Tags {
     let of = |id: u16, mount: &Option<TagMount>| {
-        let TagMount { tag, pose, height } = mount.expect("the standard props have both tags");
+        let TagMount { tag, pose, height } = mount.expect("the standard appearance has both tags");
         BodyTag {
             id,
             place: TagPlace {
@@ -131,7 +138,7 @@ fn tags(props: &Props) -> Tags {
         }
     };
     Tags {
-        object: of(OBJECT_TAG, &props.object_tag),
-        pusher: of(PUSHER_TAG, &props.pusher_tag),
+        object: of(OBJECT_TAG, &appearance.object_tag),
+        pusher: of(PUSHER_TAG, &appearance.pusher_tag),
     }
 }

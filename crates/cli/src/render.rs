@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 use stickslip_formats::{Experiment, FrameList, write_frames};
-use stickslip_testbed::camera::{Film, Grabber, Optics, Recorded, Take, encode_png};
+use stickslip_rendering::{
+    CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video, encode_png,
+};
 use stickslip_vision::{BoardOnTable, write_board, write_tags};
 
 use crate::args::Rows;
@@ -29,19 +31,19 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         ..Optics::default()
     };
     let set = FilmSet::new(scene, std::slice::from_ref(&recorded), optics, args.seed)?;
-    let take = Take {
+    let settings = CaptureSettings {
         exposure: args.exposure,
-        grabber: Grabber {
+        grabber: FrameGrabber {
             repeat: args.repeat,
             seed: args.seed,
         },
         covered: covered(args, &experiment),
         hand_height: set.hand_height,
     };
-    let film = Film {
-        studio: &set.studio,
-        recorded: &recorded,
-        take,
+    let film = Video {
+        renderer: &set.renderer,
+        motion: &recorded,
+        settings,
     };
 
     let pool = rayon::ThreadPoolBuilder::new()
@@ -72,7 +74,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
 }
 
 /// Where object and pusher are: the object as the truth has it, else as the log.
-fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<Recorded> {
+fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<RecordedMotion> {
     let reference = experiment.reference().pose;
     let unknown = reference.iter().position(Option::is_none);
     if let Some(row) = unknown {
@@ -86,7 +88,7 @@ fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<Recorded> {
             "give an experiment with truth.csv over all rows of its log",
         ));
     }
-    Ok(Recorded {
+    Ok(RecordedMotion {
         time: experiment.log.time.clone(),
         object: reference.into_iter().flatten().collect(),
         pusher: experiment.log.pusher.clone(),
@@ -108,9 +110,9 @@ struct Out<'a>(&'a Path);
 
 impl Out<'_> {
     /// Frames and frames.csv; returns how many.
-    fn frames(&self, film: &Film<'_>) -> Result<usize> {
+    fn frames(&self, film: &Video<'_>) -> Result<usize> {
         let folder = self.folder("frames")?;
-        let time = &film.recorded.time;
+        let time = &film.motion.time;
         let progress = bar(time.len(), "frames", Work::Long);
         let file: Vec<String> = (0..time.len())
             .map(|index| format!("{index:06}.png"))

@@ -20,7 +20,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 use stickslip::Tracking;
-use stickslip_testbed::camera::Optics;
+use stickslip_rendering::Optics;
 
 use crate::args::ReproduceArgs;
 use crate::contest::Rules;

@@ -4,7 +4,9 @@ use anyhow::{Context, Result};
 use stickslip::dynamics::{Body, Friction, Start};
 use stickslip::{Log, Setup};
 use stickslip_formats::{Truth, TruthFacts};
-use stickslip_testbed::{Model, Rig, Sighting, TouchSensors, Trace, Tracker, Trial};
+use stickslip_testbed::{
+    CameraMeasurement, Model, Rig, TouchSensors, Trace, TrackingCamera, Trial,
+};
 
 use crate::args::Physics;
 use crate::failure::hinted;
@@ -77,7 +79,7 @@ impl Simulation {
         let trace = run.with_context(|| name.to_owned())?;
         let log = log(
             &trace,
-            &tracker(setup, options.repeats).sight(&trace, options.seed),
+            &tracker(setup, options.repeats).measure(&trace, options.seed),
         );
         let facts = facts(&trace, known, options);
         Ok(Self {
@@ -108,18 +110,20 @@ fn friction(setup: &Setup, known: &TruthFacts) -> Friction {
 }
 
 /// A camera as noisy as the scene says, exact where it says nothing.
-fn tracker(setup: &Setup, repeats: f64) -> Tracker {
-    setup.camera.map_or(Tracker::EXACT, |camera| Tracker {
-        position_std: camera.position_std,
-        orientation_std: camera.orientation_std,
-        pusher_position_std: camera.pusher_position_std,
-        pusher_orientation_std: camera.pusher_orientation_std,
-        latency: camera.latency,
-        repeats,
-    })
+fn tracker(setup: &Setup, repeats: f64) -> TrackingCamera {
+    setup
+        .camera
+        .map_or(TrackingCamera::EXACT, |camera| TrackingCamera {
+            position_std: camera.position_std,
+            orientation_std: camera.orientation_std,
+            pusher_position_std: camera.pusher_position_std,
+            pusher_orientation_std: camera.pusher_orientation_std,
+            latency: camera.latency,
+            repeats,
+        })
 }
 
-fn log(trace: &Trace, sightings: &[Sighting]) -> Log {
+fn log(trace: &Trace, sightings: &[CameraMeasurement]) -> Log {
     let sensors = trace.frames.first().map_or(0, |frame| frame.tactile.len());
     Log {
         time: trace.frames.iter().map(|frame| frame.time).collect(),

@@ -5,7 +5,8 @@ use stickslip_dynamics::{
 };
 
 use crate::touch::TouchSensors;
-use crate::{Contact, Frame, Trace, Trial, TrialError};
+use crate::trace::{Contact, Frame, Trace};
+use crate::trial::{Trial, TrialError};
 
 /// Γ with its true friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,14 +57,14 @@ impl Model {
                 &mut work,
             );
             unsolved += usize::from(report.outcome != Outcome::Solved);
-            let short = work.solution(0).pusher_yield;
+            let pusher_yield = work.solution(0).pusher_yield;
             let moved = Twist {
-                vx: twist.vx - short * direction[0],
-                vy: twist.vy - short * direction[1],
+                vx: twist.vx - pusher_yield * direction[0],
+                vy: twist.vy - pusher_yield * direction[1],
                 ..twist
             };
             pusher = pusher.advance(moved, h);
-            // it stands where it is said to be
+            // the trace's pusher pose is exact: no lag is left to the particle
             object.pusher_lag = 0.0;
             frames.push(frame(
                 trial,
@@ -73,7 +74,7 @@ impl Model {
                 contacts(&work, object.pose, h),
             ));
         }
-        self.touch.feel(&mut frames, trial);
+        self.touch.write_readings(&mut frames, trial);
         Ok(Trace {
             friction: self.friction,
             frames,

@@ -2,17 +2,19 @@
 
 use stickslip_filter::{Purpose, Streams};
 
-use crate::{Frame, Trial};
+use crate::trace::Frame;
+use crate::trial::Trial;
 
-/// Sensors that compare a fixel's mean force over a frame's interval with a threshold, and err.
+/// Sensors that compare a fixel's mean force over a frame's interval with a threshold; they chatter
+/// and drop out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchSensors {
     /// Force at which a sensor reads 1 (N).
     pub threshold: f64,
-    /// Standard deviation of the force that it sees (N): readings chatter where the force is near
-    /// the threshold.
+    /// Standard deviation of the sensed force (N); readings chatter where the force is near the
+    /// threshold.
     pub noise: f64,
-    /// The same as a share of the force.
+    /// A further standard deviation, as a share of the force.
     pub relative_noise: f64,
     /// Dropouts per second; during one a sensor reads 0.
     pub dropouts: f64,
@@ -34,21 +36,23 @@ impl Default for TouchSensors {
 
 impl TouchSensors {
     /// Writes every frame's readings.
-    pub(crate) fn feel(&self, frames: &mut [Frame], trial: &Trial<'_>) {
+    pub(crate) fn write_readings(&self, frames: &mut [Frame], trial: &Trial<'_>) {
         let streams = Streams::new(trial.seed).of(Purpose::Measure);
-        let starts = 1.0 - libm::exp(-self.dropouts / trial.rate);
+        let dropout_probability = 1.0 - libm::exp(-self.dropouts / trial.rate);
         let mut silent_until = vec![0.0; trial.scene.fixels.len()];
         for (k, frame) in frames.iter_mut().enumerate() {
             let draw = streams.at(k as u64);
             let reading = |(sensor, force): (usize, &f64)| {
                 let number = sensor as u32;
-                if frame.time >= silent_until[sensor] && draw.uniform(number, 0) < starts {
+                if frame.time >= silent_until[sensor]
+                    && draw.uniform(number, 0) < dropout_probability
+                {
                     silent_until[sensor] =
                         frame.time - self.dropout_time * libm::log(draw.uniform(number, 1));
                 }
-                let felt =
+                let sensed =
                     force + (self.noise + self.relative_noise * force) * draw.normal(number, 0);
-                felt > self.threshold && frame.time >= silent_until[sensor]
+                sensed > self.threshold && frame.time >= silent_until[sensor]
             };
             frame.tactile = frame.fixel_forces.iter().enumerate().map(reading).collect();
         }
@@ -120,7 +124,7 @@ mod tests {
             tactile: vec![],
         };
         let mut frames: Vec<Frame> = (0..FRAMES).map(frame).collect();
-        sensors.feel(&mut frames, &trial);
+        sensors.write_readings(&mut frames, &trial);
         frames.iter().map(|frame| frame.tactile[0]).collect()
     }
 

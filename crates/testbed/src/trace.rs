@@ -5,8 +5,8 @@ use stickslip_dynamics::{Body, Friction, Pose, Twist};
 /// A simulated experiment: the truth at every camera frame, and what the touch sensors read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// The true friction: μ_s is the mean over the way that the object went, d_tri the tripod
-    /// radius with the same torque in pure spin.
+    /// The true friction: μ_s is the mean along the object's path, d_tri the radius of the tripod
+    /// with the same torque in pure spin.
     pub friction: Friction,
     /// Camera frames, evenly spaced, the first one at time 0.
     pub frames: Vec<Frame>,

@@ -2,15 +2,15 @@
 
 use stickslip_dynamics::{Body, Gap, Placed, Scene, Start, narrow_phase};
 
-/// Overlap at the start that is rounding of the poses (m).
+/// Overlap at the start that counts as rounding of the poses (m).
 const ROUNDING: f64 = 2e-5;
 
 /// One experiment to be simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
-    /// Bodies; of the nominal friction only what the physics' own settings do not say.
+    /// Bodies, and friction as far as the physics' own settings leave it open.
     pub scene: &'a Scene,
-    /// Poses at the start, and the pusher's course.
+    /// Poses at the start, and the pusher's commanded motion.
     pub start: &'a Start,
     /// Camera frames per second (Hz).
     pub rate: f64,
@@ -70,7 +70,7 @@ impl Trial<'_> {
         frame as f64 / self.rate
     }
 
-    /// Refuses what cannot be simulated with any physics.
+    /// Refuses what no physics can simulate.
     pub(crate) fn check(&self, friction: [(&'static str, f64); 3]) -> Result<(), TrialError> {
         if !(1.0..=1000.0).contains(&self.rate) {
             return Err(TrialError::Rate { rate: self.rate });

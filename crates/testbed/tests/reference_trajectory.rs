@@ -6,7 +6,8 @@ mod common;
 use common::{bench_scene, bench_start, reference};
 use stickslip_dynamics::Pose;
 use stickslip_testbed::{
-    Bristles, ContactLaw, DriveSettings, Footing, Rig, SupportPoint, Table, Trace, Trial,
+    Bristles, ContactLaw, DriveSettings, PressureDistribution, Rig, SupportPoint, TableFriction,
+    Trace, Trial,
 };
 
 /// Frames until the pusher stands still.
@@ -26,11 +27,13 @@ fn run(stiffness: f64) -> Trace {
     let turn = std::f64::consts::TAU / 3.0;
     let first = std::f64::consts::FRAC_PI_2;
     let rig = Rig {
-        footing: Footing::Points([first, first + turn, first - turn].map(foot).to_vec()),
-        table: Table {
+        pressure: PressureDistribution::Points(
+            [first, first + turn, first - turn].map(foot).to_vec(),
+        ),
+        table: TableFriction {
             unevenness: 0.0,
             speed_effect: 0.0,
-            ..Table::default()
+            ..TableFriction::default()
         },
         bristles: Bristles {
             give: 0.5 / stiffness,

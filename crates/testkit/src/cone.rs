@@ -12,9 +12,9 @@
 
 use stickslip_dynamics::{StepProblem, StepSolution, Twist};
 
-use crate::conic::{Conic, Optimum};
+use crate::conic_program::{ConicProgram, Optimum};
 use crate::residual::residual_si;
-use crate::scaled::Scaled;
+use crate::scaled_problem::ScaledProblem;
 
 /// Unknowns: z, y, and per foot the epigraph of |J_k z|.
 const UNKNOWNS: usize = 7;
@@ -47,7 +47,7 @@ pub fn cone_program_step(problem: &StepProblem) -> Option<StepSolution> {
         problem.contacts.iter().all(|c| c.mu == 0.0),
         "the step is a convex program only where no contact has friction"
     );
-    let scaled = Scaled::new(problem);
+    let scaled = ScaledProblem::new(problem);
     let solves =
         |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * scaled.speed();
     program(&scaled)
@@ -62,15 +62,15 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
     row
 }
 
-fn bound_yield(scaled: &Scaled, conic: &mut Conic) {
+fn bound_yield(scaled: &ScaledProblem, conic: &mut ConicProgram) {
     match scaled.stall_impulse() {
         Some(_) => conic.at_least((unit(YIELD, 1.0), 0.0)),
         None => conic.equal((unit(YIELD, 1.0), 0.0)),
     }
 }
 
-fn program(scaled: &Scaled) -> Conic {
-    let mut conic = Conic::new(UNKNOWNS);
+fn program(scaled: &ScaledProblem) -> ConicProgram {
+    let mut conic = ConicProgram::new(UNKNOWNS);
     conic.weight[..3].fill(1.0);
     for (cost, free) in conic.cost.iter_mut().zip(scaled.free()) {
         *cost = -free;
@@ -102,7 +102,7 @@ fn program(scaled: &Scaled) -> Conic {
     conic
 }
 
-fn solution(scaled: &Scaled, optimum: &Optimum) -> StepSolution {
+fn solution(scaled: &ScaledProblem, optimum: &Optimum) -> StepSolution {
     let contacts = scaled.problem.contacts.len();
     let impulse = |row: usize| optimum.multipliers[row] * scaled.impulse();
     let foot = |k: usize| {

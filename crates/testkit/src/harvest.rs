@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use stickslip::{Observer, RunError, RunOptions, SolvedStep, run_observed};
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution};
 
-use crate::rng::{SplitMix64, scatter};
-use crate::survey::{Tally, examine};
-use crate::{RecordedCase, residual_si};
+use crate::recorded_case::RecordedCase;
+use crate::residual::residual_si;
+use crate::rng::{SplitMix64, mix};
+use crate::survey::{Tally, judge};
 
-/// Most particles of a harvest: their steps come in order, so that the same ones are kept each
-/// time.
+/// Most particles of a harvest: one block, whose steps come in a fixed order, so that the same ones
+/// are kept each time.
 pub const MOST_PARTICLES: usize = 64;
 
 /// Largest residual of a step that counts as solved (m/s; model.md, "What solved means").
@@ -70,24 +71,31 @@ pub fn harvest(case: &RecordedCase, options: &HarvestOptions) -> Result<Harvest,
         occlusion: case.occlusion,
         ..RunOptions::default()
     };
-    let reaper = Reaper {
+    let collector = StepCollector {
         options: *options,
         harvest: Mutex::default(),
     };
-    run_observed(&case.setup, &case.log, &run_options, &reaper, &mut |_| ())?;
-    Ok(reaper
+    run_observed(
+        &case.setup,
+        &case.log,
+        &run_options,
+        &collector,
+        &mut |_| (),
+    )?;
+    Ok(collector
         .harvest
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner))
 }
 
+/// Judges every step of a run, and keeps some.
 #[derive(Debug)]
-struct Reaper {
+struct StepCollector {
     options: HarvestOptions,
     harvest: Mutex<Harvest>,
 }
 
-impl Observer for Reaper {
+impl Observer for StepCollector {
     fn on_step(&self, step: &SolvedStep<'_>) {
         let mut harvest = self.harvest.lock().unwrap_or_else(PoisonError::into_inner);
         let mut tally = Tally::of_report(harvest.tally.problems, &step.report);
@@ -123,7 +131,7 @@ fn fingerprint(problem: &StepProblem) -> u64 {
     ];
     numbers
         .iter()
-        .fold(0, |hash, number| scatter(hash ^ number.to_bits()))
+        .fold(0, |hash, number| mix(hash ^ number.to_bits()))
 }
 
 /// How the solver does on harvested steps from a cold start: as they are, and disturbed.
@@ -134,12 +142,12 @@ fn fingerprint(problem: &StepProblem) -> u64 {
 pub fn survey_steps(steps: &[HarvestedStep], seed: u64) -> [(&'static str, Tally); 2] {
     let cold = (0..steps.len() as u64).into_par_iter().map(|k| {
         let step = &steps[k as usize];
-        examine(k, &step.problem, step.witness.as_ref())
+        judge(k, &step.problem, step.witness.as_ref())
     });
     let disturbed = (0..steps.len() as u64 * DISTURBED)
         .into_par_iter()
         .map(|k| {
-            examine(
+            judge(
                 k,
                 &disturbed_step(
                     &steps[(k / DISTURBED) as usize].problem,
@@ -154,8 +162,8 @@ pub fn survey_steps(steps: &[HarvestedStep], seed: u64) -> [(&'static str, Tally
     ]
 }
 
-/// The step with twist, gaps and friction changed by factors of up to two, and the first two by a
-/// little more besides.
+/// The step with twist, gaps and friction scaled by factors of up to two; twist and gaps are shifted
+/// a little besides.
 fn disturbed_step(step: &StepProblem, rng: &mut SplitMix64) -> StepProblem {
     let mut problem = step.clone();
     let gyration = (problem.inertia / problem.mass).sqrt();
@@ -187,8 +195,8 @@ mod tests {
 
     use super::*;
 
-    fn reaper() -> Reaper {
-        Reaper {
+    fn collector() -> StepCollector {
+        StepCollector {
             options: HarvestOptions {
                 particles: 1,
                 keep_one_in: 1,
@@ -219,15 +227,15 @@ mod tests {
     }
 
     #[test]
-    fn see_counts_a_solved_step() {
+    fn on_step_counts_a_solved_step() {
         let (problem, solution, report) = sliding();
-        let reaper = reaper();
-        reaper.see(&SolvedStep {
+        let collector = collector();
+        collector.on_step(&SolvedStep {
             problem: &problem,
             solution: &solution,
             report,
         });
-        let harvest = reaper.harvest.into_inner().expect("one thread");
+        let harvest = collector.harvest.into_inner().expect("one thread");
         assert_eq!(
             (
                 harvest.tally.problems,
@@ -239,16 +247,16 @@ mod tests {
     }
 
     #[test]
-    fn see_refutes_a_step_that_the_solver_certifies_wrongly() {
+    fn on_step_refutes_a_step_that_the_solver_certifies_wrongly() {
         let (problem, mut solution, report) = sliding();
         solution.twist.vx += 1e-8;
-        let reaper = reaper();
-        reaper.see(&SolvedStep {
+        let collector = collector();
+        collector.on_step(&SolvedStep {
             problem: &problem,
             solution: &solution,
             report,
         });
-        let harvest = reaper.harvest.into_inner().expect("one thread");
+        let harvest = collector.harvest.into_inner().expect("one thread");
         assert_eq!(harvest.refuted, [problem]);
         assert!(harvest.tally.worst_residual > 9e-9);
     }

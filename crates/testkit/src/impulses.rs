@@ -7,9 +7,10 @@
 
 use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist};
 
-use crate::conic::{Affine, Conic, Optimum};
-use crate::residual::{left, residual_si};
-use crate::scaled::{Column, Scaled, dot3};
+use crate::conic_program::{Affine, ConicProgram, Optimum};
+use crate::residual::residual_si;
+use crate::scaled_problem::{Column, ScaledProblem, dot3};
+use crate::vector::left;
 
 /// Relative to the problem's fastest speed: slower than this is not moving.
 const STILL: f64 = 1e-9;
@@ -32,28 +33,29 @@ pub fn impulses_for_twist(
     twist: Twist,
     pusher_yield: f64,
 ) -> Option<StepSolution> {
-    let scaled = Scaled::new(problem);
-    let state = State {
+    let scaled = ScaledProblem::new(problem);
+    let known = KnownTwist {
         z: scaled.scale_twist(twist),
         y: pusher_yield / scaled.speed(),
         scaled,
     };
     let solves =
-        |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * state.scaled.speed();
-    state
+        |solution: &StepSolution| residual_si(problem, solution) < ACCURACY * known.scaled.speed();
+    known
         .program()?
         .attempts()
-        .map(|optimum| state.solution(&optimum, twist, pusher_yield))
+        .map(|optimum| known.solution(&optimum, twist, pusher_yield))
         .find(solves)
 }
 
-struct State<'a> {
-    scaled: Scaled<'a>,
+/// A step whose motion is known.
+struct KnownTwist<'a> {
+    scaled: ScaledProblem<'a>,
     z: Column,
     y: f64,
 }
 
-impl State<'_> {
+impl KnownTwist<'_> {
     fn contacts(&self) -> &[ContactPoint] {
         &self.scaled.problem.contacts
     }
@@ -69,8 +71,8 @@ impl State<'_> {
         (row, constant)
     }
 
-    fn program(&self) -> Option<Conic> {
-        let mut conic = Conic::new(self.unknowns());
+    fn program(&self) -> Option<ConicProgram> {
+        let mut conic = ConicProgram::new(self.unknowns());
         conic.weight.fill(1.0);
         self.momentum_rows()
             .into_iter()
@@ -103,7 +105,12 @@ impl State<'_> {
         })
     }
 
-    fn contact_rows(&self, conic: &mut Conic, i: usize, contact: &ContactPoint) -> Option<()> {
+    fn contact_rows(
+        &self,
+        conic: &mut ConicProgram,
+        i: usize,
+        contact: &ContactPoint,
+    ) -> Option<()> {
         let (normal, tangential) = (2 * i, 2 * i + 1);
         match self.gap_motion(contact) {
             Motion::Moving(speed) if speed < 0.0 => return None,
@@ -119,7 +126,7 @@ impl State<'_> {
         Some(())
     }
 
-    fn friction_rows(&self, conic: &mut Conic, i: usize, contact: &ContactPoint) {
+    fn friction_rows(&self, conic: &mut ConicProgram, i: usize, contact: &ContactPoint) {
         let (normal, tangential) = (2 * i, 2 * i + 1);
         match self.slip_motion(contact) {
             Motion::Moving(slip) => {
@@ -135,7 +142,7 @@ impl State<'_> {
         }
     }
 
-    fn foot_rows(&self, conic: &mut Conic, k: usize) {
+    fn foot_rows(&self, conic: &mut ConicProgram, k: usize) {
         let (x, bound) = (2 * self.contacts().len() + 2 * k, self.scaled.bound(k));
         let slip = self.scaled.foot(k).map(|row| dot3(&row, &self.z));
         let length = libm::hypot(slip[0], slip[1]);
@@ -149,7 +156,7 @@ impl State<'_> {
         }
     }
 
-    fn stall_rows(&self, conic: &mut Conic) -> Option<()> {
+    fn stall_rows(&self, conic: &mut ConicProgram) -> Option<()> {
         let limit = self.scaled.stall_impulse();
         match (limit, motion(self.y)) {
             (None, Motion::Still) => {}
@@ -175,13 +182,13 @@ impl State<'_> {
     }
 
     fn gap_motion(&self, c: &ContactPoint) -> Motion {
-        let lost = self.y * self.scaled.yielding(c, c.normal);
-        motion(dot3(&self.scaled.normal(c), &self.z) + self.scaled.gap_offset(c) + lost)
+        let yielded = self.y * self.scaled.yielding(c, c.normal);
+        motion(dot3(&self.scaled.normal(c), &self.z) + self.scaled.gap_offset(c) + yielded)
     }
 
     fn slip_motion(&self, c: &ContactPoint) -> Motion {
-        let lost = self.y * self.scaled.yielding(c, left(c.normal));
-        motion(dot3(&self.scaled.tangent(c), &self.z) + self.scaled.slip_offset(c) + lost)
+        let yielded = self.y * self.scaled.yielding(c, left(c.normal));
+        motion(dot3(&self.scaled.tangent(c), &self.z) + self.scaled.slip_offset(c) + yielded)
     }
 
     fn solution(&self, optimum: &Optimum, twist: Twist, pusher_yield: f64) -> StepSolution {

@@ -10,12 +10,12 @@
 
 use stickslip_dynamics::StepProblem;
 
-use crate::conic::Conic;
-use crate::residual::left;
-use crate::scaled::Scaled;
+use crate::conic_program::ConicProgram;
+use crate::scaled_problem::ScaledProblem;
+use crate::vector::left;
 
 /// Twists up to this many times the problem's fastest speed are considered.
-const REACH: f64 = 100.0;
+const FASTEST_TWIST: f64 = 100.0;
 /// Wrenches of unit impulses that sum to less than this may cancel each other; the quadratic
 /// program is good to about 1e-7.
 const CANCELLED: f64 = 1e-5;
@@ -30,28 +30,28 @@ const CANCELLED: f64 = 1e-5;
 /// Where Clarabel fails on this bounded linear program.
 #[must_use]
 pub fn gap_margin(problem: &StepProblem, cap: f64) -> f64 {
-    let scaled = Scaled::new(problem);
+    let scaled = ScaledProblem::new(problem);
     let cap = cap / scaled.speed();
-    // Unknowns z, y and the margin.
-    let mut conic = Conic::new(5);
+    // unknowns: z, y and the margin
+    let mut conic = ConicProgram::new(5);
     conic.cost[4] = -1.0;
     for contact in &problem.contacts {
         let [x, y, turn] = scaled.normal(contact);
-        // Farther than a twist can close: never binding, and tamed for the sake of accuracy.
-        let offset = scaled.gap_offset(contact).min(cap + 10.0 * REACH);
+        // gaps wider than any twist can close never bind; large numbers would cost accuracy
+        let offset = scaled.gap_offset(contact).min(cap + 10.0 * FASTEST_TWIST);
         conic.at_least((
             vec![x, y, turn, scaled.yielding(contact, contact.normal), -1.0],
             offset,
         ));
     }
-    let reach = if problem.stall.is_some() {
-        [REACH; 4]
+    let limits = if problem.stall.is_some() {
+        [FASTEST_TWIST; 4]
     } else {
-        [REACH, REACH, REACH, 0.0]
+        [FASTEST_TWIST, FASTEST_TWIST, FASTEST_TWIST, 0.0]
     };
-    for (j, reach) in reach.into_iter().enumerate() {
-        conic.at_least((unit(j, -1.0), reach));
-        conic.at_least((unit(j, 1.0), if j == 3 { 0.0 } else { reach }));
+    for (j, limit) in limits.into_iter().enumerate() {
+        conic.at_least((unit(j, -1.0), limit));
+        conic.at_least((unit(j, 1.0), if j == 3 { 0.0 } else { limit }));
     }
     conic.at_least((unit(4, -1.0), cap));
     let optimum = conic.attempts().next().expect("a bounded linear program");
@@ -81,10 +81,10 @@ pub fn may_jam(problem: &StepProblem) -> bool {
 /// Least size of the sum of wrenches, and of the push along the drive, of impulses whose normal
 /// parts sum to one.
 fn least_wrench(problem: &StepProblem) -> f64 {
-    let (scaled, contacts) = (Scaled::new(problem), problem.contacts.len());
-    // Unknowns p_n, p_t per contact, then the wrench, then the push.
+    let (scaled, contacts) = (ScaledProblem::new(problem), problem.contacts.len());
+    // unknowns: p_n, p_t per contact, then the wrench, then the push
     let (wrench, n) = (2 * contacts, 2 * contacts + 4);
-    let mut conic = Conic::new(n);
+    let mut conic = ConicProgram::new(n);
     conic.weight[wrench..wrench + 3].fill(1.0);
     conic.cost[wrench + 3] = 1.0;
     let mut sums = vec![vec![0.0; n]; 5];

@@ -13,32 +13,33 @@
 //! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
 //!   problems.
 
-mod closed_form;
+mod block;
 mod cone;
-mod conic;
+mod conic_program;
+mod corpus;
 mod data;
-mod draft;
 mod harvest;
 mod impulses;
 mod jam;
 mod manufactured;
-mod mode_system;
+mod mode_equations;
 mod modes;
-mod random_problem;
-mod recorded;
+mod problem_builder;
+mod recorded_case;
 mod residual;
 mod rng;
-mod scaled;
+mod scaled_problem;
 mod survey;
+mod vector;
 
-pub use closed_form::{Block, Stop};
+pub use block::{Block, Stop};
 pub use cone::{cone_program_step, cone_program_twist};
+pub use corpus::{Corpus, Family};
 pub use data::data_root;
 pub use harvest::{Harvest, HarvestOptions, HarvestedStep, MOST_PARTICLES, harvest, survey_steps};
 pub use impulses::impulses_for_twist;
 pub use jam::{gap_margin, may_jam};
 pub use modes::enumerate_modes;
-pub use random_problem::{Corpus, Family};
-pub use recorded::{RecordedCase, RecordedError, recorded_cases};
+pub use recorded_case::{RecordedCase, RecordedError, recorded_cases};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
 pub use survey::{Tally, survey};

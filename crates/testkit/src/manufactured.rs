@@ -5,8 +5,8 @@
 
 use stickslip_dynamics::{ContactPoint, Stall, StepProblem, StepSolution, Twist, Wrench};
 
-use crate::draft::{Body, Draft, FASTEST};
-use crate::residual::{cross, dot, left};
+use crate::problem_builder::{FASTEST, Other, ProblemBuilder};
+use crate::vector::{cross, dot, left};
 
 /// The motion after the step.
 #[derive(Clone, Copy, PartialEq)]
@@ -17,53 +17,53 @@ pub(crate) enum Motion {
     Any,
 }
 
-/// A problem with `contacts` contacts and a solution of it; overwrites the draft's load.
+/// A problem with `contacts` contacts and a solution of it; the builder's load is overwritten.
 pub(crate) fn manufactured(
-    mut draft: Draft,
+    mut builder: ProblemBuilder,
     motion: Motion,
     contacts: usize,
 ) -> (StepProblem, StepSolution) {
     // Gaps are h times the approach; speeds are kept so low that they stay within 2 mm.
-    let fastest = FASTEST.min(5e-4 / draft.problem.h);
-    slow_down(&mut draft, fastest);
-    let twist = after(&mut draft, motion, fastest);
+    let fastest = FASTEST.min(5e-4 / builder.problem.h);
+    slow_down(&mut builder, fastest);
+    let twist = after(&mut builder, motion, fastest);
     let mut solution = StepSolution {
         twist,
         ..StepSolution::default()
     };
-    if draft.rng.one_in(3) {
+    if builder.rng.one_in(3) {
         solution.pusher_yield =
-            draft.rng.within(0.0, 1.0) * libm::hypot(draft.pusher.vx, draft.pusher.vy);
+            builder.rng.within(0.0, 1.0) * libm::hypot(builder.pusher.vx, builder.pusher.vy);
     }
     for _ in 0..contacts {
-        add_contact(&mut draft, &mut solution);
+        add_contact(&mut builder, &mut solution);
     }
     for k in 0..3 {
-        solution.feet[k] = foot_impulse(&mut draft, twist, k);
+        solution.feet[k] = foot_impulse(&mut builder, twist, k);
     }
-    settle_drive(&mut draft, &mut solution);
-    draft.problem.applied = missing_load(&draft.problem, &solution);
-    (draft.problem, solution)
+    set_stall(&mut builder, &mut solution);
+    builder.problem.applied = missing_load(&builder.problem, &solution);
+    (builder.problem, solution)
 }
 
-fn slow_down(draft: &mut Draft, fastest: f64) {
-    let speed = draft.rng.log_within(fastest * 1e-3, fastest);
-    let drive = draft.drive();
-    draft.pusher = Twist {
+fn slow_down(builder: &mut ProblemBuilder, fastest: f64) {
+    let speed = builder.rng.log_within(fastest * 1e-3, fastest);
+    let drive = builder.drive();
+    builder.pusher = Twist {
         vx: speed * drive[0],
         vy: speed * drive[1],
         omega: 0.0,
     };
 }
 
-fn after(draft: &mut Draft, motion: Motion, fastest: f64) -> Twist {
-    let twist = draft.twist_between(fastest * 1e-3, fastest);
+fn after(builder: &mut ProblemBuilder, motion: Motion, fastest: f64) -> Twist {
+    let twist = builder.twist_between(fastest * 1e-3, fastest);
     match motion {
         Motion::Rest => Twist::default(),
-        Motion::WithPusher => draft.pusher,
+        Motion::WithPusher => builder.pusher,
         Motion::Any => twist,
         Motion::Pivot(k) => {
-            let [x, y] = draft.problem.feet[k].arm;
+            let [x, y] = builder.problem.feet[k].arm;
             Twist {
                 vx: twist.omega * y,
                 vy: -twist.omega * x,
@@ -74,73 +74,83 @@ fn after(draft: &mut Draft, motion: Motion, fastest: f64) -> Twist {
 }
 
 /// A closed or open contact whose gap is what the motion asks for.
-fn add_contact(draft: &mut Draft, solution: &mut StepSolution) {
-    let body = if draft.rng.one_in(2) {
-        Body::Pusher
+fn add_contact(builder: &mut ProblemBuilder, solution: &mut StepSolution) {
+    let other = if builder.rng.one_in(2) {
+        Other::Pusher
     } else {
-        Body::Fixel
+        Other::Fixel
     };
-    let normal = draft.rng.direction();
-    let mut contact = draft.contact_anywhere(body, normal);
-    let relative = relative_velocity(draft, solution, &contact);
-    let opens = draft.rng.one_in(3);
+    let normal = builder.rng.direction();
+    let mut contact = builder.contact_anywhere(other, normal);
+    let relative = relative_velocity(builder, solution, &contact);
+    let opens = builder.rng.one_in(3);
     let gap_speed = if opens {
-        draft.rng.within(0.0, 0.05)
+        builder.rng.within(0.0, 0.05)
     } else {
         0.0
     };
-    contact.gap = draft.problem.h * (gap_speed - dot(contact.normal, relative));
-    let size = (draft.bound + draft.problem.mass * 0.1) * draft.rng.within(0.0, 1.0);
+    contact.gap = builder.problem.h * (gap_speed - dot(contact.normal, relative));
+    let size = (builder.bound + builder.problem.mass * 0.1) * builder.rng.within(0.0, 1.0);
     let normal = if opens { 0.0 } else { size };
     solution.normal.push(normal);
     solution.tangential.push(friction(
-        draft,
+        builder,
         &contact,
         normal,
         dot(left(contact.normal), relative),
     ));
-    draft.add(contact);
+    builder.add(contact);
 }
 
-fn relative_velocity(draft: &Draft, solution: &StepSolution, contact: &ContactPoint) -> [f64; 2] {
+fn relative_velocity(
+    builder: &ProblemBuilder,
+    solution: &StepSolution,
+    contact: &ContactPoint,
+) -> [f64; 2] {
     let (v, u, d) = (
         solution.twist.at(contact.arm),
         contact.surface_velocity,
-        draft.drive(),
+        builder.drive(),
     );
-    let lost = if contact.on_pusher {
+    let pusher_yield = if contact.on_pusher {
         solution.pusher_yield
     } else {
         0.0
     };
-    [v[0] - (u[0] - lost * d[0]), v[1] - (u[1] - lost * d[1])]
+    [
+        v[0] - (u[0] - pusher_yield * d[0]),
+        v[1] - (u[1] - pusher_yield * d[1]),
+    ]
 }
 
-fn friction(draft: &mut Draft, contact: &ContactPoint, normal: f64, slip: f64) -> f64 {
+fn friction(builder: &mut ProblemBuilder, contact: &ContactPoint, normal: f64, slip: f64) -> f64 {
     let share = if slip == 0.0 {
-        draft.rng.within(-1.0, 1.0)
+        builder.rng.within(-1.0, 1.0)
     } else {
         -slip.signum()
     };
     share * contact.mu * normal
 }
 
-fn foot_impulse(draft: &mut Draft, twist: Twist, k: usize) -> [f64; 2] {
-    let foot = draft.problem.feet[k];
+fn foot_impulse(builder: &mut ProblemBuilder, twist: Twist, k: usize) -> [f64; 2] {
+    let foot = builder.problem.feet[k];
     let slip = twist.at(foot.arm);
     let length = libm::hypot(slip[0], slip[1]);
     if length > 0.0 {
         return slip.map(|s| -foot.bound * s / length);
     }
-    let (size, e) = (foot.bound * draft.rng.unit().sqrt(), draft.rng.direction());
+    let (size, e) = (
+        foot.bound * builder.rng.unit().sqrt(),
+        builder.rng.direction(),
+    );
     e.map(|e| size * e)
 }
 
-/// Gives the drive the limit that the yield asks for; where the object does not resist it cannot
-/// yield, and the gaps are redone.
-fn settle_drive(draft: &mut Draft, solution: &mut StepSolution) {
-    let direction = draft.drive();
-    let resisting = draft
+/// Sets the drive's stall impulse so that the drawn yield solves the drive's condition. Where the
+/// object does not resist the pusher there can be no yield: it becomes commanded motion.
+fn set_stall(builder: &mut ProblemBuilder, solution: &mut StepSolution) {
+    let direction = builder.drive();
+    let resisting = builder
         .problem
         .contacts
         .iter()
@@ -150,24 +160,23 @@ fn settle_drive(draft: &mut Draft, solution: &mut StepSolution) {
         .map(|(c, (n, t))| n * dot(c.normal, direction) + t * dot(left(c.normal), direction))
         .sum();
     if solution.pusher_yield > 0.0 {
-        // A negative limit would be a drive that pulls back: turn the contacts' yield into
-        // commanded motion instead.
+        // a drive with a negative limit would pull back
         if force <= 0.0 {
-            let lost = solution.pusher_yield;
+            let pusher_yield = solution.pusher_yield;
             solution.pusher_yield = 0.0;
-            for contact in draft.problem.contacts.iter_mut().filter(|c| c.on_pusher) {
-                contact.surface_velocity =
-                    [0, 1].map(|axis| contact.surface_velocity[axis] - lost * direction[axis]);
+            for contact in builder.problem.contacts.iter_mut().filter(|c| c.on_pusher) {
+                contact.surface_velocity = [0, 1]
+                    .map(|axis| contact.surface_velocity[axis] - pusher_yield * direction[axis]);
             }
             return;
         }
-        draft.problem.stall = Some(Stall {
+        builder.problem.stall = Some(Stall {
             impulse: force,
             direction,
         });
-    } else if draft.rng.one_in(3) {
-        let reserve = draft.rng.within(0.1, 2.0) * draft.bound;
-        draft.problem.stall = Some(Stall {
+    } else if builder.rng.one_in(3) {
+        let reserve = builder.rng.within(0.1, 2.0) * builder.bound;
+        builder.problem.stall = Some(Stall {
             impulse: force.max(0.0) + reserve,
             direction,
         });
@@ -182,7 +191,7 @@ fn missing_load(problem: &StepProblem, solution: &StepSolution) -> Wrench {
         fy: problem.mass * (after.vy - before.vy),
         torque: problem.inertia * (after.omega - before.omega),
     };
-    let mut take = |arm: [f64; 2], p: [f64; 2]| {
+    let mut subtract = |arm: [f64; 2], p: [f64; 2]| {
         load.fx -= p[0];
         load.fy -= p[1];
         load.torque -= cross(arm, p);
@@ -193,7 +202,7 @@ fn missing_load(problem: &StepProblem, solution: &StepSolution) -> Wrench {
         .zip(solution.normal.iter().zip(&solution.tangential))
     {
         let t = left(c.normal);
-        take(
+        subtract(
             c.arm,
             [
                 normal * c.normal[0] + tangential * t[0],
@@ -205,6 +214,6 @@ fn missing_load(problem: &StepProblem, solution: &StepSolution) -> Wrench {
         .feet
         .iter()
         .zip(solution.feet)
-        .for_each(|(foot, p)| take(foot.arm, p));
+        .for_each(|(foot, p)| subtract(foot.arm, p));
     load
 }

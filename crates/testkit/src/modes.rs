@@ -10,10 +10,10 @@
 use stickslip_dynamics::{StepProblem, StepSolution};
 
 use crate::impulses::impulses_for_twist;
-use crate::mode_system::{ContactMode, DriveMode, FeetMode, Mode, System};
+use crate::mode_equations::{ContactMode, DriveMode, FeetMode, Mode, ModeEquations};
 use crate::residual::residual_si;
 use crate::rng::SplitMix64;
-use crate::scaled::{Column, Scaled};
+use crate::scaled_problem::{Column, ScaledProblem};
 
 /// Solutions must meet this residual (m/s).
 const TOLERANCE: f64 = 1e-10;
@@ -38,7 +38,7 @@ pub fn enumerate_modes(problem: &StepProblem) -> Vec<StepSolution> {
         "{} contacts have too many modes to enumerate",
         problem.contacts.len()
     );
-    let scaled = Scaled::new(problem);
+    let scaled = ScaledProblem::new(problem);
     let starts = starts(&scaled);
     let mut search = Search {
         scaled: &scaled,
@@ -46,46 +46,47 @@ pub fn enumerate_modes(problem: &StepProblem) -> Vec<StepSolution> {
         found: vec![],
     };
     for mode in modes(problem) {
-        let system = System::new(&scaled, &mode);
+        let equations = ModeEquations::new(&scaled, &mode);
         for start in &starts {
-            search.consider(&system, start);
+            search.consider(&equations, start);
         }
     }
     search.found
 }
 
 struct Search<'a> {
-    scaled: &'a Scaled<'a>,
+    scaled: &'a ScaledProblem<'a>,
     /// z and y of everything that met the equations of some mode.
     tried: Vec<[f64; 4]>,
     found: Vec<StepSolution>,
 }
 
 impl Search<'_> {
-    fn consider(&mut self, system: &System, start: &Column) {
-        let Some(candidate) = system.solve(start) else {
+    /// Keeps the mode's solution reached from `start` where it is new and certified, if need be
+    /// with other impulses at the same twist.
+    fn consider(&mut self, equations: &ModeEquations, start: &Column) {
+        let Some(candidate) = equations.solve(start) else {
             return;
         };
-        let place = self.place(&candidate);
-        if self
-            .found
-            .iter()
-            .any(|known| near(&self.place(known), &place))
-        {
+        let key = self.key(&candidate);
+        if self.found.iter().any(|known| near(&self.key(known), &key)) {
             return;
         }
         let problem = self.scaled.problem;
         if residual_si(problem, &candidate) <= TOLERANCE {
             self.found.push(candidate);
-        } else if !self.tried.iter().any(|known| near(known, &place)) {
-            self.tried.push(place);
-            let mended = impulses_for_twist(problem, candidate.twist, candidate.pusher_yield);
-            self.found
-                .extend(mended.filter(|solution| residual_si(problem, solution) <= TOLERANCE));
+        } else if !self.tried.iter().any(|known| near(known, &key)) {
+            self.tried.push(key);
+            let with_impulses =
+                impulses_for_twist(problem, candidate.twist, candidate.pusher_yield);
+            self.found.extend(
+                with_impulses.filter(|solution| residual_si(problem, solution) <= TOLERANCE),
+            );
         }
     }
 
-    fn place(&self, solution: &StepSolution) -> [f64; 4] {
+    /// z and y of a solution.
+    fn key(&self, solution: &StepSolution) -> [f64; 4] {
         let [x, y, turn] = self.scaled.scale_twist(solution.twist);
         [x, y, turn, solution.pusher_yield / self.scaled.speed()]
     }
@@ -95,7 +96,7 @@ fn near(a: &[f64; 4], b: &[f64; 4]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < DISTINCT)
 }
 
-fn starts(scaled: &Scaled) -> Vec<Column> {
+fn starts(scaled: &ScaledProblem) -> Vec<Column> {
     let mut rng = SplitMix64::new(1);
     let mut all = vec![
         scaled.free(),

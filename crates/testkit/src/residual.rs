@@ -1,9 +1,9 @@
 //! The natural-map residual of one step, written from the model alone: [`residual_si`].
 //!
 //! A second route to the certificate of the solver. Everything stays in SI units (N s, and N m s
-//! about the centre of mass by cross products); each row is divided by the mass, the angular one by
-//! m ρ with ρ = sqrt(J/m), only at the very end, so that all rows are in m/s. Multiplying a natural
-//! map by the mass first changes nothing: min(p, m g)/m = min(p/m, g).
+//! about the centre of mass by cross products). Only at the very end each row is divided by the mass,
+//! the angular one by m ρ with ρ = sqrt(J/m), so that all rows are in m/s. Multiplying a natural map
+//! by the mass first changes nothing: min(p, m g)/m = min(p/m, g).
 //!
 //! ```text
 //! twist   m v⁺ − m v − Σ impulses − p_app,  (J ω⁺ − J ω − Σ torques − τ_app)/ρ
@@ -14,6 +14,8 @@
 //! ```
 
 use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution};
+
+use crate::vector::{cross, dot, left};
 
 /// Which condition a residual belongs to; the numbers index contacts and feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,18 +86,6 @@ pub fn residual_rows_si(problem: &StepProblem, solution: &StepSolution) -> Vec<(
         .collect()
 }
 
-pub(crate) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub(crate) fn left(a: [f64; 2]) -> [f64; 2] {
-    [-a[1], a[0]]
-}
-
 /// What a contact pushes the object with (N s).
 fn contact_impulse(contact: &ContactPoint, normal: f64, tangential: f64) -> [f64; 2] {
     let (n, t) = (contact.normal, left(contact.normal));
@@ -147,11 +137,14 @@ fn relative_velocity(
     contact: &ContactPoint,
 ) -> [f64; 2] {
     let (v, u) = (solution.twist.at(contact.arm), contact.surface_velocity);
-    let lost = match problem.stall {
+    let pusher_yield = match problem.stall {
         Some(stall) if contact.on_pusher => stall.direction.map(|d| solution.pusher_yield * d),
         _ => [0.0; 2],
     };
-    [v[0] - (u[0] - lost[0]), v[1] - (u[1] - lost[1])]
+    [
+        v[0] - (u[0] - pusher_yield[0]),
+        v[1] - (u[1] - pusher_yield[1]),
+    ]
 }
 
 fn contact_rows(
@@ -206,7 +199,7 @@ fn drive_impulse(problem: &StepProblem, solution: &StepSolution, direction: [f64
         .sum()
 }
 
-/// Everything that enters the rows; one number that is not finite spoils all of them.
+/// Everything that enters the rows: one number that is not finite makes all of them infinite.
 fn numbers(problem: &StepProblem, solution: &StepSolution) -> Vec<f64> {
     let (v, w, p) = (problem.twist, solution.twist, problem.applied);
     let mut all = vec![

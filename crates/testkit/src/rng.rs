@@ -3,8 +3,8 @@
 
 pub(crate) struct SplitMix64(u64);
 
-/// The output function: a bijection of 64-bit words that scatters neighbours.
-pub(crate) fn scatter(word: u64) -> u64 {
+/// The output function: a bijection of 64-bit words that spreads neighbours.
+pub(crate) fn mix(word: u64) -> u64 {
     let word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ (word >> 31)
@@ -17,14 +17,12 @@ impl SplitMix64 {
 
     /// The stream number `index` of `seed`.
     pub fn stream(seed: u64, index: u64) -> Self {
-        Self(scatter(
-            seed ^ scatter(index.wrapping_add(0x632b_e59b_d9b4_e019)),
-        ))
+        Self(mix(seed ^ mix(index.wrapping_add(0x632b_e59b_d9b4_e019))))
     }
 
     pub fn word(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        scatter(self.0)
+        mix(self.0)
     }
 
     /// Uniform in [0, 1).

@@ -7,7 +7,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 use stickslip_dynamics::{Outcome, Report, Route, StepProblem, StepSolution, solve};
 
-use crate::{Corpus, Family, gap_margin, may_jam};
+use crate::corpus::{Corpus, Family};
+use crate::jam::{gap_margin, may_jam};
 
 /// How the problems of one family ended.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,7 +41,7 @@ impl Tally {
         };
         match report.outcome {
             Outcome::Solved => {
-                tally.solved[place(report.route)] = 1;
+                tally.solved[index_of(report.route)] = 1;
                 tally.worst_residual = report.residual;
             }
             Outcome::Infeasible => tally.infeasible = 1,
@@ -69,8 +70,8 @@ impl Tally {
     }
 }
 
-/// Place of a route among [`Tally::solved`].
-fn place(route: Route) -> usize {
+/// Index of a route in [`Tally::solved`].
+fn index_of(route: Route) -> usize {
     match route {
         Route::Newton => 0,
         Route::Continuation => 1,
@@ -97,7 +98,7 @@ pub fn survey(corpus: &Corpus, range: Range<u64>) -> BTreeMap<Family, Tally> {
         let (problem, witness) = corpus.draw(index);
         BTreeMap::from([(
             corpus.family(index),
-            examine(index, &problem, witness.as_ref()),
+            judge(index, &problem, witness.as_ref()),
         )])
     };
     range.into_par_iter().map(one).reduce(BTreeMap::new, merged)
@@ -105,7 +106,7 @@ pub fn survey(corpus: &Corpus, range: Range<u64>) -> BTreeMap<Family, Tally> {
 
 /// Solves problem `index` of a set from a cold start; `witness` is a solution of it, where one is
 /// known.
-pub(crate) fn examine(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
+pub(crate) fn judge(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
     let (_, report) = solve(problem);
     let mut tally = Tally::of_report(index, &report);
     if report.outcome == Outcome::Infeasible {

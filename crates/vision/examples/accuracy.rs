@@ -6,7 +6,7 @@ mod common;
 
 use common::{Errors, Rig, true_camera};
 use stickslip_dynamics::Pose;
-use stickslip_testbed::camera::Optics;
+use stickslip_rendering::Optics;
 
 /// Random poses a row of the table.
 const FRAMES: u64 = 300;

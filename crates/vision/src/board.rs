@@ -38,7 +38,7 @@ pub struct BoardOnTable {
 /// board.toml as it stands.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Form {
+struct BoardFile {
     rows: u16,
     columns: u16,
     tag_size: f64,
@@ -87,65 +87,71 @@ impl Board {
 /// ```
 pub fn read_board(text: &str, name: &str) -> Result<BoardOnTable, ConfigError> {
     let document = Document { name, text };
-    let file: Form =
+    let file: BoardFile =
         document.parse("Give rows, columns, tag_size and gap in metres, and if needed first_tag, thickness and pose = [x, y, angle]")?;
-    let Form {
-        rows,
-        columns,
-        tag_size,
-        gap,
-        first_tag,
-        thickness,
-        pose,
-    } = file;
-    document.require(rows > 0, "rows", rows.to_string(), "at least 1")?;
-    document.require(columns > 0, "columns", columns.to_string(), "at least 1")?;
-    let end = u32::from(first_tag) + u32::from(rows) * u32::from(columns);
-    let rule = format!(
-        "such that the last tag, now {}, is below {TAG_COUNT}, the number of tags of the family",
-        end - 1
-    );
-    document.require(end <= u32::from(TAG_COUNT), "rows", rows.to_string(), &rule)?;
-    document.require(
-        (1e-3..2.0).contains(&tag_size),
-        "tag_size",
-        format!("{tag_size} m"),
-        "between 0.001 m and 2 m",
-    )?;
-    let least = tag_size / 8.0;
-    let rule = format!(
-        "at least an eighth of tag_size, {least} m, since tags need a white margin, and at most 2 m"
-    );
-    document.require(
-        (least * (1.0 - 1e-9)..2.0).contains(&gap),
-        "gap",
-        format!("{gap} m"),
-        &rule,
-    )?;
-    document.require(
-        (0.0..1.0).contains(&thickness),
-        "thickness",
-        format!("{thickness} m"),
-        "between 0 m and 1 m",
-    )?;
-    document.require(
-        pose.iter().all(|x| x.is_finite()),
-        "pose",
-        format!("{pose:?}"),
-        "three finite numbers",
-    )?;
-    let board = Board {
-        rows,
-        columns,
-        tag_size,
-        gap,
-        first_tag,
-    };
-    Ok(BoardOnTable {
-        board,
-        thickness,
-        pose: Pose::new(pose[0], pose[1], pose[2]),
-    })
+    file.check(&document)
+}
+
+impl BoardFile {
+    fn check(self, document: &Document<'_>) -> Result<BoardOnTable, ConfigError> {
+        let Self {
+            rows,
+            columns,
+            tag_size,
+            gap,
+            first_tag,
+            thickness,
+            pose,
+        } = self;
+        document.require(rows > 0, "rows", rows.to_string(), "at least 1")?;
+        document.require(columns > 0, "columns", columns.to_string(), "at least 1")?;
+        let end = u32::from(first_tag) + u32::from(rows) * u32::from(columns);
+        let rule = format!(
+            "such that the last tag, now {}, is below {TAG_COUNT}, the number of tags of the family",
+            end - 1
+        );
+        document.require(end <= u32::from(TAG_COUNT), "rows", rows.to_string(), &rule)?;
+        document.require(
+            (1e-3..2.0).contains(&tag_size),
+            "tag_size",
+            format!("{tag_size} m"),
+            "between 0.001 m and 2 m",
+        )?;
+        let least = tag_size / 8.0;
+        let rule = format!(
+            "at least an eighth of tag_size, {least} m, since tags need a white margin, and at most 2 m"
+        );
+        document.require(
+            (least * (1.0 - 1e-9)..2.0).contains(&gap),
+            "gap",
+            format!("{gap} m"),
+            &rule,
+        )?;
+        document.require(
+            (0.0..1.0).contains(&thickness),
+            "thickness",
+            format!("{thickness} m"),
+            "between 0 m and 1 m",
+        )?;
+        document.require(
+            pose.iter().all(|x| x.is_finite()),
+            "pose",
+            format!("{pose:?}"),
+            "three finite numbers",
+        )?;
+        let board = Board {
+            rows,
+            columns,
+            tag_size,
+            gap,
+            first_tag,
+        };
+        Ok(BoardOnTable {
+            board,
+            thickness,
+            pose: Pose::new(pose[0], pose[1], pose[2]),
+        })
+    }
 }
 
 /// A board as board.toml; every number reads back to the same bits.

@@ -1,20 +1,24 @@
-//! A lens and the poses of a plane from where its points are seen: [`Bundle`], by
-//! Levenberg–Marquardt over all of it.
+//! Bundle adjustment: a lens and the poses of a plane from where its points are seen, [`Bundle`].
 //!
-//! The normal equations are an arrow: a block of the lens's 8 numbers, one of 6 for every view,
-//! nothing between views. Views are eliminated (Schur complement), which leaves 8 equations; their
-//! inverse is the lens's covariance.
+//! The normal equations have the shape of an arrow: a block of the lens's 8 numbers, one of 6 for
+//! every view, nothing between views. The views are eliminated (Schur complement), which leaves 8
+//! equations; their inverse is the lens's covariance.
 
 use nalgebra::{Matrix2x3, Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 use crate::homography::Match;
 use crate::lens::{Lens, PARAMETERS};
+use crate::levenberg_marquardt::{LeastSquares, Minimum, Rules, Step, minimise};
 use crate::motion::{Motion, rotation};
 
 type LensBlock = SMatrix<f64, PARAMETERS, PARAMETERS>;
-const ITERATIONS: usize = 100;
-/// The sum of squares that shrinks by less than this share is the smallest.
-const FOUND: f64 = 1e-12;
+
+const RULES: Rules = Rules {
+    damping: 1e-4,
+    most_damping: 1e8,
+    least_decrease: 1e-12,
+    iterations: 100,
+};
 
 /// A plane seen once.
 #[derive(Clone, Debug)]
@@ -36,7 +40,7 @@ pub(crate) struct Bundle {
 #[derive(Clone, Debug)]
 pub(crate) struct Adjusted {
     pub(crate) bundle: Bundle,
-    /// Root mean square misfit of a coordinate (px), freed numbers accounted for.
+    /// Root mean square residual of a coordinate (px), by the degrees of freedom.
     pub(crate) rms: f64,
     /// Standard deviations of the lens's numbers fx, fy, cx, cy, k1, k2, p1, p2.
     pub(crate) lens_std: [f64; PARAMETERS],
@@ -44,7 +48,7 @@ pub(crate) struct Adjusted {
 
 /// The equations of one view.
 #[derive(Clone, Debug)]
-struct ViewEquations {
+pub(crate) struct ViewEquations {
     lens: LensBlock,
     mixed: SMatrix<f64, PARAMETERS, 6>,
     view: SMatrix<f64, 6, 6>,
@@ -56,23 +60,11 @@ struct ViewEquations {
 impl Bundle {
     /// The nearest best fit; `None` where the views leave a number open.
     pub(crate) fn adjust(self) -> Option<Adjusted> {
-        let mut bundle = self;
-        let mut equations = bundle.equations()?;
-        let mut squares = total(&equations);
-        let mut damping = 1e-4;
-        for _ in 0..ITERATIONS {
-            let next = bundle.stepped(&equations, damping)?;
-            let Some(next_equations) = next.equations().filter(|e| total(e) < squares) else {
-                damping *= 10.0;
-                if damping > 1e8 { break } else { continue }
-            };
-            let shrunk = squares - total(&next_equations);
-            (bundle, equations, damping) = (next, next_equations, damping * 0.1);
-            squares = total(&equations);
-            if shrunk < FOUND * squares {
-                break;
-            }
-        }
+        let Minimum {
+            at: bundle,
+            equations,
+            ..
+        } = minimise(self, &RULES)?;
         let coordinates = 2 * bundle
             .views
             .iter()
@@ -81,7 +73,7 @@ impl Bundle {
         let free = coordinates
             .checked_sub(PARAMETERS + 6 * bundle.views.len())
             .filter(|free| *free > 0)?;
-        let variance = squares / free as f64;
+        let variance = Self::squares(&equations) / free as f64;
         let (reduced, _) = reduce(&equations, 0.0)?;
         let covariance = scaled_inverse(reduced)? * variance;
         Some(Adjusted {
@@ -90,6 +82,10 @@ impl Bundle {
             lens_std: std::array::from_fn(|k| covariance[(k, k)].sqrt()),
         })
     }
+}
+
+impl LeastSquares for Bundle {
+    type Equations = Vec<ViewEquations>;
 
     /// `None` where a point is behind the camera.
     fn equations(&self) -> Option<Vec<ViewEquations>> {
@@ -99,7 +95,11 @@ impl Bundle {
             .collect()
     }
 
-    fn stepped(&self, equations: &[ViewEquations], damping: f64) -> Option<Self> {
+    fn squares(equations: &Vec<ViewEquations>) -> f64 {
+        equations.iter().fold(0.0, |sum, e| sum + e.squares)
+    }
+
+    fn step(&self, equations: &Vec<ViewEquations>, damping: f64) -> Option<Step<Self>> {
         let (reduced, gradient) = reduce(equations, damping)?;
         let by_lens = scaled_inverse(reduced)? * gradient;
         let moved = |(view, equations): (&View, &ViewEquations)| {
@@ -121,10 +121,10 @@ impl Bundle {
             .zip(equations)
             .map(moved)
             .collect::<Option<_>>()?;
-        Some(Self {
+        Some(Step::To(Self {
             lens: self.lens.moved(by_lens.as_slice()),
             views,
-        })
+        }))
     }
 }
 
@@ -168,10 +168,6 @@ impl View {
         }
         Some(sum)
     }
-}
-
-fn total(equations: &[ViewEquations]) -> f64 {
-    equations.iter().fold(0.0, |sum, e| sum + e.squares)
 }
 
 /// The equations of the lens with all views eliminated.

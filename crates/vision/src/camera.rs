@@ -21,9 +21,9 @@ pub struct Camera {
 /// calibration.toml as it stands.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-struct Form {
+struct CalibrationFile {
     lens: LensTable,
-    table: TableTable,
+    table: PlaneTable,
 }
 
 #[derive(Deserialize, Serialize)]
@@ -38,7 +38,7 @@ struct LensTable {
 
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-struct TableTable {
+struct PlaneTable {
     rotation: [[f64; 3]; 3],
     translation: [f64; 3],
 }
@@ -106,62 +106,8 @@ impl Camera {
 /// with file and line.
 pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
     let document = Document { name, text };
-    let file: Form = document.parse("Make the file with `stickslip calibrate`")?;
-    let LensTable {
-        size,
-        focal,
-        centre,
-        radial,
-        tangential,
-    } = file.lens;
-    let numbers = [focal, centre, radial, tangential];
-    document.require(
-        numbers.as_flattened().iter().all(|n| n.is_finite()),
-        "lens",
-        "not finite",
-        "finite numbers",
-    )?;
-    document.require(
-        size.iter().all(|n| (1..=65_535).contains(n)),
-        "size",
-        format!("{size:?}"),
-        "columns and rows in 1 to 65535",
-    )?;
-    document.require(
-        focal.iter().all(|f| *f > 0.0),
-        "focal",
-        format!("{focal:?}"),
-        "positive, in pixels",
-    )?;
-    let rotation = Matrix3::from(file.table.rotation).transpose();
-    let nearest =
-        nearest_rotation(rotation).filter(|nearest| (nearest - rotation).amax() < ROUNDED);
-    document.require(
-        nearest.is_some(),
-        "rotation",
-        "no rotation",
-        "three rows, each of length 1 and at right angles to the others",
-    )?;
-    let translation = Vector3::from(file.table.translation);
-    document.require(
-        translation.iter().all(|x| x.is_finite()),
-        "translation",
-        "not finite",
-        "finite, in metres",
-    )?;
-    let camera = Camera::new(
-        Lens {
-            size,
-            focal,
-            centre,
-            radial,
-            tangential,
-        },
-        Motion {
-            rotation: nearest.unwrap_or(rotation),
-            translation,
-        },
-    );
+    let file: CalibrationFile = document.parse("Make the file with `stickslip calibrate`")?;
+    let camera = Camera::new(file.lens.check(&document)?, file.table.check(&document)?);
     let height = camera.centre()[2];
     document.require(
         height > 0.0,
@@ -170,6 +116,69 @@ pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
         "that of a camera above the table",
     )?;
     Ok(camera)
+}
+
+impl LensTable {
+    fn check(self, document: &Document<'_>) -> Result<Lens, ConfigError> {
+        let Self {
+            size,
+            focal,
+            centre,
+            radial,
+            tangential,
+        } = self;
+        let numbers = [focal, centre, radial, tangential];
+        document.require(
+            numbers.as_flattened().iter().all(|n| n.is_finite()),
+            "lens",
+            "not finite",
+            "finite numbers",
+        )?;
+        document.require(
+            size.iter().all(|n| (1..=65_535).contains(n)),
+            "size",
+            format!("{size:?}"),
+            "columns and rows in 1 to 65535",
+        )?;
+        document.require(
+            focal.iter().all(|f| *f > 0.0),
+            "focal",
+            format!("{focal:?}"),
+            "positive, in pixels",
+        )?;
+        Ok(Lens {
+            size,
+            focal,
+            centre,
+            radial,
+            tangential,
+        })
+    }
+}
+
+impl PlaneTable {
+    fn check(self, document: &Document<'_>) -> Result<Motion, ConfigError> {
+        let rotation = Matrix3::from(self.rotation).transpose();
+        let nearest =
+            nearest_rotation(rotation).filter(|nearest| (nearest - rotation).amax() < ROUNDED);
+        document.require(
+            nearest.is_some(),
+            "rotation",
+            "no rotation",
+            "three rows, each of length 1 and at right angles to the others",
+        )?;
+        let translation = Vector3::from(self.translation);
+        document.require(
+            translation.iter().all(|x| x.is_finite()),
+            "translation",
+            "not finite",
+            "finite, in metres",
+        )?;
+        Ok(Motion {
+            rotation: nearest.unwrap_or(rotation),
+            translation,
+        })
+    }
 }
 
 /// A calibration as text; every number reads back to the same bits.

@@ -3,18 +3,25 @@
 //! A pixel at distance d outside the edge and s along it has the level dark + (bright + fade s -
 //! dark) Φ(d / blur), Φ the normal distribution function: a step seen through lens, defocus, the
 //! pixel's own area and motion, in light that changes along it. Its six numbers (offset, turn,
-//! dark, bright, blur, fade) are found by Gauss–Newton over all pixels in a band; pixels have
+//! dark, bright, blur, fade) are fitted to all pixels in a band by least squares; pixels have
 //! independent noise, so that the residuals give the covariance.
 
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, RowVector2, SMatrix, SVector, Vector2};
+
+use crate::levenberg_marquardt::{LeastSquares, Minimum, Rules, Step, minimise};
 
 /// Numbers of an edge.
 const NUMBERS: usize = 6;
 /// Fewest pixels that an edge is fitted to.
 const FEWEST: usize = 4 * NUMBERS;
-const ITERATIONS: usize = 30;
-/// An edge that moves less than this is found (px).
-const FOUND: f64 = 1e-5;
+/// A fit ends where its step moves the edge by less than this (px).
+const NEGLIGIBLE: f64 = 1e-5;
+const RULES: Rules = Rules {
+    damping: 1e-3,
+    most_damping: f64::INFINITY,
+    least_decrease: 0.0,
+    iterations: 30,
+};
 /// Half width of the band that is fitted, as a share of a cell, and at least (px).
 pub(crate) const WIDEST_BAND: f64 = 0.6;
 pub(crate) const LEAST_BAND: f64 = 2.0;
@@ -47,21 +54,29 @@ pub(crate) struct Edge {
     pub(crate) covariance: Matrix2<f64>,
 }
 
-/// What is fitted besides the line.
+/// Grey levels across an edge.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct Profile {
     dark: f64,
     bright: f64,
     blur: f64,
     fade: f64,
 }
 
+/// An edge and its profile, to be fitted to samples.
+struct EdgeFit<'a> {
+    edge: Edge,
+    profile: Profile,
+    samples: &'a [Sample],
+    /// Half the length of the band (px).
+    half_length: f64,
+}
+
 /// Normal equations at one guess.
-struct Equations {
+pub(crate) struct Equations {
     matrix: SMatrix<f64, NUMBERS, NUMBERS>,
     gradient: SVector<f64, NUMBERS>,
     squares: f64,
-    count: usize,
 }
 
 impl Edge {
@@ -76,7 +91,7 @@ impl Edge {
             blur: FIRST_BLUR,
             ..Self::default()
         };
-        // once the edge and its blur are known, the band that is free of its neighbours is
+        // a second fit, in the band that is free of other edges by the first one's blur
         let first = edge.fit_in_band(samples, way.norm() / 2.0, cell)?;
         let found = first.fit_in_band(samples, way.norm() / 2.0, cell)?;
         (found.offset.abs() <= cell && found.turn.abs() < 0.2).then_some(found)
@@ -89,8 +104,8 @@ impl Edge {
     }
 
     /// How (offset, turn) move the right-hand side of [`row`](Self::row) at a point of the edge.
-    pub(crate) fn shift_at(&self, point: Vector2<f64>) -> nalgebra::RowVector2<f64> {
-        nalgebra::RowVector2::new(1.0, self.along.dot(&(point - self.middle)))
+    pub(crate) fn shift_at(&self, point: Vector2<f64>) -> RowVector2<f64> {
+        RowVector2::new(1.0, self.along.dot(&(point - self.middle)))
     }
 
     /// To the right of the way from corner to corner, y pointing down: anti-clockwise as printed,
@@ -112,47 +127,38 @@ impl Edge {
     fn fit_in_band(&self, samples: &[Sample], half_length: f64, cell: f64) -> Option<Self> {
         let band = (cell - CLEAR * self.blur)
             .clamp(LEAST_BAND, WIDEST_BAND * cell.max(LEAST_BAND / WIDEST_BAND));
-        let reach = half_length - band.max(CLEAR * self.blur);
+        let half_length = half_length - band.max(CLEAR * self.blur);
         let inside = |sample: &&Sample| {
             let [along, outside] = self.coordinates(sample.at);
-            along.abs() <= reach && outside.abs() <= band
+            along.abs() <= half_length && outside.abs() <= band
         };
         let chosen: Vec<Sample> = samples.iter().filter(inside).copied().collect();
         if chosen.len() < FEWEST {
             return None;
         }
-        let (mut edge, mut step) = (*self, self.first_step(&chosen, band)?);
-        let mut now = edge.equations(&step, &chosen);
-        let mut damping = 1e-3;
-        let mut converged = false;
-        for _ in 0..ITERATIONS {
-            let diagonal =
-                SMatrix::<f64, NUMBERS, NUMBERS>::from_diagonal(&(now.matrix.diagonal() * damping));
-            let by = (now.matrix + diagonal).cholesky()?.solve(&now.gradient);
-            converged = by[0].abs() + by[1].abs() * reach < FOUND;
-            if converged {
-                break;
-            }
-            let (next_edge, next_step) = (edge.moved(&by), step.moved(&by));
-            let next = next_edge.equations(&next_step, &chosen);
-            if next.squares < now.squares {
-                (edge, step, now, damping) = (next_edge, next_step, next, damping * 0.1);
-            } else {
-                damping *= 10.0;
-            }
-        }
-        let found = converged && step.bright > step.dark && step.blur < cell;
-        let inverse = now.matrix.try_inverse().filter(|_| found)?;
-        let variance = now.squares / (now.count - NUMBERS) as f64;
+        let start = EdgeFit {
+            edge: *self,
+            profile: self.first_profile(&chosen, band)?,
+            samples: &chosen,
+            half_length,
+        };
+        let Minimum {
+            at: EdgeFit { edge, profile, .. },
+            equations,
+            converged,
+        } = minimise(start, &RULES)?;
+        let found = converged && profile.bright > profile.dark && profile.blur < cell;
+        let inverse = equations.matrix.try_inverse().filter(|_| found)?;
+        let variance = equations.squares / (chosen.len() - NUMBERS) as f64;
         Some(Self {
             covariance: inverse.fixed_view::<2, 2>(0, 0) * variance,
-            blur: step.blur,
+            blur: profile.blur,
             ..edge
         })
     }
 
     /// Levels far from the edge on either side; `None` where one side has no pixels.
-    fn first_step(&self, samples: &[Sample], band: f64) -> Option<Step> {
+    fn first_profile(&self, samples: &[Sample], band: f64) -> Option<Profile> {
         let mean = |side: f64| {
             let far = samples
                 .iter()
@@ -162,7 +168,7 @@ impl Edge {
             });
             (count > 0).then(|| sum / f64::from(count))
         };
-        Some(Step {
+        Some(Profile {
             dark: mean(-1.0)?,
             bright: mean(1.0)?,
             blur: self.blur,
@@ -177,37 +183,67 @@ impl Edge {
             ..*self
         }
     }
+}
 
-    fn equations(&self, step: &Step, samples: &[Sample]) -> Equations {
+impl LeastSquares for EdgeFit<'_> {
+    type Equations = Equations;
+
+    fn equations(&self) -> Option<Equations> {
+        let Profile {
+            dark,
+            bright,
+            blur,
+            fade,
+        } = self.profile;
         let mut sum = Equations {
             matrix: SMatrix::zeros(),
             gradient: SVector::zeros(),
             squares: 0.0,
-            count: samples.len(),
         };
-        for sample in samples {
-            let [along, outside] = self.coordinates(sample.at);
-            let (share, density) = normal(outside / step.blur);
-            let height = step.bright + step.fade * along - step.dark;
-            let slope = height * density / step.blur;
-            let residual = sample.level - step.dark - height * share;
+        for sample in self.samples {
+            let [along, outside] = self.edge.coordinates(sample.at);
+            let (share, density) = normal(outside / blur);
+            let height = bright + fade * along - dark;
+            let slope = height * density / blur;
+            let residual = sample.level - dark - height * share;
             let row = SVector::from([
                 -slope,
                 -slope * along,
                 1.0 - share,
                 share,
-                -slope * outside / step.blur,
+                -slope * outside / blur,
                 share * along,
             ]);
             sum.matrix += row * row.transpose();
             sum.gradient += row * residual;
             sum.squares += residual * residual;
         }
-        sum
+        Some(sum)
+    }
+
+    fn squares(equations: &Equations) -> f64 {
+        equations.squares
+    }
+
+    fn step(&self, equations: &Equations, damping: f64) -> Option<Step<Self>> {
+        let Equations {
+            matrix, gradient, ..
+        } = equations;
+        let diagonal =
+            SMatrix::<f64, NUMBERS, NUMBERS>::from_diagonal(&(matrix.diagonal() * damping));
+        let by = (matrix + diagonal).cholesky()?.solve(gradient);
+        if by[0].abs() + by[1].abs() * self.half_length < NEGLIGIBLE {
+            return Some(Step::Negligible);
+        }
+        Some(Step::To(Self {
+            edge: self.edge.moved(&by),
+            profile: self.profile.moved(&by),
+            ..*self
+        }))
     }
 }
 
-impl Step {
+impl Profile {
     fn moved(&self, by: &SVector<f64, NUMBERS>) -> Self {
         let blur = (self.blur + by[4]).max(LEAST_BLUR);
         Self {
@@ -230,8 +266,9 @@ fn normal(z: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use stickslip_filter::Streams;
+
+    use super::*;
 
     const CORNERS: [Vector2<f64>; 2] = [Vector2::new(10.0, 20.0), Vector2::new(58.0, 26.0)];
     const CELL: f64 = 6.0;

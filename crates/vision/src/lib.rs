@@ -20,14 +20,17 @@
 //!   [`Sighting::Distorted`].
 
 mod board;
+mod board_recording;
 mod bundle;
 mod calibrate;
+mod calibration_error;
 mod camera;
 mod config;
 mod detector;
 mod edge;
 mod homography;
 mod lens;
+mod levenberg_marquardt;
 mod motion;
 mod outline;
 mod picture;
@@ -38,9 +41,9 @@ mod tags;
 mod track;
 
 pub use board::{Board, BoardOnTable, read_board, write_board};
-pub use calibrate::{
-    BoardRecording, Calibration, CalibrationError, CalibrationFrame, calibrate, search_board,
-};
+pub use board_recording::{BoardRecording, CalibrationFrame, search_board};
+pub use calibrate::{Calibration, calibrate};
+pub use calibration_error::CalibrationError;
 pub use camera::{Camera, read_camera, write_camera};
 pub use config::{ConfigError, ConfigProblem};
 pub use detector::{Detector, FoundTag};

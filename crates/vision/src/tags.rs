@@ -28,14 +28,14 @@ pub struct Tags {
 /// tags.toml as it stands.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Form {
-    object: Table,
-    pusher: Table,
+struct TagsFile {
+    object: BodyTable,
+    pusher: BodyTable,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Table {
+struct BodyTable {
     tag: u16,
     size: f64,
     height: f64,
@@ -57,7 +57,7 @@ struct Table {
 /// ```
 pub fn read_tags(text: &str, name: &str) -> Result<Tags, ConfigError> {
     let document = Document { name, text };
-    let file: Form =
+    let file: TagsFile =
         document.parse("Give [object] and [pusher], each with tag, size and height in metres, and if needed pose = [x, y, angle]")?;
     let tags = Tags {
         object: file.object.check(&document, "object")?,
@@ -93,7 +93,7 @@ pub fn write_tags(tags: &Tags) -> String {
     )
 }
 
-impl Table {
+impl BodyTable {
     fn check(&self, document: &Document<'_>, body: &str) -> Result<BodyTag, ConfigError> {
         let key = |name: &str| format!("{body}.{name}");
         let last = format!("in 0 to {}, the numbers of the family 36h11", TAG_COUNT - 1);

@@ -9,7 +9,9 @@ use std::sync::LazyLock;
 use common::{BOARD_THICKNESS, Errors, OBJECT_TAG, PUSHER_TAG, Rig, found, true_camera};
 use image::GrayImage;
 use stickslip_dynamics::Pose;
-use stickslip_testbed::camera::{Actors, Film, Grabber, Optics, Recorded, Take};
+use stickslip_rendering::{
+    BodyPoses, CaptureSettings, Exposure, FrameGrabber, Optics, RecordedMotion, Video,
+};
 use stickslip_vision::{
     Board, BoardOnTable, BoardRecording, BodyTag, Calibration, CalibrationError, CalibrationFrame,
     Detector, Lens, Sighting, Tags, Track, TrackError, calibrate, search_board,
@@ -29,7 +31,7 @@ fn track(frames: &[GrayImage]) -> Result<Track, TrackError> {
 
 /// Two implementations of the same lens.
 #[test]
-fn lens_is_that_of_the_testbed() {
+fn lens_is_that_of_the_renderer() {
     let truth = true_camera();
     let lens = truth.lens();
     let same = Lens {
@@ -116,12 +118,12 @@ fn track_measures_poses_with_the_noise_it_predicts() {
 
 #[test]
 fn track_knows_repeated_frames() {
-    let recorded = recorded(20);
-    let film = film(&recorded, 0.3, 0..0);
-    let frames: Vec<GrayImage> = (0..20).map(|index| film.frame(index)).collect();
+    let motion = motion(20);
+    let video = video(&motion, 0.3, 0..0);
+    let frames: Vec<GrayImage> = (0..20).map(|index| video.frame(index)).collect();
     let track = track(&frames).unwrap();
     let repeated: Vec<bool> = (0..20)
-        .map(|index| film.take.grabber.delivered(index) != index)
+        .map(|index| video.settings.grabber.delivered(index) != index)
         .collect();
     assert!(repeated.iter().any(|repeated| *repeated));
     assert_eq!(
@@ -154,9 +156,9 @@ fn track_knows_repeated_frames() {
 /// While the hand comes and goes the tag is partly covered: a pose is right or is not given.
 #[test]
 fn track_gives_no_wrong_pose_while_the_hand_covers_the_tag() {
-    let recorded = recorded(36);
-    let film = film(&recorded, 0.0, 15..20);
-    let frames: Vec<GrayImage> = (0..36).map(|index| film.frame(index)).collect();
+    let motion = motion(36);
+    let video = video(&motion, 0.0, 15..20);
+    let frames: Vec<GrayImage> = (0..36).map(|index| video.frame(index)).collect();
     let track = track(&frames).unwrap();
     let objects = track.object();
     assert!(objects[15..20].iter().all(Option::is_none));
@@ -167,7 +169,7 @@ fn track_gives_no_wrong_pose_while_the_hand_covers_the_tag() {
             .all(Option::is_some)
     );
     assert!(track.pusher().iter().all(Option::is_some));
-    for (found, truth) in objects.iter().zip(&recorded.object) {
+    for (found, truth) in objects.iter().zip(&motion.object) {
         let Some(found) = found else { continue };
         let off = (found.x - truth.x).hypot(found.y - truth.y);
         assert!(
@@ -182,15 +184,12 @@ fn track_gives_no_wrong_pose_while_the_hand_covers_the_tag() {
 fn track_continues_angles() {
     let turning = |index: u32| Pose::new(0.02, 0.0, 2.9 + 0.1 * f64::from(index));
     let frame = |index: u32| {
-        let actors = Actors {
+        let poses = BodyPoses {
             object: Some(turning(index)),
             pusher: Some(Pose::new(-0.05, 0.0, 0.0)),
             hand: None,
         };
-        RIG.studio.frame(
-            index.into(),
-            &stickslip_testbed::camera::Shutter::still(actors),
-        )
+        RIG.renderer.frame(index.into(), &Exposure::at_rest(poses))
     };
     let found = track(&(0..6).map(frame).collect::<Vec<_>>())
         .unwrap()
@@ -456,13 +455,13 @@ fn calibrate_says_what_the_frames_lack() {
     );
 }
 
-fn recorded(frames: u32) -> Recorded {
+fn motion(frames: u32) -> RecordedMotion {
     let time: Vec<f64> = (0..frames).map(|k| f64::from(k) / 30.0).collect();
     let object = time
         .iter()
         .map(|t| Pose::new(0.03 * t, 0.01, 0.2 * t))
         .collect();
-    Recorded {
+    RecordedMotion {
         object,
         pusher: time
             .iter()
@@ -472,16 +471,16 @@ fn recorded(frames: u32) -> Recorded {
     }
 }
 
-fn film(recorded: &Recorded, repeat: f64, covered: std::ops::Range<usize>) -> Film<'_> {
-    let take = Take {
+fn video(motion: &RecordedMotion, repeat: f64, covered: std::ops::Range<usize>) -> Video<'_> {
+    let settings = CaptureSettings {
         exposure: 0.008,
-        grabber: Grabber { repeat, seed: 2 },
+        grabber: FrameGrabber { repeat, seed: 2 },
         covered,
         hand_height: 0.085,
     };
-    Film {
-        studio: &RIG.studio,
-        recorded,
-        take,
+    Video {
+        renderer: &RIG.renderer,
+        motion,
+        settings,
     }
 }

@@ -6,7 +6,7 @@ use image::GrayImage;
 use indicatif::ProgressBar;
 use stickslip::Log;
 use stickslip::dynamics::Pose;
-use stickslip_testbed::camera::{Film, Grabber, Optics, Recorded, Take};
+use stickslip_rendering::{CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video};
 use stickslip_vision::{BoardRecording, Camera, calibrate, search_board, track};
 
 use super::noise::Noise;
@@ -39,7 +39,7 @@ impl Footage {
     /// Puts a camera before an experiment that is recorded several times, and calibrates it.
     pub fn new(recordings: &[&Recording], optics: Optics) -> Result<Self> {
         let scene = &recordings[0].experiment.setup.scene;
-        let motions: Vec<Recorded> = recordings
+        let motions: Vec<RecordedMotion> = recordings
             .iter()
             .map(|recording| motion(recording))
             .collect();
@@ -60,20 +60,20 @@ impl Footage {
     pub fn track(&self, recording: &Recording, progress: &ProgressBar) -> Result<Tracked> {
         let experiment = &recording.experiment;
         let motion = motion(recording);
-        let grabber = Grabber {
+        let grabber = FrameGrabber {
             repeat: REPEATS,
             seed: recording.seed,
         };
-        let take = Take {
+        let settings = CaptureSettings {
             exposure: EXPOSURE,
             grabber,
             covered: 0..0,
             hand_height: self.set.hand_height,
         };
-        let film = Film {
-            studio: &self.set.studio,
-            recorded: &motion,
-            take,
+        let film = Video {
+            renderer: &self.set.renderer,
+            motion: &motion,
+            settings,
         };
         let load = |index: usize| {
             progress.inc(1);
@@ -98,14 +98,14 @@ impl Footage {
 }
 
 /// The true motion of object and pusher.
-pub fn motion(recording: &Recording) -> Recorded {
+pub fn motion(recording: &Recording) -> RecordedMotion {
     let truth = recording
         .experiment
         .truth
         .as_ref()
         .expect("a simulated experiment has a truth");
     let pusher = truth.pusher.iter().map(|pose: &Pose| Some(*pose)).collect();
-    Recorded {
+    RecordedMotion {
         time: truth.time.clone(),
         object: truth.pose.clone(),
         pusher,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use stickslip::dynamics::Pose;
 use stickslip::{Camera, Log};
-use stickslip_testbed::camera::Recorded;
+use stickslip_rendering::RecordedMotion;
 
 /// What no tracked pose is taken to be better than (m, rad): the bias that tracking may have,
 /// docs/guide/camera.md. Frames have it in common, so that a filter must not average it away.
@@ -85,7 +85,7 @@ impl Errors {
 
 impl Noise {
     /// The errors of a log's poses.
-    pub fn of(log: &Log, truth: &Recorded) -> Self {
+    pub fn of(log: &Log, truth: &RecordedMotion) -> Self {
         Self {
             object: Errors::of(&log.object, truth.object.iter().map(|pose| Some(*pose))),
             pusher: Errors::of(&log.pusher, truth.pusher.iter().copied()),
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn noise_is_the_root_mean_square_of_poses_that_are_there() {
-        let truth = Recorded {
+        let truth = RecordedMotion {
             time: vec![0.0, 1.0, 2.0],
             object: vec![Pose::default(); 3],
             pusher: vec![Some(Pose::new(1.0, 1.0, 3.1)); 3],

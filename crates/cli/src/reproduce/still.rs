@@ -2,8 +2,10 @@
 
 use anyhow::Result;
 use stickslip::dynamics::Pose;
+use stickslip_rendering::{
+    CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video, encode_png,
+};
 use stickslip_report::{Body, CameraImage, Colour, Drawing, Overlay};
-use stickslip_testbed::camera::{Film, Grabber, Optics, Recorded, Take, encode_png};
 
 use super::footage::motion;
 use super::recording::Recording;
@@ -20,7 +22,7 @@ const ROOM: f64 = 28.0;
 #[derive(Debug)]
 pub struct Still<'a> {
     recording: &'a Recording,
-    motion: Recorded,
+    motion: RecordedMotion,
     set: FilmSet,
 }
 
@@ -52,19 +54,19 @@ impl<'a> Still<'a> {
 
     /// The image of a row of the log.
     pub fn frame(&'a self, row: usize) -> StillFrame<'a> {
-        let take = Take {
+        let settings = CaptureSettings {
             exposure: 0.0,
-            grabber: Grabber {
+            grabber: FrameGrabber {
                 repeat: 0.0,
                 seed: 0,
             },
             covered: 0..0,
             hand_height: self.set.hand_height,
         };
-        let film = Film {
-            studio: &self.set.studio,
-            recorded: &self.motion,
-            take,
+        let film = Video {
+            renderer: &self.set.renderer,
+            motion: &self.motion,
+            settings,
         };
         StillFrame {
             still: self,
@@ -77,7 +79,7 @@ impl<'a> Still<'a> {
     fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         // pixels are numbered by their centres
         self.set
-            .studio
+            .renderer
             .camera()
             .project([x, y, FACE])
             .map(|pixel| pixel + 0.5)

@@ -4,9 +4,14 @@ use stickslip_dynamics::{
     Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape, SpeedProfile, Start, Twist,
 };
 
-use super::machine::Machine;
-use super::{Bristles, ContactLaw, DriveSettings, Footing, Rig, Spindle, Table};
-use crate::Trial;
+use super::Rig;
+use super::contact::ContactLaw;
+use super::drive::{DriveSettings, Spindle};
+use super::pressure::PressureDistribution;
+use super::state::RigState;
+use super::support_friction::Bristles;
+use super::table_friction::TableFriction;
+use crate::trial::Trial;
 
 const GRAVITY: f64 = 9.81;
 const MASS: f64 = 0.4;
@@ -61,10 +66,10 @@ fn start(speed: f64) -> Start {
 
 /// The same friction everywhere, even pressure, a rigid drive.
 fn plain(scene: &Scene) -> Rig {
-    let table = Table {
+    let table = TableFriction {
         unevenness: 0.0,
         speed_effect: 0.0,
-        ..Table::default()
+        ..TableFriction::default()
     };
     let drive = DriveSettings {
         lag: 0.0,
@@ -74,7 +79,7 @@ fn plain(scene: &Scene) -> Rig {
     Rig {
         table,
         drive,
-        footing: Footing::Face {
+        pressure: PressureDistribution::Face {
             points: 250,
             unevenness: 0.0,
         },
@@ -83,13 +88,13 @@ fn plain(scene: &Scene) -> Rig {
     }
 }
 
-/// Runs until `seconds` with the object thrown; the machine at the end.
-fn thrown<'a>(rig: &'a Rig, trial: &'a Trial<'a>, twist: Twist, seconds: f64) -> Machine<'a> {
-    let mut machine = Machine::new(rig, trial).expect("a machine");
-    machine.twist = twist;
-    let h = machine.longest_step();
-    (0..(seconds / h).ceil() as u32).for_each(|step| machine.step(h * f64::from(step), h));
-    machine
+/// Runs until `seconds` with the object thrown; the state at the end.
+fn thrown<'a>(rig: &'a Rig, trial: &'a Trial<'a>, twist: Twist, seconds: f64) -> RigState<'a> {
+    let mut state = RigState::new(rig, trial).expect("a rig");
+    state.twist = twist;
+    let h = state.longest_step();
+    (0..(seconds / h).ceil() as u32).for_each(|step| state.step(h * f64::from(step), h));
+    state
 }
 
 fn trial<'a>(scene: &'a Scene, start: &'a Start) -> Trial<'a> {
@@ -114,7 +119,7 @@ fn sliding_block_stops_where_friction_has_eaten_its_energy() {
     let (scene, start) = (scene(vec![]), start(0.0));
     let (rig, trial) = (plain(&scene), trial(&scene, &start));
     for speed in [0.1, 0.4] {
-        let machine = thrown(
+        let state = thrown(
             &rig,
             &trial,
             Twist {
@@ -127,16 +132,15 @@ fn sliding_block_stops_where_friction_has_eaten_its_energy() {
         let way = speed * speed / (2.0 * rig.mu_s * GRAVITY);
         // bristles take a few µm to stretch, and as many to let go
         assert!(
-            (machine.object.x - 0.6 * way).abs() < 1e-5
-                && (machine.object.y + 0.8 * way).abs() < 1e-5,
+            (state.object.x - 0.6 * way).abs() < 1e-5 && (state.object.y + 0.8 * way).abs() < 1e-5,
             "{:?}",
-            machine.object
+            state.object
         );
         assert!(
-            machine.object.theta.abs() < 1e-4 && machine.twist.vx.abs() < 1e-6,
+            state.object.theta.abs() < 1e-4 && state.twist.vx.abs() < 1e-6,
             "{:?} {:?}",
-            machine.object,
-            machine.twist
+            state.object,
+            state.twist
         );
     }
 }
@@ -144,11 +148,11 @@ fn sliding_block_stops_where_friction_has_eaten_its_energy() {
 #[test]
 fn sliding_block_on_friction_that_varies_with_speed_stops_where_the_quadrature_says() {
     let (scene, start) = (scene(vec![]), start(0.0));
-    let table = Table {
+    let table = TableFriction {
         unevenness: 0.0,
         speed_effect: -0.2,
         speed: 0.05,
-        ..Table::default()
+        ..TableFriction::default()
     };
     let (rig, trial) = (
         Rig {
@@ -157,7 +161,7 @@ fn sliding_block_on_friction_that_varies_with_speed_stops_where_the_quadrature_s
         },
         trial(&scene, &start),
     );
-    let machine = thrown(
+    let state = thrown(
         &rig,
         &trial,
         Twist {
@@ -173,27 +177,27 @@ fn sliding_block_on_friction_that_varies_with_speed_stops_where_the_quadrature_s
         .map(|k| 1e-4 * slow(1e-4 * (f64::from(k) + 0.5)))
         .sum();
     assert!(
-        (machine.object.x - way).abs() < 1e-5,
+        (state.object.x - way).abs() < 1e-5,
         "{} {way}",
-        machine.object.x
+        state.object.x
     );
 }
 
 #[test]
 fn spinning_disc_under_even_pressure_stops_after_the_closed_form_s_angle() {
     let (scene, start) = (scene(vec![]), start(0.0));
-    let footing = Footing::Face {
+    let pressure = PressureDistribution::Face {
         points: 2000,
         unevenness: 0.0,
     };
     let (rig, trial) = (
         Rig {
-            footing,
+            pressure,
             ..plain(&scene)
         },
         trial(&scene, &start),
     );
-    let machine = thrown(
+    let state = thrown(
         &rig,
         &trial,
         Twist {
@@ -204,14 +208,14 @@ fn spinning_disc_under_even_pressure_stops_after_the_closed_form_s_angle() {
     );
     // torque 2/3 μ m g R, J = m R²/2
     let slowing = 4.0 / 3.0 * rig.mu_s * GRAVITY / RADIUS;
-    assert_near(machine.object.theta, 0.5 * 12.0 * 12.0 / slowing, 3e-3);
+    assert_near(state.object.theta, 0.5 * 12.0 * 12.0 / slowing, 3e-3);
     assert!(
-        machine.object.x.abs() < 1e-5 && machine.twist.omega.abs() < 1e-4,
+        state.object.x.abs() < 1e-5 && state.twist.omega.abs() < 1e-4,
         "{:?} {:?}",
-        machine.object,
-        machine.twist
+        state.object,
+        state.twist
     );
-    assert_near(machine.tripod_radius(), 2.0 / 3.0 * RADIUS, 3e-3);
+    assert_near(state.tripod_radius(), 2.0 / 3.0 * RADIUS, 3e-3);
 }
 
 /// A fixel of 10 mm to the right of the object, 1 mm away along `angle`.
@@ -241,7 +245,7 @@ fn frictionless_bounce_without_damping_keeps_energy_and_mirrors_the_normal_speed
             ..plain(&scene)
         };
         let trial = trial(&scene, &start);
-        let machine = thrown(
+        let state = thrown(
             &rig,
             &trial,
             Twist {
@@ -251,15 +255,12 @@ fn frictionless_bounce_without_damping_keeps_energy_and_mirrors_the_normal_speed
             },
             0.04,
         );
-        let Twist { vx, vy, omega } = machine.twist;
+        let Twist { vx, vy, omega } = state.twist;
         // the disc meets the fixel where the line of flight says, not where the fixel stands
         let height = 0.041 * libm::sin(angle);
         let (sin, cos) = (height / 0.04, (1.0 - height * height / 1.6e-3).sqrt());
         let (normal, along) = (vx * cos + vy * sin, vy * cos - vx * sin);
-        assert!(
-            machine.contacts.is_empty() && omega == 2.0,
-            "still touching"
-        );
+        assert!(state.contacts.is_empty() && omega == 2.0, "still touching");
         assert_near((vx * vx + vy * vy).sqrt(), 0.1, 1e-4);
         assert_near(normal, -0.1 * cos, 2e-3);
         assert!((along + 0.1 * sin).abs() < 1e-4, "{along}");
@@ -282,7 +283,7 @@ fn damped_bounce_returns_the_speed_of_a_damped_spring_that_cannot_pull() {
             ..plain(&scene)
         };
         let trial = trial(&scene, &start);
-        let machine = thrown(
+        let state = thrown(
             &rig,
             &trial,
             Twist {
@@ -297,7 +298,7 @@ fn damped_bounce_returns_the_speed_of_a_damped_spring_that_cannot_pull() {
         let phase = std::f64::consts::PI - libm::atan2(2.0 * zeta * root, 1.0 - 2.0 * zeta * zeta);
         let (sin, cos) = libm::sincos(phase);
         let restitution = -libm::exp(-zeta / root * phase) * (cos - zeta / root * sin);
-        assert_near(machine.twist.vx, -0.1 * restitution, 2e-3);
+        assert_near(state.twist.vx, -0.1 * restitution, 2e-3);
     }
 }
 

@@ -1,24 +1,23 @@
-//! The pusher's drive: [`DriveSettings`], a motor that lags and ripples, and a spindle that gives
-//! and slips at the stall force.
+//! The pusher's drive: [`DriveSettings`], a motor that lags and ripples, and a compliant [`Spindle`]
+//! that slips at the stall force.
 
 use std::f64::consts::TAU;
 
 use stickslip_dynamics::SpeedProfile;
 
-use super::chance::Topic;
+use super::random_stream::RandomStream;
 
-/// Lengths of the two ripples (m) and their shares of the whole.
+/// Wavelengths of the two ripples (m) and their shares of the whole.
 const RIPPLES: [(f64, f64); 2] = [(2e-3, 0.7), (0.31e-3, 0.3)];
 
 /// How the pusher is driven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveSettings {
-    /// Time constant with which the motor follows its command (s); 0 follows at once.
+    /// Time constant of the motor's response to its command (s); 0 follows at once.
     pub lag: f64,
     /// Largest deviation of the motor's speed, as a share of it.
     pub ripple: f64,
-    /// What is between motor and pusher; `None` moves the pusher as the motor turns, whatever
-    /// resists.
+    /// What is between motor and pusher; `None` is rigid, whatever resists.
     pub spindle: Option<Spindle>,
 }
 
@@ -56,16 +55,18 @@ impl Default for Spindle {
     }
 }
 
-/// A drive on its way.
+/// A drive's state.
 #[derive(Clone, Debug)]
 pub(super) struct Drive<'a> {
     settings: DriveSettings,
     command: &'a SpeedProfile,
+    /// Phases of the ripples (rad).
     phases: [f64; 2],
+    /// Travel that the motor asks for (m).
     motor: f64,
     motor_speed: f64,
-    /// Way of the pusher along its direction (m).
-    pub way: f64,
+    /// Travel of the pusher along its direction (m).
+    pub travel: f64,
     /// Speed of the pusher (m/s).
     pub speed: f64,
 }
@@ -73,7 +74,7 @@ pub(super) struct Drive<'a> {
 impl<'a> Drive<'a> {
     /// A drive at rest.
     pub(super) fn new(settings: DriveSettings, command: &'a SpeedProfile, seed: u64) -> Self {
-        let draw = Topic::Drive.draw(seed);
+        let draw = RandomStream::Drive.draw(seed);
         let phases = [0, 1].map(|k| TAU * draw.uniform(k, 0));
         Self {
             settings,
@@ -81,7 +82,7 @@ impl<'a> Drive<'a> {
             phases,
             motor: 0.0,
             motor_speed: 0.0,
-            way: 0.0,
+            travel: 0.0,
             speed: 0.0,
         }
     }
@@ -98,12 +99,13 @@ impl<'a> Drive<'a> {
         };
         self.motor += h * self.motor_speed;
         match self.settings.spindle {
-            None => (self.way, self.speed) = (self.motor, self.motor_speed),
-            Some(spindle) => self.turn(&spindle, h, force),
+            None => (self.travel, self.speed) = (self.motor, self.motor_speed),
+            Some(spindle) => self.move_slide(&spindle, h, force),
         }
     }
 
-    fn turn(&mut self, spindle: &Spindle, h: f64, force: f64) {
+    /// Moves the slide under the spindle's and the object's force.
+    fn move_slide(&mut self, spindle: &Spindle, h: f64, force: f64) {
         let Spindle {
             mass,
             stiffness,
@@ -112,14 +114,15 @@ impl<'a> Drive<'a> {
         } = *spindle;
         let damping = 2.0 * damping_ratio * (stiffness * mass).sqrt();
         // a motor that is held back farther than the stall force winds the spindle slips
-        let wound = (stiffness * (self.motor - self.way)).clamp(-stall_force, stall_force);
-        self.motor = self.way + wound / stiffness;
+        let wound = (stiffness * (self.motor - self.travel)).clamp(-stall_force, stall_force);
+        self.motor = self.travel + wound / stiffness;
         let drive =
             (wound + damping * (self.motor_speed - self.speed)).clamp(-stall_force, stall_force);
         self.speed += h / mass * (drive + force);
-        self.way += h * self.speed;
+        self.travel += h * self.speed;
     }
 
+    /// Relative deviation of the motor's speed.
     fn ripple(&self) -> f64 {
         if self.settings.ripple == 0.0 {
             return 0.0;
@@ -145,12 +148,12 @@ mod tests {
             let resistance = force(&drive);
             drive.advance(f64::from(k) * H, H, resistance);
         }
-        (drive.way, drive.speed)
+        (drive.travel, drive.speed)
     }
 
     #[test]
-    fn rigid_drive_without_lag_does_what_it_is_told() {
-        let (way, speed) = run(
+    fn rigid_drive_without_lag_follows_its_command() {
+        let (travel, speed) = run(
             DriveSettings {
                 lag: 0.0,
                 ripple: 0.0,
@@ -159,12 +162,15 @@ mod tests {
             3.0,
             |_| -1e9,
         );
-        assert!((way - 0.06).abs() < 1e-12 && speed == 0.02, "{way} {speed}");
+        assert!(
+            (travel - 0.06).abs() < 1e-12 && speed == 0.02,
+            "{travel} {speed}"
+        );
     }
 
     #[test]
-    fn lag_costs_the_way_of_its_time_constant() {
-        let (way, _) = run(
+    fn lag_costs_the_travel_of_its_time_constant() {
+        let (travel, _) = run(
             DriveSettings {
                 lag: 0.1,
                 ripple: 0.0,
@@ -173,7 +179,7 @@ mod tests {
             3.0,
             |_| 0.0,
         );
-        assert!((way - 0.02 * (3.0 - 0.1)).abs() < 1e-6, "{way}");
+        assert!((travel - 0.02 * (3.0 - 0.1)).abs() < 1e-6, "{travel}");
     }
 
     #[test]
@@ -183,8 +189,8 @@ mod tests {
             spindle: None,
             ..DriveSettings::default()
         };
-        let (way, _) = run(settings, 5.0, |_| 0.0);
-        assert!((way / 0.1 - 1.0).abs() < 2e-3, "{way}");
+        let (travel, _) = run(settings, 5.0, |_| 0.0);
+        assert!((travel / 0.1 - 1.0).abs() < 2e-3, "{travel}");
         let speeds: Vec<f64> = (1..200)
             .map(|k| run(settings, 0.001 * f64::from(k), |_| 0.0).1 / 0.02)
             .collect();
@@ -217,11 +223,11 @@ mod tests {
             ripple: 0.0,
             spindle: Some(Spindle::default()),
         };
-        let wall = |drive: &Drive<'_>| -(1e6 * (drive.way - 0.01) + 1e3 * drive.speed).max(0.0);
-        let (way, speed) = run(settings, 2.0, wall);
+        let wall = |drive: &Drive<'_>| -(1e6 * (drive.travel - 0.01) + 1e3 * drive.speed).max(0.0);
+        let (travel, speed) = run(settings, 2.0, wall);
         assert!(
-            (1e6 * (way - 0.01) - 40.0).abs() < 0.01 && speed.abs() < 1e-6,
-            "{way} {speed}"
+            (1e6 * (travel - 0.01) - 40.0).abs() < 0.01 && speed.abs() < 1e-6,
+            "{travel} {speed}"
         );
     }
 }

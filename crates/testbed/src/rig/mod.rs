@@ -1,35 +1,37 @@
-//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls; steps
+//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls, in steps
 //! of 80 µs or less.
 //!
 //! Nothing here solves a complementarity problem: every force is a function of the state, and the
 //! state is integrated by semi-implicit Euler steps, v ← v + h M⁻¹ f(q, v), q ← q + h v.
 
-mod chance;
 #[cfg(test)]
 mod closed_forms;
 mod contact;
 mod drive;
-mod machine;
 mod pressure;
-mod support;
-mod table;
+mod random_field;
+mod random_stream;
+mod state;
+mod support_friction;
+mod table_friction;
 
 use stickslip_dynamics::{Feet, Friction, Scene};
 
 pub use contact::ContactLaw;
 pub use drive::{DriveSettings, Spindle};
-use machine::Machine;
-pub use pressure::{Footing, SupportPoint};
-pub use support::Bristles;
-pub use table::Table;
+pub use pressure::{PressureDistribution, SupportPoint};
+use state::RigState;
+pub use support_friction::Bristles;
+pub use table_friction::TableFriction;
 
 use crate::touch::TouchSensors;
-use crate::{Frame, Trace, Trial, TrialError};
+use crate::trace::{Frame, Trace};
+use crate::trial::{Trial, TrialError};
 
-/// Slowest motion that counts as motion where friction is averaged over the way (m/s).
+/// Friction is averaged over frames in which the object moves faster than this (m/s).
 const MOVING: f64 = 1e-4;
 
-/// What the rig is made of; all that a user does not know.
+/// The parameters of the rig: all that a user does not know.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
     /// Friction of object and table, the mean over the table.
@@ -38,10 +40,10 @@ pub struct Rig {
     pub mu_p: f64,
     /// Friction of object and fixels.
     pub mu_f: f64,
-    /// What the object stands on.
-    pub footing: Footing,
+    /// How the object's weight rests on the table.
+    pub pressure: PressureDistribution,
     /// How friction varies over the table.
-    pub table: Table,
+    pub table: TableFriction,
     /// The bristles between object and table.
     pub bristles: Bristles,
     /// Contacts with pusher and fixels.
@@ -55,20 +57,20 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// A rig for a scene: friction as the scene has it, its feet where they are known, its stall
-    /// force where it has one.
+    /// The usual rig for a scene, with the scene's friction, and its feet and stall force where it
+    /// has them.
     pub fn of(scene: &Scene) -> Self {
         let Friction {
             mu_s, mu_p, mu_f, ..
         } = scene.nominal;
-        let footing = match scene.feet {
-            Feet::Tripod { .. } => Footing::default(),
+        let pressure = match scene.feet {
+            Feet::Tripod { .. } => PressureDistribution::default(),
             Feet::Known { positions, loads } => {
                 let point = |k: usize| SupportPoint {
                     position: positions[k],
                     load: loads[k],
                 };
-                Footing::Points([0, 1, 2].map(point).to_vec())
+                PressureDistribution::Points([0, 1, 2].map(point).to_vec())
             }
         };
         let default = Spindle::default();
@@ -80,8 +82,8 @@ impl Rig {
             mu_s,
             mu_p,
             mu_f,
-            footing,
-            table: Table::default(),
+            pressure,
+            table: TableFriction::default(),
             bristles: Bristles::default(),
             contact: ContactLaw::default(),
             drive: DriveSettings {
@@ -104,30 +106,30 @@ impl Rig {
             ("mu_p", self.mu_p),
             ("mu_f", self.mu_f),
         ])?;
-        let mut machine = Machine::new(self, trial)?;
-        let steps = (1.0 / (trial.rate * machine.longest_step())).ceil();
+        let mut state = RigState::new(self, trial)?;
+        let steps = (1.0 / (trial.rate * state.longest_step())).ceil();
         let h = 1.0 / (trial.rate * steps);
 
-        let mut frames = vec![machine.frame(0.0, 1.0)];
+        let mut frames = vec![state.frame(0.0, 1.0)];
         let mut friction = Mean::default();
         for k in 1..trial.frames() {
             for step in 0..steps as u32 {
-                machine.step(trial.time(k - 1) + h * f64::from(step), h);
+                state.step(trial.time(k - 1) + h * f64::from(step), h);
             }
-            let frame = machine.frame(trial.time(k), 1.0 / trial.rate);
+            let frame = state.frame(trial.time(k), 1.0 / trial.rate);
             if moves(&frame, trial.scene) {
-                friction.add(machine.mean_friction());
+                friction.add(state.mean_friction());
             }
             frames.push(frame);
         }
-        self.touch.feel(&mut frames, trial);
+        self.touch.write_readings(&mut frames, trial);
 
-        let mu_s = friction.value().unwrap_or_else(|| machine.mean_friction());
+        let mu_s = friction.value().unwrap_or_else(|| state.mean_friction());
         let friction = Friction {
             mu_s,
             mu_p: self.mu_p,
             mu_f: self.mu_f,
-            d_tri: machine.tripod_radius(),
+            d_tri: state.tripod_radius(),
         };
         Ok(Trace {
             friction,

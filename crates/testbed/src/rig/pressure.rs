@@ -1,9 +1,10 @@
-//! How the object's weight rests on the table: [`Footing`], [`SupportPoint`].
+//! How the object's weight rests on the table: [`PressureDistribution`], [`SupportPoint`].
 
 use stickslip_dynamics::{Part, Shape};
 
-use super::chance::{Topic, Waves};
-use crate::TrialError;
+use super::random_field::RandomField;
+use super::random_stream::RandomStream;
+use crate::trial::TrialError;
 
 /// A point of the object that stands on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,10 +15,10 @@ pub struct SupportPoint {
     pub load: f64,
 }
 
-/// What the object stands on.
+/// Where the object bears on the table, and with which share of its weight.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Footing {
-    /// Its whole face: points spread evenly over the shape, loaded unevenly, with the resultant in
+pub enum PressureDistribution {
+    /// Its whole face: points spread evenly over the shape, loaded unevenly, with the resultant at
     /// the centre of mass.
     Face {
         /// Number of points.
@@ -30,7 +31,7 @@ pub enum Footing {
     Points(Vec<SupportPoint>),
 }
 
-impl Default for Footing {
+impl Default for PressureDistribution {
     fn default() -> Self {
         Self::Face {
             points: 256,
@@ -39,7 +40,7 @@ impl Default for Footing {
     }
 }
 
-impl Footing {
+impl PressureDistribution {
     /// The points of an object of this shape.
     pub(super) fn points(&self, shape: &Shape, seed: u64) -> Result<Vec<SupportPoint>, TrialError> {
         match self {
@@ -53,16 +54,16 @@ impl Footing {
     }
 }
 
-/// `count` points spread evenly over a shape: a Kronecker sequence with a random beginning (Roberts
-/// 2018), kept where it is inside.
+/// `count` points spread evenly over a shape: those of a Kronecker sequence with a random beginning
+/// (Roberts 2018) that are inside.
 fn spread(shape: &Shape, count: usize, seed: u64) -> Vec<[f64; 2]> {
     /// 1/g and 1/g², g³ = g + 1.
     const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
-    let (reach, draw) = (shape.bounding_radius(), Topic::Points.draw(seed));
+    let (radius, draw) = (shape.bounding_radius(), RandomStream::Points.draw(seed));
     let first = [draw.uniform(0, 0), draw.uniform(0, 1)];
     let coordinate = |k: usize, axis: usize| {
         let share = first[axis] + k as f64 * STEP[axis];
-        reach * (2.0 * (share - share.floor()) - 1.0)
+        radius * (2.0 * (share - share.floor()) - 1.0)
     };
     let all = (1..).map(|k| [coordinate(k, 0), coordinate(k, 1)]);
     all.filter(|point| shape.parts().iter().any(|part| contains(part, *point)))
@@ -71,7 +72,7 @@ fn spread(shape: &Shape, count: usize, seed: u64) -> Vec<[f64; 2]> {
 }
 
 fn contains(part: &Part, [x, y]: [f64; 2]) -> bool {
-    let in_oval = |[cx, cy]: [f64; 2], [a, b]: [f64; 2], angle: f64| {
+    let in_ellipse = |[cx, cy]: [f64; 2], [a, b]: [f64; 2], angle: f64| {
         let (sin, cos) = libm::sincos(angle);
         let (dx, dy) = (x - cx, y - cy);
         let (u, v) = ((cos * dx + sin * dy) / a, (cos * dy - sin * dx) / b);
@@ -85,24 +86,22 @@ fn contains(part: &Part, [x, y]: [f64; 2]) -> bool {
                 .zip(next)
                 .all(|([ax, ay], [bx, by])| (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0.0)
         }
-        Part::Disc { radius, centre } => in_oval(*centre, [*radius; 2], 0.0),
+        Part::Disc { radius, centre } => in_ellipse(*centre, [*radius; 2], 0.0),
         Part::Ellipse {
             semi_axes,
             centre,
             angle,
-        } => in_oval(*centre, *semi_axes, *angle),
+        } => in_ellipse(*centre, *semi_axes, *angle),
     }
 }
 
 /// Loads that vary over the face and from point to point, in equal parts of the variance.
-fn uneven(positions: &[[f64; 2]], unevenness: f64, reach: f64, seed: u64) -> Vec<f64> {
-    let (waves, rough) = (
-        Waves::new(reach, Topic::Pressure.draw(seed)),
-        Topic::Roughness.draw(seed),
-    );
+fn uneven(positions: &[[f64; 2]], unevenness: f64, wavelength: f64, seed: u64) -> Vec<f64> {
+    let field = RandomField::new(wavelength, RandomStream::Pressure.draw(seed));
+    let roughness = RandomStream::Roughness.draw(seed);
     let share = unevenness * 0.5f64.sqrt();
     let load = |(k, point): (usize, &[f64; 2])| {
-        libm::exp(share * (waves.at(*point) + rough.normal(k as u32, 0)))
+        libm::exp(share * (field.at(*point) + roughness.normal(k as u32, 0)))
     };
     positions.iter().enumerate().map(load).collect()
 }
@@ -110,8 +109,8 @@ fn uneven(positions: &[[f64; 2]], unevenness: f64, reach: f64, seed: u64) -> Vec
 /// Tilts the loads, load ← load exp(a·x), until their resultant lies in the centre of mass, and
 /// scales them to sum 1.
 ///
-/// The right a minimises the convex function ln Σ load exp(a·x); Newton's method with halved steps
-/// finds it. Lengths are scaled.
+/// This a minimises the convex function ln Σ load exp(a·x), and Newton's method with step halving
+/// finds it. Lengths are scaled by the largest coordinate.
 fn balanced(positions: Vec<[f64; 2]>, loads: Vec<f64>) -> Result<Vec<SupportPoint>, TrialError> {
     let size = positions
         .iter()
@@ -139,9 +138,12 @@ fn balanced(positions: Vec<[f64; 2]>, loads: Vec<f64>) -> Result<Vec<SupportPoin
                 })
                 .collect());
         }
+        // Newton step: the Hessian is the covariance of the points under their loads
         let (a, b, c) = (xx / total - x * x, xy / total - x * y, yy / total - y * y);
         let det = a * c - b * b;
         let step = [(b * y - c * x) / det, (b * x - a * y) / det];
+
+        // halved until the function does not grow
         let value = libm::log(total);
         let at = |s: f64| [tilt[0] + s * step[0], tilt[1] + s * step[1]];
         let lower = |s: &f64| libm::log(moments(&points, at(*s))[0]) <= value + 1e-15;
@@ -220,7 +222,7 @@ mod tests {
         // the second one has its centre of mass well off the middle of its face
         for parts in [ell, vec![square([-0.01, -0.04])]] {
             for seed in 0..10 {
-                let points = Footing::default()
+                let points = PressureDistribution::default()
                     .points(&shape(parts.clone()), seed)
                     .expect("points");
                 assert!(points.len() == 256 && points.iter().all(|p| p.load > 0.0));
@@ -241,7 +243,7 @@ mod tests {
     #[test]
     fn face_is_uneven_and_differs_by_seed() {
         let load = |seed: u64| {
-            Footing::default()
+            PressureDistribution::default()
                 .points(&shape(vec![square([-0.025, -0.025])]), seed)
                 .expect("points")
         };
@@ -261,7 +263,7 @@ mod tests {
             radius: 0.03,
             centre: [0.0; 2],
         }]);
-        let points = Footing::Face {
+        let points = PressureDistribution::Face {
             points: 2000,
             unevenness: 0.0,
         }
@@ -281,7 +283,7 @@ mod tests {
             centre: [0.0; 2],
             angle: 0.5,
         }]);
-        let points = Footing::Face {
+        let points = PressureDistribution::Face {
             points: 2000,
             unevenness: 0.0,
         }
@@ -302,6 +304,9 @@ mod tests {
     #[test]
     fn object_that_would_tip_is_refused() {
         let off = shape(vec![square([0.001, 0.0])]);
-        assert_eq!(Footing::default().points(&off, 0), Err(TrialError::Tips));
+        assert_eq!(
+            PressureDistribution::default().points(&off, 0),
+            Err(TrialError::Tips)
+        );
     }
 }

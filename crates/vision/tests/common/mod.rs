@@ -10,8 +10,8 @@
 use image::GrayImage;
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip_filter::Streams;
-use stickslip_testbed::camera::{
-    self as rendered, Actors, Optics, Props, Shutter, Stage, Studio, TagMount,
+use stickslip_rendering::{
+    self as rendered, Appearance, BodyPoses, Exposure, Optics, RenderScene, Renderer, TagMount,
 };
 use stickslip_vision::{
     Board, BoardOnTable, BoardRecording, BodyTag, Calibration, CalibrationError, Camera,
@@ -26,8 +26,8 @@ pub const BOARD_THICKNESS: f64 = 0.003;
 
 /// A rendered rig.
 pub struct Rig {
-    pub studio: Studio,
-    pub props: Props,
+    pub renderer: Renderer,
+    pub appearance: Appearance,
     pub tags: Tags,
 }
 
@@ -86,8 +86,8 @@ impl Rig {
     /// The rig through some optics; the object's tag is off its middle and turned.
     pub fn new(optics: Optics, seed: u64) -> Self {
         let cells = |id| tag_cells(id).unwrap();
-        let mut props = Props::of(&scene(), cells(OBJECT_TAG), cells(PUSHER_TAG), 0.0);
-        let mount = props.object_tag.as_mut().unwrap();
+        let mut appearance = Appearance::of(&scene(), cells(OBJECT_TAG), cells(PUSHER_TAG), 0.0);
+        let mount = appearance.object_tag.as_mut().unwrap();
         mount.pose = Pose::new(0.003, -0.002, 0.2);
         let of = |id, mount: &Option<TagMount>| {
             let TagMount { tag, pose, height } = mount.unwrap();
@@ -101,12 +101,17 @@ impl Rig {
             }
         };
         let tags = Tags {
-            object: of(OBJECT_TAG, &props.object_tag),
-            pusher: of(PUSHER_TAG, &props.pusher_tag),
+            object: of(OBJECT_TAG, &appearance.object_tag),
+            pusher: of(PUSHER_TAG, &appearance.pusher_tag),
         };
         Self {
-            studio: Studio::new(true_camera(), Stage::new(&scene(), &props), optics, seed),
-            props,
+            renderer: Renderer::new(
+                true_camera(),
+                RenderScene::new(&scene(), &appearance),
+                optics,
+                seed,
+            ),
+            appearance,
             tags,
         }
     }
@@ -128,12 +133,12 @@ impl Rig {
             tags,
         };
         let poses =
-            rendered::calibration_poses(self.studio.camera(), &print, BOARD_THICKNESS, count)
+            rendered::calibration_poses(self.renderer.camera(), &print, BOARD_THICKNESS, count)
                 .unwrap();
         let frames = poses
             .iter()
             .zip(0..)
-            .map(|(pose, index)| self.studio.board_frame(1_000_000 + index, &print, pose))
+            .map(|(pose, index)| self.renderer.board_frame(1_000_000 + index, &print, pose))
             .collect();
         let [x, y, _] = poses[0].origin;
         (
@@ -162,35 +167,35 @@ impl Rig {
         )
     }
 
-    /// Frames with object and pusher at `count` random places, moving by `way` (m, rad) while the
-    /// shutter is open.
+    /// Frames with object and pusher at `count` random places, moving by `travel` (m, rad) while
+    /// the shutter is open.
     pub fn random_frames(
         &self,
         count: u64,
-        way: Pose,
+        travel: Pose,
         seed: u64,
     ) -> (Vec<GrayImage>, Vec<[Pose; 2]>) {
         let truth: Vec<[Pose; 2]> = (0..count).map(|index| random_poses(index, seed)).collect();
         let at = |[object, pusher]: [Pose; 2], share: f64| {
             let moved = |pose: Pose| {
                 Pose::new(
-                    pose.x + share * way.x,
-                    pose.y + share * way.y,
-                    pose.theta + share * way.theta,
+                    pose.x + share * travel.x,
+                    pose.y + share * travel.y,
+                    pose.theta + share * travel.theta,
                 )
             };
-            Actors {
+            BodyPoses {
                 object: Some(moved(object)),
                 pusher: Some(moved(pusher)),
                 hand: None,
             }
         };
         let frame = |(poses, index): (&[Pose; 2], u64)| {
-            self.studio.frame(
+            self.renderer.frame(
                 seed * 10_000 + index,
-                &Shutter {
-                    open: at(*poses, -0.5),
-                    close: at(*poses, 0.5),
+                &Exposure {
+                    start: at(*poses, -0.5),
+                    end: at(*poses, 0.5),
                 },
             )
         };

@@ -1,0 +1,138 @@
+//! What a prism covers of the table: [`Footprint`], one convex part.
+
+use stickslip_dynamics::Part;
+
+/// A convex region of the plane that line segments can be tested against.
+#[derive(Clone, Debug)]
+pub(crate) enum Footprint {
+    /// Where n · p <= offset for every (n, offset).
+    Polygon(Vec<([f64; 2], f64)>),
+    /// Where |rows (p - centre)| <= 1.
+    Ellipse {
+        centre: [f64; 2],
+        rows: [[f64; 2]; 2],
+    },
+}
+
+impl Footprint {
+    /// The region of a part.
+    pub(crate) fn new(part: &Part) -> Self {
+        match part {
+            Part::Polygon { vertices } => Self::polygon(vertices),
+            Part::Disc { radius, centre } => Self::ellipse([*radius; 2], *centre, 0.0),
+            Part::Ellipse {
+                semi_axes,
+                centre,
+                angle,
+            } => Self::ellipse(*semi_axes, *centre, *angle),
+        }
+    }
+
+    /// A convex polygon, vertices counter-clockwise.
+    fn polygon(vertices: &[[f64; 2]]) -> Self {
+        let next = vertices.iter().cycle().skip(1);
+        let side = |(a, b): (&[f64; 2], &[f64; 2])| {
+            let normal = [b[1] - a[1], a[0] - b[0]];
+            (normal, dot(normal, *a))
+        };
+        Self::Polygon(vertices.iter().zip(next).map(side).collect())
+    }
+
+    fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Self {
+        let (sin, cos) = libm::sincos(angle);
+        let [a, b] = semi_axes;
+        Self::Ellipse {
+            centre,
+            rows: [[cos / a, sin / a], [-sin / b, cos / b]],
+        }
+    }
+
+    /// Where the segment from `start` to `start + run` enters the region, as a share of it in
+    /// [0, 1]; `None` where it does not.
+    pub(crate) fn entry(&self, start: [f64; 2], run: [f64; 2]) -> Option<f64> {
+        match self {
+            Self::Polygon(sides) => entry_of_polygon(sides, start, run),
+            Self::Ellipse { centre, rows } => {
+                let scaled = |v: [f64; 2]| [dot(rows[0], v), dot(rows[1], v)];
+                entry_of_circle(
+                    scaled([start[0] - centre[0], start[1] - centre[1]]),
+                    scaled(run),
+                )
+            }
+        }
+    }
+}
+
+/// Clips the segment at every side (Cyrus & Beck 1978).
+fn entry_of_polygon(sides: &[([f64; 2], f64)], start: [f64; 2], run: [f64; 2]) -> Option<f64> {
+    if sides
+        .iter()
+        .all(|(normal, offset)| dot(*normal, start) <= *offset)
+    {
+        return Some(0.0);
+    }
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for (normal, offset) in sides {
+        let (outside, speed) = (dot(*normal, start) - offset, dot(*normal, run));
+        if speed < 0.0 {
+            from = from.max(-outside / speed);
+        } else if speed > 0.0 {
+            to = to.min(-outside / speed);
+        } else if outside > 0.0 {
+            return None;
+        }
+    }
+    (from <= to).then_some(from)
+}
+
+/// The same for the unit circle: the smaller root of |start + s run| = 1.
+fn entry_of_circle(start: [f64; 2], run: [f64; 2]) -> Option<f64> {
+    let c = dot(start, start) - 1.0;
+    if c <= 0.0 {
+        return Some(0.0);
+    }
+    let (a, b) = (dot(run, run), dot(start, run));
+    let root = b * b - a * c;
+    let s = -(b + root.max(0.0).sqrt()) / a;
+    (root >= 0.0 && (0.0..=1.0).contains(&s)).then_some(s)
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Footprint {
+        Footprint::polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    }
+
+    #[test]
+    fn entry_of_a_square_is_where_the_segment_meets_it() {
+        assert_eq!(square().entry([1.0, 1.0], [9.0, 0.0]), Some(0.0));
+        assert_eq!(square().entry([-1.0, 1.0], [2.0, 0.0]), Some(0.5));
+        assert_eq!(square().entry([-1.0, 1.0], [0.5, 0.0]), None);
+        assert_eq!(square().entry([-1.0, 3.0], [4.0, 0.0]), None);
+        assert_eq!(square().entry([3.0, 1.0], [0.0, 0.0]), None);
+    }
+
+    /// The unit circle at (1, 2), scaled to 2 by 0.5 and turned by a quarter.
+    #[test]
+    fn entry_of_an_ellipse_is_where_the_segment_meets_it() {
+        let part = Part::Ellipse {
+            semi_axes: [2.0, 0.5],
+            centre: [1.0, 2.0],
+            angle: std::f64::consts::FRAC_PI_2,
+        };
+        let ellipse = Footprint::new(&part);
+        assert_eq!(ellipse.entry([1.0, 3.9], [0.0, 1.0]), Some(0.0));
+        let sideways = ellipse.entry([-1.0, 2.0], [2.0, 0.0]).unwrap();
+        assert!((sideways - 0.75).abs() < 1e-15);
+        let along = ellipse.entry([1.0, 5.0], [0.0, -4.0]).unwrap();
+        assert!((along - 0.25).abs() < 1e-15);
+        assert_eq!(ellipse.entry([1.0, 5.0], [0.0, 4.0]), None);
+        assert_eq!(ellipse.entry([3.0, 5.0], [0.0, -4.0]), None);
+    }
+}

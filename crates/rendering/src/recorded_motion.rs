@@ -1,0 +1,87 @@
+//! A motion to be shown: [`RecordedMotion`].
+
+use std::f64::consts::SQRT_2;
+
+use stickslip_dynamics::{Pose, Scene, Shape};
+
+use crate::appearance::{Appearance, TagMount};
+
+/// Where object and pusher are, one entry per frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedMotion {
+    /// Middle of the exposure (s), strictly rising.
+    pub time: Vec<f64>,
+    /// The object.
+    pub object: Vec<Pose>,
+    /// The pusher; `None` is out of the picture.
+    pub pusher: Vec<Option<Pose>>,
+}
+
+impl RecordedMotion {
+    /// A box that holds the bodies with their tags at all times, and all fixels: its lower left and
+    /// upper right corner (m).
+    pub fn bounds(&self, scene: &Scene, appearance: &Appearance) -> [[f64; 2]; 2] {
+        let moving = |shape: &Shape, tag: &Option<TagMount>| {
+            let radius = shape.bounding_radius().max(tag_radius(tag));
+            move |pose: &Pose| (pose.x, pose.y, radius)
+        };
+        let object = moving(&scene.object.shape, &appearance.object_tag);
+        let pusher = moving(&scene.pusher.shape, &appearance.pusher_tag);
+        let fixels = scene
+            .fixels
+            .iter()
+            .map(|f| (f.pose.x, f.pose.y, f.shape.bounding_radius()));
+        let discs = self
+            .object
+            .iter()
+            .map(object)
+            .chain(self.pusher.iter().flatten().map(pusher))
+            .chain(fixels);
+        let empty = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        discs.fold(empty, |[low, high], (x, y, r)| {
+            [
+                [low[0].min(x - r), low[1].min(y - r)],
+                [high[0].max(x + r), high[1].max(y + r)],
+            ]
+        })
+    }
+
+    /// Direction from the pusher's first to its last position (rad); zero where it does not move.
+    pub fn push_direction(&self) -> f64 {
+        let mut seen = self.pusher.iter().flatten();
+        let ends = seen.next().zip(seen.next_back());
+        ends.map_or(0.0, |(first, last)| {
+            libm::atan2(last.y - first.y, last.x - first.x)
+        })
+    }
+
+    /// Object and pusher at a time: linear between frames, at rest before the first and after the
+    /// last.
+    pub(crate) fn at(&self, time: f64) -> (Option<Pose>, Option<Pose>) {
+        let later = self
+            .time
+            .partition_point(|t| *t < time)
+            .min(self.time.len().saturating_sub(1));
+        let earlier = later.saturating_sub(1);
+        let step = self.time[later] - self.time[earlier];
+        let share = if step > 0.0 {
+            ((time - self.time[earlier]) / step).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let pusher = self.pusher[earlier]
+            .zip(self.pusher[later])
+            .map(|(a, b)| a.interpolate(b, share));
+        (
+            Some(self.object[earlier].interpolate(self.object[later], share)),
+            pusher,
+        )
+    }
+}
+
+/// Distance from a body's origin that its tag's print stays within (m).
+fn tag_radius(mount: &Option<TagMount>) -> f64 {
+    mount.map_or(0.0, |m| {
+        libm::hypot(m.pose.x, m.pose.y) + m.tag.print_size() / SQRT_2
+    })
+}

@@ -1,0 +1,234 @@
+//! The rig in motion: [`RigState`] and its time step.
+
+use stickslip_dynamics::{Body, Gap, Placed, Pose, Twist, Wrench, narrow_phase};
+
+use super::Rig;
+use super::contact::{CompliantContact, RelativeMotion};
+use super::drive::Drive;
+use super::support_friction::SupportFriction;
+use crate::trace::{Contact, Frame};
+use crate::trial::{Trial, TrialError};
+
+/// Largest step, relative to 1/ω of the stiffest spring.
+const RESOLUTION: f64 = 0.2;
+
+/// State of a rig.
+#[derive(Clone, Debug)]
+pub(super) struct RigState<'a> {
+    rig: &'a Rig,
+    trial: &'a Trial<'a>,
+    direction: [f64; 2],
+    fixels: Vec<Placed<'a>>,
+    /// Pose of the object.
+    pub object: Pose,
+    /// Twist of the object.
+    pub twist: Twist,
+    support: SupportFriction,
+    drive: Drive<'a>,
+    /// With the pusher, then with each fixel.
+    compliant: Vec<CompliantContact>,
+    gaps: Vec<Gap>,
+    /// Contacts of the last step.
+    pub contacts: Vec<Contact>,
+    /// Impulses since the last frame (N s): of the pusher, and normal ones of the fixels.
+    pusher_impulse: [f64; 2],
+    fixel_impulses: Vec<f64>,
+    has_moved: bool,
+}
+
+impl<'a> RigState<'a> {
+    /// The rig at rest at the start of a trial.
+    pub(super) fn new(rig: &'a Rig, trial: &'a Trial<'a>) -> Result<Self, TrialError> {
+        let (scene, start) = (trial.scene, trial.start);
+        let points = rig.pressure.points(&scene.object.shape, trial.seed)?;
+        let fixels: Vec<Placed<'a>> = scene
+            .fixels
+            .iter()
+            .map(|fixel| Placed::new(&fixel.shape, fixel.pose))
+            .collect();
+        let mu = [rig.mu_p]
+            .into_iter()
+            .chain(fixels.iter().map(|_| rig.mu_f));
+        Ok(Self {
+            rig,
+            trial,
+            direction: start.direction_vector(),
+            object: start.object,
+            twist: Twist::default(),
+            support: SupportFriction::new(
+                &points,
+                rig.table.field(rig.mu_s, trial.seed),
+                rig.bristles,
+                scene,
+            ),
+            drive: Drive::new(rig.drive, &start.speed, trial.seed),
+            compliant: mu.map(CompliantContact::new).collect(),
+            gaps: Vec::new(),
+            contacts: Vec::new(),
+            pusher_impulse: [0.0; 2],
+            fixel_impulses: vec![0.0; fixels.len()],
+            fixels,
+            has_moved: false,
+        })
+    }
+
+    /// The longest step that resolves the contacts and the drive (s).
+    pub(super) fn longest_step(&self) -> f64 {
+        let object = &self.trial.scene.object;
+        // the stiffest case: two contacts at the far ends of the object
+        let lever = object.shape.bounding_radius();
+        let contact =
+            2.0 * self.rig.contact.stiffness * (1.0 / object.mass + lever * lever / object.inertia);
+        let spindle = self
+            .rig
+            .drive
+            .spindle
+            .map_or(0.0, |spindle| spindle.stiffness / spindle.mass);
+        (RESOLUTION / contact.max(spindle).sqrt()).min(self.rig.longest_step)
+    }
+
+    /// One step of `h` seconds from `time`.
+    pub(super) fn step(&mut self, time: f64, h: f64) {
+        self.contacts.clear();
+        let mut wrench = self.contact_wrench(h);
+        let on_pusher = self.add_impulses(h);
+
+        // before the first contact the object is at rest on relaxed bristles, which pull at nothing
+        self.has_moved |= !self.contacts.is_empty() || self.twist != Twist::default();
+        if self.has_moved {
+            wrench = sum(wrench, self.support.step(self.object, &self.twist, h));
+        }
+
+        // semi-implicit Euler: velocities first
+        let object = &self.trial.scene.object;
+        self.twist.vx += h * wrench.fx / object.mass;
+        self.twist.vy += h * wrench.fy / object.mass;
+        self.twist.omega += h * wrench.torque / object.inertia;
+        self.object = self.object.advance(self.twist, h);
+        self.drive.advance(time, h, on_pusher);
+    }
+
+    /// Contacts of the object with all bodies, and their wrench on it.
+    fn contact_wrench(&mut self, h: f64) -> Wrench {
+        let scene = self.trial.scene;
+        let object = Placed::new(&scene.object.shape, self.object);
+        let pusher = Placed::new(&scene.pusher.shape, self.pusher());
+        let velocity = self.direction.map(|d| d * self.drive.speed);
+        let mut wrench = self.contact(Body::Pusher, (&object, &pusher), velocity, h);
+        for j in 0..self.fixels.len() {
+            let fixel = self.fixels[j];
+            wrench = sum(
+                wrench,
+                self.contact(Body::Fixel(j), (&object, &fixel), [0.0; 2], h),
+            );
+        }
+        wrench
+    }
+
+    /// Contacts of the object with one body that moves with `velocity`, and their wrench on the
+    /// object.
+    fn contact(
+        &mut self,
+        body: Body,
+        (object, other): (&Placed<'_>, &Placed<'_>),
+        velocity: [f64; 2],
+        h: f64,
+    ) -> Wrench {
+        self.gaps.clear();
+        narrow_phase(object, other, 0.0, &mut self.gaps);
+        let index = if let Body::Fixel(j) = body { 1 + j } else { 0 };
+        let compliant = &mut self.compliant[index];
+        let mut wrench = Wrench::default();
+        for gap in &self.gaps {
+            let ([nx, ny], [rx, ry]) = (gap.normal, gap.arm);
+            let own = self.twist.at(gap.arm);
+            let (vx, vy) = (own[0] - velocity[0], own[1] - velocity[1]);
+            let relative = RelativeMotion {
+                gap_rate: nx * vx + ny * vy,
+                slip: nx * vy - ny * vx,
+            };
+            let mass = self.trial.scene.object.mass;
+            let f = compliant.force(&self.rig.contact, gap, relative, [mass, h]);
+            let force = [
+                f.normal * nx - f.tangential * ny,
+                f.normal * ny + f.tangential * nx,
+            ];
+            wrench.fx += force[0];
+            wrench.fy += force[1];
+            wrench.torque += rx * force[1] - ry * force[0];
+            self.contacts.push(Contact {
+                body,
+                point: [self.object.x + rx, self.object.y + ry],
+                normal: gap.normal,
+                force,
+            });
+        }
+        compliant.end_step();
+        wrench
+    }
+
+    /// Adds up the contacts' impulses; returns the force of the object on the pusher along its
+    /// direction (N).
+    fn add_impulses(&mut self, h: f64) -> f64 {
+        let mut along = 0.0;
+        for contact in &self.contacts {
+            let [fx, fy] = contact.force;
+            match contact.body {
+                Body::Pusher => {
+                    along -= fx * self.direction[0] + fy * self.direction[1];
+                    self.pusher_impulse[0] += h * fx;
+                    self.pusher_impulse[1] += h * fy;
+                }
+                Body::Fixel(j) => {
+                    self.fixel_impulses[j] += h * (fx * contact.normal[0] + fy * contact.normal[1])
+                }
+            }
+        }
+        along
+    }
+
+    /// Pose of the pusher.
+    fn pusher(&self) -> Pose {
+        let Pose { x, y, theta } = self.trial.start.pusher;
+        Pose::new(
+            x + self.drive.travel * self.direction[0],
+            y + self.drive.travel * self.direction[1],
+            theta,
+        )
+    }
+
+    /// The frame at `time`, with means over the `interval` that ends here (s); begins the next one.
+    pub(super) fn frame(&mut self, time: f64, interval: f64) -> Frame {
+        let frame = Frame {
+            time,
+            object: self.object,
+            twist: self.twist,
+            pusher: self.pusher(),
+            contacts: self.contacts.clone(),
+            pusher_force: self.pusher_impulse.map(|p| p / interval),
+            fixel_forces: self.fixel_impulses.iter().map(|p| p / interval).collect(),
+            tactile: Vec::new(),
+        };
+        self.pusher_impulse = [0.0; 2];
+        self.fixel_impulses.fill(0.0);
+        frame
+    }
+
+    /// Mean friction coefficient under the object now.
+    pub(super) fn mean_friction(&self) -> f64 {
+        self.support.mean_friction(self.object, &self.twist)
+    }
+
+    /// Radius of the tripod with the support's torque in pure spin (m).
+    pub(super) fn tripod_radius(&self) -> f64 {
+        self.support.tripod_radius()
+    }
+}
+
+fn sum(a: Wrench, b: Wrench) -> Wrench {
+    Wrench {
+        fx: a.fx + b.fx,
+        fy: a.fy + b.fy,
+        torque: a.torque + b.torque,
+    }
+}
