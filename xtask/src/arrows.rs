@@ -27,7 +27,7 @@ const TESTKIT: &str = "crates/testkit";
 
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, which
 /// know of nobody; the testbed and vision stand beside the estimator.
-pub const CRATES: [Rules; 11] = [
+pub const CRATES: [Rules; 12] = [
     Rules {
         must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
         ..Rules::of("crates/dynamics", &[])
@@ -35,7 +35,19 @@ pub const CRATES: [Rules; 11] = [
     Rules::of("crates/filter", &[]),
     Rules::of("crates/estimator", &["crates/dynamics", "crates/filter"]),
     Rules::of("crates/formats", &["crates/estimator", "crates/dynamics"]),
-    Rules::of("crates/report", &["crates/estimator", "crates/dynamics"]),
+    Rules::of(
+        "crates/evaluation",
+        &["crates/formats", "crates/testbed", "crates/estimator"],
+    ),
+    Rules::of(
+        "crates/report",
+        &[
+            "crates/evaluation",
+            "crates/formats",
+            "crates/estimator",
+            "crates/dynamics",
+        ],
+    ),
     Rules {
         must_not_use: &["rand", "rand_distr", "rand_core", "rayon"],
         ..Rules::of("crates/testbed", &["crates/dynamics", "crates/filter"])
@@ -52,6 +64,7 @@ pub const CRATES: [Rules; 11] = [
             "crates/filter",
             "crates/estimator",
             "crates/formats",
+            "crates/evaluation",
             "crates/report",
             "crates/testbed",
             "crates/vision",

@@ -2,8 +2,9 @@
 
 use stickslip::{Camera, FilterSettings, Limits, Tactile};
 
-use super::document::{Quantity, Rule, Table};
+use super::document::Table;
 use super::error::SceneError;
+use super::quantity::{Quantity, Rule};
 
 type Result<T> = std::result::Result<T, SceneError>;
 

@@ -1,4 +1,4 @@
-//! A scene before a camera, with tags and calibration board: [`FilmSet`].
+//! A scene before a camera, with tags and calibration board: [`CameraSetup`].
 
 use anyhow::Result;
 use image::GrayImage;
@@ -29,7 +29,7 @@ const THICKNESS: f64 = 0.003;
 
 /// A scene before a camera.
 #[derive(Clone, Debug)]
-pub struct FilmSet {
+pub struct CameraSetup {
     /// The camera before the stage.
     pub studio: Studio,
     /// Which tag is on which body, and where.
@@ -40,14 +40,14 @@ pub struct FilmSet {
 
 /// A recording of the calibration board.
 #[derive(Clone, Debug)]
-pub struct BoardFilm {
+pub struct BoardFrames {
     print: camera::Board,
     poses: Vec<BoardPose>,
     /// How the board lies in the first frame.
     pub on_table: BoardOnTable,
 }
 
-impl FilmSet {
+impl CameraSetup {
     /// A camera that sees all that happens in `recordings`; `seed` is that of all noise.
     pub fn new(scene: &Scene, recordings: &[Recorded], optics: Optics, seed: u64) -> Result<Self> {
         let push = recordings.first().map_or(0.0, Recorded::push_direction);
@@ -74,7 +74,7 @@ impl FilmSet {
     }
 
     /// The calibration board in `count` poses.
-    pub fn board(&self, count: usize) -> Result<BoardFilm> {
+    pub fn board(&self, count: usize) -> Result<BoardFrames> {
         let tags = BOARD.tags().map(cells).collect();
         let print = camera::Board {
             columns: usize::from(BOARD.columns),
@@ -84,7 +84,7 @@ impl FilmSet {
         };
         let poses = calibration_poses(self.studio.camera(), &print, THICKNESS, count)?;
         let [x, y, _] = poses[0].origin;
-        Ok(BoardFilm {
+        Ok(BoardFrames {
             print,
             poses,
             on_table: BoardOnTable {
@@ -96,17 +96,18 @@ impl FilmSet {
     }
 }
 
-impl BoardFilm {
+impl BoardFrames {
     /// Every frame, made into something on any thread.
     pub fn frames<T: Send>(
         &self,
-        set: &FilmSet,
+        setup: &CameraSetup,
         make: impl Fn(usize, GrayImage) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         let frame = |(index, pose): (usize, &BoardPose)| {
             make(
                 index,
-                set.studio
+                setup
+                    .studio
                     .board_frame(BOARD_FRAMES + index as u64, &self.print, pose),
             )
         };
