@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
+use stickslip_evaluation::Variant;
 
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
-use crate::contest::Rival;
-use crate::paper::PaperExperiment;
+use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
 /// Tracks a pushed object through contact and visual occlusion and learns the friction that governs
@@ -54,9 +54,9 @@ pub struct DemoArgs {
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,
-    /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
 }
 
 /// Arguments of `stickslip filter`.
@@ -123,59 +123,6 @@ pub struct CompareArgs {
     pub shared: SharedArgs,
 }
 
-/// Arguments of `stickslip simulate`.
-#[derive(Debug, Args)]
-pub struct SimulateArgs {
-    /// Bodies, nominal friction and how all begins (scene.toml with a table `start`)
-    #[arg(required_unless_present = "paper", conflicts_with = "paper")]
-    pub scene: Option<PathBuf>,
-    /// One of the paper's experiments in place of a scene
-    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", conflicts_with_all = ["truth", "friction_error"])]
-    pub paper: Option<PaperExperiment>,
-    /// Write scene.toml, log.csv, truth.csv and truth.json into this folder
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
-    /// What moves the object
-    #[arg(long, value_enum, default_value_t = Physics::Testbed)]
-    pub physics: Physics,
-    /// Seed of all random numbers: of the rig's as of the sensors'
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Camera frames per second
-    #[arg(long, value_name = "HZ", default_value_t = 30.0, value_parser = positive)]
-    pub rate: f64,
-    /// Take mu_s, mu_p, mu_f and occlude_from from this file (truth.json) [default: the scene's
-    /// friction]
-    #[arg(long, value_name = "JSON")]
-    pub truth: Option<PathBuf>,
-    /// Draw the true friction within this share of the scene's, as 0.4
-    #[arg(long, value_name = "SHARE", conflicts_with = "truth", value_parser = share)]
-    pub friction_error: Option<f64>,
-}
-
-/// Arguments of `stickslip reproduce`.
-#[derive(Debug, Args)]
-pub struct ReproduceArgs {
-    /// Write reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html into this folder
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Number of seeds: of rigs, sensors and filters [default: 20]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
-    pub seeds: Option<u64>,
-    /// Render camera frames and track them, instead of measuring poses with the paper's noise
-    #[arg(long)]
-    pub from_frames: bool,
-    /// Number of particles
-    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
-    pub particles: usize,
-    /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
-}
-
 /// Arguments of `stickslip check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -207,12 +154,20 @@ pub struct SharedArgs {
     /// Track the pusher from the rows up to each one only, as live
     #[arg(long)]
     pub causal: bool,
-    /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// How many threads to work on.
+#[derive(Debug, Args)]
+pub struct ThreadArgs {
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
 }
 
 /// How to estimate.
@@ -231,27 +186,9 @@ pub enum MethodName {
 pub enum Mode {
     /// As published
     Paper,
-    /// Proposals that meet the contacts (not there yet)
+    /// Proposals that meet the contacts; refused until they exist
+    #[value(hide = true)]
     Contact,
-}
-
-/// What moves the object of a simulation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Physics {
-    /// A rig with compliant contacts, uneven friction and a drive that lags and stalls
-    Testbed,
-    /// The filter's own contact dynamics, without noise
-    Model,
-}
-
-impl Physics {
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Testbed => "testbed",
-            Self::Model => "model",
-        }
-    }
 }
 
 /// A range of log rows, `FROM[:TO]`; `FROM:` also runs to the end.
@@ -305,8 +242,10 @@ impl SharedArgs {
             Tracking::Smoothed
         }
     }
+}
 
-    /// Threads with the requested number of workers.
+impl ThreadArgs {
+    /// As many threads as asked for.
     pub fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
         let threads = self.threads.map_or(0, usize::from);
         Ok(rayon::ThreadPoolBuilder::new()
@@ -316,44 +255,30 @@ impl SharedArgs {
 }
 
 impl FilterArgs {
+    /// What runs.
+    pub fn variant(&self) -> Variant {
+        Variant::of(self.method.into(), self.tactile())
+    }
+
+    fn tactile(&self) -> TactileUse {
+        if self.no_tactile {
+            TactileUse::Ignored
+        } else {
+            TactileUse::Used
+        }
+    }
+
     /// Options of the run.
     pub fn run_options(&self) -> RunOptions {
         RunOptions {
             method: self.method.into(),
             particles: self.shared.particles,
             seed: self.seed,
-            tactile: if self.no_tactile {
-                TactileUse::Ignored
-            } else {
-                TactileUse::Used
-            },
+            tactile: self.tactile(),
             tracking: self.shared.tracking(),
             substeps: self.substeps,
             occlusion: self.shared.occlusion(),
         }
-    }
-}
-
-impl MethodName {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Particle => "particle filter",
-            Self::Kalman => "Kalman filter",
-            Self::Nominal => "nominal simulation",
-        }
-    }
-}
-
-impl MethodName {
-    /// Colour in figures, as in comparisons.
-    pub fn colour(self) -> stickslip_report::Colour {
-        match self {
-            Self::Particle => Rival::Particle,
-            Self::Kalman => Rival::Kalman,
-            Self::Nominal => Rival::Nominal,
-        }
-        .colour()
     }
 }
 
@@ -377,16 +302,8 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=1.0).contains(&value) {
-        Ok(value)
-    } else {
-        Err("must be from 0 to 1".to_owned())
-    }
-}
-
-fn particles(text: &str) -> Result<usize, String> {
+/// A number of particles, from 1 up.
+pub fn particles(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(0) | Err(_) => Err("must be a whole number from 1 up".to_owned()),
         Ok(count) => Ok(count),

@@ -10,7 +10,7 @@ use crate::camera_args::CalibrateArgs;
 use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::frames::FrameFolder;
-use crate::output::{show, talk};
+use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 use stickslip_report::Table;
@@ -20,7 +20,7 @@ const LENS: [&str; 8] = [
     "fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2",
 ];
 
-/// What is told of a calibration.
+/// What is printed of a calibration.
 #[derive(Debug, Serialize)]
 struct Summary {
     frames: usize,
@@ -48,9 +48,7 @@ pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
             .ok_or_else(|| no_such_frame(name, &folder))?,
     };
     let progress = bar(folder.names.len(), "frames", Work::Long);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.map_or(0, usize::from))
-        .build()?;
+    let pool = args.threads.pool()?;
     let load = |index: usize| {
         progress.inc(1);
         folder.load(index)
@@ -66,11 +64,7 @@ pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
         )
     })?;
     let summary = Summary::new(&calibration);
-    show(if args.json {
-        serde_json::to_string_pretty(&summary)?
-    } else {
-        summary.text()
-    })?;
+    show_result(args.json, &summary, || summary.text())?;
     talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::{Rows, positive};
+use crate::args::{Rows, ThreadArgs, positive};
 
 /// Arguments of `stickslip calibrate`.
 #[derive(Debug, Args)]
@@ -22,9 +22,9 @@ pub struct CalibrateArgs {
     /// Write the calibration into this file
     #[arg(long, value_name = "TOML", default_value = "calibration.toml")]
     pub out: PathBuf,
-    /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -52,9 +52,9 @@ pub struct TrackArgs {
     /// Write log.csv, log.mcap and poses.csv (with covariances) into this folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -88,9 +88,9 @@ pub struct RenderArgs {
     /// Seed of all noise
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
 }
 
 fn probability(text: &str) -> Result<f64, String> {

@@ -8,7 +8,7 @@ use stickslip::diagnosis::{Finding, Severity, diagnose};
 
 use crate::args::CheckArgs;
 use crate::experiment::{read_log_file, read_scene_file};
-use crate::output::show;
+use crate::output::show_result;
 use crate::verdict::Verdict;
 
 /// A finding as JSON has it.
@@ -34,11 +34,7 @@ pub fn check(args: &CheckArgs) -> Result<Verdict> {
     let (log, verdict) = read_log_file(&args.log, &args.topics.topics()?)?;
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
-    if args.json {
-        show(serde_json::to_string_pretty(&report)?)?
-    } else {
-        show(&report)?
-    };
+    show_result(args.json, &report, || report.to_string())?;
     Ok(if report.problems == 0 {
         verdict
     } else {

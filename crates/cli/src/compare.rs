@@ -1,10 +1,10 @@
-//! `stickslip compare`: every method on each experiment folder, medians over seeds, quantiles over
+//! `stickslip compare`: every variant on each experiment folder, medians over seeds, quantiles over
 //! folders.
 
 mod folders;
 mod page;
-pub mod results;
-pub mod tables;
+mod results;
+mod tables;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -12,20 +12,23 @@ use std::path::PathBuf;
 use anyhow::{Result, anyhow};
 use rayon::prelude::*;
 use stickslip::Occlusion;
+use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::Experiment;
 
-use crate::args::{CompareArgs, SharedArgs};
-use crate::contest::{Rival, Rules};
-use crate::episode::write_report;
+use crate::args::CompareArgs;
 use crate::experiment::read_folder;
+use crate::files::write_report;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-use results::{Comparison, FolderResult, LostFolder, Marks};
+use results::{Comparison, FolderResult, LostFolder, ShownScores};
 
-/// An experiment with what is hidden in it.
-struct Case {
-    folder: PathBuf,
+/// Runs above which a person would wait.
+const MANY: usize = 8;
+
+/// An experiment folder with what is hidden in it.
+struct Folder {
+    path: PathBuf,
     experiment: Experiment,
     occlusion: Occlusion,
     /// Whether all of the log could be read.
@@ -35,15 +38,17 @@ struct Case {
 /// One run that is to be made.
 #[derive(Clone, Copy)]
 struct Job {
-    case: usize,
-    rival: Rival,
+    /// Index of the folder.
+    folder: usize,
+    variant: Variant,
     seed: u64,
 }
 
 /// Runs the command.
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let folders = folders::expand(&args.folders, &args.scene_name)?;
-    let (comparison, verdict) = args.shared.pool()?.install(|| compare_all(args, folders));
+    let pool = args.shared.threads.pool()?;
+    let (comparison, verdict) = pool.install(|| compare_all(args, folders));
     let text = if args.shared.json {
         serde_json::to_string_pretty(&comparison)?
     } else {
@@ -69,113 +74,98 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
 }
 
 /// The comparison, and whether all of the logs in it could be read.
-fn compare_all(args: &CompareArgs, folders: Vec<PathBuf>) -> (Comparison, Verdict) {
+fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict) {
     // read all folders; those that cannot be read are reported and left out
-    let read: Vec<Result<Case, LostFolder>> = folders
-        .into_par_iter()
-        .map(|folder| read_case(args, folder))
-        .collect();
+    let read: Vec<Result<Folder, LostFolder>> =
+        paths.into_par_iter().map(|path| read(args, path)).collect();
     let mut errors = Vec::new();
-    let cases: Vec<Case> = read
+    let folders: Vec<Folder> = read
         .into_iter()
-        .filter_map(|case| case.map_err(|lost| errors.push(lost)).ok())
+        .filter_map(|folder| folder.map_err(|lost| errors.push(lost)).ok())
         .collect();
 
-    // run every rival with every seed on each
-    let jobs = jobs(&cases, args.seeds);
-    let progress = bar(
-        jobs.len(),
-        "runs",
-        if jobs.len() > 8 {
-            Work::Long
-        } else {
-            Work::Short
-        },
-    );
-    let rules = Rules {
-        particles: args.shared.particles,
-        tracking: args.shared.tracking(),
+    // run every variant with every seed on each
+    let jobs = jobs(&folders, args.seeds);
+    let work = if jobs.len() > MANY {
+        Work::Long
+    } else {
+        Work::Short
     };
-    let counted = |job: &Job| {
-        let marks = marks(&cases, *job, &rules);
+    let progress = bar(jobs.len(), "runs", work);
+    let run = |job: &Job| {
+        let scores = run(args, &folders[job.folder], *job);
         progress.inc(1);
-        marks
+        scores
     };
-    let marks: Vec<Result<Marks>> = jobs.par_iter().map(counted).collect();
+    let scores: Vec<Result<ShownScores>> = jobs.par_iter().map(run).collect();
     progress.finish_and_clear();
 
     // gather them by folder; one failed run loses its folder
     let mut results = Vec::new();
-    for (index, case) in cases.iter().enumerate() {
-        let own = jobs
-            .iter()
-            .zip(&marks)
-            .filter(|(job, _)| job.case == index)
-            .map(|(job, marks)| (job.rival, marks));
-        match FolderResult::gather(&case.folder, own) {
+    for (index, folder) in folders.iter().enumerate() {
+        let all = jobs.iter().zip(&scores);
+        let own = all.filter(|(job, _)| job.folder == index);
+        match FolderResult::gather(&folder.path, own.map(|(job, scores)| (job.variant, scores))) {
             Ok(result) => results.push(result),
-            Err(error) => errors.push(LostFolder::new(&case.folder, error)),
+            Err(error) => errors.push(LostFolder::new(&folder.path, error)),
         }
     }
-    let cut_off = cases.iter().find(|case| case.verdict != Verdict::Done);
+    let mut verdicts = folders.iter().map(|folder| folder.verdict);
+    let cut_off = verdicts.find(|verdict| *verdict != Verdict::Done);
     (
         Comparison::new(args, results, errors),
-        cut_off.map_or(Verdict::Done, |case| case.verdict),
+        cut_off.unwrap_or(Verdict::Done),
     )
 }
 
-fn read_case(args: &CompareArgs, folder: PathBuf) -> Result<Case, LostFolder> {
-    let read = || -> Result<Case> {
-        let (experiment, verdict) = read_folder(&folder, &args.scene_name)?;
-        let occlusion = occlusion(&experiment, &args.shared);
-        Ok(Case {
-            folder: folder.clone(),
-            experiment,
-            occlusion,
-            verdict,
-        })
+/// Reads a folder; hidden is what truth.json says, else what the options say.
+fn read(args: &CompareArgs, path: PathBuf) -> Result<Folder, LostFolder> {
+    let (experiment, verdict) =
+        read_folder(&path, &args.scene_name).map_err(|error| LostFolder::new(&path, &error))?;
+    let occlusion = match experiment.facts.occlusion() {
+        Occlusion::None => args.shared.occlusion(),
+        known => known,
     };
-    read().map_err(|error| LostFolder::new(&folder, &error))
+    Ok(Folder {
+        path,
+        experiment,
+        occlusion,
+        verdict,
+    })
 }
 
-/// What truth.json says is hidden, else what the options say.
-fn occlusion(experiment: &Experiment, options: &SharedArgs) -> Occlusion {
-    match experiment.facts.occlude_from {
-        Some(from) => Occlusion::Rows { from, to: None },
-        None => options.occlusion(),
-    }
-}
-
-fn jobs(cases: &[Case], seeds: u64) -> Vec<Job> {
-    let rivals = cases.iter().enumerate().flat_map(|(case, c)| {
-        Rival::on(&c.experiment, c.occlusion)
-            .into_iter()
-            .map(move |rival| (case, rival))
-    });
-    rivals
-        .flat_map(|(case, rival)| {
-            (0..if rival.is_random() { seeds } else { 1 }).map(move |seed| Job {
-                case,
-                rival,
+fn jobs(folders: &[Folder], seeds: u64) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for (folder, read) in folders.iter().enumerate() {
+        for variant in Variant::compared_on(&read.experiment.log, read.occlusion) {
+            let seeds = if variant.is_random() { seeds } else { 1 };
+            jobs.extend((0..seeds).map(|seed| Job {
+                folder,
+                variant,
                 seed,
-            })
-        })
-        .collect()
+            }));
+        }
+    }
+    jobs
 }
 
 /// Runs one job; a panic in it is an error of its folder.
-fn marks(cases: &[Case], job: Job, rules: &Rules) -> Result<Marks> {
-    let case = &cases[job.case];
-    let attempt = catch_unwind(AssertUnwindSafe(|| {
-        job.rival
-            .attempt(&case.experiment, case.occlusion, rules, job.seed, None)
+fn run(args: &CompareArgs, folder: &Folder, job: Job) -> Result<ShownScores> {
+    let conditions = RunConditions {
+        particles: args.shared.particles,
+        tracking: args.shared.tracking(),
+        occlusion: folder.occlusion,
+        seed: job.seed,
+    };
+    let run = catch_unwind(AssertUnwindSafe(|| {
+        ScoredRun::new(job.variant, &folder.experiment, &conditions, None)
     }));
-    let attempt = attempt.map_err(|_| {
+    let run = run.map_err(|_| {
         anyhow!(
             "{} with seed {} broke an invariant of the library (see above)",
-            job.rival.name(),
+            job.variant.name(),
             job.seed
         )
     })??;
-    Ok(Marks::new(&attempt.scores, attempt.run.unsolved))
+    Ok(ShownScores::of(&run))
 }

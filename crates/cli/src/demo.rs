@@ -2,16 +2,17 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::{Estimate, Occlusion, Tracking};
+use stickslip::{Estimate, Tracking};
+use stickslip_evaluation::{RunConditions, Variant};
 use stickslip_formats::Experiment;
-use stickslip_report::{Block, Contender, Episode, Report, Table};
+use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Table};
 
 use crate::args::DemoArgs;
-use crate::contest::{Rival, Rules};
-use crate::episode::{contender, episode, write_figures, write_report};
 use crate::experiment::Texts;
+use crate::files::{write_figures, write_report};
 use crate::output::show;
 use crate::parameters::Parameter;
+use crate::reported_run::reported_run;
 use crate::verdict::Verdict;
 
 /// What the report begins with.
@@ -44,27 +45,26 @@ const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
 
 /// Runs the command.
 pub fn demo(args: &DemoArgs) -> Result<Verdict> {
-    let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
-    let experiments = EXPERIMENTS.map(|(texts, what)| {
-        texts
-            .parse()
-            .map(|experiment| (texts.name, what, experiment))
-    });
+    let pool = args.threads.pool()?;
     let mut summary = vec![Block::Text(SUMMARY.to_owned())];
     let mut sections = Vec::new();
     let mut figures = 0;
-    for parsed in experiments {
-        let (name, what, experiment) = parsed?;
-        let occlusion = occlusion(&experiment);
-        let contenders = pool.install(|| contenders(&experiment, occlusion, args.particles))?;
-        let episode = episode(name, what, &experiment, occlusion, contenders);
-        show(format_args!("{}\n", tables(&episode)))?;
-        figures += write_figures(&args.out, &episode)?;
-        summary.extend(episode.summary());
-        sections.push(episode.section());
+    for (texts, what) in EXPERIMENTS {
+        let experiment = texts.parse()?;
+        // the camera is dark from just before the first fixel contact on
+        let conditions = RunConditions {
+            particles: args.particles,
+            tracking: Tracking::Smoothed,
+            occlusion: experiment.facts.occlusion(),
+            seed: 0,
+        };
+        let runs = pool.install(|| runs(&experiment, &conditions))?;
+        let occlusion = conditions.occlusion;
+        let reported = ReportedExperiment::new(texts.name, what, &experiment, occlusion, runs);
+        show(format_args!("{}\n", tables(&reported)))?;
+        figures += write_figures(&args.out, &reported)?;
+        summary.extend(reported.summary());
+        sections.push(reported.section());
     }
     let report = Report {
         title: "stickslip: tracking a pushed object through a camera blackout".to_owned(),
@@ -79,38 +79,26 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     Ok(Verdict::Done)
 }
 
-/// The camera is dark from just before the first fixel contact on.
-fn occlusion(experiment: &Experiment) -> Occlusion {
-    experiment
-        .facts
-        .occlude_from
-        .map_or(Occlusion::None, |from| Occlusion::Rows { from, to: None })
-}
-
-fn contenders(
-    experiment: &Experiment,
-    occlusion: Occlusion,
-    particles: usize,
-) -> Result<Vec<Contender>> {
-    let rules = Rules {
-        particles,
-        tracking: Tracking::Smoothed,
-    };
-    let contender = |rival: Rival| contender(rival, experiment, occlusion, &rules, 0);
-    Rival::on(experiment, occlusion)
+/// Every variant that differs on the experiment.
+fn runs(experiment: &Experiment, conditions: &RunConditions) -> Result<Vec<ReportedRun>> {
+    let variants: Vec<Variant> =
+        Variant::compared_on(&experiment.log, conditions.occlusion).collect();
+    let runs = variants
         .into_par_iter()
-        .map(contender)
-        .collect()
+        .map(|variant| reported_run(variant, experiment, conditions));
+    Ok(runs.collect::<Result<_, _>>()?)
 }
 
-fn tables(episode: &Episode<'_>) -> String {
-    let sentences = episode.story().sentences().join("\n");
-    let particle = episode
-        .methods
-        .iter()
-        .find(|method| method.name == Rival::Particle.title());
-    let friction = particle.map(|method| friction(episode, &method.estimate).to_string());
-    let scores = format!("{}\n{sentences}\n\n{}", episode.name, episode.scores());
+fn tables(experiment: &ReportedExperiment<'_>) -> String {
+    let sentences = experiment.story().sentences().join("\n");
+    let scores = format!(
+        "{}\n{sentences}\n\n{}",
+        experiment.name,
+        experiment.scores()
+    );
+    let mut runs = experiment.runs.iter().map(|run| &run.scored);
+    let particle = runs.find(|run| run.variant == Variant::Particle);
+    let friction = particle.map(|run| friction(experiment, &run.estimate).to_string());
     [scores]
         .into_iter()
         .chain(friction)
@@ -118,14 +106,14 @@ fn tables(episode: &Episode<'_>) -> String {
         .join("\n")
 }
 
-/// The particle filter's friction beside what it was told and what is true.
-fn friction(episode: &Episode<'_>, estimate: &Estimate) -> Table {
+/// The particle filter's friction beside its nominal and true values.
+fn friction(experiment: &ReportedExperiment<'_>, estimate: &Estimate) -> Table {
+    let nominal = &experiment.setup.scene.nominal;
     let mut table = Table::new(["friction", "told", "particle", "truth"]);
-    for (parameter, truth) in Parameter::at_end(estimate).iter().zip(episode.friction) {
-        let told = parameter.shown_value(parameter.nominal(&episode.setup.scene.nominal));
+    for (parameter, truth) in Parameter::at_end(estimate).iter().zip(experiment.friction) {
         table.push([
             parameter.name.to_owned(),
-            told,
+            parameter.shown_value(parameter.nominal(nominal)),
             parameter.shown(),
             parameter.shown_value(truth),
         ]);

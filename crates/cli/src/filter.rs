@@ -1,8 +1,6 @@
 //! `stickslip filter`: one method over one log, its scores and its estimates.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -10,23 +8,25 @@ use anyhow::{Context, Result};
 use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Occlusion, Run, Scores, keep_threads_awake, run, run_observed, score};
+use stickslip::{Estimate, Occlusion, Run, TactileUse, keep_threads_awake, run, run_observed};
+use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant, score};
 use stickslip_formats::{Experiment, write_estimate};
+use stickslip_report::{CloudSample, Report, ReportedExperiment, ReportedRun, Table, number};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
-use crate::episode::{DRAWN, episode, write_report};
 use crate::experiment::{read_experiment, reference_name};
 use crate::failure::hinted;
-use crate::output::{show, talk};
+use crate::files::{write_out, write_report};
+use crate::output::{show_result, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
+use crate::reported_run::DRAWN;
 use crate::verdict::Verdict;
-use stickslip_report::{CloudSample, Contender, Report, Table, number};
 
 /// Particle steps above which a person would wait.
 const LONG: usize = 200_000;
 
-/// What is told of a run.
+/// What is printed of a run.
 #[derive(Debug, Serialize)]
 struct Summary {
     wmse_mm: Option<f64>,
@@ -63,7 +63,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let written = args
         .out
         .as_deref()
-        .map(|folder| write(folder, &run.estimate))
+        .map(|folder| write(folder.join("estimate.csv"), &run.estimate))
         .transpose()?;
     let reported = args
         .report
@@ -71,11 +71,8 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         .map(|path| report(args, &experiment, &run, &scores, sample, path))
         .transpose()?;
     let summary = Summary::new(&experiment, &run, &scores, seconds);
-    let tables = || tables(args, &experiment, &run.estimate, &summary);
-    show(if args.shared.json {
-        serde_json::to_string_pretty(&summary)?
-    } else {
-        tables()
+    show_result(args.shared.json, &summary, || {
+        tables(args, &experiment, &run.estimate, &summary)
     })?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
@@ -115,7 +112,7 @@ fn timed_run(
         "frames",
         if long { Work::Long } else { Work::Short },
     );
-    let pool = args.shared.pool()?;
+    let pool = args.shared.threads.pool()?;
     let start = Instant::now();
     let Experiment { setup, log, .. } = experiment;
     let mut advance = |row: usize| progress.set_position(row as u64);
@@ -138,59 +135,40 @@ fn report(
     sample: CloudSample,
     path: &Path,
 ) -> Result<PathBuf> {
-    let contender = Contender {
-        name: args.method.name().to_owned(),
-        colour: args.method.colour(),
+    let run = ReportedRun {
+        scored: ScoredRun {
+            variant: args.variant(),
+            estimate: run.estimate.clone(),
+            scores: *scores,
+            unsolved: run.unsolved,
+        },
         cloud: sample.into_rows(experiment.log.len()),
-        estimate: run.estimate.clone(),
-        scores: *scores,
-        unsolved: run.unsolved,
-        saw_all: false,
     };
-    let name = args.log.display().to_string();
-    let episode = episode(
-        &name,
-        "",
-        experiment,
-        args.shared.occlusion(),
-        vec![contender],
-    );
-    let summary = episode.summary().to_vec();
+    let (name, title) = (args.log.display().to_string(), run.title());
+    let occlusion = args.shared.occlusion();
+    let reported = ReportedExperiment::new(&name, "", experiment, occlusion, vec![run]);
     let report = Report {
-        title: format!("{}: {name}", args.method.name()),
-        summary,
-        sections: vec![episode.section()],
+        title: format!("{title}: {name}"),
+        summary: reported.summary().to_vec(),
+        sections: vec![reported.section()],
     };
     write_report(path.to_owned(), &report)
+}
+
+fn write(path: PathBuf, estimate: &Estimate) -> Result<PathBuf> {
+    write_out(&path, |file| write_estimate(file, estimate))?;
+    Ok(path)
 }
 
 fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {
     let hidden = args.shared.occlusion().hidden(&experiment.log);
     score(
         estimate,
-        &experiment.reference(),
+        &Reference::of(experiment),
         &hidden,
         args.virtual_radius
             .unwrap_or(experiment.setup.virtual_radius()),
     )
-}
-
-/// Writes estimate.csv into `folder`; other files there stay as they are.
-fn write(folder: &Path, estimate: &Estimate) -> Result<PathBuf> {
-    let path = folder.join("estimate.csv");
-    let write = || -> std::io::Result<()> {
-        fs::create_dir_all(folder)?;
-        let mut file = BufWriter::new(File::create(&path)?);
-        write_estimate(&mut file, estimate)?;
-        file.flush()
-    };
-    write().map_err(|error| {
-        hinted(
-            format!("{}: cannot be written: {error}", path.display()),
-            "give a folder that can be written to with --out",
-        )
-    })?;
-    Ok(path)
 }
 
 impl Summary {
@@ -222,7 +200,7 @@ fn tables(
     let title = format!(
         "{}, {} against {}\n",
         args.log.display(),
-        args.method.name(),
+        Variant::of(args.method.into(), TactileUse::Used).title(),
         reference_name(experiment)
     );
     let parameters = Parameter::at_end(estimate);

@@ -8,6 +8,7 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
 use anyhow::Result;
+use serde::Serialize;
 
 use crate::failure::hinted;
 
@@ -21,6 +22,19 @@ pub fn show(text: impl Display) -> Result<()> {
         )),
         _ => Ok(()),
     }
+}
+
+/// Shows a result: as one JSON object where `json` is set, else as text.
+pub fn show_result(
+    json: bool,
+    result: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<()> {
+    show(if json {
+        serde_json::to_string_pretty(result)?
+    } else {
+        text()
+    })
 }
 
 /// Writes a line to standard error; lost where nobody can read it, since there is no other place to

@@ -1,11 +1,13 @@
 //! `stickslip render`: camera frames of an experiment, with all that tracking needs.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
+use stickslip_evaluation::Reference;
 use stickslip_formats::{Experiment, FrameList, write_frames};
 use stickslip_rendering::{
     CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video, encode_png,
@@ -14,9 +16,10 @@ use stickslip_vision::{BoardOnTable, write_board, write_tags};
 
 use crate::args::Rows;
 use crate::camera_args::RenderArgs;
+use crate::camera_setup::CameraSetup;
 use crate::experiment::{log_path, read_folder, reference_name};
 use crate::failure::hinted;
-use crate::film_set::FilmSet;
+use crate::files::{make_folder, write_out};
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
@@ -30,7 +33,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         blur: args.blur,
         ..Optics::default()
     };
-    let set = FilmSet::new(scene, std::slice::from_ref(&recorded), optics, args.seed)?;
+    let setup = CameraSetup::new(scene, std::slice::from_ref(&recorded), optics, args.seed)?;
     let settings = CaptureSettings {
         exposure: args.exposure,
         grabber: FrameGrabber {
@@ -38,22 +41,20 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
             seed: args.seed,
         },
         covered: covered(args, &experiment),
-        hand_height: set.hand_height,
+        hand_height: setup.hand_height,
     };
     let film = Video {
-        renderer: &set.renderer,
+        renderer: &setup.renderer,
         motion: &recorded,
         settings,
     };
 
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.map_or(0, usize::from))
-        .build()?;
+    let pool = args.threads.pool()?;
     let out = Out(&args.out);
     let frames = pool.install(|| out.frames(&film))?;
-    let board = pool.install(|| out.board(&set, args.board_frames))?;
+    let board = pool.install(|| out.board(&setup, args.board_frames))?;
     out.text("board.toml", &write_board(&board))?;
-    out.text("tags.toml", &write_tags(&set.tags))?;
+    out.text("tags.toml", &write_tags(&setup.tags))?;
     for name in ["scene.toml", "truth.csv", "truth.json"] {
         if let Ok(bytes) = fs::read(args.folder.join(name)) {
             write(&args.out.join(name), &bytes)?;
@@ -75,7 +76,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
 
 /// Where object and pusher are: the object as the truth has it, else as the log.
 fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<RecordedMotion> {
-    let reference = experiment.reference().pose;
+    let reference = Reference::of(experiment).pose;
     let unknown = reference.iter().position(Option::is_none);
     if let Some(row) = unknown {
         let text = format!(
@@ -137,10 +138,10 @@ impl Out<'_> {
     }
 
     /// Frames of the board, and how it lies in the first one.
-    fn board(&self, set: &FilmSet, count: u16) -> Result<BoardOnTable> {
+    fn board(&self, setup: &CameraSetup, count: u16) -> Result<BoardOnTable> {
         let folder = self.folder("board")?;
-        let board = set.board(usize::from(count))?;
-        board.frames(set, |index, frame| {
+        let board = setup.board(usize::from(count))?;
+        board.frames(setup, |index, frame| {
             write(&folder.join(format!("{index:03}.png")), &encode_png(&frame))
         })?;
         Ok(board.on_table)
@@ -152,21 +153,11 @@ impl Out<'_> {
 
     fn folder(&self, name: &str) -> Result<PathBuf> {
         let folder = self.0.join(name);
-        fs::create_dir_all(&folder).map_err(|error| {
-            hinted(
-                format!("{}: cannot be made: {error}", folder.display()),
-                "give a folder that can be written to with --out",
-            )
-        })?;
+        make_folder(&folder)?;
         Ok(folder)
     }
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    fs::write(path, bytes).map_err(|error| {
-        hinted(
-            format!("{}: cannot be written: {error}", path.display()),
-            "give a folder that can be written to with --out",
-        )
-    })
+    write_out(path, |file| file.write_all(bytes))
 }

@@ -1,43 +1,30 @@
 //! `stickslip reproduce`: the paper's tables and figures, ours beside the paper's numbers.
 
-mod course;
+mod camera_view;
 mod figures;
-mod footage;
-mod noise;
+mod filmed;
 mod page;
-mod participant;
-mod published;
-mod recording;
-mod results;
-mod standing;
-mod still;
 mod text;
 
-use std::fs;
 use std::path::Path;
 
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
-use stickslip::Tracking;
+use stickslip_evaluation::paper::{
+    Noise, NoiseLevel, PaperExperiment, Ratio, Replicate, Results, RunSet,
+};
+use stickslip_evaluation::{ScoredRun, Variant};
 use stickslip_rendering::Optics;
 
-use crate::args::ReproduceArgs;
-use crate::contest::Rules;
-use crate::episode::{write_figure, write_file, write_report};
-use crate::failure::hinted;
-use crate::output::{show, talk};
-use crate::paper::PaperExperiment;
+use crate::files::{make_folder, write_figure, write_file, write_report};
+use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
+use crate::simulation_args::ReproduceArgs;
 use crate::verdict::Verdict;
-use course::{Course, Heat, participants};
 use figures::figures;
-use footage::{Footage, Tracked};
-use noise::{Noise, NoiseLevel};
+use filmed::{CalibratedCamera, Tracked};
 use page::page;
-use participant::Participant;
-use recording::Recording;
-use results::{Ratio, Reproduction};
 
 /// Seeds where the command line does not say.
 const SEEDS: u64 = 20;
@@ -49,7 +36,7 @@ struct Report {
     seeds: u64,
     /// The tables; from frames where [`Report::equal`] is there.
     #[serde(flatten)]
-    tables: Reproduction,
+    tables: Results,
     equal: Option<Equal>,
 }
 
@@ -59,7 +46,7 @@ struct Equal {
     /// Noise of the tracked poses, which is that of the simulated ones, by experiment.
     noise: Vec<NoiseLevel>,
     /// The tables from simulated poses.
-    from_poses: Reproduction,
+    from_poses: Results,
     /// Medians from frames over those from poses.
     ratios: Vec<Ratio>,
 }
@@ -67,52 +54,39 @@ struct Equal {
 /// Runs the command.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
     if let Some(folder) = &args.out {
-        make(folder)?;
+        // before minutes are spent on what is to be in it
+        make_folder(folder)?;
     }
-    let threads = args.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
-    let rules = Rules {
-        particles: args.particles,
-        tracking: Tracking::Smoothed,
-    };
-    let report = pool.install(|| report(args, &rules))?;
-    show(if args.json {
-        serde_json::to_string_pretty(&report)?
-    } else {
-        report.text()
-    })?;
+    let report = args.threads.pool()?.install(|| report(args))?;
+    show_result(args.json, &report, || report.text())?;
     Ok(Verdict::Done)
 }
 
-fn report(args: &ReproduceArgs, rules: &Rules) -> Result<Report> {
-    let seeds = args.seeds.unwrap_or(SEEDS);
-    let recordings = recordings(seeds)?;
-    let (heats, equal) = if args.from_frames {
-        let (tracked, simulated, noise) = filmed(&recordings)?;
-        let (tracked, simulated) = (heats(tracked, rules)?, heats(simulated, rules)?);
-        let from_poses = Reproduction::new(&simulated);
-        let ratios = Ratio::all(&Reproduction::new(&tracked), &from_poses);
-        (
-            tracked,
-            Some(Equal {
-                noise,
-                from_poses,
-                ratios,
-            }),
-        )
+fn report(args: &ReproduceArgs) -> Result<Report> {
+    let (seeds, particles) = (args.seeds.unwrap_or(SEEDS), args.particles);
+    let replicates = simulated(seeds)?;
+    let (run_sets, equal) = if args.from_frames {
+        let (tracked, simulated, noise) = filmed(&replicates)?;
+        let (tracked, simulated) = (runs(tracked, particles)?, runs(simulated, particles)?);
+        let from_poses = Results::new(&simulated);
+        let ratios = Ratio::all(&Results::new(&tracked), &from_poses);
+        let equal = Equal {
+            noise,
+            from_poses,
+            ratios,
+        };
+        (tracked, Some(equal))
     } else {
-        (heats(recordings, rules)?, None)
+        (runs(replicates, particles)?, None)
     };
     let report = Report {
-        particles: args.particles,
+        particles,
         seeds,
-        tables: Reproduction::new(&heats),
+        tables: Results::new(&run_sets),
         equal,
     };
     if let Some(folder) = &args.out {
-        write(folder, &report, &heats, rules)?;
+        write(folder, &report, &run_sets)?;
     }
     Ok(report)
 }
@@ -138,19 +112,9 @@ impl Report {
     }
 }
 
-/// Makes the folder for results before minutes are spent on them.
-fn make(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| {
-        hinted(
-            format!("{}: cannot be made: {error}", folder.display()),
-            "give a folder that can be written to with --out",
-        )
-    })
-}
-
 /// Writes reproduce.json, the figures and report.html.
-fn write(folder: &Path, report: &Report, heats: &[Heat], rules: &Rules) -> Result<()> {
-    let figures = figures(heats)?;
+fn write(folder: &Path, report: &Report, run_sets: &[RunSet]) -> Result<()> {
+    let figures = figures(run_sets)?;
     figures
         .par_iter()
         .try_for_each(|figure| write_figure(folder, figure.name, &figure.drawing))?;
@@ -160,7 +124,7 @@ fn write(folder: &Path, report: &Report, heats: &[Heat], rules: &Rules) -> Resul
     )?;
     let page = write_report(
         folder.join("report.html"),
-        &page(&report.tables, heats, &figures, rules)?,
+        &page(&report.tables, run_sets, &figures, report.particles)?,
     )?;
     talk(format_args!(
         "wrote {} figures as SVG and PNG, reproduce.json and {}",
@@ -171,84 +135,77 @@ fn write(folder: &Path, report: &Report, heats: &[Heat], rules: &Rules) -> Resul
 }
 
 /// Every experiment with every seed, simulated.
-fn recordings(seeds: u64) -> Result<Vec<Recording>> {
+fn simulated(seeds: u64) -> Result<Vec<Replicate>> {
     let all: Vec<(PaperExperiment, u64)> = PaperExperiment::ALL
         .into_iter()
         .flat_map(|paper| (0..seeds).map(move |seed| (paper, seed)))
         .collect();
     let progress = bar(all.len(), "experiments simulated", Work::Long);
-    let simulated = |(paper, seed): (PaperExperiment, u64)| {
-        let recording = Recording::simulate(paper, seed);
+    let simulate = |(paper, seed): (PaperExperiment, u64)| {
+        let replicate = Replicate::simulate(paper, seed);
         progress.inc(1);
-        recording
+        replicate
     };
-    let recordings = all.into_par_iter().map(simulated).collect();
+    let replicates = all.into_par_iter().map(simulate).collect::<Result<_, _>>();
     progress.finish_and_clear();
-    recordings
+    Ok(replicates?)
 }
 
-/// The recordings from frames, the same from simulated poses of equal noise, and that noise by
+/// The replicates from frames, the same from simulated poses of equal noise, and that noise by
 /// experiment.
-fn filmed(recordings: &[Recording]) -> Result<(Vec<Recording>, Vec<Recording>, Vec<NoiseLevel>)> {
-    let frames: usize = recordings
-        .iter()
-        .map(|recording| recording.experiment.log.len())
-        .sum();
+fn filmed(replicates: &[Replicate]) -> Result<(Vec<Replicate>, Vec<Replicate>, Vec<NoiseLevel>)> {
+    let frames = replicates.iter().map(|own| own.experiment.log.len()).sum();
     let progress = bar(frames, "frames", Work::Long);
     let (mut tracked, mut simulated, mut levels) = (Vec::new(), Vec::new(), Vec::new());
     for paper in PaperExperiment::ALL {
-        let own: Vec<&Recording> = recordings
-            .iter()
-            .filter(|recording| recording.paper == paper)
-            .collect();
-        let footage = Footage::new(&own, Optics::default())?;
+        // film and track all seeds before one calibrated camera
+        let own = replicates.iter().filter(|own| own.paper == paper);
+        let own: Vec<&Replicate> = own.collect();
+        let camera = CalibratedCamera::new(&own, Optics::default())?;
         let seen: Vec<Tracked> = own
             .par_iter()
-            .map(|recording| footage.track(recording, &progress))
+            .map(|replicate| camera.track(replicate, &progress))
             .collect::<Result<_>>()?;
+
+        // simulate poses with the noise of all of them
         let noise = seen
             .iter()
             .fold(Noise::default(), |sum, tracked| sum.with(tracked.noise));
         levels.push(noise.level());
         simulated.extend(
             seen.par_iter()
-                .map(|seen| seen.recording.with_noise(&noise))
-                .collect::<Result<Vec<_>>>()?,
+                .map(|tracked| tracked.replicate.with_noise(&noise))
+                .collect::<Result<Vec<_>, _>>()?,
         );
-        tracked.extend(
-            seen.into_iter()
-                .map(|tracked| tracked.recording.told(noise.told())),
-        );
+        let given = noise.given_camera();
+        tracked.extend(seen.into_iter().map(|seen| seen.replicate.given(given)));
     }
     progress.finish_and_clear();
     Ok((tracked, simulated, levels))
 }
 
-/// Every participant on every recording.
-fn heats(recordings: Vec<Recording>, rules: &Rules) -> Result<Vec<Heat>> {
-    let jobs: Vec<(&Recording, Participant)> = recordings
+/// Every variant of an experiment on every replicate of it.
+fn runs(replicates: Vec<Replicate>, particles: usize) -> Result<Vec<RunSet>> {
+    // one queue of all runs keeps all threads busy
+    let variants = |replicate: &Replicate| replicate.paper.variants();
+    let jobs: Vec<(&Replicate, Variant)> = replicates
         .iter()
-        .flat_map(|recording| {
-            participants(recording.paper)
-                .into_iter()
-                .map(move |participant| (recording, participant))
-        })
+        .flat_map(|own| variants(own).iter().map(move |variant| (own, *variant)))
         .collect();
     let progress = bar(jobs.len(), "runs", Work::Long);
-    let run = |(recording, participant): &(&Recording, Participant)| {
-        let course = Course::run(*participant, recording, rules);
+    let run = |(replicate, variant): &(&Replicate, Variant)| {
+        let run = replicate.run(*variant, particles);
         progress.inc(1);
-        course
+        run
     };
-    let courses: Vec<Course> = jobs.par_iter().map(run).collect::<Result<_>>()?;
+    let runs: Vec<ScoredRun> = jobs.par_iter().map(run).collect::<Result<_, _>>()?;
     progress.finish_and_clear();
-    let mut courses = courses.into_iter();
-    let heat = |recording: Recording| {
-        let courses = courses
-            .by_ref()
-            .take(participants(recording.paper).len())
-            .collect();
-        Heat { recording, courses }
+
+    // they come back in the order of the jobs
+    let mut runs = runs.into_iter();
+    let run_set = |replicate: Replicate| RunSet {
+        runs: runs.by_ref().take(variants(&replicate).len()).collect(),
+        replicate,
     };
-    Ok(recordings.into_iter().map(heat).collect())
+    Ok(replicates.into_iter().map(run_set).collect())
 }

@@ -1,25 +1,25 @@
 //! `stickslip simulate`: an experiment folder from a scene: scene.toml, log.csv, truth.csv,
 //! truth.json.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 use stickslip::Setup;
+use stickslip_evaluation::paper::{PaperExperiment, PaperScene};
+use stickslip_evaluation::{REPEATS, Simulation, SimulationError, SimulationOptions};
 use stickslip_formats::{
     TruthFacts, read_scene, read_truth_json, write_log, write_truth_csv, write_truth_json,
 };
+use stickslip_report::Table;
 use stickslip_testbed::true_friction;
 
-use crate::args::SimulateArgs;
 use crate::experiment::{log_path, read_facts_file, text_of};
 use crate::failure::hinted;
+use crate::files::write_out;
 use crate::output::{show, talk};
-use crate::paper::PaperScene;
-use crate::simulation::{Options, REPEATS, Simulation};
+use crate::simulation_args::SimulateArgs;
 use crate::verdict::Verdict;
-use stickslip_report::Table;
 
 /// A scene's text with what is known of its truth.
 struct Source {
@@ -37,13 +37,14 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
         Some(share) => misjudged(&setup, share, args.seed),
         None => source.known,
     };
-    let options = Options {
-        physics: args.physics,
+    let options = SimulationOptions {
+        physics: args.physics.into(),
         seed: args.seed,
         rate: args.rate,
         repeats: REPEATS,
     };
-    let simulation = Simulation::run(&setup, &source.name, &known, &options)?;
+    let simulation =
+        Simulation::run(&setup, &known, &options).map_err(|error| refused(error, &source.name))?;
     write(&args.out, &source.scene, &simulation)?;
     show(tables(&source.name, &setup, &simulation))?;
     if simulation.trace.unsolved > 0 {
@@ -54,6 +55,15 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
     }
     talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
+}
+
+/// Names the scene, and says what to add where it has no start.
+fn refused(error: SimulationError, name: &str) -> anyhow::Error {
+    if error == SimulationError::NoStart {
+        let help = "add [start] with object = [x, y, theta], pusher = [x, y, theta], speed = ... in m/s and duration = ... in s";
+        return hinted(format!("{name}: {error}"), help);
+    }
+    anyhow::Error::new(error).context(name.to_owned())
 }
 
 /// A log that is there may be a recorded one.
@@ -75,7 +85,7 @@ fn source(args: &SimulateArgs) -> Result<Source> {
             story,
             scene,
             truth,
-        } = paper.scene();
+        } = PaperExperiment::from(paper).scene();
         let known = read_truth_json(truth, name)?;
         return Ok(Source {
             name: format!("{name} ({story})"),
@@ -113,29 +123,15 @@ fn misjudged(setup: &Setup, share: f64, seed: u64) -> TruthFacts {
 }
 
 fn write(folder: &Path, scene: &str, simulation: &Simulation) -> Result<()> {
-    let write = |name: &str, content: &dyn Fn(&mut BufWriter<File>) -> std::io::Result<()>| {
-        let path = folder.join(name);
-        let write = || -> std::io::Result<()> {
-            fs::create_dir_all(folder)?;
-            let mut file = BufWriter::new(File::create(&path)?);
-            content(&mut file)?;
-            file.flush()
-        };
-        write().map_err(|error| {
-            hinted(
-                format!("{}: cannot be written: {error}", path.display()),
-                "give a folder that can be written to with --out",
-            )
-        })
-    };
-    write("scene.toml", &|file| file.write_all(scene.as_bytes()))?;
-    write("truth.csv", &|file| {
+    let path = |name: &str| folder.join(name);
+    write_out(&path("scene.toml"), |file| file.write_all(scene.as_bytes()))?;
+    write_out(&path("truth.csv"), |file| {
         write_truth_csv(file, &simulation.truth)
     })?;
-    write("truth.json", &|file| {
+    write_out(&path("truth.json"), |file| {
         write_truth_json(file, &simulation.facts)
     })?;
-    write("log.csv", &|file| write_log(file, &simulation.log))
+    write_out(&path("log.csv"), |file| write_log(file, &simulation.log))
 }
 
 fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
@@ -160,26 +156,24 @@ fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
     )
 }
 
-/// The friction that the scene tells beside the true one.
+/// The nominal friction beside the true one.
 fn friction(setup: &Setup, facts: &TruthFacts) -> Table {
     let nominal = setup.scene.nominal;
-    let mut table = Table::new(["friction", "told", "truth"]);
-    let mut row =
-        |name: &str, told: String, truth: String| table.push([name.to_owned(), told, truth]);
     let number = |value: f64| format!("{value:.3}");
     let length = |value: f64| format!("{:.1} mm", 1e3 * value);
-    for (name, told, truth) in [
-        ("mu_s", nominal.mu_s, facts.mu_s),
-        ("mu_p", nominal.mu_p, facts.mu_p),
-        ("mu_f", nominal.mu_f, facts.mu_f),
-    ] {
-        row(name, number(told), truth.map_or_else(String::new, number));
-    }
-    let told = if setup.has_tripod() {
+    let d_tri = if setup.has_tripod() {
         length(nominal.d_tri)
     } else {
         "-".to_owned()
     };
-    row("d_tri", told, facts.d_tri.map_or_else(String::new, length));
+    let mut table = Table::new(["friction", "told", "truth"]);
+    for (name, nominal, truth) in [
+        ("mu_s", number(nominal.mu_s), facts.mu_s.map(number)),
+        ("mu_p", number(nominal.mu_p), facts.mu_p.map(number)),
+        ("mu_f", number(nominal.mu_f), facts.mu_f.map(number)),
+        ("d_tri", d_tri, facts.d_tri.map(length)),
+    ] {
+        table.push([name.to_owned(), nominal, truth.unwrap_or_default()]);
+    }
     table
 }

@@ -18,7 +18,7 @@ use crate::camera_args::TrackArgs;
 use crate::experiment::{read_log_file, text_of};
 use crate::failure::hinted;
 use crate::frames::FrameFolder;
-use crate::output::{show, talk};
+use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 
@@ -27,7 +27,7 @@ const SAME_TIME: f64 = 1e-4;
 /// A tag seen larger or smaller by this share than given was given wrongly, or its height was.
 const SIZE_OFF: f64 = 0.02;
 
-/// What is told of a body.
+/// What is printed of a body.
 #[derive(Debug, Serialize)]
 struct BodySummary {
     measured: usize,
@@ -39,7 +39,7 @@ struct BodySummary {
     median_tag_size_m: Option<f64>,
 }
 
-/// What is told of a track.
+/// What is printed of a track.
 #[derive(Debug, Serialize)]
 struct Summary {
     frames: usize,
@@ -72,11 +72,7 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
     )?;
     write(&args.out, &log, &found)?;
     let summary = Summary::new(&found);
-    show(if args.json {
-        serde_json::to_string_pretty(&summary)?
-    } else {
-        summary.text()
-    })?;
+    show_result(args.json, &summary, || summary.text())?;
     for (body, seen, given) in [
         ("object", &summary.object, tags.object),
         ("pusher", &summary.pusher, tags.pusher),
@@ -117,9 +113,7 @@ fn times(args: &TrackArgs, folder: &FrameFolder) -> Result<Vec<f64>> {
 /// What the frames show, on as many threads as asked for.
 fn found(args: &TrackArgs, folder: &FrameFolder, camera: &Camera, tags: &Tags) -> Result<Track> {
     let progress = bar(folder.names.len(), "frames", Work::Long);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.map_or(0, usize::from))
-        .build()?;
+    let pool = args.threads.pool()?;
     let load = |index: usize| {
         progress.inc(1);
         folder.load(index)

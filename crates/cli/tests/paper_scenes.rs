@@ -11,7 +11,7 @@ use std::path::Path;
 use common::{empty_folder, stickslip};
 
 /// The truth of one simulated scene.
-struct Course {
+struct Truth {
     /// Object pose per row: x, y (mm), theta (rad).
     pose: Vec<[f64; 3]>,
     /// Normal force per row and fixel (N).
@@ -21,7 +21,7 @@ struct Course {
     dark: usize,
 }
 
-impl Course {
+impl Truth {
     fn of(name: &str, seed: u64) -> Self {
         let out = empty_folder(&format!("paper_scenes/{name}-{seed}"));
         let run = stickslip()
@@ -118,30 +118,30 @@ fn assert_near(row: usize, expected: usize, within: usize) {
 
 /// Seed 0 to the row; other seeds are other rigs.
 fn check(name: &str, seed: u64) {
-    let course = Course::of(name, seed);
+    let truth = Truth::of(name, seed);
     let within = if seed == 0 { 1 } else { 5 };
     match name {
         "A" => {
-            assert_near(course.thumb, 130, within);
-            assert_near(course.fixels[0].unwrap(), 270, within);
-            assert_eq!(course.dark, 200);
-            course.stops();
+            assert_near(truth.thumb, 130, within);
+            assert_near(truth.fixels[0].unwrap(), 270, within);
+            assert_eq!(truth.dark, 200);
+            truth.stops();
         }
         "B" => {
-            assert_near(course.thumb, 130, within);
-            let [Some(first), Some(second), Some(third)] = course.fixels[..] else {
-                panic!("three fixels: {:?}", course.fixels)
+            assert_near(truth.thumb, 130, within);
+            let [Some(first), Some(second), Some(third)] = truth.fixels[..] else {
+                panic!("three fixels: {:?}", truth.fixels)
             };
             assert_near(first, 257, within);
             assert_near(second.max(third), 270, within);
-            assert!(course.way(first, second.max(third)) > 5.0 && course.way(285, 300) < 0.5);
-            assert!(course.force[300].iter().all(|force| *force > 1.0));
-            assert_eq!(course.dark, 240);
+            assert!(truth.way(first, second.max(third)) > 5.0 && truth.way(285, 300) < 0.5);
+            assert!(truth.force[300].iter().all(|force| *force > 1.0));
+            assert_eq!(truth.dark, 240);
         }
-        "1" | "2" => course.slides(),
-        _ => course.stops(),
+        "1" | "2" => truth.slides(),
+        _ => truth.stops(),
     }
-    assert_eq!(course.pose.len(), 301);
+    assert_eq!(truth.pose.len(), 301);
 }
 
 #[test]

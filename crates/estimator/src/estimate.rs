@@ -49,3 +49,21 @@ pub struct Estimate {
     /// Whether d_tri is a parameter (false where the feet are known; its columns are then empty).
     pub has_tripod: bool,
 }
+
+impl Estimate {
+    /// The pose at `time` (s), linear between rows; `None` outside the estimated rows.
+    #[must_use]
+    pub fn pose_at(&self, time: f64) -> Option<Pose> {
+        let later = self.time.partition_point(|t| *t < time);
+        let after = self.rows.get(later)?.pose;
+        if self.time.get(later) == Some(&time) || later == 0 {
+            return after.filter(|_| self.time[later] == time);
+        }
+        let (t0, t1) = (self.time[later - 1], self.time[later]);
+        Some(
+            self.rows[later - 1]
+                .pose?
+                .interpolate(after?, (time - t0) / (t1 - t0)),
+        )
+    }
+}

@@ -1,8 +1,10 @@
 //! All that an experiment's files hold, as methods and scores take it: [`Experiment`].
 
-use stickslip::{Log, Reference, Setup};
+use stickslip::{Log, Setup};
 
-use crate::{SensorError, Truth, TruthFacts, check_sensors};
+use crate::log_csv::{SensorError, check_sensors};
+use crate::truth_csv::Truth;
+use crate::truth_json::TruthFacts;
 
 /// A scene, a log and what is known of the truth.
 #[derive(Clone, Debug)]
@@ -35,19 +37,5 @@ impl Experiment {
             truth,
             facts,
         })
-    }
-
-    /// What estimates are scored against: the truth at the log's times, else the log's own poses,
-    /// hidden ones included.
-    #[must_use]
-    pub fn reference(&self) -> Reference {
-        let reference = match &self.truth {
-            Some(truth) => Reference::of_truth(&self.log, truth.trajectory()),
-            None => Reference::of_log(&self.log, self.setup.camera.as_ref()),
-        };
-        Reference {
-            first_pusher_contact: self.facts.first_pusher_contact,
-            ..reference
-        }
     }
 }

@@ -4,6 +4,7 @@
 use std::io::Write;
 
 use serde::{Deserialize, Serialize};
+use stickslip::Occlusion;
 use stickslip_dynamics::Pose;
 
 /// What is known of an experiment after it; `None` where the file does not say.
@@ -27,6 +28,15 @@ pub struct TruthFacts {
     pub occlude_from: Option<usize>,
     /// The object's pose after the last row.
     pub final_pose: Option<Pose>,
+}
+
+impl TruthFacts {
+    /// What the camera does not see: everything from `occlude_from` on.
+    #[must_use]
+    pub fn occlusion(&self) -> Occlusion {
+        self.occlude_from
+            .map_or(Occlusion::None, |from| Occlusion::Rows { from, to: None })
+    }
 }
 
 /// Why a `truth.json` was refused, and where.

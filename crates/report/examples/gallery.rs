@@ -108,24 +108,24 @@ fn errors() -> TimeFigure {
 }
 
 fn parameters() -> TimeFigure {
-    let panel = |label: &str, told: f64| Panel {
+    let panel = |label: &str, nominal: f64| Panel {
         label: label.to_owned(),
         curves: vec![curve(
             "particle filter",
             Colour::VERMILLION,
-            |t| told * (1.0 + 0.2 * libm::tanh(t - 4.0)),
+            |t| nominal * (1.0 + 0.2 * libm::tanh(t - 4.0)),
             0.1,
         )],
         levels: vec![
             Level {
                 name: "truth".to_owned(),
-                value: 1.3 * told,
+                value: 1.3 * nominal,
                 colour: Colour::INK,
                 line: Line::Solid,
             },
             Level {
-                name: "told".to_owned(),
-                value: told,
+                name: "nominal".to_owned(),
+                value: nominal,
                 colour: Colour::INK,
                 line: Line::Dashed,
             },

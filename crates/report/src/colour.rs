@@ -1,5 +1,7 @@
 //! Colours that colour-blind people can tell apart (Okabe and Ito 2008): [`Colour`].
 
+use stickslip_evaluation::Variant;
+
 /// An sRGB colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Colour(pub u8, pub u8, pub u8);
@@ -23,6 +25,20 @@ impl Colour {
     pub const VERMILLION: Self = Self(213, 94, 0);
     /// Reddish purple.
     pub const PURPLE: Self = Self(204, 121, 167);
+
+    /// Of a variant, in every figure, table and playback.
+    #[must_use]
+    pub fn of(variant: Variant) -> Self {
+        match variant {
+            Variant::Nominal => Self::GREY,
+            Variant::Kalman => Self::ORANGE,
+            Variant::KalmanCameraOn => Self::PURPLE,
+            Variant::ParticleNoTouch => Self::SKY,
+            Variant::ParticleNoTouchCameraOn => Self::BLUE,
+            Variant::Particle => Self::VERMILLION,
+            Variant::ParticleCameraOn => Self::GREEN,
+        }
+    }
 
     /// As in CSS: `#d55e00`.
     ///

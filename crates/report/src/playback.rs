@@ -2,10 +2,11 @@
 
 use maud::{Markup, PreEscaped, html};
 use stickslip::dynamics::{Pose, Scene};
-use stickslip::{Estimate, Log, Reference};
+use stickslip::{Estimate, Log};
+use stickslip_evaluation::Reference;
 
 use crate::colour::Colour;
-use crate::courses::{PoseError, pose_errors};
+use crate::curves::{PoseError, pose_errors};
 use crate::marks::Mark;
 use crate::outline::Outline;
 use crate::playback_data::data;
@@ -39,10 +40,10 @@ pub struct Playback {
     pub touches: Vec<Touch>,
     /// Events that are named on the time bar.
     pub marks: Vec<Mark>,
-    /// Methods.
-    pub methods: Vec<MethodTrack>,
-    /// In which order they are drawn, by number; those that agree cover each other. Methods that
-    /// are not here follow.
+    /// The runs.
+    pub runs: Vec<PlaybackRun>,
+    /// In which order they are drawn, by number; those that agree cover each other. Runs that are
+    /// not here follow.
     pub lowest_first: Vec<usize>,
 }
 
@@ -57,9 +58,9 @@ pub struct Touch {
     pub sensed: Option<Vec<Option<bool>>>,
 }
 
-/// What one method says.
+/// What is played back of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MethodTrack {
+pub struct PlaybackRun {
     /// Name.
     pub name: String,
     /// Colour.
@@ -68,15 +69,15 @@ pub struct MethodTrack {
     pub poses: Vec<Option<Pose>>,
     /// Their errors.
     pub errors: Vec<PoseError>,
-    /// Some of its particles, all of the same weight; empty for methods without.
+    /// Some of its particles, all of the same weight; empty for variants without.
     pub cloud: Vec<Vec<Pose>>,
     /// Probabilities of contact with the pusher, then with each fixel (0 to 1); `None` where there
     /// are none.
     pub contacts: Vec<Option<Vec<f64>>>,
 }
 
-impl MethodTrack {
-    /// The track of an estimate, beside the reference that it is scored against; `cloud` as
+impl PlaybackRun {
+    /// The run of an estimate, beside the reference that it is scored against; `cloud` as
     /// [`crate::CloudSample::into_rows`] gives it.
     #[must_use]
     pub fn new(
@@ -106,7 +107,7 @@ impl MethodTrack {
 }
 
 impl Playback {
-    /// A log with what it is compared to; methods, true contacts, and marks are to be added. All
+    /// A log with what it is compared to; runs, true contacts, and marks are to be added. All
     /// rows are played back.
     #[must_use]
     pub fn new(scene: &Scene, log: &Log, reference: &Reference, hidden: Vec<bool>) -> Self {
@@ -137,7 +138,7 @@ impl Playback {
                 .chain(fixels)
                 .collect(),
             marks: Vec::new(),
-            methods: Vec::new(),
+            runs: Vec::new(),
             lowest_first: Vec::new(),
         }
     }

@@ -1,12 +1,17 @@
 //! A playback as compact JSON, as `crates/report/page/player.js` reads it: whole numbers in small
 //! units.
 
+use std::ops::Range;
+
 use serde_json::{Value, json};
 use stickslip::dynamics::Pose;
 
+use crate::curves::PoseError;
 use crate::drawing::path;
+use crate::intervals::row_ranges;
+use crate::marks::Mark;
 use crate::outline::{Outline, bounds};
-use crate::playback::{MethodTrack, Playback, Touch};
+use crate::playback::{Playback, PlaybackRun, Touch};
 
 /// Units per m, rad and mm or degree.
 const LENGTH: f64 = 1e5;
@@ -18,56 +23,57 @@ const ASPECT: [f64; 2] = [0.62, 0.8];
 
 /// All that is played back.
 pub(crate) fn data(playback: &Playback) -> Value {
+    // the times of the rows shown, and the events among them
     let rows = playback.shown();
     let time = &playback.time[rows.clone()];
-    let row_at = |time: f64| playback.time[rows.clone()].partition_point(|t| *t < time - 1e-6);
-    let within = |time: f64| {
-        playback.time[rows.clone()]
-            .first()
-            .zip(playback.time[rows.clone()].last())
-            .is_some_and(|(a, b)| (*a..=*b).contains(&time))
+    let within = |mark: &&Mark| {
+        let ends = time.first().zip(time.last());
+        ends.is_some_and(|(first, last)| (*first..=*last).contains(&mark.time))
     };
-    let marks = playback
-        .marks
-        .iter()
-        .filter(|mark| within(mark.time))
-        .map(|mark| json!([row_at(mark.time), mark.name]));
-    let hidden: Vec<u8> = rows
-        .clone()
-        .map(|row| u8::from(playback.hidden.get(row).copied().unwrap_or(false)))
-        .collect();
+    let marks = playback.marks.iter().filter(within).map(|mark| {
+        let row = time.partition_point(|t| *t < mark.time - 1e-6);
+        json!([row, mark.name])
+    });
+
+    // where the camera is dark
+    let is_hidden = |row: usize| playback.hidden.get(row) == Some(&true);
+    let hidden: Vec<u8> = rows.clone().map(|row| u8::from(is_hidden(row))).collect();
+
+    // the bodies, and how far the object reaches from its origin (mm)
+    let corners = playback.object.areas.iter().flatten();
+    let reach = 1e3 * corners.map(|[x, y]| x.hypot(*y)).fold(0.001, f64::max);
+    let poster = playback
+        .poster
+        .clamp(rows.start, rows.end.max(rows.start + 1) - 1);
+    let bodies = playback.touches.len();
     json!({
         "time": time.iter().map(|time| whole(*time, 1e3)).collect::<Vec<_>>(),
         "first": rows.start,
-        "poster": playback.poster.clamp(rows.start, rows.end.max(rows.start + 1) - 1) - rows.start,
+        "poster": poster - rows.start,
         "start": 0,
         "view": view(playback),
-        "reach": 1e3 * playback.object.areas.iter().flatten().map(|[x, y]| x.hypot(*y)).fold(0.001, f64::max),
+        "reach": reach,
         "object": body(&playback.object),
         "pusher": body(&playback.pusher),
         "fixels": playback.fixels.iter().map(body).collect::<Vec<_>>(),
         "truth": poses(&playback.reference, rows.clone()),
         "pusherPose": poses(&playback.pusher_poses, rows.clone()),
-        "dark": runs(&hidden),
+        "dark": row_ranges(hidden.iter().map(|flag| *flag == 1)),
         "hidden": hidden,
         "touches": playback.touches.iter().map(|touch| contact(touch, rows.clone())).collect::<Vec<_>>(),
         "marks": marks.collect::<Vec<_>>(),
         "order": order(playback),
-        "methods": playback.methods.iter().map(|track| method(track, playback.touches.len(), rows.clone())).collect::<Vec<_>>(),
+        "methods": playback.runs.iter().map(|shown| run(shown, bodies, rows.clone())).collect::<Vec<_>>(),
     })
 }
 
-/// Every method once, the lowest one first.
+/// Every run once, the lowest one first.
 fn order(playback: &Playback) -> Vec<usize> {
+    let runs = playback.runs.len();
     let mut order: Vec<usize> = Vec::new();
-    for method in playback
-        .lowest_first
-        .iter()
-        .copied()
-        .chain(0..playback.methods.len())
-    {
-        if method < playback.methods.len() && !order.contains(&method) {
-            order.push(method);
+    for run in playback.lowest_first.iter().copied().chain(0..runs) {
+        if run < runs && !order.contains(&run) {
+            order.push(run);
         }
     }
     order
@@ -97,55 +103,41 @@ fn body(outline: &Outline) -> Value {
     json!({ "area": text(&outline.areas, true), "line": text(&outline.lines, false), "middle": middle })
 }
 
-fn poses(poses: &[Option<Pose>], rows: std::ops::Range<usize>) -> Value {
+fn poses(poses: &[Option<Pose>], rows: Range<usize>) -> Value {
     let column = |of: fn(&Pose) -> f64, units: f64| -> Vec<Value> {
-        rows.clone()
-            .map(|row| {
-                poses
-                    .get(row)
-                    .copied()
-                    .flatten()
-                    .filter(Pose::is_finite)
-                    .map_or(Value::Null, |pose| whole(of(&pose), units))
-            })
-            .collect()
+        let pose = |row: usize| poses.get(row).copied()?.filter(Pose::is_finite);
+        let cell = |row| pose(row).map_or(Value::Null, |pose| whole(of(&pose), units));
+        rows.clone().map(cell).collect()
     };
     json!({ "x": column(|p| p.x, LENGTH), "y": column(|p| p.y, LENGTH), "theta": column(|p| p.theta, ANGLE) })
 }
 
-fn method(track: &MethodTrack, bodies: usize, rows: std::ops::Range<usize>) -> Value {
-    let error = |of: fn(&crate::courses::PoseError) -> f64| -> Vec<Value> {
-        rows.clone()
-            .map(|row| {
-                track
-                    .errors
-                    .get(row)
-                    .map_or(Value::Null, |error| whole(of(error), ERROR))
-            })
-            .collect()
+fn run(run: &PlaybackRun, bodies: usize, rows: Range<usize>) -> Value {
+    let error = |of: fn(&PoseError) -> f64| -> Vec<Value> {
+        let error = |row| run.errors.get(row).map(|error| whole(of(error), ERROR));
+        rows.clone().map(|row| json!(error(row))).collect()
     };
     let contact = |body: usize| -> Vec<Value> {
-        let probability = |row: usize| track.contacts.get(row)?.as_ref()?.get(body).copied();
-        rows.clone()
-            .map(|row| probability(row).map_or(Value::Null, |p| whole(p, 100.0)))
-            .collect()
+        let probability = |row: usize| run.contacts.get(row)?.as_ref()?.get(body).copied();
+        let cell = |row| probability(row).map(|p| whole(p, 100.0));
+        rows.clone().map(|row| json!(cell(row))).collect()
     };
-    let knows_contacts = track.contacts.iter().any(Option::is_some);
-    let has_cloud = track.cloud.iter().any(|row| !row.is_empty());
+    let knows_contacts = run.contacts.iter().any(Option::is_some);
+    let has_cloud = run.cloud.iter().any(|row| !row.is_empty());
     json!({
-        "name": track.name,
-        "colour": track.colour.hex(),
-        "pose": poses(&track.poses, rows.clone()),
-        "error": error(crate::courses::PoseError::distance_mm),
+        "name": run.name,
+        "colour": run.colour.hex(),
+        "pose": poses(&run.poses, rows.clone()),
+        "error": error(PoseError::distance_mm),
         "turn": error(|error| error.turn_deg),
         "contact": knows_contacts.then(|| (0..bodies).map(contact).collect::<Vec<_>>()),
-        "cloud": has_cloud.then(|| rows.clone().map(|row| cloud(track, row)).collect::<Vec<_>>()),
+        "cloud": has_cloud.then(|| rows.clone().map(|row| cloud(run, row)).collect::<Vec<_>>()),
     })
 }
 
 /// Particles of a row from the estimate on: three numbers each.
-fn cloud(track: &MethodTrack, row: usize) -> Value {
-    let (Some(Some(pose)), Some(particles)) = (track.poses.get(row), track.cloud.get(row)) else {
+fn cloud(run: &PlaybackRun, row: usize) -> Value {
+    let (Some(Some(pose)), Some(particles)) = (run.poses.get(row), run.cloud.get(row)) else {
         return json!([]);
     };
     // what is drawn is the sum of two rounded numbers
@@ -168,40 +160,16 @@ fn cloud(track: &MethodTrack, row: usize) -> Value {
     Value::Array(numbers.collect())
 }
 
-fn contact(touch: &Touch, rows: std::ops::Range<usize>) -> Value {
-    let truth = |truth: &Vec<bool>| -> Vec<Value> {
-        rows.clone()
-            .map(|row| {
-                truth
-                    .get(row)
-                    .map_or(Value::Null, |touches| json!(u8::from(*touches)))
-            })
-            .collect()
+fn contact(touch: &Touch, rows: Range<usize>) -> Value {
+    let truth = |truth: &Vec<bool>| -> Vec<Option<u8>> {
+        let touches = |row| truth.get(row).map(|touches| u8::from(*touches));
+        rows.clone().map(touches).collect()
     };
-    let sensed = |sensed: &Vec<Option<bool>>| -> Vec<Value> {
-        rows.clone()
-            .map(|row| {
-                sensed
-                    .get(row)
-                    .copied()
-                    .flatten()
-                    .map_or(Value::Null, |reads| json!(u8::from(reads)))
-            })
-            .collect()
+    let sensed = |sensed: &Vec<Option<bool>>| -> Vec<Option<u8>> {
+        let reads = |row| sensed.get(row).copied().flatten().map(u8::from);
+        rows.clone().map(reads).collect()
     };
     json!({ "name": touch.name, "truth": touch.truth.as_ref().map(truth), "sensed": touch.sensed.as_ref().map(sensed) })
-}
-
-/// Runs of ones: first row and the row after the last.
-fn runs(flags: &[u8]) -> Vec<[usize; 2]> {
-    let mut runs: Vec<[usize; 2]> = Vec::new();
-    for (row, _) in flags.iter().enumerate().filter(|(_, flag)| **flag == 1) {
-        match runs.last_mut() {
-            Some([_, end]) if *end == row => *end = row + 1,
-            _ => runs.push([row, row + 1]),
-        }
-    }
-    runs
 }
 
 /// Left, low, width and height (mm) of what holds the object and the pusher on their way, and the

@@ -1,10 +1,10 @@
 //! An experiment in a few plain sentences, made from numbers: [`Story`].
 
-/// WMSE up to which a method kept track of an object (mm): twice the resolution of the paper's
+/// Weighted RMSE up to which a method kept track of an object (mm): twice the resolution of the paper's
 /// camera.
 pub const KEPT_MM: f64 = 2.0;
 
-/// WMSE from which it lost the object (mm).
+/// Weighted RMSE from which it lost the object (mm).
 pub const LOST_MM: f64 = 10.0;
 
 /// What happened in an experiment, and how its methods fared.
@@ -27,25 +27,25 @@ pub struct Story {
 pub struct Outcome {
     /// Name.
     pub name: String,
-    /// Whether it saw what was hidden from the others.
-    pub saw_all: bool,
-    /// WMSE while the camera was dark, over all rows where it never was (mm).
+    /// Whether its camera stayed on.
+    pub camera_on: bool,
+    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
     pub wmse_mm: Option<f64>,
 }
 
 /// Whether a method still knew where the object was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
-    /// WMSE up to [`KEPT_MM`].
+    /// Weighted RMSE up to [`KEPT_MM`].
     Kept,
     /// Between the two.
     Drifted,
-    /// WMSE above [`LOST_MM`], or no number.
+    /// Weighted RMSE above [`LOST_MM`], or no number.
     Lost,
 }
 
 impl Fate {
-    /// Of a WMSE (mm).
+    /// Of a weighted RMSE (mm).
     #[must_use]
     pub fn of(wmse_mm: Option<f64>) -> Self {
         match wmse_mm {
@@ -117,22 +117,22 @@ impl Story {
         format!("At {from:.1} s{contact} the camera goes dark; it {end}.")
     }
 
-    /// The methods by their fates, those that saw everything left out: "particle filter (0.12 mm),
+    /// The methods by their fates, those whose camera stayed on left out: "particle filter (0.12 mm),
     /// nominal simulation (0.30 mm)".
     #[must_use]
     pub fn fates(&self) -> Vec<(Fate, String)> {
-        let mut blind: Vec<&Outcome> = self
+        let mut dark: Vec<&Outcome> = self
             .outcomes
             .iter()
-            .filter(|outcome| !outcome.saw_all)
+            .filter(|outcome| !outcome.camera_on)
             .collect();
-        blind.sort_by(|a, b| {
+        dark.sort_by(|a, b| {
             a.wmse_mm
                 .unwrap_or(f64::INFINITY)
                 .total_cmp(&b.wmse_mm.unwrap_or(f64::INFINITY))
         });
         let listed = |fate: Fate| {
-            let named = blind
+            let named = dark
                 .iter()
                 .filter(|outcome| Fate::of(outcome.wmse_mm) == fate)
                 .map(|outcome| outcome.named());
@@ -148,7 +148,7 @@ impl Story {
     /// How well the object could be known.
     #[must_use]
     pub fn seen(&self) -> Option<String> {
-        let outcome = self.outcomes.iter().find(|outcome| outcome.saw_all)?;
+        let outcome = self.outcomes.iter().find(|outcome| outcome.camera_on)?;
         Some(format!(
             "With the camera always on: {}.",
             millimetres(outcome.wmse_mm?)
@@ -186,10 +186,10 @@ fn capital(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn outcome(name: &str, saw_all: bool, wmse: f64) -> Outcome {
+    fn outcome(name: &str, camera_on: bool, wmse: f64) -> Outcome {
         Outcome {
             name: name.to_owned(),
-            saw_all,
+            camera_on,
             wmse_mm: Some(wmse),
         }
     }

@@ -12,7 +12,7 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{episode, log, setup};
+use common::{experiment, log, setup};
 use serde_json::Value;
 use stickslip_report::Report;
 
@@ -28,12 +28,12 @@ fn folder() -> PathBuf {
 
 fn page() -> String {
     let (setup, log) = (setup(), log(200));
-    let episode = episode("a grasp", &setup, &log, 60);
-    let summary = episode.summary().to_vec();
+    let experiment = experiment("a grasp", &setup, &log, 60);
+    let summary = experiment.summary().to_vec();
     Report {
         title: "A test of the report".to_owned(),
         summary,
-        sections: vec![episode.section()],
+        sections: vec![experiment.section()],
     }
     .to_html()
 }

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{HALF, disc, episode, log, setup, square};
+use common::{HALF, disc, experiment, log, setup, square};
 use resvg::tiny_skia::{Color, Pixmap};
 use resvg::usvg::{Options, Tree};
 use stickslip_dynamics::Pose;
@@ -157,11 +157,11 @@ fn other_figures_are_drawn_whatever_their_numbers_are() {
 }
 
 #[test]
-fn every_figure_of_an_episode_is_drawn_even_of_one_row() {
+fn every_figure_of_an_experiment_is_drawn_even_of_one_row() {
     let setup = setup();
     for rows in [0, 1, 2, 90] {
         let log = log(rows);
-        let figures = episode("<&\"'>", &setup, &log, 5).figures();
+        let figures = experiment("<&\"'>", &setup, &log, 5).figures();
         assert!(rows < 90 || figures.len() == 5);
         for figure in figures {
             let [width, height] = size(&figure.drawing.to_svg());

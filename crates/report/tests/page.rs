@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{episode, log, setup, truth};
+use common::{experiment, log, setup, truth};
 use serde_json::Value;
 use stickslip_report::{Block, CloudSample, Report, Section, Table};
 
@@ -13,12 +13,12 @@ const HOSTILE: &str = "</script><script>alert(1)</script> \"'<b>&amp; http://exa
 
 fn page(rows: usize, particles: usize, name: &str) -> String {
     let (setup, log) = (setup(), log(rows));
-    let episode = episode(name, &setup, &log, particles);
-    let summary = episode.summary().to_vec();
+    let experiment = experiment(name, &setup, &log, particles);
+    let summary = experiment.summary().to_vec();
     Report {
         title: name.to_owned(),
         summary,
-        sections: vec![episode.section()],
+        sections: vec![experiment.section()],
     }
     .to_html()
 }
@@ -130,11 +130,11 @@ fn data_read_back_to_the_numbers_they_were() {
 #[test]
 fn an_experiment_of_600_rows_stays_below_2_mb() {
     let (setup, log) = (setup(), log(600));
-    let mut episode = episode("test", &setup, &log, 60);
+    let mut experiment = experiment("test", &setup, &log, 60);
     // without contacts, all rows are shown
-    episode.contacts.clear();
+    experiment.contacts.clear();
     let text = Report {
-        sections: vec![episode.section()],
+        sections: vec![experiment.section()],
         ..Report::default()
     }
     .to_html();

@@ -2,9 +2,8 @@
 
 use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
 
-use super::results::Comparison;
+use super::results::{Comparison, Overall};
 use super::tables;
-use crate::contest::Rival;
 
 /// The table over all folders on top, then each folder's.
 pub fn report(comparison: &Comparison) -> Report {
@@ -16,19 +15,16 @@ pub fn report(comparison: &Comparison) -> Report {
         overall,
         errors,
     } = comparison;
-    let outcome = |rival: Rival, wmse_mm| Outcome {
-        name: rival.title().to_owned(),
-        saw_all: rival == Rival::ParticleAlwaysOn,
-        wmse_mm,
+    let outcome = |row: &Overall| Outcome {
+        name: row.variant.title().to_owned(),
+        camera_on: row.variant.camera_on(),
+        wmse_mm: row.median.wmse_mm,
     };
     let story = Story {
-        outcomes: overall
-            .iter()
-            .map(|row| outcome(row.rival, row.median.wmse_mm))
-            .collect(),
+        outcomes: overall.iter().map(outcome).collect(),
         ..Story::default()
     };
-    let told = format!(
+    let text = format!(
         "{} experiments, every method on each: particle filters with {particles} particles, the median of {seeds} seeds per experiment. \
          Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
         folders.len()
@@ -55,7 +51,7 @@ pub fn report(comparison: &Comparison) -> Report {
         .filter(|(_, blocks)| !blocks.is_empty());
     Report {
         title: "Methods compared".to_owned(),
-        summary: vec![Block::Text(told), Block::Fates(story)],
+        summary: vec![Block::Text(text), Block::Fates(story)],
         sections: sections
             .map(|(title, blocks)| Section {
                 title: title.to_owned(),

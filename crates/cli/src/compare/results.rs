@@ -4,18 +4,17 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
-use stickslip::{Scores, quantile};
+use stickslip_evaluation::{ScoredRun, Variant, quantile};
 
 use crate::args::CompareArgs;
-use crate::contest::Rival;
 use crate::failure::one_line;
 
 /// The scores of one run, or their medians over runs.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Marks {
-    /// WMSE over the hidden rows, over all rows where none is hidden (mm).
+pub struct ShownScores {
+    /// Weighted RMSE over the hidden rows, over all rows where none is hidden (mm).
     pub wmse_mm: Option<f64>,
-    /// WMSE while the object moves (mm).
+    /// The same while the object moves (mm).
     pub wmse_moving_mm: Option<f64>,
     /// Final position error (mm).
     pub final_error_mm: Option<f64>,
@@ -31,29 +30,29 @@ pub struct Column {
     /// Title in tables.
     pub title: &'static str,
     /// The score.
-    pub of: fn(&Marks) -> Option<f64>,
+    pub of: fn(&ShownScores) -> Option<f64>,
 }
 
-/// A rival's scores.
+/// A variant's scores.
 #[derive(Clone, Debug, Serialize)]
-pub struct Entry {
-    /// The rival.
+pub struct VariantScores {
+    /// The variant.
     #[serde(skip)]
-    pub rival: Rival,
+    pub variant: Variant,
     /// Its name in JSON.
     pub method: &'static str,
     /// Its scores.
     #[serde(flatten)]
-    pub marks: Marks,
+    pub scores: ShownScores,
 }
 
-/// The rivals' scores on one folder, medians over seeds.
+/// The variants' scores on one folder, medians over seeds.
 #[derive(Clone, Debug, Serialize)]
 pub struct FolderResult {
     /// The folder.
     pub folder: String,
-    /// One entry per rival.
-    pub methods: Vec<Entry>,
+    /// One entry per variant.
+    pub methods: Vec<VariantScores>,
 }
 
 /// A folder that gave no result.
@@ -65,20 +64,20 @@ pub struct LostFolder {
     pub error: String,
 }
 
-/// A rival's median and 90th percentile over folders.
+/// A variant's median and 90th percentile over folders.
 #[derive(Clone, Debug, Serialize)]
 pub struct Overall {
-    /// The rival.
+    /// The variant.
     #[serde(skip)]
-    pub rival: Rival,
+    pub variant: Variant,
     /// Its name in JSON.
     pub method: &'static str,
     /// Number of folders it ran on.
     pub folders: usize,
     /// Medians over folders.
-    pub median: Marks,
+    pub median: ShownScores,
     /// 90th percentiles over folders.
-    pub p90: Marks,
+    pub p90: ShownScores,
     /// Unsolved particle steps over all folders and seeds.
     pub unsolved: u64,
 }
@@ -104,31 +103,32 @@ pub struct Comparison {
 pub const COLUMNS: [Column; 4] = [
     Column {
         title: "WMSE mm",
-        of: |marks| marks.wmse_mm,
+        of: |scores| scores.wmse_mm,
     },
     Column {
         title: "moving mm",
-        of: |marks| marks.wmse_moving_mm,
+        of: |scores| scores.wmse_moving_mm,
     },
     Column {
         title: "final mm",
-        of: |marks| marks.final_error_mm,
+        of: |scores| scores.final_error_mm,
     },
     Column {
         title: "final deg",
-        of: |marks| marks.final_error_deg,
+        of: |scores| scores.final_error_deg,
     },
 ];
 
-impl Marks {
+impl ShownScores {
     /// The scores of one run.
-    pub fn new(scores: &Scores, unsolved: u64) -> Self {
+    pub fn of(run: &ScoredRun) -> Self {
+        let scores = &run.scores;
         Self {
             wmse_mm: scores.wmse_occluded_mm.or(scores.wmse_mm),
             wmse_moving_mm: scores.wmse_moving_mm,
             final_error_mm: scores.final_error_mm,
             final_error_deg: scores.final_error_deg,
-            unsolved,
+            unsolved: run.unsolved,
         }
     }
 
@@ -147,34 +147,34 @@ impl Marks {
     }
 }
 
-impl Entry {
-    /// The scores of a rival.
-    pub fn new(rival: Rival, marks: Marks) -> Self {
+impl VariantScores {
+    /// The scores of a variant.
+    pub fn new(variant: Variant, scores: ShownScores) -> Self {
         Self {
-            rival,
-            method: rival.key(),
-            marks,
+            variant,
+            method: variant.key(),
+            scores,
         }
     }
 }
 
 impl FolderResult {
-    /// Medians over the runs of each rival; the first failed run is the folder's error.
+    /// Medians over the runs of each variant; the first failed run is the folder's error.
     pub fn gather<'a>(
         folder: &Path,
-        runs: impl Iterator<Item = (Rival, &'a Result<Marks>)>,
+        runs: impl Iterator<Item = (Variant, &'a Result<ShownScores>)>,
     ) -> Result<Self, &'a anyhow::Error> {
-        let mut by_rival: Vec<(Rival, Vec<Marks>)> = Vec::new();
-        for (rival, marks) in runs {
-            let marks = *marks.as_ref()?;
-            match by_rival.last_mut() {
-                Some((last, all)) if *last == rival => all.push(marks),
-                _ => by_rival.push((rival, vec![marks])),
+        let mut by_variant: Vec<(Variant, Vec<ShownScores>)> = Vec::new();
+        for (variant, scores) in runs {
+            let scores = *scores.as_ref()?;
+            match by_variant.last_mut() {
+                Some((last, all)) if *last == variant => all.push(scores),
+                _ => by_variant.push((variant, vec![scores])),
             }
         }
-        let methods = by_rival
-            .into_iter()
-            .map(|(rival, marks)| Entry::new(rival, Marks::quantile(&marks, 0.5)));
+        let methods = by_variant.into_iter().map(|(variant, scores)| {
+            VariantScores::new(variant, ShownScores::quantile(&scores, 0.5))
+        });
         Ok(Self {
             folder: folder.display().to_string(),
             methods: methods.collect(),
@@ -198,9 +198,9 @@ impl LostFolder {
 impl Comparison {
     /// The folders' results with quantiles over them.
     pub fn new(args: &CompareArgs, folders: Vec<FolderResult>, errors: Vec<LostFolder>) -> Self {
-        let overall = Rival::ALL
+        let overall = Variant::COMPARED
             .into_iter()
-            .filter_map(|rival| Overall::new(rival, &folders))
+            .filter_map(|variant| Overall::new(variant, &folders))
             .collect();
         let quantile = "linear between order statistics: position q (n - 1) from the smallest";
         Self {
@@ -215,22 +215,25 @@ impl Comparison {
 }
 
 impl Overall {
-    /// `None` where the rival ran on no folder.
-    fn new(rival: Rival, folders: &[FolderResult]) -> Option<Self> {
+    /// `None` where the variant ran on no folder.
+    fn new(variant: Variant, folders: &[FolderResult]) -> Option<Self> {
         let entries = folders
             .iter()
             .flat_map(|folder| &folder.methods)
-            .filter(|entry| entry.rival == rival);
-        let marks: Vec<Marks> = entries.map(|entry| entry.marks).collect();
-        let (median, p90) = (Marks::quantile(&marks, 0.5), Marks::quantile(&marks, 0.9));
+            .filter(|entry| entry.variant == variant);
+        let scores: Vec<ShownScores> = entries.map(|entry| entry.scores).collect();
+        let (median, p90) = (
+            ShownScores::quantile(&scores, 0.5),
+            ShownScores::quantile(&scores, 0.9),
+        );
         let result = Self {
-            rival,
-            method: rival.key(),
-            folders: marks.len(),
+            variant,
+            method: variant.key(),
+            folders: scores.len(),
             median,
             p90,
             unsolved: median.unsolved,
         };
-        (!marks.is_empty()).then_some(result)
+        (!scores.is_empty()).then_some(result)
     }
 }

@@ -1,7 +1,8 @@
 //! A comparison as text: [`text`].
 
-use super::results::{COLUMNS, Comparison, Entry, Overall};
-use stickslip_report::{Table, number};
+use stickslip_report::{Colour, Table, number};
+
+use super::results::{COLUMNS, Column, Comparison, Overall, VariantScores};
 
 /// A table per folder, then one over all of them; nothing where there is no folder.
 pub fn text(comparison: &Comparison) -> String {
@@ -25,29 +26,29 @@ pub fn text(comparison: &Comparison) -> String {
     folder_tables.chain(overall).collect::<Vec<_>>().join("\n")
 }
 
-/// The scores of each rival on one experiment.
-pub fn entries(entries: &[Entry]) -> Table {
+/// The scores of each variant on one experiment.
+pub fn entries(entries: &[VariantScores]) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved"]));
     for entry in entries {
         let scores = COLUMNS
             .iter()
-            .map(|column| number((column.of)(&entry.marks), 3));
+            .map(|column| number((column.of)(&entry.scores), 3));
         table.push_coloured(
-            entry.rival.colour(),
-            [entry.rival.name().to_owned()]
+            Colour::of(entry.variant),
+            [entry.variant.name().to_owned()]
                 .into_iter()
                 .chain(scores)
-                .chain([entry.marks.unsolved.to_string()]),
+                .chain([entry.scores.unsolved.to_string()]),
         );
     }
     table
 }
 
-/// Each rival over all folders: median (90th percentile).
+/// Each variant over all folders: median (90th percentile).
 pub fn overall(rows: &[Overall]) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved", "folders"]));
     for row in rows {
-        let both = |column: &super::results::Column| {
+        let both = |column: &Column| {
             format!(
                 "{} ({})",
                 number((column.of)(&row.median), 2),
@@ -56,8 +57,8 @@ pub fn overall(rows: &[Overall]) -> Table {
         };
         let counts = [row.unsolved.to_string(), row.folders.to_string()];
         table.push_coloured(
-            row.rival.colour(),
-            [row.rival.name().to_owned()]
+            Colour::of(row.variant),
+            [row.variant.name().to_owned()]
                 .into_iter()
                 .chain(COLUMNS.iter().map(both))
                 .chain(counts),

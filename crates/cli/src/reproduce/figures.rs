@@ -2,281 +2,204 @@
 //! the first one.
 
 use anyhow::Result;
-use stickslip::EstimateRow;
-use stickslip::dynamics::Friction;
+use stickslip_evaluation::paper::{PaperExperiment, RunSet};
+use stickslip_evaluation::{
+    Reference, ScoredRun,
+    Variant::{
+        self, Kalman, KalmanCameraOn, Nominal, Particle, ParticleNoTouch, ParticleNoTouchCameraOn,
+    },
+};
 use stickslip_report::{
-    Curve, Drawing, Level, Line, Mark, Panel, PoseError, TimeFigure, pose_errors,
+    Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Mark, Panel, PoseError,
+    TimeFigure, friction_panels, pose_errors,
 };
 
-use super::course::{Course, Heat};
-use super::participant::{
-    BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, Sight, TACTILE,
-};
-use super::still::Still;
-use crate::paper::PaperExperiment;
+use super::camera_view::CameraView;
 
 /// Time shown before the thumb touches (s).
 const BEFORE: f64 = 0.5;
 
-/// A parameter's name, the factor to the unit that it is shown in, and where it is.
-type Shown = (&'static str, f64, fn(&Friction) -> f64);
-
-const PARAMETERS: [Shown; 4] = [
-    ("μ_s", 1.0, |f| f.mu_s),
-    ("μ_p", 1.0, |f| f.mu_p),
-    ("μ_f", 1.0, |f| f.mu_f),
-    ("d_tri (mm)", 1e3, |f| f.d_tri),
-];
-
-/// A figure of the paper.
-#[derive(Clone, Debug)]
-pub struct PaperFigure {
-    /// Name of its files: `fig2`.
-    pub name: &'static str,
-    /// What is drawn.
-    pub drawing: Drawing,
-    /// What one sees.
-    pub caption: String,
-}
-
-/// All runs on one experiment.
-struct Album<'a> {
-    heats: Vec<&'a Heat>,
+/// All runs on one experiment, by seed.
+struct Replicates<'a> {
+    run_sets: Vec<&'a RunSet>,
 }
 
 /// Figures 2 to 7.
-pub fn figures(heats: &[Heat]) -> Result<Vec<PaperFigure>> {
-    let a = Album::of(heats, PaperExperiment::A);
-    let b = Album::of(heats, PaperExperiment::B);
-    let figure = |name, drawing: Drawing, caption: &str| PaperFigure {
-        name,
-        drawing,
-        caption: caption.to_owned(),
-    };
+pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
+    let a = Replicates::of(run_sets, PaperExperiment::A);
+    let b = Replicates::of(run_sets, PaperExperiment::B);
+    let camera_on = [Nominal, ParticleNoTouchCameraOn, KalmanCameraOn];
     Ok(vec![
-        figure(
+        Figure::new(
             "fig2",
             a.x_errors(),
             "Figure 2, experiment A: error of x. a) the camera is always on; b) it goes dark.",
         ),
-        figure(
+        Figure::new(
             "fig3",
-            a.poses(&[
-                (300, &[NOMINAL, BLIND_OPEN, KALMAN_OPEN]),
-                (300, &[NOMINAL, BLIND, KALMAN]),
-            ])?,
+            a.poses(&[(300, camera_on), (300, [Nominal, ParticleNoTouch, Kalman])])?,
             "Figure 3, experiment A, seed 0: the object at the last row, on the camera image. Above with the camera on, below without.",
         ),
-        figure(
+        Figure::new(
             "fig4",
-            a.parameters(BLIND_OPEN),
+            a.parameters(ParticleNoTouchCameraOn),
             "Figure 4, experiment A: friction as the particle filter estimates it, the camera always on.",
         ),
-        figure(
+        Figure::new(
             "fig5",
-            b.errors(&[TACTILE, BLIND, NOMINAL]),
+            b.errors(&[Particle, ParticleNoTouch, Nominal]),
             "Figure 5, experiment B: errors of x, y and θ; the camera goes dark at row 240.",
         ),
-        figure(
+        Figure::new(
             "fig6",
-            b.poses(&[
-                (257, &[NOMINAL, BLIND, TACTILE]),
-                (300, &[NOMINAL, BLIND, TACTILE]),
-            ])?,
+            b.poses(&[257, 300].map(|row| (row, [Nominal, ParticleNoTouch, Particle])))?,
             "Figure 6, experiment B, seed 0: the object at the first contact with a fixel (above) and at the last row (below).",
         ),
-        figure(
+        Figure::new(
             "fig7",
-            b.parameters(TACTILE),
+            b.parameters(Particle),
             "Figure 7, experiment B: friction as the particle filter with tactile data estimates it.",
         ),
     ])
 }
 
-impl<'a> Album<'a> {
-    fn of(heats: &'a [Heat], paper: PaperExperiment) -> Self {
+impl<'a> Replicates<'a> {
+    fn of(run_sets: &'a [RunSet], paper: PaperExperiment) -> Self {
+        let own = run_sets.iter().filter(|set| set.replicate.paper == paper);
         Self {
-            heats: heats
-                .iter()
-                .filter(|heat| heat.recording.paper == paper)
-                .collect(),
+            run_sets: own.collect(),
         }
     }
 
-    /// The heat of the first seed.
-    fn first(&self) -> &'a Heat {
-        self.heats[0]
+    /// The first seed.
+    fn first(&self) -> &'a RunSet {
+        self.run_sets[0]
     }
 
-    fn courses(&self, participant: Participant) -> impl Iterator<Item = (&'a Heat, &'a Course)> {
-        self.heats
-            .iter()
-            .filter_map(move |heat| Some((*heat, heat.course(participant)?)))
-    }
-
-    /// One kind of error of a participant over all seeds.
-    fn error(&self, participant: Participant, of: fn(&PoseError) -> f64) -> Curve {
-        let run = |(heat, course): (&Heat, &Course)| {
-            let errors = pose_errors(&course.estimate, &heat.recording.experiment.reference());
-            errors
-                .iter()
-                .map(|error| [error.time, of(error)])
-                .collect::<Vec<_>>()
-        };
+    /// The median curve of a variant over seeds, from points of each run.
+    fn curve(
+        &self,
+        variant: Variant,
+        points: impl Fn(&RunSet, &ScoredRun) -> Vec<[f64; 2]>,
+    ) -> Curve {
+        let runs = self.run_sets.iter();
+        let runs = runs.filter_map(|set| Some(points(set, set.run(variant)?)));
         Curve::over_runs(
-            participant.name(),
-            participant.colour(),
-            &self.courses(participant).map(run).collect::<Vec<_>>(),
+            variant.paper_title(),
+            Colour::of(variant),
+            &runs.collect::<Vec<_>>(),
         )
     }
 
-    fn panel(&self, label: &str, participants: &[Participant], of: fn(&PoseError) -> f64) -> Panel {
-        let curves = participants
-            .iter()
-            .map(|participant| self.error(*participant, of))
-            .collect();
-        let dark = participants
-            .iter()
-            .any(|participant| participant.sight == Sight::Dark && *participant != NOMINAL);
+    /// One kind of error of some variants.
+    fn panel(&self, label: &str, variants: &[Variant], of: fn(&PoseError) -> f64) -> Panel {
+        let points = |set: &RunSet, run: &ScoredRun| {
+            let reference = Reference::of(&set.replicate.experiment);
+            let errors = pose_errors(&run.estimate, &reference);
+            errors.iter().map(|error| [error.time, of(error)]).collect()
+        };
+        // the nominal simulation never looks, whether the camera is on or not
+        let always_on = |variant: &Variant| variant.camera_on() || *variant == Nominal;
         Panel {
             label: label.to_owned(),
-            curves,
-            dark: (!dark).then(Vec::new),
+            curves: variants
+                .iter()
+                .map(|variant| self.curve(*variant, points))
+                .collect(),
+            dark: variants.iter().all(always_on).then(Vec::new),
             ..Panel::default()
         }
     }
 
     /// What all figures against time share.
-    fn frame(&self, panels: Vec<Panel>) -> TimeFigure {
-        let experiment = &self.first().recording.experiment;
+    fn time_figure(&self, panels: Vec<Panel>) -> TimeFigure {
+        let experiment = &self.first().replicate.experiment;
         let (time, facts) = (&experiment.log.time, &experiment.facts);
         let end = time.last().copied().unwrap_or(0.0);
         let at = |row: Option<usize>| row.and_then(|row| time.get(row)).copied();
-        let fixels = facts.first_fixel_contacts.iter().enumerate();
-        let fixels = fixels.filter_map(|(k, row)| {
-            Some(Mark {
-                time: at(*row)?,
-                name: format!("fixel {}", k + 1),
-            })
-        });
-        let thumb = at(facts.first_pusher_contact).map(|time| Mark {
-            time,
-            name: "pusher".to_owned(),
-        });
-        let begin = thumb
-            .as_ref()
-            .map_or(0.0, |mark| mark.time - BEFORE)
-            .max(0.0);
+        let mark = |row: Option<usize>, name: String| at(row).map(|time| Mark { time, name });
+        let fixels = (1..).zip(&facts.first_fixel_contacts);
+        let fixels = fixels.filter_map(|(k, row)| mark(*row, format!("fixel {k}")));
+        let thumb = mark(facts.first_pusher_contact, "pusher".to_owned());
+        let begin = thumb.as_ref().map_or(0.0, |mark| mark.time - BEFORE);
+        let dark = at(facts.occlude_from).map(|from| [from, end]);
         TimeFigure {
-            span: [begin, end],
-            dark: at(facts.occlude_from)
-                .map(|from| [from, end])
-                .into_iter()
-                .collect(),
+            span: [begin.max(0.0), end],
+            dark: dark.into_iter().collect(),
             marks: thumb.into_iter().chain(fixels).collect(),
             panels,
-            band_name: format!("10–90 % of {} seeds", self.heats.len()),
+            band_name: format!("10–90 % of {} seeds", self.run_sets.len()),
             ..TimeFigure::default()
         }
     }
 
     fn x_errors(&self) -> Drawing {
-        let x = |title: &str, participants: &[Participant]| Panel {
+        let x = |title: &str, variants: &[Variant]| Panel {
             title: title.to_owned(),
-            ..self.panel("error of x (mm)", participants, |error| error.x_mm)
+            ..self.panel("error of x (mm)", variants, |error| error.x_mm)
         };
-        let open = x(
-            "a) no visual occlusion",
-            &[BLIND_OPEN, KALMAN_OPEN, NOMINAL],
-        );
-        self.frame(vec![
-            open,
-            x("b) visual occlusion", &[BLIND, KALMAN, NOMINAL]),
-        ])
-        .drawing()
+        let camera_on = [ParticleNoTouchCameraOn, KalmanCameraOn, Nominal];
+        let figure = self.time_figure(vec![
+            x("a) no visual occlusion", &camera_on),
+            x("b) visual occlusion", &[ParticleNoTouch, Kalman, Nominal]),
+        ]);
+        figure.drawing()
     }
 
-    fn errors(&self, participants: &[Participant]) -> Drawing {
-        let panels = vec![
-            self.panel("error of x (mm)", participants, |error| error.x_mm),
-            self.panel("error of y (mm)", participants, |error| error.y_mm),
-            self.panel("error of θ (°)", participants, |error| error.turn_deg),
-        ];
-        TimeFigure {
+    fn errors(&self, variants: &[Variant]) -> Drawing {
+        let figure = TimeFigure {
             panel_size: [780.0, 200.0],
-            ..self.frame(panels)
-        }
-        .drawing()
+            ..self.time_figure(vec![
+                self.panel("error of x (mm)", variants, |error| error.x_mm),
+                self.panel("error of y (mm)", variants, |error| error.y_mm),
+                self.panel("error of θ (°)", variants, |error| error.turn_deg),
+            ])
+        };
+        figure.drawing()
     }
 
     /// The four friction parameters.
-    fn parameters(&self, participant: Participant) -> Drawing {
-        let experiment = &self.first().recording.experiment;
-        let (told, facts) = (&experiment.setup.scene.nominal, &experiment.facts);
-        let truth = [facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri];
-        let panel = |((label, unit, of), truth): (&Shown, Option<f64>)| {
-            let value = |row: &EstimateRow| {
-                row.friction
-                    .map_or(f64::NAN, |friction| unit * of(&friction))
-            };
-            let run = |(_, course): (&Heat, &Course)| {
-                let rows = course.estimate.time.iter().zip(&course.estimate.rows);
-                rows.map(|(time, row)| [*time, value(row)])
-                    .collect::<Vec<_>>()
-            };
-            let runs: Vec<Vec<[f64; 2]>> = self.courses(participant).map(run).collect();
-            let level = |name: &str, value: f64, line: Line| Level {
-                name: name.to_owned(),
-                value: unit * value,
-                line,
-                ..Level::default()
-            };
-            Panel {
-                label: (*label).to_owned(),
-                curves: vec![Curve::over_runs(
-                    participant.name(),
-                    participant.colour(),
-                    &runs,
-                )],
-                levels: truth
-                    .map(|value| level("truth", value, Line::Solid))
-                    .into_iter()
-                    .chain([level("told", of(told), Line::Dashed)])
-                    .collect(),
-                dark: (participant.sight == Sight::Open).then(Vec::new),
-                ..Panel::default()
-            }
+    fn parameters(&self, variant: Variant) -> Drawing {
+        let experiment = &self.first().replicate.experiment;
+        let facts = &experiment.facts;
+        let curve = |parameter: &FrictionParameter| {
+            self.curve(variant, |_, run| {
+                let rows = run.estimate.time.iter().zip(&run.estimate.rows);
+                rows.map(|(time, row)| [*time, parameter.shown(row.friction)])
+                    .collect()
+            })
         };
-        let panels = PARAMETERS.iter().zip(truth).map(panel).collect();
-        TimeFigure {
+        let mut panels = friction_panels(
+            &FRICTION_PARAMETERS,
+            &experiment.setup.scene.nominal,
+            &[facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri],
+            curve,
+        );
+        for panel in &mut panels {
+            panel.dark = variant.camera_on().then(Vec::new);
+        }
+        let figure = TimeFigure {
             columns: 2,
             panel_size: [430.0, 210.0],
-            ..self.frame(panels)
-        }
-        .drawing()
+            ..self.time_figure(panels)
+        };
+        figure.drawing()
     }
 
-    /// Poses at rows of the log, one row of pictures for each, one picture for each participant.
-    fn poses(&self, rows: &[(usize, &[Participant])]) -> Result<Drawing> {
-        let heat = self.first();
-        let still = Still::new(&heat.recording)?;
+    /// Poses at rows of the log, one row of pictures for each, one picture for each variant.
+    fn poses(&self, rows: &[(usize, [Variant; 3])]) -> Result<Drawing> {
+        let first = self.first();
+        let camera = CameraView::new(&first.replicate)?;
         let mut pictures = Vec::new();
-        for (row, participants) in rows {
-            let frame = still.frame(*row);
-            for participant in *participants {
-                let estimate = heat.course(*participant).map(|course| &course.estimate);
-                let pose = estimate.and_then(|estimate| estimate.rows.get(*row)?.pose);
-                pictures.push(frame.with(
-                    &format!("{}, row {row}", participant.name()),
-                    pose,
-                    participant.colour(),
-                )?);
+        for (row, variants) in rows {
+            let frame = camera.frame(*row);
+            for variant in variants {
+                let run = first.run(*variant);
+                let pose = run.and_then(|run| run.estimate.rows.get(*row)?.pose);
+                let title = format!("{}, row {row}", variant.paper_title());
+                pictures.push(frame.with(&title, pose, Colour::of(*variant))?);
             }
         }
-        Ok(Drawing::grid(
-            &pictures,
-            rows.first()
-                .map_or(1, |(_, participants)| participants.len()),
-        ))
+        Ok(Drawing::grid(&pictures, 3))
     }
 }

@@ -2,15 +2,12 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip_report::{Block, Contender, Report, Section, Table};
+use stickslip_evaluation::Variant;
+use stickslip_evaluation::paper::{PaperExperiment, Results, ResultsRow, ResultsTable, RunSet};
+use stickslip_report::{Block, Colour, Figure, Report, ReportedExperiment, Section, Table};
 
-use super::course::Heat;
-use super::figures::PaperFigure;
-use super::results::{PaperTable, Reproduction, Row};
-use super::text::{band, blackouts, median, orders};
-use crate::contest::{Rival, Rules};
-use crate::episode::{contender, episode};
-use crate::paper::PaperExperiment;
+use super::text::{band, median, occlusions, orders};
+use crate::reported_run::reported_run;
 
 /// What the page begins with.
 const SUMMARY: &str = "The evaluation of Zhang & Trinkle (ICRA 2012), repeated on a virtual testbed: six grasps, each with many seeds, every \
@@ -19,19 +16,19 @@ const SUMMARY: &str = "The evaluation of Zhang & Trinkle (ICRA 2012), repeated o
 
 /// Tables, figures, and the experiments B and A played back with the first seed.
 pub fn page(
-    reproduction: &Reproduction,
-    heats: &[Heat],
-    figures: &[PaperFigure],
-    rules: &Rules,
+    results: &Results,
+    run_sets: &[RunSet],
+    figures: &[Figure],
+    particles: usize,
 ) -> Result<Report> {
     let summary = vec![
         Block::Text(SUMMARY.to_owned()),
         Block::Table(
-            blackouts(&reproduction.blackouts),
+            occlusions(&results.occlusions),
             "Under occlusion".to_owned(),
         ),
     ];
-    let tables = reproduction.tables.iter().map(table_section);
+    let tables = results.tables.iter().map(table_section);
     let figures = figures
         .iter()
         .map(|figure| Block::Figure(figure.drawing.clone(), figure.caption.clone()))
@@ -40,7 +37,8 @@ pub fn page(
         title: "Figures 2 to 7".to_owned(),
         blocks: figures,
     };
-    let plays = [PaperExperiment::B, PaperExperiment::A].map(|paper| played(heats, paper, rules));
+    let plays =
+        [PaperExperiment::B, PaperExperiment::A].map(|paper| played(run_sets, paper, particles));
     let plays = plays.into_iter().collect::<Result<Vec<_>>>()?;
     Ok(Report {
         title: "stickslip reproduce: the paper's evaluation on a virtual testbed".to_owned(),
@@ -49,7 +47,7 @@ pub fn page(
     })
 }
 
-fn table_section(table: &PaperTable) -> Section {
+fn table_section(table: &ResultsTable) -> Section {
     let blocks = table.rows.iter().flat_map(|row| {
         [
             Block::Table(row_table(row), row.title.to_owned()),
@@ -62,7 +60,7 @@ fn table_section(table: &PaperTable) -> Section {
     }
 }
 
-fn row_table(row: &Row) -> Table {
+fn row_table(row: &ResultsRow) -> Table {
     let mut table = Table::new([
         "WMSE (mm)",
         "paper",
@@ -81,8 +79,8 @@ fn row_table(row: &Row) -> Table {
             band(dark),
         ];
         table.push_coloured(
-            cell.participant.colour(),
-            [cell.participant.name().to_owned()]
+            Colour::of(cell.variant),
+            [cell.variant.paper_title().to_owned()]
                 .into_iter()
                 .chain(numbers),
         );
@@ -90,32 +88,20 @@ fn row_table(row: &Row) -> Table {
     table
 }
 
-/// An experiment's first seed with all methods.
-fn played(heats: &[Heat], paper: PaperExperiment, rules: &Rules) -> Result<Section> {
-    let heat = heats
-        .iter()
-        .find(|heat| heat.recording.paper == paper)
-        .expect("every experiment was run");
-    let recording = &heat.recording;
-    let run = |rival: Rival| {
-        contender(
-            rival,
-            &recording.experiment,
-            recording.blackout,
-            rules,
-            recording.seed,
-        )
-    };
-    let methods: Vec<Contender> = Rival::ALL.into_par_iter().map(run).collect::<Result<_>>()?;
-    let (name, story) = (format!("experiment {}", paper.name()), paper.scene().story);
-    let section = episode(
-        &name,
-        story,
-        &recording.experiment,
-        recording.blackout,
-        methods,
-    )
-    .section();
+/// An experiment's first seed with all variants, played back.
+fn played(run_sets: &[RunSet], paper: PaperExperiment, particles: usize) -> Result<Section> {
+    let mut replicates = run_sets.iter().map(|set| &set.replicate);
+    let first = replicates.find(|replicate| replicate.paper == paper);
+    let replicate = first.expect("every experiment was run");
+    let (experiment, conditions) = (&replicate.experiment, replicate.conditions(particles));
+    let runs = Variant::COMPARED
+        .into_par_iter()
+        .map(|variant| reported_run(variant, experiment, &conditions))
+        .collect::<Result<Vec<_>, _>>()?;
+    let name = format!("experiment {}", paper.name());
+    let story = paper.scene().story;
+    let section =
+        ReportedExperiment::new(&name, story, experiment, conditions.occlusion, runs).section();
     Ok(Section {
         title: format!("Experiment {}: {}", paper.name(), section.title),
         ..section

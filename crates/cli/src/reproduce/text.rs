@@ -1,28 +1,28 @@
 //! The tables as text: [`text`].
 
+use stickslip_evaluation::Band;
+use stickslip_evaluation::paper::{
+    BaselineComparison, Finding, NoiseLevel, OcclusionResult, PairedComparison, PaperExperiment,
+    Ratio, Results, ResultsRow,
+};
 use stickslip_report::Table;
 
-use super::noise::NoiseLevel;
-use super::results::{Blackout, Margin, Ratio, Reproduction, Row, Spread};
-use super::standing::{Finding, Standing};
-use crate::paper::PaperExperiment;
-
-/// How differences are told.
+/// How differences are shown.
 const LEGEND: &str = "  against others: median difference ± its standard error; * by more than 2 of them better, ! worse\n";
 
 /// All tables, what holds of the paper's orders, and the particle filter under occlusion.
-pub fn text(reproduction: &Reproduction) -> String {
-    let tables = reproduction.tables.iter().map(|table| {
+pub fn text(results: &Results) -> String {
+    let tables = results.tables.iter().map(|table| {
         let rows: Vec<String> = table.rows.iter().map(row).collect();
         format!("{}, WMSE in mm\n\n{}", table.name, rows.join("\n"))
     });
     tables
-        .chain([format!("{}{LEGEND}", blackouts(&reproduction.blackouts))])
+        .chain([format!("{}{LEGEND}", occlusions(&results.occlusions))])
         .collect::<Vec<_>>()
         .join("\n")
 }
 
-fn row(row: &Row) -> String {
+fn row(row: &ResultsRow) -> String {
     let mut table = Table::new([
         row.title,
         "paper",
@@ -43,7 +43,7 @@ fn row(row: &Row) -> String {
             cell.unsolved.to_string(),
         ];
         table.push(
-            [format!("  {}", cell.participant.name())]
+            [format!("  {}", cell.variant.paper_title())]
                 .into_iter()
                 .chain(numbers),
         );
@@ -51,42 +51,42 @@ fn row(row: &Row) -> String {
     format!("{table}{}", orders(&row.orderings))
 }
 
-/// The median of a spread.
-pub fn median(spread: Spread) -> String {
-    format!("{:.2}", spread.median)
+/// The median of a band.
+pub fn median(band: Band) -> String {
+    format!("{:.2}", band.median)
 }
 
-/// Its band.
-pub fn band(spread: Spread) -> String {
-    format!("{:.2}-{:.2}", spread.low, spread.high)
+/// The band over seeds.
+pub fn band(band: Band) -> String {
+    format!("{:.2}-{:.2}", band.low, band.high)
 }
 
 /// How many of the paper's orders hold, and those that do not.
-pub fn orders(standings: &[Standing]) -> String {
-    let holding = standings
+pub fn orders(pairs: &[PairedComparison]) -> String {
+    let holding = pairs
         .iter()
-        .filter(|standing| standing.finding == Finding::Holds)
+        .filter(|pair| pair.finding == Finding::Holds)
         .count();
-    let others = standings
+    let others = pairs
         .iter()
-        .filter(|standing| standing.finding != Finding::Holds)
+        .filter(|pair| pair.finding != Finding::Holds)
         .map(order);
     let head = format!(
         "  order of the paper: {holding} of {} pairs hold\n",
-        standings.len()
+        pairs.len()
     );
     [head].into_iter().chain(others).collect()
 }
 
-fn order(standing: &Standing) -> String {
-    let Standing {
+fn order(pair: &PairedComparison) -> String {
+    let PairedComparison {
         better,
         worse,
         difference_mm,
         standard_error_mm,
         finding,
         ..
-    } = standing;
+    } = pair;
     let finding = if *finding == Finding::Unclear {
         "unclear"
     } else {
@@ -96,7 +96,7 @@ fn order(standing: &Standing) -> String {
 }
 
 /// The particle filter with tactile data after the blackout begins.
-pub fn blackouts(blackouts: &[Blackout]) -> Table {
+pub fn occlusions(results: &[OcclusionResult]) -> Table {
     let mut table = Table::new([
         "after the blackout begins, WMSE in mm",
         "median",
@@ -107,36 +107,33 @@ pub fn blackouts(blackouts: &[Blackout]) -> Table {
         "Kalman",
         "no tactile",
     ]);
-    for blackout in blackouts {
+    for result in results {
         let own = [
-            median(blackout.wmse_mm),
-            band(blackout.wmse_mm),
-            median(blackout.spread_mm),
-            if blackout.below_target { "yes" } else { "no" }.to_owned(),
+            median(result.wmse_mm),
+            band(result.wmse_mm),
+            median(result.spread_mm),
+            if result.below_target { "yes" } else { "no" }.to_owned(),
         ];
-        let title = format!(
-            "  {}, particle filter with tactile data",
-            blackout.experiment
-        );
+        let title = format!("  {}, particle filter with tactile data", result.experiment);
         table.push(
             [title]
                 .into_iter()
                 .chain(own)
-                .chain(blackout.margins.iter().map(margin)),
+                .chain(result.baselines.iter().map(difference)),
         );
     }
     table
 }
 
-fn margin(margin: &Margin) -> String {
-    let mark = match (margin.better, margin.worse) {
+fn difference(against: &BaselineComparison) -> String {
+    let mark = match (against.better, against.worse) {
         (true, _) => "*",
         (_, true) => "!",
         _ => " ",
     };
     format!(
         "{:+.2} ± {:.2} {mark}",
-        margin.difference_mm, margin.standard_error_mm
+        against.difference_mm, against.standard_error_mm
     )
 }
 

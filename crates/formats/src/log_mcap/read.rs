@@ -42,6 +42,8 @@ pub fn read_log_mcap(
         place: None,
         problem: Box::new(problem),
     };
+
+    // the messages, up to where the recording is damaged, and whether all topics are there
     let recording = Recording::read(bytes, topics).map_err(whole)?;
     let reader = Reader {
         file: name,
@@ -51,12 +53,14 @@ pub fn read_log_mcap(
     let mut warnings = reader.damage(bytes.len());
     let sensors = reader.check_topics().map_err(whole)?;
 
+    // poses make the rows
     let mut frame = CommonFrame::default();
     let mut poses = |topic| reader.poses(topic, &mut frame, &mut warnings);
     let (object, pusher) = (poses(Topic::Object)?, poses(Topic::Pusher)?);
     let rows = Rows::new(&object, &pusher);
     let time = reader.times(&rows).map_err(whole)?;
 
+    // sensors fill cells in them
     let mut tactile = Vec::new();
     for topic in (1..=sensors).map(Topic::Fixel) {
         let touches = reader

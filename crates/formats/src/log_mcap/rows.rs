@@ -35,6 +35,7 @@ impl Rows {
     /// several pusher poses about one object pose the nearest counts, of equally near ones the
     /// earlier.
     pub(crate) fn new(object: &[Timed<Pose>], pusher: &[Timed<Pose>]) -> Self {
+        // a row for each object pose; a pusher pose joins the nearest one or makes its own
         let mut rows: Vec<Row> = object
             .iter()
             .map(|o| Row {
@@ -62,6 +63,8 @@ impl Rows {
             }
         }
         rows.sort_by_key(|row| row.time);
+
+        // where no pusher pose was measured, it is interpolated
         Self {
             time: rows.iter().map(|row| row.time).collect(),
             object: rows.iter().map(|row| row.object).collect(),

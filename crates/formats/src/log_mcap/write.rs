@@ -83,6 +83,7 @@ pub fn write_log_mcap(
 ) -> Result<(), McapWriteError> {
     assert_equal_columns(log);
 
+    // a channel for each topic
     let stamps = stamps(&log.time)?;
     let mut recorder = Recorder::new(writer)?;
     let object = recorder.channel::<PoseStamped>(topics, Topic::Object)?;
@@ -95,6 +96,8 @@ pub fn write_log_mcap(
     } else {
         recorder.channel::<WrenchStamped>(topics, Topic::Wrench)?
     };
+
+    // a message for each cell that is not empty
     for (row, stamp) in stamps.into_iter().enumerate() {
         recorder.write(
             object,

@@ -1,7 +1,7 @@
 //! A TOML document whose every value knows its place: [`Source`], [`Table`], [`Node`].
 //!
-//! Reading by hand rather than by derive keeps the place of each number in nested lists, and the
-//! words for it.
+//! A derived reader would lose the place of a number in nested lists, and could not name the
+//! quantity that is missing.
 
 use std::ops::Range;
 
@@ -9,94 +9,16 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{SceneError, SceneProblem};
-use crate::nearest::nearest;
+use super::keys::{keys_of, nearest_key};
+use super::quantity::{Quantity, Rule};
 
 type Result<T> = std::result::Result<T, SceneError>;
-
-/// The keys of each table of the format; the first one is the document itself.
-const TABLES: [(&str, &[&str]); 10] = [
-    (
-        "",
-        &[
-            "gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile",
-            "filter", "start",
-        ],
-    ),
-    ("object", &["mass", "inertia", "shape"]),
-    (
-        "support",
-        &["friction", "tripod_radius", "tripod_angle", "feet"],
-    ),
-    ("pusher", &["shape", "friction", "stall_force"]),
-    ("fixels", &["friction"]),
-    ("fixel", &["position", "angle", "shape"]),
-    (
-        "camera",
-        &[
-            "position_std",
-            "orientation_std",
-            "latency",
-            "pusher_position_std",
-            "pusher_orientation_std",
-        ],
-    ),
-    (
-        "tactile",
-        &["false_positive", "false_negative", "touch_force"],
-    ),
-    (
-        "filter",
-        &[
-            "force_std",
-            "parameter_std",
-            "resample_below",
-            "likelihood_scale",
-            "mu_s",
-            "mu_p",
-            "mu_f",
-            "d_tri",
-        ],
-    ),
-    (
-        "start",
-        &["object", "pusher", "direction", "speed", "duration"],
-    ),
-];
-
-/// The keys that a table of the format may have; `""` is the document itself.
-pub(super) fn keys_of(table: &str) -> &'static [&'static str] {
-    TABLES
-        .iter()
-        .find(|(name, _)| *name == table)
-        .map_or(&[], |(_, keys)| keys)
-}
 
 /// The text of a scene file with its name.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) name: &'a str,
     pub(super) text: &'a str,
-}
-
-/// What a number must be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rule {
-    Finite,
-    Positive,
-    NotNegative,
-    /// In (0, 1).
-    Probability,
-    /// In [0, 1].
-    Share,
-}
-
-/// A key that holds a number: its name, what it means, its unit (empty for none) and its rule.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Quantity {
-    pub(super) key: &'static str,
-    pub(super) what: &'static str,
-    pub(super) unit: &'static str,
-    pub(super) rule: Rule,
 }
 
 /// A table with the keys it may have.
@@ -145,53 +67,6 @@ impl Source<'_> {
             line,
             column,
             problem: Box::new(problem),
-        }
-    }
-}
-
-impl Rule {
-    fn holds(self, value: f64) -> bool {
-        match self {
-            Self::Finite => true,
-            Self::Positive => value > 0.0,
-            Self::NotNegative => value >= 0.0,
-            Self::Probability => value > 0.0 && value < 1.0,
-            Self::Share => (0.0..=1.0).contains(&value),
-        }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::Finite => "finite",
-            Self::Positive => "positive",
-            Self::NotNegative => "zero or positive",
-            Self::Probability => "between 0 and 1, both excluded",
-            Self::Share => "from 0 to 1",
-        }
-    }
-}
-
-impl Quantity {
-    pub(super) const fn new(
-        key: &'static str,
-        what: &'static str,
-        unit: &'static str,
-        rule: Rule,
-    ) -> Self {
-        Self {
-            key,
-            what,
-            unit,
-            rule,
-        }
-    }
-
-    /// What to give, with the unit.
-    fn order(&self) -> String {
-        if self.unit.is_empty() {
-            self.what.to_owned()
-        } else {
-            format!("{} in {}", self.what, self.unit)
         }
     }
 }
@@ -290,23 +165,6 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The known key that was probably meant: a near miss at this place, else the same key in the table
-/// it belongs to.
-fn nearest_key(key: &str, known: &[&str]) -> String {
-    let (here, distance) = nearest(key, known.iter().copied()).unwrap_or_default();
-    let elsewhere = TABLES.iter().find(|(_, keys)| keys.contains(&key));
-    match elsewhere {
-        Some((table, _)) if distance > 1 => {
-            if table.is_empty() {
-                format!("{key} above all tables")
-            } else {
-                format!("{table}.{key}")
-            }
-        }
-        _ => here.to_owned(),
-    }
-}
-
 impl<'a> Node<'a> {
     /// The way to the value.
     pub(super) fn path(&self) -> &str {
@@ -345,17 +203,7 @@ impl<'a> Node<'a> {
 
     /// The list is empty and must not be; `what` completes "Give ...".
     pub(super) fn empty(&self, what: &str) -> SceneError {
-        let (key, found, expected) = (
-            self.path.clone(),
-            "an empty list".to_owned(),
-            "a list with entries".to_owned(),
-        );
-        self.error(SceneProblem::WrongType {
-            key,
-            found,
-            expected,
-            what: what.to_owned(),
-        })
+        self.wrong("an empty list".to_owned(), "a list with entries", what)
     }
 
     /// The items of a list; `what` completes "Give ...".
@@ -376,17 +224,11 @@ impl<'a> Node<'a> {
         let items = self.items(what)?;
         let count = items.len();
         items.try_into().map_err(|_| {
-            let (key, found, expected) = (
-                self.path.clone(),
+            self.wrong(
                 format!("a list of {count}"),
-                format!("a list of {N}"),
-            );
-            self.error(SceneProblem::WrongType {
-                key,
-                found,
-                expected,
-                what: what.to_owned(),
-            })
+                &format!("a list of {N}"),
+                what,
+            )
         })
     }
 
@@ -435,11 +277,14 @@ impl<'a> Node<'a> {
     }
 
     fn wrong_type(&self, expected: &str, what: &str) -> SceneError {
-        let (key, found, expected) = (self.path.clone(), self.kind(), expected.to_owned());
+        self.wrong(self.kind(), expected, what)
+    }
+
+    fn wrong(&self, found: String, expected: &str, what: &str) -> SceneError {
         self.error(SceneProblem::WrongType {
-            key,
+            key: self.path.clone(),
             found,
-            expected,
+            expected: expected.to_owned(),
             what: what.to_owned(),
         })
     }

@@ -5,6 +5,8 @@
 mod document;
 mod error;
 mod feet;
+mod keys;
+mod quantity;
 mod sensing;
 mod shapes;
 mod start;
@@ -15,8 +17,10 @@ use stickslip::Setup;
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
-use document::{Node, Quantity, Rule, Source, Table, keys_of};
+use document::{Node, Source, Table};
 pub use error::{SceneError, SceneProblem};
+use keys::keys_of;
+use quantity::{Quantity, Rule};
 use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;

@@ -3,8 +3,9 @@
 use stickslip::dynamics::Friction;
 use stickslip::{Camera, FilterSettings, Limits, Tactile};
 
-use super::document::{Quantity, Rule, Table};
+use super::document::Table;
 use super::error::SceneError;
+use super::quantity::{Quantity, Rule};
 
 type Result<T> = std::result::Result<T, SceneError>;
 

@@ -2,8 +2,9 @@
 
 use stickslip_dynamics::{Part, Shape};
 
-use super::document::{Node, Quantity, Rule, Table};
+use super::document::{Node, Table};
 use super::error::{SceneError, SceneProblem};
+use super::quantity::{Quantity, Rule};
 
 const KINDS: [&str; 3] = ["polygon", "disc", "ellipse"];
 const SHAPE: &str =

@@ -2,8 +2,9 @@
 
 use stickslip_dynamics::{Pose, SpeedProfile, Start};
 
-use super::document::{Node, Quantity, Rule, Table};
+use super::document::{Node, Table};
 use super::error::SceneError;
+use super::quantity::{Quantity, Rule};
 
 type Result<T> = std::result::Result<T, SceneError>;
 

@@ -3,10 +3,9 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
-use stickslip::{
-    Estimate, EstimateRow, FilterSettings, Log, Reference, Scores, Setup, Spread, Tactile,
-};
-use stickslip_report::{Colour, Contender, Episode, Mark};
+use stickslip::{Estimate, EstimateRow, FilterSettings, Log, Setup, Spread, Tactile};
+use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant};
+use stickslip_report::{Mark, ReportedExperiment, ReportedRun};
 
 /// Half the side of the object (m).
 pub const HALF: f64 = 0.025;
@@ -120,11 +119,16 @@ fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
     }
 }
 
-/// Five methods on `rows` rows, two with `particles` particles each.
-pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize) -> Episode<'a> {
+/// Five variants on `rows` rows, two with `particles` particles each.
+pub fn experiment<'a>(
+    name: &str,
+    setup: &'a Setup,
+    log: &'a Log,
+    particles: usize,
+) -> ReportedExperiment<'a> {
     let rows = log.len();
     let dark = rows * 6 / 10;
-    let method = |name: &str, colour, off: f64, particles: usize| {
+    let run = |variant: Variant, off: f64, particles: usize| {
         let cloud = |row: usize| -> Vec<Pose> {
             let pose = truth(row, rows);
             (0..particles)
@@ -137,17 +141,17 @@ pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize)
                 })
                 .collect()
         };
-        Contender {
-            name: name.to_owned(),
-            colour,
-            estimate: estimate(rows, off, particles > 0),
-            scores: Scores {
-                wmse_mm: Some(1e3 * off),
-                wmse_occluded_mm: Some(2e3 * off),
-                ..Scores::default()
+        ReportedRun {
+            scored: ScoredRun {
+                variant,
+                estimate: estimate(rows, off, particles > 0),
+                scores: Scores {
+                    wmse_mm: Some(1e3 * off),
+                    wmse_occluded_mm: Some(2e3 * off),
+                    ..Scores::default()
+                },
+                unsolved: 0,
             },
-            unsolved: 0,
-            saw_all: off < 1e-4,
             cloud: if particles > 0 {
                 (0..rows).map(cloud).collect()
             } else {
@@ -155,7 +159,7 @@ pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize)
             },
         }
     };
-    Episode {
+    ReportedExperiment {
         name: name.to_owned(),
         what: format!("a disc pushes a square ({name})"),
         setup,
@@ -183,17 +187,12 @@ pub fn episode<'a>(name: &str, setup: &'a Setup, log: &'a Log, particles: usize)
             .collect(),
         first_fixel: log.time.get(dark).copied(),
         friction: [Some(0.35), Some(0.2), None, Some(0.021)],
-        methods: vec![
-            method("nominal simulation", Colour::GREY, 4e-3, 0),
-            method("Kalman filter", Colour::ORANGE, 4e-2, 0),
-            method(
-                "particle filter without touch",
-                Colour::SKY,
-                1e-3,
-                particles,
-            ),
-            method("particle filter", Colour::VERMILLION, 2e-4, particles),
-            method("particle filter, camera on", Colour::GREEN, 5e-5, 0),
+        runs: vec![
+            run(Variant::Nominal, 4e-3, 0),
+            run(Variant::Kalman, 4e-2, 0),
+            run(Variant::ParticleNoTouch, 1e-3, particles),
+            run(Variant::Particle, 2e-4, particles),
+            run(Variant::ParticleCameraOn, 5e-5, 0),
         ],
     }
 }

@@ -1,8 +1,9 @@
 //! From estimates to curves: [`pose_errors`], [`friction_panels`], and [`Curve::over_runs`] for
 //! many seeds.
 
-use stickslip::dynamics::Friction;
-use stickslip::{Estimate, Reference, quantile};
+use stickslip::dynamics::{Friction, Pose};
+use stickslip::{Estimate, quantile};
+use stickslip_evaluation::Reference;
 
 use crate::colour::{Colour, Line};
 use crate::time_figure::{Curve, Level, Panel};
@@ -33,7 +34,7 @@ impl PoseError {
 #[must_use]
 pub fn pose_errors(estimate: &Estimate, reference: &Reference) -> Vec<PoseError> {
     let rows = reference.time.iter().zip(&reference.pose);
-    let error = |(time, truth): (&f64, &Option<stickslip::dynamics::Pose>)| {
+    let error = |(time, truth): (&f64, &Option<Pose>)| {
         let pair = truth.zip(estimate.pose_at(time - reference.latency));
         let [x_mm, y_mm, turn_deg] = pair.map_or([f64::NAN; 3], |(truth, guess)| {
             [
@@ -100,84 +101,103 @@ impl Curve {
     }
 }
 
-/// The friction parameters of one estimate, a panel each with a band of one standard deviation to
-/// either side: μ_s, μ_p, μ_f and, where it is a parameter, d_tri (mm); beside what the method was
-/// told and, where it is known, the truth (m).
+/// A friction parameter as figures show it.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionParameter {
+    /// Label of its axis.
+    pub label: &'static str,
+    /// Factor to the unit shown.
+    pub unit: f64,
+    /// Its value (SI).
+    pub of: fn(&Friction) -> f64,
+}
+
+/// The four parameters; d_tri is the last one, which is none where the feet are known.
+pub const FRICTION_PARAMETERS: [FrictionParameter; 4] = [
+    FrictionParameter {
+        label: "μ_s",
+        unit: 1.0,
+        of: |friction| friction.mu_s,
+    },
+    FrictionParameter {
+        label: "μ_p",
+        unit: 1.0,
+        of: |friction| friction.mu_p,
+    },
+    FrictionParameter {
+        label: "μ_f",
+        unit: 1.0,
+        of: |friction| friction.mu_f,
+    },
+    FrictionParameter {
+        label: "d_tri (mm)",
+        unit: 1e3,
+        of: |friction| friction.d_tri,
+    },
+];
+
+/// A panel for each parameter: the curve that `curve` draws, the nominal value and, where it is
+/// known, the truth (SI).
 #[must_use]
 pub fn friction_panels(
-    name: &str,
-    colour: Colour,
-    estimate: &Estimate,
-    told: &Friction,
+    parameters: &[FrictionParameter],
+    nominal: &Friction,
     truth: &[Option<f64>; 4],
+    curve: impl Fn(&FrictionParameter) -> Curve,
 ) -> Vec<Panel> {
-    let parameter = |index: usize| {
-        let (label, unit) = PARAMETERS[index];
-        let rows = estimate.time.iter().zip(&estimate.rows);
-        let values = rows.map(|(time, row)| {
-            let value = |friction: Option<Friction>| {
-                friction.map_or(f64::NAN, |friction| unit * of(&friction)[index])
-            };
-            [
-                *time,
-                value(row.friction),
-                value(row.spread.and_then(|spread| spread.friction)),
-            ]
-        });
-        let values: Vec<[f64; 3]> = values.collect();
-        let level = |name: &str, value: f64, line| Level {
+    let panel = |(parameter, truth): (&FrictionParameter, &Option<f64>)| {
+        let level = |name: &str, value: f64, line: Line| Level {
             name: name.to_owned(),
-            value: unit * value,
+            value: parameter.unit * value,
             colour: Colour::INK,
             line,
         };
-        let truth = truth[index].map(|value| level("truth", value, Line::Solid));
-        let band = values
-            .iter()
-            .map(|[time, mean, std]| [*time, mean - std, mean + std])
-            .collect();
+        let truth = truth.map(|value| level("truth", value, Line::Solid));
+        let nominal = level("nominal", (parameter.of)(nominal), Line::Dashed);
         Panel {
-            label: label.to_owned(),
-            curves: vec![Curve {
-                band,
-                ..Curve::new(
-                    name,
-                    colour,
-                    values
-                        .iter()
-                        .map(|[time, mean, _]| [*time, *mean])
-                        .collect(),
-                )
-            }],
-            levels: truth
-                .into_iter()
-                .chain([level("told", of(told)[index], Line::Dashed)])
-                .collect(),
+            label: parameter.label.to_owned(),
+            curves: vec![curve(parameter)],
+            levels: truth.into_iter().chain([nominal]).collect(),
             ..Panel::default()
         }
     };
-    (0..if estimate.has_tripod { 4 } else { 3 })
-        .map(parameter)
-        .collect()
+    parameters.iter().zip(truth).map(panel).collect()
 }
 
-/// Names of the parameters and the factor to the units that they are shown in.
-const PARAMETERS: [(&str, f64); 4] = [
-    ("μ_s", 1.0),
-    ("μ_p", 1.0),
-    ("μ_f", 1.0),
-    ("d_tri (mm)", 1e3),
-];
+impl FrictionParameter {
+    /// A value in the unit shown; NaN where there is none, which leaves a gap.
+    #[must_use]
+    pub fn shown(&self, friction: Option<Friction>) -> f64 {
+        friction.map_or(f64::NAN, |friction| self.unit * (self.of)(&friction))
+    }
+}
 
-fn of(friction: &Friction) -> [f64; 4] {
-    [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri]
+/// A parameter of one estimate with a band of one standard deviation to either side.
+pub(crate) fn friction_curve(
+    name: &str,
+    colour: Colour,
+    estimate: &Estimate,
+    parameter: &FrictionParameter,
+) -> Curve {
+    let rows = estimate.time.iter().zip(&estimate.rows);
+    let values = rows.map(|(time, row)| {
+        let std = row.spread.and_then(|spread| spread.friction);
+        [*time, parameter.shown(row.friction), parameter.shown(std)]
+    });
+    let (points, band) = values
+        .map(|[time, mean, std]| ([time, mean], [time, mean - std, mean + std]))
+        .unzip();
+    Curve {
+        band,
+        ..Curve::new(name, colour, points)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use stickslip::EstimateRow;
-    use stickslip::dynamics::Pose;
+
+    use super::*;
 
     #[test]
     fn pose_errors_are_in_mm_and_on_the_circle() {

@@ -1,15 +1,15 @@
-//! Single camera images of a recording, to draw poses on: [`Still`].
+//! Single camera images of a replicate, to draw poses on: [`CameraView`], [`Frame`].
 
 use anyhow::Result;
 use stickslip::dynamics::Pose;
+use stickslip_evaluation::paper::Replicate;
 use stickslip_rendering::{
     CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video, encode_png,
 };
 use stickslip_report::{Body, CameraImage, Colour, Drawing, Overlay};
 
-use super::footage::motion;
-use super::recording::Recording;
-use crate::film_set::FilmSet;
+use super::filmed::motion;
+use crate::camera_setup::CameraSetup;
 
 /// Height of the object's upper face (m), where outlines are drawn.
 const FACE: f64 = 0.020;
@@ -18,42 +18,42 @@ const WIDTH: f64 = 330.0;
 /// Room about the bodies in a picture (px).
 const ROOM: f64 = 28.0;
 
-/// A recording before a camera.
+/// A replicate with a camera over it.
 #[derive(Debug)]
-pub struct Still<'a> {
-    recording: &'a Recording,
+pub struct CameraView<'a> {
+    replicate: &'a Replicate,
     motion: RecordedMotion,
-    set: FilmSet,
+    setup: CameraSetup,
 }
 
 /// One of its images.
 #[derive(Debug)]
-pub struct StillFrame<'a> {
-    still: &'a Still<'a>,
+pub struct Frame<'a> {
+    camera: &'a CameraView<'a>,
     row: usize,
     png: Vec<u8>,
 }
 
-impl<'a> Still<'a> {
-    /// Puts a camera before a recording.
-    pub fn new(recording: &'a Recording) -> Result<Self> {
-        let motion = motion(recording);
-        let scene = &recording.experiment.setup.scene;
-        let set = FilmSet::new(
+impl<'a> CameraView<'a> {
+    /// Puts a camera over a replicate.
+    pub fn new(replicate: &'a Replicate) -> Result<Self> {
+        let motion = motion(replicate);
+        let scene = &replicate.experiment.setup.scene;
+        let setup = CameraSetup::new(
             scene,
             std::slice::from_ref(&motion),
             Optics::default(),
-            recording.seed,
+            replicate.seed,
         )?;
         Ok(Self {
-            recording,
+            replicate,
             motion,
-            set,
+            setup,
         })
     }
 
     /// The image of a row of the log.
-    pub fn frame(&'a self, row: usize) -> StillFrame<'a> {
+    pub fn frame(&'a self, row: usize) -> Frame<'a> {
         let settings = CaptureSettings {
             exposure: 0.0,
             grabber: FrameGrabber {
@@ -61,15 +61,15 @@ impl<'a> Still<'a> {
                 seed: 0,
             },
             covered: 0..0,
-            hand_height: self.set.hand_height,
+            hand_height: self.setup.hand_height,
         };
         let film = Video {
-            renderer: &self.set.renderer,
+            renderer: &self.setup.renderer,
             motion: &self.motion,
             settings,
         };
-        StillFrame {
-            still: self,
+        Frame {
+            camera: self,
             row,
             png: encode_png(&film.frame(row)),
         }
@@ -78,7 +78,7 @@ impl<'a> Still<'a> {
     /// Where a point of the object's upper face is seen, from the image's left and upper edge (px).
     fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         // pixels are numbered by their centres
-        self.set
+        self.setup
             .renderer
             .camera()
             .project([x, y, FACE])
@@ -87,7 +87,7 @@ impl<'a> Still<'a> {
 
     /// The part of the image with object, pusher and fixels in it: two corners (px).
     fn view(&self, row: usize) -> [[f64; 2]; 2] {
-        let scene = &self.recording.experiment.setup.scene;
+        let scene = &self.replicate.experiment.setup.scene;
         let fixels = scene
             .fixels
             .iter()
@@ -110,20 +110,20 @@ impl<'a> Still<'a> {
     }
 }
 
-impl StillFrame<'_> {
+impl Frame<'_> {
     /// The image with the object's outline at a pose on it.
     pub fn with(&self, title: &str, pose: Option<Pose>, colour: Colour) -> Result<Drawing> {
-        let shape = &self.still.recording.experiment.setup.scene.object.shape;
+        let shape = &self.camera.replicate.experiment.setup.scene.object.shape;
         let body = pose.map(|pose| Body::new("", shape, &pose, colour).filled(0.25));
         let overlay = Overlay {
             title: title.to_owned(),
             bodies: body.into_iter().collect(),
-            view: Some(self.still.view(self.row)),
+            view: Some(self.camera.view(self.row)),
             width: WIDTH,
         };
         Ok(overlay.drawing_on(&CameraImage {
             png: &self.png,
-            pixel: &|point| Some(self.still.pixel(point)),
+            pixel: &|point| Some(self.camera.pixel(point)),
         })?)
     }
 }

@@ -1,104 +1,113 @@
-//! The paper's tables as printed: [`TABLES`].
+//! The paper's tables as printed: [`PUBLISHED`].
 
-use super::participant::{
-    BLIND, BLIND_OPEN, KALMAN, KALMAN_OPEN, NOMINAL, Participant, TACTILE, TACTILE_OPEN,
+use super::scenes::PaperExperiment;
+use crate::variant::Variant::{
+    self, Kalman, KalmanCameraOn, Nominal, Particle, ParticleCameraOn, ParticleNoTouch,
+    ParticleNoTouchCameraOn,
 };
-use crate::paper::PaperExperiment;
 
 /// A printed table.
 #[derive(Clone, Copy, Debug)]
-pub struct PrintedTable {
+pub struct PublishedTable {
     /// Its number.
     pub name: &'static str,
     /// Its rows.
-    pub rows: &'static [PrintedRow],
+    pub rows: &'static [PublishedRow],
 }
 
 /// A printed row.
 #[derive(Clone, Copy, Debug)]
-pub struct PrintedRow {
+pub struct PublishedRow {
     /// Its title.
     pub title: &'static str,
     /// The experiment.
     pub experiment: PaperExperiment,
-    /// WMSE (mm) by method, in the paper's order.
-    pub cells: &'static [(Participant, f64)],
+    /// WMSE (mm) by variant, in the paper's order.
+    pub cells: &'static [(Variant, f64)],
 }
 
 /// Tables II, III and IV.
-pub const TABLES: [PrintedTable; 3] = [
-    PrintedTable {
+pub const PUBLISHED: [PublishedTable; 3] = [
+    PublishedTable {
         name: "Table II",
         rows: &[
-            PrintedRow {
+            PublishedRow {
                 title: "A, no visual occlusion",
                 experiment: PaperExperiment::A,
                 cells: &[
-                    (NOMINAL, 4.8078),
-                    (BLIND_OPEN, 0.1950),
-                    (KALMAN_OPEN, 0.2549),
+                    (Nominal, 4.8078),
+                    (ParticleNoTouchCameraOn, 0.1950),
+                    (KalmanCameraOn, 0.2549),
                 ],
             },
-            PrintedRow {
+            PublishedRow {
                 title: "A, visual occlusion",
                 experiment: PaperExperiment::A,
-                cells: &[(NOMINAL, 4.8078), (BLIND, 0.1905), (KALMAN, 17.7117)],
+                cells: &[
+                    (Nominal, 4.8078),
+                    (ParticleNoTouch, 0.1905),
+                    (Kalman, 17.7117),
+                ],
             },
         ],
     },
-    PrintedTable {
+    PublishedTable {
         name: "Table III",
-        rows: &[PrintedRow {
+        rows: &[PublishedRow {
             title: "B, slides and ends on three fixels",
             experiment: PaperExperiment::B,
-            cells: &[(NOMINAL, 3.9990), (BLIND, 6.7502), (TACTILE, 1.3301)],
+            cells: &[
+                (Nominal, 3.9990),
+                (ParticleNoTouch, 6.7502),
+                (Particle, 1.3301),
+            ],
         }],
     },
-    PrintedTable {
+    PublishedTable {
         name: "Table IV",
         rows: &[
-            PrintedRow {
+            PublishedRow {
                 title: "1, contact with a fixel and slide",
                 experiment: PaperExperiment::First,
                 cells: &[
-                    (NOMINAL, 9.9906),
-                    (KALMAN, 40.5436),
-                    (BLIND, 14.2866),
-                    (TACTILE, 0.3754),
-                    (TACTILE_OPEN, 0.4326),
+                    (Nominal, 9.9906),
+                    (Kalman, 40.5436),
+                    (ParticleNoTouch, 14.2866),
+                    (Particle, 0.3754),
+                    (ParticleCameraOn, 0.4326),
                 ],
             },
-            PrintedRow {
+            PublishedRow {
                 title: "2, contact with a fixel and slide",
                 experiment: PaperExperiment::Second,
                 cells: &[
-                    (NOMINAL, 32.8811),
-                    (KALMAN, 56.0046),
-                    (BLIND, 39.6202),
-                    (TACTILE, 2.2959),
-                    (TACTILE_OPEN, 0.2572),
+                    (Nominal, 32.8811),
+                    (Kalman, 56.0046),
+                    (ParticleNoTouch, 39.6202),
+                    (Particle, 2.2959),
+                    (ParticleCameraOn, 0.2572),
                 ],
             },
-            PrintedRow {
+            PublishedRow {
                 title: "3, contact with a fixel and stop",
                 experiment: PaperExperiment::Third,
                 cells: &[
-                    (NOMINAL, 1.4412),
-                    (KALMAN, 4.5666),
-                    (BLIND, 0.6282),
-                    (TACTILE, 1.3973),
-                    (TACTILE_OPEN, 0.3876),
+                    (Nominal, 1.4412),
+                    (Kalman, 4.5666),
+                    (ParticleNoTouch, 0.6282),
+                    (Particle, 1.3973),
+                    (ParticleCameraOn, 0.3876),
                 ],
             },
-            PrintedRow {
+            PublishedRow {
                 title: "4, contact with a fixel and stop",
                 experiment: PaperExperiment::Fourth,
                 cells: &[
-                    (NOMINAL, 0.584),
-                    (KALMAN, 21.8527),
-                    (BLIND, 0.4534),
-                    (TACTILE, 0.336),
-                    (TACTILE_OPEN, 0.3739),
+                    (Nominal, 0.584),
+                    (Kalman, 21.8527),
+                    (ParticleNoTouch, 0.4534),
+                    (Particle, 0.336),
+                    (ParticleCameraOn, 0.3739),
                 ],
             },
         ],
@@ -132,7 +141,7 @@ mod tests {
     fn tables_hold_the_numbers_of_the_paper() {
         let page =
             std::fs::read_to_string(data_root().unwrap().join("../paper/tables.md")).unwrap();
-        let ours: Vec<f64> = TABLES
+        let ours: Vec<f64> = PUBLISHED
             .iter()
             .flat_map(|table| table.rows)
             .flat_map(|row| row.cells)

@@ -1,4 +1,4 @@
-//! A scene before a camera, with tags and calibration board: [`FilmSet`].
+//! A scene before a camera, with tags and calibration board: [`CameraSetup`].
 
 use anyhow::Result;
 use image::GrayImage;
@@ -29,8 +29,8 @@ const THICKNESS: f64 = 0.003;
 
 /// A scene before a camera.
 #[derive(Clone, Debug)]
-pub struct FilmSet {
-    /// The camera before the scene.
+pub struct CameraSetup {
+    /// The camera before the stage.
     pub renderer: Renderer,
     /// Which tag is on which body, and where.
     pub tags: Tags,
@@ -40,14 +40,14 @@ pub struct FilmSet {
 
 /// A recording of the calibration board.
 #[derive(Clone, Debug)]
-pub struct BoardFilm {
+pub struct BoardFrames {
     print: rendering::Board,
     poses: Vec<BoardPose>,
     /// How the board lies in the first frame.
     pub on_table: BoardOnTable,
 }
 
-impl FilmSet {
+impl CameraSetup {
     /// A camera that sees all that happens in `recordings`; `seed` is that of all noise.
     pub fn new(
         scene: &Scene,
@@ -81,7 +81,7 @@ impl FilmSet {
     }
 
     /// The calibration board in `count` poses.
-    pub fn board(&self, count: usize) -> Result<BoardFilm> {
+    pub fn board(&self, count: usize) -> Result<BoardFrames> {
         let tags = BOARD.tags().map(cells).collect();
         let print = rendering::Board {
             columns: usize::from(BOARD.columns),
@@ -91,7 +91,7 @@ impl FilmSet {
         };
         let poses = calibration_poses(self.renderer.camera(), &print, THICKNESS, count)?;
         let [x, y, _] = poses[0].origin;
-        Ok(BoardFilm {
+        Ok(BoardFrames {
             print,
             poses,
             on_table: BoardOnTable {
@@ -103,17 +103,18 @@ impl FilmSet {
     }
 }
 
-impl BoardFilm {
+impl BoardFrames {
     /// Every frame, made into something on any thread.
     pub fn frames<T: Send>(
         &self,
-        set: &FilmSet,
+        setup: &CameraSetup,
         make: impl Fn(usize, GrayImage) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         let frame = |(index, pose): (usize, &BoardPose)| {
             make(
                 index,
-                set.renderer
+                setup
+                    .renderer
                     .board_frame(BOARD_FRAMES + index as u64, &self.print, pose),
             )
         };
@@ -127,7 +128,7 @@ fn cells(id: u16) -> rendering::TagCells {
 
 fn tags(appearance: &Appearance) -> Tags {
     let of = |id: u16, mount: &Option<TagMount>| {
-        let TagMount { tag, pose, height } = mount.expect("the standard appearance has both tags");
+        let TagMount { tag, pose, height } = mount.expect("the standard appearance have both tags");
         BodyTag {
             id,
             place: TagPlace {

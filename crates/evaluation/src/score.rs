@@ -1,13 +1,13 @@
-//! How far an estimate is from a reference: [`Scores`] (WMSE and final errors, formats.md
-//! "Scoring").
+//! How far an estimate is from a reference: [`Scores`].
+//!
+//! The main score is the weighted root mean square error of the pose, √(mean(Δx² + Δy² + r_v² Δθ²)),
+//! which the paper, and the scores' names after it, call WMSE.
 
-use stickslip_dynamics::Pose;
+use std::ops::Range;
 
-use crate::Trajectory;
-use crate::angle::wrapped;
-use crate::estimate::Estimate;
-use crate::log::Log;
-use crate::setup::Camera;
+use stickslip::dynamics::Pose;
+use stickslip::{Camera, Estimate, Log, wrapped};
+use stickslip_formats::Experiment;
 
 /// Standard deviation of an object position where no camera is described (m).
 const POSITION_STD: f64 = 3e-4;
@@ -32,8 +32,36 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The poses of a log itself, hidden ones included, as `camera` measures them.
-    pub fn of_log(log: &Log, camera: Option<&Camera>) -> Self {
+    /// What estimates of an experiment are scored against: the truth at the log's times, linear
+    /// between its rows; without a truth the log's own poses, hidden ones included.
+    #[must_use]
+    pub fn of(experiment: &Experiment) -> Self {
+        let Experiment {
+            setup,
+            log,
+            truth,
+            facts,
+        } = experiment;
+        let reference = match truth {
+            Some(truth) => {
+                let trajectory = truth.trajectory();
+                Self {
+                    time: log.time.clone(),
+                    pose: log.time.iter().map(|t| trajectory.pose_at(*t)).collect(),
+                    latency: 0.0,
+                    first_pusher_contact: None,
+                    rest: REST,
+                }
+            }
+            None => Self::of_log(log, setup.camera.as_ref()),
+        };
+        Self {
+            first_pusher_contact: facts.first_pusher_contact,
+            ..reference
+        }
+    }
+
+    fn of_log(log: &Log, camera: Option<&Camera>) -> Self {
         let position_std = camera.map_or(POSITION_STD, |camera| camera.position_std);
         Self {
             time: log.time.clone(),
@@ -43,29 +71,20 @@ impl Reference {
             rest: (4.0 * position_std).max(REST),
         }
     }
-
-    /// The exact motion at the rows of a log; rows outside it have no pose.
-    pub fn of_truth(log: &Log, truth: Trajectory<'_>) -> Self {
-        let pose = log.time.iter().map(|time| truth.pose_at(*time)).collect();
-        Self {
-            time: log.time.clone(),
-            pose,
-            latency: 0.0,
-            first_pusher_contact: None,
-            rest: REST,
-        }
-    }
 }
 
 /// Scores of one run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scores {
-    /// WMSE over all scored rows (mm).
+    /// Weighted RMSE over all scored rows (mm).
     pub wmse_mm: Option<f64>,
-    /// WMSE over the rows whose pose was hidden (mm).
+    /// The same over the rows whose pose was hidden (mm).
     pub wmse_occluded_mm: Option<f64>,
-    /// WMSE from the first pusher contact to the last motion of the reference (mm).
+    /// The same from the first pusher contact to the last motion of the reference (mm).
     pub wmse_moving_mm: Option<f64>,
+    /// What `wmse_occluded_mm` would be if the estimate's own standard deviations told the truth
+    /// (mm): root of the mean variance over the hidden rows.
+    pub spread_occluded_mm: Option<f64>,
     /// Distance of the last scored positions (mm).
     pub final_error_mm: Option<f64>,
     /// Difference of the last scored angles, on the circle (degrees).
@@ -90,13 +109,14 @@ pub fn score(
             .enumerate()
             .filter(|(row, _)| keep(*row))
             .filter_map(|(_, error)| *error);
-        wmse(kept, virtual_radius)
+        weighted_rmse(kept, virtual_radius)
     };
     let last = errors.iter().rev().flatten().next();
     Scores {
         wmse_mm: over(&|_| true),
         wmse_occluded_mm: over(&|row| hidden.get(row).copied().unwrap_or(false)),
         wmse_moving_mm: over(&|row| moving.contains(&row)),
+        spread_occluded_mm: spread(estimate, hidden, virtual_radius),
         final_error_mm: last.map(|e| 1e3 * e.dx.hypot(e.dy)),
         final_error_deg: last.map(|e| e.turn.abs().to_degrees()),
     }
@@ -120,8 +140,8 @@ fn error_at(estimate: &Estimate, reference: &Reference, row: usize) -> Option<Er
     })
 }
 
-/// sqrt of the mean of dx² + dy² + r_v² dθ² [mm]; `None` over no rows.
-fn wmse(errors: impl Iterator<Item = Error>, virtual_radius: f64) -> Option<f64> {
+/// √(mean(Δx² + Δy² + r_v² Δθ²)) \[mm\]; `None` over no rows.
+fn weighted_rmse(errors: impl Iterator<Item = Error>, virtual_radius: f64) -> Option<f64> {
     let eta = virtual_radius * virtual_radius;
     let (sum, count) = errors.fold((0.0, 0), |(sum, count), e| {
         (
@@ -132,8 +152,25 @@ fn wmse(errors: impl Iterator<Item = Error>, virtual_radius: f64) -> Option<f64>
     (count > 0).then(|| 1e3 * (sum / f64::from(count)).sqrt())
 }
 
+/// Root of the mean variance over the hidden rows, angles weighted as in the error \[mm\]; `None`
+/// where no row has a spread.
+fn spread(estimate: &Estimate, hidden: &[bool], virtual_radius: f64) -> Option<f64> {
+    let eta = virtual_radius * virtual_radius;
+    let rows = estimate
+        .rows
+        .iter()
+        .zip(hidden)
+        .filter(|(_, hidden)| **hidden)
+        .filter_map(|(row, _)| Some(row.spread?.pose));
+    let (sum, count) = rows.fold((0.0, 0), |(sum, count), std| {
+        let variance = std.x * std.x + std.y * std.y + eta * std.theta * std.theta;
+        (sum + variance, count + 1)
+    });
+    (count > 0).then(|| 1e3 * (sum / f64::from(count)).sqrt())
+}
+
 /// Rows from the first pusher contact to the last motion of the reference.
-fn moving_rows(reference: &Reference, virtual_radius: f64) -> std::ops::Range<usize> {
+fn moving_rows(reference: &Reference, virtual_radius: f64) -> Range<usize> {
     let seen: Vec<(usize, Pose)> = reference
         .pose
         .iter()
@@ -160,21 +197,4 @@ fn moving_rows(reference: &Reference, virtual_radius: f64) -> std::ops::Range<us
         .map_or(0, |(row, _)| row + 1);
     let start = reference.first_pusher_contact.or(starts).unwrap_or(ends);
     start..(ends + 1).max(start)
-}
-
-impl Estimate {
-    /// The pose at `time` (s), linear between rows; `None` outside the estimated rows.
-    pub fn pose_at(&self, time: f64) -> Option<Pose> {
-        let later = self.time.partition_point(|t| *t < time);
-        let after = self.rows.get(later)?.pose;
-        if self.time.get(later) == Some(&time) || later == 0 {
-            return after.filter(|_| self.time[later] == time);
-        }
-        let (t0, t1) = (self.time[later - 1], self.time[later]);
-        Some(
-            self.rows[later - 1]
-                .pose?
-                .interpolate(after?, (time - t0) / (t1 - t0)),
-        )
-    }
 }

@@ -1,31 +1,15 @@
-//! Scores over many seeds: quantiles, [`Band`] and [`PairedDifference`].
+//! Scores over many seeds: [`Band`] and [`PairedDifference`].
 
-/// The `q`-quantile of some numbers, `q` in [0, 1], linear between order statistics: position q (n
-/// - 1) from the smallest; `None` of nothing.
-///
-/// ```
-/// # use stickslip::quantile;
-/// assert_eq!(quantile(&[4.0, 1.0, 2.0, 3.0], 0.5), Some(2.5));
-/// assert_eq!(quantile(&[], 0.5), None);
-/// ```
-#[must_use]
-pub fn quantile(values: &[f64], q: f64) -> Option<f64> {
-    let mut values = values.to_vec();
-    values.sort_by(f64::total_cmp);
-    let last = values.len().checked_sub(1)?;
-    let position = q * last as f64;
-    let lower = position.floor() as usize;
-    let upper = (lower + 1).min(last);
-    Some(values[lower] + (position - lower as f64) * (values[upper] - values[lower]))
-}
+use serde::Serialize;
+use stickslip::quantile;
 
-/// Where most of some numbers lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Median of some numbers, and the band that holds 80 % of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Band {
-    /// Their 10 % quantile.
-    pub low: f64,
     /// Their median.
     pub median: f64,
+    /// Their 10 % quantile.
+    pub low: f64,
     /// Their 90 % quantile.
     pub high: f64,
 }
@@ -46,7 +30,7 @@ impl Band {
 /// By how much one method's scores are above another's, seed by seed.
 ///
 /// Scores of methods that lose the object now and then have heavy tails, so that the median of the
-/// differences is told, not their mean.
+/// differences is reported, not their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairedDifference {
     /// Median of a - b over the pairs, in the scores' unit.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use stickslip::dynamics::Pose;
 use stickslip::{Camera, Log};
-use stickslip_rendering::RecordedMotion;
+use stickslip_formats::Truth;
 
 /// What no tracked pose is taken to be better than (m, rad): the bias that tracking may have,
 /// docs/guide/camera.md. Frames have it in common, so that a filter must not average it away.
@@ -12,13 +12,13 @@ const BIAS: [f64; 2] = [5e-5, 0.05 * std::f64::consts::PI / 180.0];
 /// Sums of squared errors of tracked poses.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Noise {
-    object: Errors,
-    pusher: Errors,
+    object: SquaredErrors,
+    pusher: SquaredErrors,
 }
 
-/// Errors of one body.
+/// SquaredErrors of one body.
 #[derive(Clone, Copy, Debug, Default)]
-struct Errors {
+struct SquaredErrors {
     /// Sum over poses of x² + y² (m²).
     position: f64,
     /// Sum of θ² (rad²).
@@ -42,26 +42,25 @@ pub struct NoiseLevel {
     pub seen: f64,
 }
 
-impl Errors {
-    fn of(tracked: &[Option<Pose>], truth: impl Iterator<Item = Option<Pose>>) -> Self {
+impl SquaredErrors {
+    fn of(tracked: &[Option<Pose>], truth: &[Pose]) -> Self {
         let pairs = tracked.iter().zip(truth);
-        let errors =
-            pairs
-                .filter_map(|(tracked, truth)| tracked.zip(truth))
-                .map(|(tracked, truth)| {
-                    let turn = libm::remainder(tracked.theta - truth.theta, std::f64::consts::TAU);
-                    [(tracked.x - truth.x), (tracked.y - truth.y), turn]
-                });
         let none = Self {
             frames: tracked.len() as u32,
             ..Self::default()
         };
-        errors.fold(none, |sum, [x, y, turn]| Self {
-            position: sum.position + x * x + y * y,
-            angle: sum.angle + turn * turn,
-            poses: sum.poses + 1,
-            ..sum
-        })
+        pairs
+            .filter_map(|(tracked, truth)| Some(((*tracked)?, truth)))
+            .fold(none, |sum, (tracked, truth)| {
+                let turn = libm::remainder(tracked.theta - truth.theta, std::f64::consts::TAU);
+                let [x, y] = [tracked.x - truth.x, tracked.y - truth.y];
+                Self {
+                    position: sum.position + x * x + y * y,
+                    angle: sum.angle + turn * turn,
+                    poses: sum.poses + 1,
+                    ..sum
+                }
+            })
     }
 
     fn with(self, other: Self) -> Self {
@@ -84,15 +83,17 @@ impl Errors {
 }
 
 impl Noise {
-    /// The errors of a log's poses.
-    pub fn of(log: &Log, truth: &RecordedMotion) -> Self {
+    /// The errors of a log's poses; `truth` has a row for each of the log's.
+    #[must_use]
+    pub fn of(log: &Log, truth: &Truth) -> Self {
         Self {
-            object: Errors::of(&log.object, truth.object.iter().map(|pose| Some(*pose))),
-            pusher: Errors::of(&log.pusher, truth.pusher.iter().copied()),
+            object: SquaredErrors::of(&log.object, &truth.pose),
+            pusher: SquaredErrors::of(&log.pusher, &truth.pusher),
         }
     }
 
     /// Both together.
+    #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self {
             object: self.object.with(other.object),
@@ -101,6 +102,7 @@ impl Noise {
     }
 
     /// A camera of this noise.
+    #[must_use]
     pub fn camera(&self) -> Camera {
         let ([position_std, orientation_std], [pusher_position_std, pusher_orientation_std]) =
             (self.object.level(), self.pusher.level());
@@ -113,8 +115,9 @@ impl Noise {
         }
     }
 
-    /// What the methods are told of the camera.
-    pub fn told(&self) -> Camera {
+    /// The camera that the methods reckon with: no less noisy than tracking may be biased.
+    #[must_use]
+    pub fn given_camera(&self) -> Camera {
         let camera = self.camera();
         let [position, angle] = BIAS;
         Camera {
@@ -127,6 +130,7 @@ impl Noise {
     }
 
     /// For tables.
+    #[must_use]
     pub fn level(&self) -> NoiseLevel {
         let camera = self.camera();
         NoiseLevel {
@@ -144,11 +148,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn methods_are_told_no_less_than_the_bias_of_tracking() {
-        let told = Noise::default().told();
-        assert_eq!([told.position_std, told.pusher_position_std], [5e-5; 2]);
+    fn methods_are_given_no_less_than_the_bias_of_tracking() {
+        let given = Noise::default().given_camera();
+        assert_eq!([given.position_std, given.pusher_position_std], [5e-5; 2]);
         assert_eq!(
-            [told.orientation_std, told.pusher_orientation_std]
+            [given.orientation_std, given.pusher_orientation_std]
                 .map(|std| (std.to_degrees() * 1e6).round()),
             [5e4; 2]
         );
@@ -156,10 +160,11 @@ mod tests {
 
     #[test]
     fn noise_is_the_root_mean_square_of_poses_that_are_there() {
-        let truth = RecordedMotion {
+        let truth = Truth {
             time: vec![0.0, 1.0, 2.0],
-            object: vec![Pose::default(); 3],
-            pusher: vec![Some(Pose::new(1.0, 1.0, 3.1)); 3],
+            pose: vec![Pose::default(); 3],
+            pusher: vec![Pose::new(1.0, 1.0, 3.1); 3],
+            ..Truth::default()
         };
         let log = Log {
             time: truth.time.clone(),

@@ -1,9 +1,9 @@
-//! The paper's order of two methods, and ours: [`Standing`].
+//! The paper's order of two variants, and ours: [`PairedComparison`].
 
 use serde::Serialize;
-use stickslip::{Direction, PairedDifference};
 
-use super::participant::Participant;
+use crate::statistics::{Direction, PairedDifference};
+use crate::variant::Variant;
 
 /// Standard errors that a difference must exceed to count.
 pub const CLEAR: f64 = 2.0;
@@ -20,16 +20,16 @@ pub enum Finding {
     Reversed,
 }
 
-/// Two methods of a row that the paper puts in an order.
+/// Two variants of a row that the paper puts in an order, compared seed by seed.
 #[derive(Clone, Debug, Serialize)]
-pub struct Standing {
+pub struct PairedComparison {
     /// The better one in the paper.
     pub better: &'static str,
     /// The worse one there.
     pub worse: &'static str,
     /// Their numbers there (mm).
     pub paper_mm: [f64; 2],
-    /// The better one's WMSE less the worse one's, median over seeds (mm).
+    /// The better one's weighted RMSE less the worse one's, median over seeds (mm).
     pub difference_mm: f64,
     /// Standard error of that median (mm); null for fewer than six seeds.
     pub standard_error_mm: f64,
@@ -37,21 +37,18 @@ pub struct Standing {
     pub finding: Finding,
 }
 
-/// A method in a row: its number in the paper and its scores by seed (mm).
+/// A variant in a row: its number in the paper and its scores (mm), seed by seed.
 #[derive(Clone, Debug)]
-pub struct Entrant {
-    /// The method.
-    pub participant: Participant,
-    /// Its number in the paper.
+pub(super) struct SeedScores {
+    pub variant: Variant,
     pub paper_mm: f64,
-    /// Its scores, seed by seed.
     pub scores: Vec<f64>,
 }
 
-impl Standing {
+impl PairedComparison {
     /// All pairs of a row, the best of the paper first.
-    pub fn all(entrants: &[Entrant]) -> Vec<Self> {
-        let mut ranked: Vec<&Entrant> = entrants.iter().collect();
+    pub(super) fn all(row: &[SeedScores]) -> Vec<Self> {
+        let mut ranked: Vec<&SeedScores> = row.iter().collect();
         ranked.sort_by(|a, b| a.paper_mm.total_cmp(&b.paper_mm));
         let pairs = ranked
             .iter()
@@ -62,7 +59,7 @@ impl Standing {
             .collect()
     }
 
-    fn of(better: &Entrant, worse: &Entrant) -> Option<Self> {
+    fn of(better: &SeedScores, worse: &SeedScores) -> Option<Self> {
         let difference = PairedDifference::of(&better.scores, &worse.scores)?;
         let finding = match difference.direction(CLEAR) {
             Direction::Below => Finding::Holds,
@@ -70,8 +67,8 @@ impl Standing {
             Direction::Above => Finding::Reversed,
         };
         Some(Self {
-            better: better.participant.key(),
-            worse: worse.participant.key(),
+            better: better.variant.paper_key(),
+            worse: worse.variant.paper_key(),
             paper_mm: [better.paper_mm, worse.paper_mm],
             difference_mm: difference.median,
             standard_error_mm: difference.standard_error,
@@ -82,27 +79,28 @@ impl Standing {
 
 #[cfg(test)]
 mod tests {
-    use super::super::participant::{KALMAN, NOMINAL, TACTILE};
     use super::*;
 
-    fn entrant(participant: Participant, paper_mm: f64, score: impl Fn(usize) -> f64) -> Entrant {
-        Entrant {
-            participant,
+    fn scores(variant: Variant, paper_mm: f64, score: impl Fn(usize) -> f64) -> SeedScores {
+        SeedScores {
+            variant,
             paper_mm,
             scores: (0..8).map(score).collect(),
         }
     }
 
     #[test]
-    fn standings_compare_seed_by_seed_in_the_papers_order() {
+    fn pairs_compare_seed_by_seed_in_the_papers_order() {
         // the large spread over seeds is shared by two of them, so their small difference counts
         let rows = [
-            entrant(NOMINAL, 4.0, |seed| 10.0 * seed as f64 + 1.0),
-            entrant(KALMAN, 17.0, |seed| 10.0 * seed as f64 + 0.01 * seed as f64),
-            entrant(TACTILE, 0.2, |seed| 30.0 + (seed % 2) as f64),
+            scores(Variant::Nominal, 4.0, |seed| 10.0 * seed as f64 + 1.0),
+            scores(Variant::Kalman, 17.0, |seed| {
+                10.0 * seed as f64 + 0.01 * seed as f64
+            }),
+            scores(Variant::Particle, 0.2, |seed| 30.0 + (seed % 2) as f64),
         ];
-        let standings = Standing::all(&rows);
-        let order: Vec<[&str; 2]> = standings.iter().map(|s| [s.better, s.worse]).collect();
+        let pairs = PairedComparison::all(&rows);
+        let order: Vec<[&str; 2]> = pairs.iter().map(|pair| [pair.better, pair.worse]).collect();
         assert_eq!(
             order,
             [
@@ -111,25 +109,22 @@ mod tests {
                 ["nominal", "kalman"]
             ]
         );
-        assert_eq!(standings[2].finding, Finding::Reversed);
-        assert!(
-            (standings[2].difference_mm - 0.965).abs() < 1e-12,
-            "{standings:?}"
-        );
+        assert_eq!(pairs[2].finding, Finding::Reversed);
+        assert!((pairs[2].difference_mm - 0.965).abs() < 1e-12, "{pairs:?}");
         assert_eq!(
-            (standings[0].finding, standings[1].finding),
+            (pairs[0].finding, pairs[1].finding),
             (Finding::Unclear, Finding::Unclear)
         );
-        assert_eq!(standings[0].paper_mm, [0.2, 4.0]);
+        assert_eq!(pairs[0].paper_mm, [0.2, 4.0]);
     }
 
     #[test]
-    fn standing_of_one_seed_is_unclear() {
-        let rows = [NOMINAL, KALMAN].map(|participant| Entrant {
-            participant,
+    fn comparison_of_one_seed_is_unclear() {
+        let rows = [Variant::Nominal, Variant::Kalman].map(|variant| SeedScores {
+            variant,
             paper_mm: 1.0,
             scores: vec![3.0],
         });
-        assert_eq!(Standing::all(&rows)[0].finding, Finding::Unclear);
+        assert_eq!(PairedComparison::all(&rows)[0].finding, Finding::Unclear);
     }
 }

@@ -1,38 +1,30 @@
-//! The scenes of the paper's six experiments, inside the program: [`PaperScene`].
-
-use clap::ValueEnum;
+//! The paper's six experiments: [`PaperExperiment`] and its [`PaperScene`].
 
 macro_rules! embedded {
     ($name:literal, $story:literal) => {
         PaperScene {
             name: concat!("paper/", $name),
             story: $story,
-            scene: include_str!(concat!("../scenes/", $name, "/scene.toml")),
-            truth: include_str!(concat!("../scenes/", $name, "/truth.json")),
+            scene: include_str!(concat!("../../scenes/", $name, "/scene.toml")),
+            truth: include_str!(concat!("../../scenes/", $name, "/truth.json")),
         }
     };
 }
 
 /// One of the paper's experiments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PaperExperiment {
-    /// Table II, Figures 2 to 4: jams soon after the first fixel contact
-    #[value(name = "A")]
+    /// Table II, Figures 2 to 4: jams soon after the first fixel contact.
     A,
-    /// Table III, Figures 5 to 7: slides along one fixel and ends on three
-    #[value(name = "B")]
+    /// Table III, Figures 5 to 7: slides along one fixel and ends on three.
     B,
-    /// Table IV: contact with a fixel and slide
-    #[value(name = "1")]
+    /// Table IV: contact with a fixel and slide.
     First,
-    /// Table IV: contact with a fixel and slide
-    #[value(name = "2")]
+    /// Table IV: contact with a fixel and slide.
     Second,
-    /// Table IV: contact with a fixel and stop
-    #[value(name = "3")]
+    /// Table IV: contact with a fixel and stop.
     Third,
-    /// Table IV: contact with a fixel and stop
-    #[value(name = "4")]
+    /// Table IV: contact with a fixel and stop.
     Fourth,
 }
 
@@ -61,6 +53,7 @@ impl PaperExperiment {
     ];
 
     /// Its name.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::A => "A",
@@ -73,6 +66,7 @@ impl PaperExperiment {
     }
 
     /// Its scene.
+    #[must_use]
     pub fn scene(self) -> PaperScene {
         match self {
             Self::A => embedded!("a", "the object turns on the thumb, meets a fixel and jams"),

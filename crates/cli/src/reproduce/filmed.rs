@@ -1,51 +1,51 @@
-//! An experiment from camera frames: [`Footage`] films the testbed, calibrates the camera from a
-//! board and tracks the tags, all in memory.
+//! Replicates from camera frames: a [`CalibratedCamera`] films the testbed, calibrated from a board,
+//! and tracks the tags, all in memory.
 
 use anyhow::{Context, Result};
 use image::GrayImage;
 use indicatif::ProgressBar;
 use stickslip::Log;
 use stickslip::dynamics::Pose;
+use stickslip_evaluation::REPEATS;
+use stickslip_evaluation::paper::{Noise, Replicate};
+use stickslip_formats::{Experiment, Truth};
 use stickslip_rendering::{CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video};
 use stickslip_vision::{BoardRecording, Camera, calibrate, search_board, track};
 
-use super::noise::Noise;
-use super::recording::Recording;
-use crate::film_set::FilmSet;
-use crate::simulation::REPEATS;
+use crate::camera_setup::CameraSetup;
 
 /// Time that the shutter is open (s).
 const EXPOSURE: f64 = 0.008;
 /// Frames of the calibration board.
 const BOARD_FRAMES: usize = 20;
 
-/// One experiment before a camera, calibrated once for all seeds.
+/// A camera over one experiment, calibrated once for all seeds.
 #[derive(Clone, Debug)]
-pub struct Footage {
-    set: FilmSet,
+pub struct CalibratedCamera {
+    setup: CameraSetup,
     camera: Camera,
 }
 
-/// A recording whose poses come from frames.
+/// A replicate whose poses come from frames.
 #[derive(Clone, Debug)]
 pub struct Tracked {
-    /// The recording.
-    pub recording: Recording,
+    /// The replicate.
+    pub replicate: Replicate,
     /// Tracked poses less true ones.
     pub noise: Noise,
 }
 
-impl Footage {
-    /// Puts a camera before an experiment that is recorded several times, and calibrates it.
-    pub fn new(recordings: &[&Recording], optics: Optics) -> Result<Self> {
-        let scene = &recordings[0].experiment.setup.scene;
-        let motions: Vec<RecordedMotion> = recordings
+impl CalibratedCamera {
+    /// Puts a camera over an experiment with several replicates, and calibrates it.
+    pub fn new(replicates: &[&Replicate], optics: Optics) -> Result<Self> {
+        let scene = &replicates[0].experiment.setup.scene;
+        let motions: Vec<RecordedMotion> = replicates
             .iter()
-            .map(|recording| motion(recording))
+            .map(|replicate| motion(replicate))
             .collect();
-        let set = FilmSet::new(scene, &motions, optics, 0)?;
-        let board = set.board(BOARD_FRAMES)?;
-        let frames: Vec<GrayImage> = board.frames(&set, |_, frame| Ok(frame))?;
+        let setup = CameraSetup::new(scene, &motions, optics, 0)?;
+        let board = setup.board(BOARD_FRAMES)?;
+        let frames: Vec<GrayImage> = board.frames(&setup, |_, frame| Ok(frame))?;
         let load = |index: usize| {
             Ok::<_, anyhow::Error>((format!("board frame {index}"), frames[index].clone()))
         };
@@ -53,25 +53,25 @@ impl Footage {
         let camera = calibrate(&recording, &board.on_table, 0)
             .context("calibration of the rendered camera")?
             .camera;
-        Ok(Self { set, camera })
+        Ok(Self { setup, camera })
     }
 
-    /// Films a recording and tracks it.
-    pub fn track(&self, recording: &Recording, progress: &ProgressBar) -> Result<Tracked> {
-        let experiment = &recording.experiment;
-        let motion = motion(recording);
+    /// Films a replicate and tracks it.
+    pub fn track(&self, replicate: &Replicate, progress: &ProgressBar) -> Result<Tracked> {
+        let experiment = &replicate.experiment;
+        let motion = motion(replicate);
         let grabber = FrameGrabber {
             repeat: REPEATS,
-            seed: recording.seed,
+            seed: replicate.seed,
         };
         let settings = CaptureSettings {
             exposure: EXPOSURE,
             grabber,
             covered: 0..0,
-            hand_height: self.set.hand_height,
+            hand_height: self.setup.hand_height,
         };
         let film = Video {
-            renderer: &self.set.renderer,
+            renderer: &self.setup.renderer,
             motion: &motion,
             settings,
         };
@@ -79,31 +79,27 @@ impl Footage {
             progress.inc(1);
             Ok::<_, anyhow::Error>((format!("frame {index}"), film.frame(index)))
         };
-        let tracked = track(motion.time.len(), load, &self.camera, &self.set.tags)?;
+        let tracked = track(motion.time.len(), load, &self.camera, &self.setup.tags)?;
         let log = Log {
             object: tracked.object(),
             pusher: tracked.pusher(),
             ..experiment.log.clone()
         };
-        let noise = Noise::of(&log, &motion);
-        let recording = Recording {
-            experiment: stickslip_formats::Experiment {
+        let noise = Noise::of(&log, truth(replicate));
+        let replicate = Replicate {
+            experiment: Experiment {
                 log,
                 ..experiment.clone()
             },
-            ..recording.clone()
+            ..replicate.clone()
         };
-        Ok(Tracked { recording, noise })
+        Ok(Tracked { replicate, noise })
     }
 }
 
 /// The true motion of object and pusher.
-pub fn motion(recording: &Recording) -> RecordedMotion {
-    let truth = recording
-        .experiment
-        .truth
-        .as_ref()
-        .expect("a simulated experiment has a truth");
+pub fn motion(replicate: &Replicate) -> RecordedMotion {
+    let truth = truth(replicate);
     let pusher = truth.pusher.iter().map(|pose: &Pose| Some(*pose)).collect();
     RecordedMotion {
         time: truth.time.clone(),
@@ -112,14 +108,19 @@ pub fn motion(recording: &Recording) -> RecordedMotion {
     }
 }
 
+fn truth(replicate: &Replicate) -> &Truth {
+    let truth = replicate.experiment.truth.as_ref();
+    truth.expect("a simulated experiment has a truth")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paper::PaperExperiment;
+    use stickslip_evaluation::paper::PaperExperiment;
 
-    /// The first rows of a recording.
-    fn beginning(recording: &Recording, rows: usize) -> Recording {
-        let mut short = recording.clone();
+    /// The first rows of a replicate.
+    fn beginning(replicate: &Replicate, rows: usize) -> Replicate {
+        let mut short = replicate.clone();
         let (log, truth) = (
             &mut short.experiment.log,
             short.experiment.truth.as_mut().unwrap(),
@@ -138,13 +139,13 @@ mod tests {
 
     #[test]
     fn tracked_frames_and_simulated_poses_have_equal_noise() {
-        let recording = Recording::simulate(PaperExperiment::A, 1).unwrap();
-        let short = beginning(&recording, 60);
-        let footage = Footage::new(&[&short], Optics::default()).unwrap();
+        let replicate = Replicate::simulate(PaperExperiment::A, 1).unwrap();
+        let short = beginning(&replicate, 60);
+        let camera = CalibratedCamera::new(&[&short], Optics::default()).unwrap();
         let Tracked {
-            recording: tracked,
+            replicate: tracked,
             noise,
-        } = footage.track(&short, &ProgressBar::hidden()).unwrap();
+        } = camera.track(&short, &ProgressBar::hidden()).unwrap();
         let level = noise.level();
         // docs/guide/camera.md: micrometres and hundredths of a degree
         assert!(
@@ -158,9 +159,9 @@ mod tests {
         // the other arm misses the same frames, and its errors are as large: 2 n numbers tell a
         // deviation within 1 ± 3/√(4 n)
         let simulated = tracked.with_noise(&noise).unwrap();
-        let tracked = tracked.told(noise.told());
-        let seen = |recording: &Recording| {
-            recording
+        let tracked = tracked.given(noise.given_camera());
+        let seen = |replicate: &Replicate| {
+            replicate
                 .experiment
                 .log
                 .object
@@ -170,7 +171,7 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         assert_eq!(seen(&simulated), seen(&tracked));
-        let other = Noise::of(&beginning(&simulated, 60).experiment.log, &motion(&short)).level();
+        let other = Noise::of(&beginning(&simulated, 60).experiment.log, truth(&short)).level();
         let ratio = other.object_mm / level.object_mm;
         assert!(
             (ratio - 1.0).abs() < 3.0 / (4.0_f64 * 59.0).sqrt(),
@@ -180,6 +181,6 @@ mod tests {
             simulated.experiment.setup.camera,
             tracked.experiment.setup.camera
         );
-        assert_eq!(simulated.experiment.truth, recording.experiment.truth);
+        assert_eq!(simulated.experiment.truth, replicate.experiment.truth);
     }
 }

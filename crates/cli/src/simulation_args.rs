@@ -1,0 +1,124 @@
+//! Arguments of the commands that simulate.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use stickslip_evaluation::{Physics, paper::PaperExperiment};
+
+use crate::args::{ThreadArgs, particles, positive};
+
+/// Arguments of `stickslip simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// Bodies, nominal friction and how all begins (scene.toml with a table `start`)
+    #[arg(required_unless_present = "paper", conflicts_with = "paper")]
+    pub scene: Option<PathBuf>,
+    /// One of the paper's experiments in place of a scene
+    #[arg(long, value_enum, ignore_case = true, value_name = "NAME", conflicts_with_all = ["truth", "friction_error"])]
+    pub paper: Option<PaperName>,
+    /// Write scene.toml, log.csv, truth.csv and truth.json into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// What moves the object
+    #[arg(long, value_enum, default_value_t = PhysicsName::Testbed)]
+    pub physics: PhysicsName,
+    /// Seed of all random numbers: of the rig's as of the sensors'
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Camera frames per second
+    #[arg(long, value_name = "HZ", default_value_t = 30.0, value_parser = positive)]
+    pub rate: f64,
+    /// Take mu_s, mu_p, mu_f and occlude_from from this file (truth.json) [default: the scene's
+    /// friction]
+    #[arg(long, value_name = "JSON")]
+    pub truth: Option<PathBuf>,
+    /// Draw the true friction within this share of the scene's, as 0.4
+    #[arg(long, value_name = "SHARE", conflicts_with = "truth", value_parser = share)]
+    pub friction_error: Option<f64>,
+}
+
+/// Arguments of `stickslip reproduce`.
+#[derive(Debug, Args)]
+pub struct ReproduceArgs {
+    /// Write reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html into this folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of seeds: of rigs, sensors and filters [default: 20]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub seeds: Option<u64>,
+    /// Render camera frames and track them, instead of measuring poses with the paper's noise
+    #[arg(long)]
+    pub from_frames: bool,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
+    pub particles: usize,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What moves the object of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PhysicsName {
+    /// A rig with compliant contacts, uneven friction and a drive that lags and stalls
+    Testbed,
+    /// The filter's own contact dynamics, without noise
+    Model,
+}
+
+/// One of the paper's experiments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PaperName {
+    /// Table II, Figures 2 to 4: jams soon after the first fixel contact
+    #[value(name = "A")]
+    A,
+    /// Table III, Figures 5 to 7: slides along one fixel and ends on three
+    #[value(name = "B")]
+    B,
+    /// Table IV: contact with a fixel and slide
+    #[value(name = "1")]
+    First,
+    /// Table IV: contact with a fixel and slide
+    #[value(name = "2")]
+    Second,
+    /// Table IV: contact with a fixel and stop
+    #[value(name = "3")]
+    Third,
+    /// Table IV: contact with a fixel and stop
+    #[value(name = "4")]
+    Fourth,
+}
+
+impl From<PhysicsName> for Physics {
+    fn from(name: PhysicsName) -> Self {
+        match name {
+            PhysicsName::Testbed => Self::Testbed,
+            PhysicsName::Model => Self::Model,
+        }
+    }
+}
+
+impl From<PaperName> for PaperExperiment {
+    fn from(name: PaperName) -> Self {
+        match name {
+            PaperName::A => Self::A,
+            PaperName::B => Self::B,
+            PaperName::First => Self::First,
+            PaperName::Second => Self::Second,
+            PaperName::Third => Self::Third,
+            PaperName::Fourth => Self::Fourth,
+        }
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err("must be from 0 to 1".to_owned())
+    }
+}

@@ -1,0 +1,18 @@
+//! Evaluation: what is compared ([`Variant`]), one scored run of it ([`ScoredRun`]), statistics
+//! over seeds, simulated experiments ([`Simulation`]) and the paper's evaluation ([`paper`]).
+//!
+//! Nothing here opens a file or reads a clock. The same arguments give the same bits.
+
+pub mod paper;
+mod run;
+mod score;
+mod simulation;
+mod statistics;
+mod variant;
+
+pub use run::{RunConditions, ScoredRun};
+pub use score::{Reference, Scores, score};
+pub use simulation::{Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+pub use statistics::{Band, Direction, PairedDifference};
+pub use stickslip::quantile;
+pub use variant::Variant;

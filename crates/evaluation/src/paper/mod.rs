@@ -1,0 +1,22 @@
+//! The paper's evaluation: its six experiments, its tables as printed, and ours beside them.
+//!
+//! A [`Replicate`] is one experiment with one seed; a [`RunSet`] has the runs of all variants on
+//! it; [`Results`] compares the run sets with the paper's tables.
+
+mod comparison;
+mod noise;
+mod published;
+mod replicate;
+mod results;
+mod run_set;
+mod scenes;
+
+pub use comparison::{CLEAR, Finding, PairedComparison};
+pub use noise::{Noise, NoiseLevel};
+pub use published::{PUBLISHED, PublishedRow, PublishedTable};
+pub use replicate::Replicate;
+pub use results::{
+    BaselineComparison, Cell, OcclusionResult, Ratio, Results, ResultsRow, ResultsTable,
+};
+pub use run_set::RunSet;
+pub use scenes::{PaperExperiment, PaperScene};

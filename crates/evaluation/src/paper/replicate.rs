@@ -1,0 +1,111 @@
+//! One of the paper's experiments with one seed: [`Replicate`].
+
+use stickslip::{Camera, Occlusion, RunError, Setup, Tracking};
+use stickslip_formats::{Experiment, read_scene, read_truth_json};
+
+use super::noise::Noise;
+use super::scenes::{PaperExperiment, PaperScene};
+use crate::run::{RunConditions, ScoredRun};
+use crate::simulation::{Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+use crate::variant::Variant;
+
+/// Frames per second (Hz), as in the paper.
+const RATE: f64 = 30.0;
+
+/// One of the paper's experiments with one seed.
+#[derive(Clone, Debug)]
+pub struct Replicate {
+    /// Which experiment.
+    pub paper: PaperExperiment,
+    /// Seed of rig, sensors and filters.
+    pub seed: u64,
+    /// What is known before, what was measured, and what is true.
+    pub experiment: Experiment,
+    /// When the camera is dark.
+    pub occlusion: Occlusion,
+}
+
+impl Replicate {
+    /// Simulates an experiment on the testbed, its camera as the scene says.
+    ///
+    /// # Errors
+    /// The testbed refuses the seed's rig.
+    pub fn simulate(paper: PaperExperiment, seed: u64) -> Result<Self, SimulationError> {
+        Self::simulate_with(paper, seed, REPEATS, |_| ())
+    }
+
+    /// The same rig with poses simulated at the noise of tracked ones and missing where this
+    /// replicate's are; the methods reckon with the same camera.
+    ///
+    /// # Errors
+    /// Those of [`Replicate::simulate`].
+    pub fn with_noise(&self, noise: &Noise) -> Result<Self, SimulationError> {
+        let camera = Some(noise.camera());
+        let mut replicate =
+            Self::simulate_with(self.paper, self.seed, 0.0, |setup| setup.camera = camera)?;
+        let (log, seen) = (&mut replicate.experiment.log, &self.experiment.log);
+        for (poses, seen) in [
+            (&mut log.object, &seen.object),
+            (&mut log.pusher, &seen.pusher),
+        ] {
+            for (pose, seen) in poses.iter_mut().zip(seen) {
+                *pose = pose.filter(|_| seen.is_some());
+            }
+        }
+        Ok(replicate.given(noise.given_camera()))
+    }
+
+    /// The same poses, and methods that reckon with this camera.
+    #[must_use]
+    pub fn given(mut self, camera: Camera) -> Self {
+        self.experiment.setup.camera = Some(camera);
+        self
+    }
+
+    /// Runs a variant.
+    ///
+    /// # Errors
+    /// Those of [`stickslip::run`].
+    pub fn run(&self, variant: Variant, particles: usize) -> Result<ScoredRun, RunError> {
+        ScoredRun::new(variant, &self.experiment, &self.conditions(particles), None)
+    }
+
+    /// How every variant is run: off-line, with the replicate's own occlusion and seed.
+    #[must_use]
+    pub fn conditions(&self, particles: usize) -> RunConditions {
+        RunConditions {
+            particles,
+            tracking: Tracking::Smoothed,
+            occlusion: self.occlusion,
+            seed: self.seed,
+        }
+    }
+
+    /// `repeats`: share of frames that are repeated; `adjust` may change what the scene says.
+    fn simulate_with(
+        paper: PaperExperiment,
+        seed: u64,
+        repeats: f64,
+        adjust: impl FnOnce(&mut Setup),
+    ) -> Result<Self, SimulationError> {
+        let PaperScene {
+            name, scene, truth, ..
+        } = paper.scene();
+        let mut setup = read_scene(scene, name).expect("the embedded scene is one");
+        let known = read_truth_json(truth, name).expect("the embedded truth is one");
+        adjust(&mut setup);
+        let options = SimulationOptions {
+            physics: Physics::Testbed,
+            seed,
+            rate: RATE,
+            repeats,
+        };
+        let simulation = Simulation::run(&setup, &known, &options)?;
+        Ok(Self {
+            paper,
+            seed,
+            occlusion: simulation.facts.occlusion(),
+            experiment: simulation.into_experiment(setup),
+        })
+    }
+}

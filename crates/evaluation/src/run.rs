@@ -1,0 +1,87 @@
+//! One run of a [`Variant`] on an experiment with its scores: [`ScoredRun`].
+
+use stickslip::{
+    Estimate, Observer, Occlusion, Run, RunError, RunOptions, Tracking, run, run_observed,
+};
+use stickslip_formats::Experiment;
+
+use crate::score::{Reference, Scores, score};
+use crate::variant::Variant;
+
+/// What all variants of a comparison have in common on one experiment and seed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunConditions {
+    /// Number of particles.
+    pub particles: usize,
+    /// How the pusher is tracked: from the whole log, or causally, as live.
+    pub tracking: Tracking,
+    /// What is hidden, but for variants whose camera stays on.
+    pub occlusion: Occlusion,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// One run of a variant, with its scores.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScoredRun {
+    /// What ran.
+    pub variant: Variant,
+    /// What it estimated, row by row.
+    pub estimate: Estimate,
+    /// Its scores; those over hidden rows are over the same rows where its camera stayed on.
+    pub scores: Scores,
+    /// Particle-steps without a certified solution.
+    pub unsolved: u64,
+}
+
+impl ScoredRun {
+    /// Runs `variant` on an experiment and scores it; a `watch` changes no result.
+    ///
+    /// # Errors
+    /// Those of [`stickslip::run`].
+    pub fn new(
+        variant: Variant,
+        experiment: &Experiment,
+        conditions: &RunConditions,
+        watch: Option<&dyn Observer>,
+    ) -> Result<Self, RunError> {
+        let Experiment { setup, log, .. } = experiment;
+        let options = conditions.options(variant);
+        let Run {
+            estimate, unsolved, ..
+        } = match watch {
+            Some(watch) => run_observed(setup, log, &options, watch, &mut |_| ())?,
+            None => run(setup, log, &options, &mut |_| ())?,
+        };
+        let scores = score(
+            &estimate,
+            &Reference::of(experiment),
+            &conditions.occlusion.hidden(log),
+            setup.virtual_radius(),
+        );
+        Ok(Self {
+            variant,
+            estimate,
+            scores,
+            unsolved,
+        })
+    }
+}
+
+impl RunConditions {
+    fn options(&self, variant: Variant) -> RunOptions {
+        RunOptions {
+            method: variant.method(),
+            particles: self.particles,
+            seed: self.seed,
+            tactile: variant.tactile(),
+            tracking: self.tracking,
+            substeps: None,
+            occlusion: if variant.camera_on() {
+                Occlusion::None
+            } else {
+                self.occlusion
+            },
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! A simulated experiment, as its files would hold it: [`Simulation`].
+
+use stickslip::dynamics::{Body, Friction};
+use stickslip::{Log, Setup};
+use stickslip_formats::{Experiment, Truth, TruthFacts};
+use stickslip_testbed::{
+    CameraMeasurement, Model, Rig, TouchSensors, Trace, TrackingCamera, Trial, TrialError,
+};
+
+/// Share of frames that the paper's frame grabber repeats.
+pub const REPEATS: f64 = 0.02;
+
+/// Time from the blackout to the first contact with a fixel (s): five frames at 30 Hz.
+const BLACKOUT_LEAD: f64 = 1.0 / 6.0;
+
+/// What moves the object of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Physics {
+    /// A rig with compliant contacts, uneven friction and a drive that lags and stalls.
+    Testbed,
+    /// The filter's own contact dynamics, without noise.
+    Model,
+}
+
+/// How to simulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimulationOptions {
+    /// What moves the object.
+    pub physics: Physics,
+    /// Seed of everything that is random.
+    pub seed: u64,
+    /// Frames per second (Hz).
+    pub rate: f64,
+    /// Share of frames that the frame grabber repeats, 0 to 1.
+    pub repeats: f64,
+}
+
+/// A simulated experiment.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// What happened.
+    pub trace: Trace,
+    /// What was measured.
+    pub log: Log,
+    /// What is true.
+    pub truth: Truth,
+    /// True friction and events.
+    pub facts: TruthFacts,
+}
+
+/// Why an experiment cannot be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The scene does not say how the experiment begins.
+    #[error("there is no table [start], so nobody knows where the experiment begins")]
+    NoStart,
+    /// The testbed refuses it.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
+}
+
+impl Physics {
+    /// Name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Testbed => "testbed",
+            Self::Model => "model",
+        }
+    }
+}
+
+impl Simulation {
+    /// Simulates the experiment of `setup`. `known` has the true friction and the first hidden row;
+    /// where it has none, they are the scene's friction and five frames at 30 Hz before the first
+    /// contact with a fixel.
+    ///
+    /// # Errors
+    /// The setup has no start, bodies overlap there, or a number is out of range.
+    pub fn run(
+        setup: &Setup,
+        known: &TruthFacts,
+        options: &SimulationOptions,
+    ) -> Result<Self, SimulationError> {
+        let trial = Trial {
+            scene: &setup.scene,
+            start: setup.start.as_ref().ok_or(SimulationError::NoStart)?,
+            rate: options.rate,
+            seed: options.seed,
+        };
+        let friction = friction(setup, known);
+        let touch = TouchSensors {
+            threshold: setup.tactile.touch_force,
+            ..TouchSensors::default()
+        };
+
+        // what happens
+        let trace = match options.physics {
+            Physics::Testbed => Rig {
+                mu_s: friction.mu_s,
+                mu_p: friction.mu_p,
+                mu_f: friction.mu_f,
+                touch,
+                ..Rig::of(&setup.scene)
+            }
+            .run(&trial),
+            Physics::Model => Model { friction, touch }.run(&trial),
+        }?;
+
+        // what is measured of it, and what is true
+        let measurements = tracker(setup, options.repeats).measure(&trace, options.seed);
+        Ok(Self {
+            log: log(&trace, &measurements),
+            truth: truth(&trace),
+            facts: facts(&trace, known, options),
+            trace,
+        })
+    }
+
+    /// The experiment as its files would say it; `setup` is what was simulated, as the methods are
+    /// to know it.
+    ///
+    /// # Panics
+    /// If `setup` has fewer fixels than the simulated one.
+    #[must_use]
+    pub fn into_experiment(self, setup: Setup) -> Experiment {
+        Experiment::new(setup, self.log, Some(self.truth), self.facts)
+            .expect("a sensor for each fixel")
+    }
+}
+
+/// The true friction: what is known, else the nominal one.
+fn friction(setup: &Setup, known: &TruthFacts) -> Friction {
+    let nominal = setup.scene.nominal;
+    Friction {
+        mu_s: known.mu_s.unwrap_or(nominal.mu_s),
+        mu_p: known.mu_p.unwrap_or(nominal.mu_p),
+        mu_f: known.mu_f.unwrap_or(nominal.mu_f),
+        d_tri: known.d_tri.unwrap_or(nominal.d_tri),
+    }
+}
+
+/// A camera as noisy as the scene says, exact where it says nothing.
+fn tracker(setup: &Setup, repeats: f64) -> TrackingCamera {
+    setup
+        .camera
+        .map_or(TrackingCamera::EXACT, |camera| TrackingCamera {
+            position_std: camera.position_std,
+            orientation_std: camera.orientation_std,
+            pusher_position_std: camera.pusher_position_std,
+            pusher_orientation_std: camera.pusher_orientation_std,
+            latency: camera.latency,
+            repeats,
+        })
+}
+
+fn log(trace: &Trace, measurements: &[CameraMeasurement]) -> Log {
+    let frames = &trace.frames;
+    let sensors = frames.first().map_or(0, |frame| frame.tactile.len());
+    let reading = |k: usize| frames.iter().map(move |frame| Some(frame.tactile[k]));
+    Log {
+        time: frames.iter().map(|frame| frame.time).collect(),
+        object: measurements.iter().map(|seen| Some(seen.object)).collect(),
+        pusher: measurements.iter().map(|seen| Some(seen.pusher)).collect(),
+        tactile: (0..sensors).map(|k| reading(k).collect()).collect(),
+        force: Vec::new(),
+    }
+}
+
+fn truth(trace: &Trace) -> Truth {
+    let frames = &trace.frames;
+    let size = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+    let fixel_force = |j: usize| frames.iter().map(move |frame| frame.fixel_forces[j]);
+    Truth {
+        time: frames.iter().map(|frame| frame.time).collect(),
+        pose: frames.iter().map(|frame| frame.object).collect(),
+        twist: frames.iter().map(|frame| frame.twist).collect(),
+        pusher: frames.iter().map(|frame| frame.pusher).collect(),
+        pusher_force: frames.iter().map(|f| size(f.pusher_force)).collect(),
+        fixel_forces: (0..fixels(trace))
+            .map(|j| fixel_force(j).collect())
+            .collect(),
+    }
+}
+
+fn fixels(trace: &Trace) -> usize {
+    let first = trace.frames.first();
+    first.map_or(0, |frame| frame.fixel_forces.len())
+}
+
+fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> TruthFacts {
+    let SimulationOptions { physics, seed, .. } = options;
+    let lead = (BLACKOUT_LEAD * options.rate).round() as usize;
+    let before_contact = trace
+        .first_fixel_contact()
+        .map(|row| row.saturating_sub(lead));
+    TruthFacts {
+        source: Some(format!(
+            "stickslip simulate, {}, seed {seed}",
+            physics.name()
+        )),
+        mu_s: Some(trace.friction.mu_s),
+        mu_p: Some(trace.friction.mu_p),
+        mu_f: Some(trace.friction.mu_f),
+        d_tri: Some(trace.friction.d_tri),
+        first_pusher_contact: trace.first_contact(Body::Pusher),
+        first_fixel_contacts: (0..fixels(trace))
+            .map(|j| trace.first_contact(Body::Fixel(j)))
+            .collect(),
+        occlude_from: known
+            .occlude_from
+            .filter(|row| *row < trace.frames.len())
+            .or(before_contact),
+        final_pose: None,
+    }
+}

@@ -1,0 +1,373 @@
+//! One experiment with the runs of several variants: [`ReportedExperiment`], its story, its scores
+//! and its section of a report.
+
+use stickslip::dynamics::Pose;
+use stickslip::{Log, Occlusion, Setup};
+use stickslip_evaluation::{Reference, ScoredRun, Scores};
+use stickslip_formats::Experiment;
+
+use crate::colour::Colour;
+use crate::intervals::intervals;
+use crate::marks::Mark;
+use crate::page::{Block, Section};
+use crate::playback::{Playback, PlaybackRun};
+use crate::story::{Fate, Outcome, Story};
+use crate::table::{Table, number};
+
+/// Time that is shown before the first contact and after the last one begins (s).
+const BEFORE: f64 = 1.0;
+const AFTER: f64 = 4.0;
+
+/// Time after the last contact begins at which the playback shows its first picture (s).
+const POSTER: f64 = 1.5;
+
+/// Largest offset of a row of the truth from a row of the log at the same time (s).
+const SAME_TIME: f64 = 5e-4;
+
+/// An experiment and what several variants made of it.
+#[derive(Clone, Debug)]
+pub struct ReportedExperiment<'a> {
+    /// Name, as that of its folder.
+    pub name: String,
+    /// What moves, as "a bar pushes a square until it jams at a fixel"; empty where nobody knows.
+    pub what: String,
+    /// What was known before it.
+    pub setup: &'a Setup,
+    /// What was measured.
+    pub log: &'a Log,
+    /// What estimates are scored against.
+    pub reference: Reference,
+    /// What that is, as "truth".
+    pub reference_name: String,
+    /// Whether each row's object pose was hidden.
+    pub hidden: Vec<bool>,
+    /// Whether the object truly touches the pusher, then each fixel, row by row; `None` where that
+    /// is not known.
+    pub touches: Vec<Option<Vec<bool>>>,
+    /// First contacts (s).
+    pub contacts: Vec<Mark>,
+    /// When the object first touched a fixel (s).
+    pub first_fixel: Option<f64>,
+    /// True values of μ_s, μ_p, μ_f and d_tri (m), where they are known.
+    pub friction: [Option<f64>; 4],
+    /// The runs.
+    pub runs: Vec<ReportedRun>,
+}
+
+/// One run with what is drawn of its particles.
+#[derive(Clone, Debug)]
+pub struct ReportedRun {
+    /// The run.
+    pub scored: ScoredRun,
+    /// Particles to draw, as [`crate::CloudSample::into_rows`] gives them; empty for variants
+    /// without.
+    pub cloud: Vec<Vec<Pose>>,
+}
+
+impl ReportedRun {
+    /// Name in tables and figures.
+    #[must_use]
+    pub fn title(&self) -> &'static str {
+        self.scored.variant.title()
+    }
+
+    /// Colour in every figure.
+    #[must_use]
+    pub fn colour(&self) -> Colour {
+        Colour::of(self.scored.variant)
+    }
+
+    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
+    #[must_use]
+    pub fn wmse_mm(&self) -> Option<f64> {
+        let scores = &self.scored.scores;
+        scores.wmse_occluded_mm.or(scores.wmse_mm)
+    }
+
+    pub(crate) fn camera_on(&self) -> bool {
+        self.scored.variant.camera_on()
+    }
+}
+
+impl<'a> ReportedExperiment<'a> {
+    /// An experiment with runs made while `occlusion` hid the object.
+    #[must_use]
+    pub fn new(
+        name: &str,
+        what: &str,
+        experiment: &'a Experiment,
+        occlusion: Occlusion,
+        runs: Vec<ReportedRun>,
+    ) -> Self {
+        let Experiment {
+            setup,
+            log,
+            truth,
+            facts,
+        } = experiment;
+
+        // the first contacts, pusher before fixels
+        let mark = |row: Option<usize>, name: String| {
+            let time = *log.time.get(row?)?;
+            Some(Mark { time, name })
+        };
+        let fixels: Vec<Mark> = (1..)
+            .zip(&facts.first_fixel_contacts)
+            .filter_map(|(k, row)| mark(*row, format!("fixel {k}")))
+            .collect();
+        let pusher = mark(facts.first_pusher_contact, "pusher".to_owned());
+
+        let reference_name = if truth.is_some() {
+            "truth"
+        } else {
+            "log's own poses"
+        };
+        Self {
+            name: name.to_owned(),
+            what: what.to_owned(),
+            setup,
+            log,
+            reference: Reference::of(experiment),
+            reference_name: reference_name.to_owned(),
+            hidden: occlusion.hidden(log),
+            touches: touches(experiment),
+            first_fixel: fixels.iter().map(|mark| mark.time).reduce(f64::min),
+            contacts: pusher.into_iter().chain(fixels).collect(),
+            friction: [facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri],
+            runs,
+        }
+    }
+
+    /// What happened, in words made from numbers.
+    #[must_use]
+    pub fn story(&self) -> Story {
+        let outcome = |run: &ReportedRun| Outcome {
+            name: run.title().to_owned(),
+            camera_on: run.camera_on(),
+            wmse_mm: run.wmse_mm(),
+        };
+        let dark = self.dark();
+        Story {
+            what: self.what.clone(),
+            duration: self.log.duration(),
+            dark: dark
+                .first()
+                .zip(dark.last())
+                .map(|(first, last)| [first[0], last[1]]),
+            first_fixel: self.first_fixel,
+            outcomes: self.runs.iter().map(outcome).collect(),
+        }
+    }
+
+    /// What a reader should know after a minute.
+    #[must_use]
+    pub fn summary(&self) -> [Block; 2] {
+        let story = self.story();
+        let title = if self.what.is_empty() {
+            String::new()
+        } else {
+            format!("{}. ", story.title())
+        };
+        [
+            Block::Text(format!("{title}{}", story.darkness())),
+            Block::Fates(story),
+        ]
+    }
+
+    /// Playback, scores and figures.
+    #[must_use]
+    pub fn section(&self) -> Section {
+        let title = if self.what.is_empty() {
+            self.name.clone()
+        } else {
+            self.story().title()
+        };
+        let head = [
+            Block::Playback(Box::new(self.playback())),
+            Block::Table(self.scores(), self.name.clone()),
+            Block::Note(format!(
+                "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
+                 angles weighted by the radius of gyration, against the {}. {}",
+                self.reference_name,
+                Fate::rule()
+            )),
+        ];
+        let figures = self
+            .figures()
+            .into_iter()
+            .map(|figure| Block::Figure(figure.drawing, figure.caption));
+        Section {
+            title,
+            blocks: head.into_iter().chain(figures).collect(),
+        }
+    }
+
+    /// The scores of all runs.
+    #[must_use]
+    pub fn scores(&self) -> Table {
+        let wmse = if self.hidden.contains(&true) {
+            "WMSE in the dark (mm)"
+        } else {
+            "WMSE (mm)"
+        };
+        let mut table = Table::new([
+            "method",
+            "verdict",
+            wmse,
+            "WMSE moving (mm)",
+            "final error (mm)",
+            "final error (°)",
+            "unsolved steps",
+        ]);
+        for run in &self.runs {
+            let Scores {
+                wmse_moving_mm,
+                final_error_mm,
+                final_error_deg,
+                ..
+            } = run.scored.scores;
+            let verdict = if run.camera_on() {
+                "camera on"
+            } else {
+                Fate::of(run.wmse_mm()).name()
+            };
+            let scores = [
+                run.wmse_mm(),
+                wmse_moving_mm,
+                final_error_mm,
+                final_error_deg,
+            ];
+            let cells = [run.title().to_owned(), verdict.to_owned()]
+                .into_iter()
+                .chain(scores.map(|score| number(score, 3)))
+                .chain([run.scored.unsolved.to_string()]);
+            table.push_coloured(run.colour(), cells);
+        }
+        table
+    }
+
+    /// The experiment to be played back.
+    #[must_use]
+    pub fn playback(&self) -> Playback {
+        let mut playback = Playback::new(
+            &self.setup.scene,
+            self.log,
+            &self.reference,
+            self.hidden.clone(),
+        );
+        for (touch, truth) in playback.touches.iter_mut().zip(&self.touches) {
+            touch.truth.clone_from(truth);
+        }
+        let dark = self.dark().into_iter().map(|[from, _]| Mark {
+            time: from,
+            name: "camera dark".to_owned(),
+        });
+
+        // contacts are shown of the learner only
+        let learner = self.learner().map(ReportedRun::title);
+        let track = |run: &ReportedRun| {
+            let mut track = PlaybackRun::new(
+                run.title(),
+                run.colour(),
+                &run.scored.estimate,
+                &self.reference,
+                run.cloud.clone(),
+            );
+            if learner != Some(run.title()) {
+                track.contacts.clear();
+            }
+            track
+        };
+
+        // runs with the camera on lie below all others
+        let mut lowest_first: Vec<usize> = (0..self.runs.len()).collect();
+        lowest_first.sort_by_key(|k| !self.runs[*k].camera_on());
+
+        let [from, to] = self.span();
+        let name = if self.what.is_empty() {
+            &self.name
+        } else {
+            &self.what
+        };
+        Playback {
+            name: name.clone(),
+            rows: self.row_at(from)..self.row_at(to) + 1,
+            poster: self.poster(),
+            reference_name: self.reference_name.clone(),
+            marks: self.contacts.iter().cloned().chain(dark).collect(),
+            runs: self.runs.iter().map(track).collect(),
+            lowest_first,
+            ..playback
+        }
+    }
+
+    /// Times without a camera (s).
+    pub(crate) fn dark(&self) -> Vec<[f64; 2]> {
+        intervals(&self.log.time, &self.hidden)
+    }
+
+    /// From a little before the first contact to a while after the last one begins; all times where
+    /// none is known.
+    pub(crate) fn span(&self) -> [f64; 2] {
+        let time = &self.log.time;
+        let first = time.first().copied().unwrap_or(0.0);
+        let last = time.last().copied().unwrap_or(1.0);
+        let contacts = self.contacts.iter().map(|mark| mark.time);
+        let contacts = contacts.filter(|time| time.is_finite());
+        let Some(start) = contacts.clone().reduce(f64::min) else {
+            return [first, last];
+        };
+        let end = contacts.fold(start, f64::max) + AFTER;
+        [(start - BEFORE).max(first), end.min(last)]
+    }
+
+    /// The last row up to a time.
+    pub(crate) fn row_at(&self, time: f64) -> usize {
+        let after = self.log.time.partition_point(|t| *t <= time + 1e-9);
+        after.saturating_sub(1)
+    }
+
+    /// The row whose picture tells most.
+    pub(crate) fn poster(&self) -> usize {
+        let [from, to] = self.span();
+        self.row_at((to - AFTER + POSTER).max(from))
+    }
+
+    /// The run whose particles and friction are shown: the last one that learns friction with the
+    /// camera dark.
+    pub(crate) fn learner(&self) -> Option<&ReportedRun> {
+        let learns = |run: &&ReportedRun| {
+            let mut rows = run.scored.estimate.rows.iter();
+            rows.any(|row| row.friction.is_some())
+        };
+        let mut learners = self.runs.iter().filter(learns);
+        let first = learners.clone().next();
+        learners.rfind(|run| !run.camera_on()).or(first)
+    }
+}
+
+/// Whether the object touches the pusher, then each fixel, by the true forces; `None` where the
+/// truth has none.
+fn touches(experiment: &Experiment) -> Vec<Option<Vec<bool>>> {
+    let Experiment {
+        setup, log, truth, ..
+    } = experiment;
+    let bodies = 1 + setup.scene.fixels.len();
+    let Some(truth) = truth else {
+        return vec![None; bodies];
+    };
+    let row_at = |time: &f64| {
+        let row = truth.time.partition_point(|t| *t < time - SAME_TIME);
+        (*truth.time.get(row)? < time + SAME_TIME).then_some(row)
+    };
+    let rows: Vec<Option<usize>> = log.time.iter().map(row_at).collect();
+    let touches = |body: usize| {
+        let force = match body {
+            0 => &truth.pusher_force,
+            _ => truth.fixel_forces.get(body - 1)?,
+        };
+        let touch = |row: &Option<usize>| row.is_some_and(|k| force[k] > setup.tactile.touch_force);
+        (!force.is_empty()).then(|| rows.iter().map(touch).collect())
+    };
+    (0..bodies).map(touches).collect()
+}
