@@ -3,57 +3,23 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use image::GrayImage;
-use stickslip_dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
+use stickslip_dynamics::{Part, Pose, Scene, Shape};
 use stickslip_rendering::{
     Appearance, Board, BoardPose, BodyPoses, Camera, CaptureSettings, Exposure, FrameGrabber, Lens,
     Lighting, Optics, RecordedMotion, RenderScene, Renderer, Sensor, Video, calibration_poses,
     encode_png,
 };
+use stickslip_testkit::{disc, fixels, pushed_scene, square};
 
 const CELLS: [[bool; 8]; 8] = [[false; 8]; 8];
 
-fn scene(object: Part) -> Scene {
-    let disc = |radius: f64| {
-        Shape::new(vec![Part::Disc {
-            radius,
-            centre: [0.0, 0.0],
-        }])
-        .unwrap()
-    };
-    Scene {
-        gravity: 9.81,
-        object: Object {
-            mass: 0.5,
-            inertia: 2e-4,
-            shape: Shape::new(vec![object]).unwrap(),
-        },
-        feet: Feet::Tripod { angle: 0.0 },
-        pusher: Pusher {
-            shape: disc(0.006),
-            stall_force: None,
-        },
-        fixels: vec![Fixel {
-            pose: Pose::new(0.1, 0.03, 0.0),
-            shape: disc(0.005),
-        }],
-        nominal: Friction {
-            mu_s: 0.3,
-            mu_p: 0.3,
-            mu_f: 0.3,
-            d_tri: 0.02,
-        },
-    }
+fn scene(object: Shape) -> Scene {
+    let fixel = fixels(&disc(0.005), &[[0.1, 0.03]]);
+    pushed_scene(object, disc(0.006), fixel)
 }
 
-fn square() -> Part {
-    Part::Polygon {
-        vertices: vec![
-            [-0.025, -0.025],
-            [0.025, -0.025],
-            [0.025, 0.025],
-            [-0.025, 0.025],
-        ],
-    }
+fn square_scene() -> Scene {
+    scene(square(0.05))
 }
 
 fn camera() -> Camera {
@@ -84,19 +50,49 @@ fn still(object: Pose) -> Exposure {
     })
 }
 
-/// An elliptic object without a tag against 16 x 16 lines of sight a pixel, each followed down in
+const ELLIPSE: Part = Part::Ellipse {
+    semi_axes: [0.03, 0.02],
+    centre: [0.004, 0.0],
+    angle: 0.3,
+};
+
+/// What a line of sight can meet.
+enum Surface {
+    Top,
+    Side,
+    Plate,
+}
+
+/// Follows the line of sight of a pixel down from the height `top` of [`ELLIPSE`] at `pose`, in
 /// steps of 0.2 mm.
+fn first_on_line_of_sight(camera: &Camera, pixel: [f64; 2], pose: Pose, top: f64) -> Surface {
+    let inside = |[x, y]: [f64; 2]| {
+        let (a, b) = libm::sincos(pose.theta);
+        let [x, y] = [
+            b * (x - pose.x) + a * (y - pose.y) - 0.004,
+            b * (y - pose.y) - a * (x - pose.x),
+        ];
+        let (a, b) = libm::sincos(0.3);
+        ((b * x + a * y) / 0.03).powi(2) + ((b * y - a * x) / 0.02).powi(2) <= 1.0
+    };
+    let [above, table] = [top, 0.0].map(|z| camera.point_at(pixel, z).unwrap());
+    let at = |share: f64| [0, 1].map(|k| above[k] + share * (table[k] - above[k]));
+    if inside(above) {
+        Surface::Top
+    } else if (1..=100).any(|step| inside(at(f64::from(step) / 100.0))) {
+        Surface::Side
+    } else {
+        Surface::Plate
+    }
+}
+
+/// An elliptic object without a tag against 16 x 16 lines of sight a pixel.
 #[test]
 fn frame_is_what_lines_of_sight_meet() {
     const SIDE: u32 = 16;
-    let ellipse = Part::Ellipse {
-        semi_axes: [0.03, 0.02],
-        centre: [0.004, 0.0],
-        angle: 0.3,
-    };
     let appearance = Appearance {
         object_tag: None,
-        ..Appearance::of(&scene(square()), CELLS, CELLS, 0.0)
+        ..Appearance::of(&square_scene(), CELLS, CELLS, 0.0)
     };
     let (top, pose, camera) = (
         appearance.object_height,
@@ -105,7 +101,7 @@ fn frame_is_what_lines_of_sight_meet() {
     );
     let renderer = Renderer::new(
         camera,
-        RenderScene::new(&scene(ellipse), &appearance),
+        RenderScene::new(&scene(Shape::new(vec![ELLIPSE]).unwrap()), &appearance),
         plain_optics(),
         1,
     );
@@ -119,41 +115,18 @@ fn frame_is_what_lines_of_sight_meet() {
     let side = column.iter().copied().fold(f64::MAX, f64::min);
     assert!(face < plate && side < face, "{face} {plate} {side}");
 
-    let inside = |[x, y]: [f64; 2]| {
-        let (a, b) = libm::sincos(pose.theta);
-        let [x, y] = [
-            b * (x - pose.x) + a * (y - pose.y) - 0.004,
-            b * (y - pose.y) - a * (x - pose.x),
-        ];
-        let (a, b) = libm::sincos(0.3);
-        ((b * x + a * y) / 0.03).powi(2) + ((b * y - a * x) / 0.02).powi(2) <= 1.0
-    };
-    let met = |pixel: [f64; 2]| {
-        let [above, table] = [top, 0.0].map(|z| camera.point_at(pixel, z).unwrap());
-        let at = |share: f64| {
-            [
-                above[0] + share * (table[0] - above[0]),
-                above[1] + share * (table[1] - above[1]),
-            ]
-        };
-        let below = (1..=100).any(|step| inside(at(f64::from(step) / 100.0)));
-        if inside(above) {
-            face
-        } else if below {
-            side
-        } else {
-            plate
-        }
+    let seen = |pixel: [f64; 2]| match first_on_line_of_sight(&camera, pixel, pose, top) {
+        Surface::Top => face,
+        Surface::Side => side,
+        Surface::Plate => plate,
     };
     let (mut edges, mut squares) = (0, 0.0);
     for y in (v - 60..v + 60).step_by(5) {
         for x in (u - 80..u + 80).step_by(4) {
             let offset = |k: u32| (f64::from(k) + 0.5) / f64::from(SIDE) - 0.5;
             let sum = (0..SIDE * SIDE).fold(0.0, |sum, k| {
-                sum + met([
-                    f64::from(x) + offset(k % SIDE),
-                    f64::from(y) + offset(k / SIDE),
-                ])
+                let (dx, dy) = (offset(k % SIDE), offset(k / SIDE));
+                sum + seen([f64::from(x) + dx, f64::from(y) + dy])
             });
             let expected = sum / f64::from(SIDE * SIDE);
             let error = grey_of(&frame, x, y) - expected;
@@ -181,11 +154,11 @@ fn frame_is_what_lines_of_sight_meet() {
 fn frame_of_a_moving_object_is_in_the_middle_of_its_path() {
     let appearance = Appearance {
         object_tag: None,
-        ..Appearance::of(&scene(square()), CELLS, CELLS, 0.0)
+        ..Appearance::of(&square_scene(), CELLS, CELLS, 0.0)
     };
     let renderer = Renderer::new(
         camera(),
-        RenderScene::new(&scene(square()), &appearance),
+        RenderScene::new(&square_scene(), &appearance),
         plain_optics(),
         1,
     );
@@ -246,7 +219,7 @@ fn video<'a>(renderer: &'a Renderer, motion: &'a RecordedMotion, repeat: f64) ->
 
 #[test]
 fn video_covers_the_objects_tag_and_not_the_pushers() {
-    let (scene, motion) = (scene(square()), motion());
+    let (scene, motion) = (square_scene(), motion());
     let appearance = Appearance::of(&scene, CELLS, CELLS, 0.0);
     let renderer = Renderer::new(
         Camera::over(Lens::industrial(), motion.bounds(&scene, &appearance)).unwrap(),
@@ -289,7 +262,7 @@ fn video_covers_the_objects_tag_and_not_the_pushers() {
 
 #[test]
 fn video_repeats_frames_to_the_byte_and_never_otherwise() {
-    let (scene, motion) = (scene(square()), motion());
+    let (scene, motion) = (square_scene(), motion());
     let stage = RenderScene::new(&scene, &Appearance::of(&scene, CELLS, CELLS, 0.0));
     let renderer = Renderer::new(camera(), stage, Optics::default(), 1);
     let video = video(&renderer, &motion, 0.3);
@@ -310,8 +283,8 @@ fn frame_is_a_function_of_its_seed_and_number() {
         Renderer::new(
             camera(),
             RenderScene::new(
-                &scene(square()),
-                &Appearance::of(&scene(square()), CELLS, CELLS, 0.0),
+                &square_scene(),
+                &Appearance::of(&square_scene(), CELLS, CELLS, 0.0),
             ),
             Optics::default(),
             seed,

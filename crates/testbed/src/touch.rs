@@ -61,9 +61,8 @@ impl TouchSensors {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_dynamics::{
-        Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape, SpeedProfile, Start, Twist,
-    };
+    use stickslip_dynamics::{Pose, SpeedProfile, Start, Twist};
+    use stickslip_testkit::{disc, fixels, pushed_scene};
 
     use super::*;
 
@@ -71,34 +70,8 @@ mod tests {
 
     /// Readings of one sensor under a force that stays the same.
     fn readings(sensors: &TouchSensors, force: f64, seed: u64) -> Vec<bool> {
-        let disc = Shape::new(vec![Part::Disc {
-            radius: 0.01,
-            centre: [0.0; 2],
-        }])
-        .expect("a disc");
-        let scene = Scene {
-            gravity: 9.81,
-            object: Object {
-                mass: 1.0,
-                inertia: 1e-4,
-                shape: disc.clone(),
-            },
-            feet: Feet::Tripod { angle: 0.0 },
-            pusher: Pusher {
-                shape: disc.clone(),
-                stall_force: None,
-            },
-            fixels: vec![Fixel {
-                pose: Pose::default(),
-                shape: disc,
-            }],
-            nominal: Friction {
-                mu_s: 0.3,
-                mu_p: 0.3,
-                mu_f: 0.3,
-                d_tri: 0.01,
-            },
-        };
+        let pin = disc(0.01);
+        let scene = pushed_scene(pin.clone(), pin.clone(), fixels(&pin, &[[0.0; 2]]));
         let (object, pusher) = (Pose::default(), Pose::default());
         let start = Start {
             object,

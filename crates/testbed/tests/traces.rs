@@ -3,9 +3,10 @@
 
 mod common;
 
-use common::{bench_scene, bench_start, disc, reference};
-use stickslip_dynamics::{Body, Feet, Fixel, Pose, SpeedProfile, Start};
+use common::{bench_scene, bench_start, reference};
+use stickslip_dynamics::{Body, Feet, Pose, SpeedProfile, Start};
 use stickslip_testbed::{Frame, Model, Rig, TouchSensors, Trace, Trial, TrialError};
+use stickslip_testkit::{disc, fixels};
 
 fn rig_trace(seed: u64) -> Trace {
     let (scene, start) = (
@@ -157,8 +158,14 @@ fn known_feet_are_what_the_rig_stands_on() {
     assert!((trace.friction.d_tri - radius).abs() < 1e-12);
 }
 
+#[track_caller]
+fn assert_refused(rig: &Rig, trial: &Trial<'_>, words: &[&str]) {
+    let message = rig.run(trial).expect_err("must be refused").to_string();
+    assert!(words.iter().all(|word| message.contains(word)), "{message}");
+}
+
 #[test]
-fn what_cannot_be_simulated_is_refused_in_words() {
+fn rates_and_friction_out_of_range_are_refused_in_words() {
     let (scene, start) = (bench_scene(), bench_start());
     let rig = Rig::of(&scene);
     let trial = Trial {
@@ -167,55 +174,40 @@ fn what_cannot_be_simulated_is_refused_in_words() {
         rate: 30.0,
         seed: 0,
     };
-    let refused = |rig: &Rig, trial: &Trial<'_>, words: &[&str]| {
-        let message = rig.run(trial).expect_err("must be refused").to_string();
-        assert!(words.iter().all(|word| message.contains(word)), "{message}");
-    };
     for rate in [0.0, -30.0, f64::NAN, 1e6] {
-        refused(
-            &rig,
-            &Trial { rate, ..trial },
-            &["camera rate", &rate.to_string(), "Hz"],
-        );
+        let words = ["camera rate", &rate.to_string(), "Hz"];
+        assert_refused(&rig, &Trial { rate, ..trial }, &words);
     }
-    refused(
-        &Rig {
-            mu_f: -0.1,
-            ..rig.clone()
-        },
-        &trial,
-        &["mu_f", "-0.1", "from 0 up"],
-    );
+    let negative = Rig { mu_f: -0.1, ..rig };
+    assert_refused(&negative, &trial, &["mu_f", "-0.1", "from 0 up"]);
+}
+
+#[test]
+fn bodies_that_overlap_at_the_start_are_refused_in_words() {
+    let scene = bench_scene();
+    let rig = Rig::of(&scene);
     let inside = Start {
         pusher: Pose::new(-0.028, 0.0, 0.0),
-        ..start.clone()
+        ..bench_start()
     };
-    refused(
-        &rig,
-        &Trial {
-            start: &inside,
-            ..trial
-        },
-        &["pusher", "2.000 mm", "[start]"],
-    );
+    let trial = Trial {
+        scene: &scene,
+        start: &inside,
+        rate: 30.0,
+        seed: 0,
+    };
+    assert_refused(&rig, &trial, &["pusher", "2.000 mm", "[start]"]);
+
     let mut crowded = scene.clone();
-    crowded.fixels.push(Fixel {
-        pose: Pose::new(0.02, 0.0, 0.0),
-        shape: disc(),
-    });
-    refused(
-        &rig,
-        &Trial {
-            scene: &crowded,
-            ..trial
-        },
-        &["fixel 4", "overlaps", "mm"],
-    );
+    crowded.fixels.extend(fixels(&disc(0.005), &[[0.02, 0.0]]));
+    let trial = Trial {
+        scene: &crowded,
+        start: &bench_start(),
+        ..trial
+    };
+    assert_refused(&rig, &trial, &["fixel 4", "overlaps", "mm"]);
     assert!(matches!(
-        rig.run(&Trial {
-            scene: &crowded,
-            ..trial
-        }),
+        rig.run(&trial),
         Err(TrialError::Overlap {
             body: Body::Fixel(3),
             ..
@@ -273,12 +265,7 @@ fn model_follows_the_reference_at_the_frame_s_step() {
 fn model_s_pusher_stays_behind_its_command_where_it_stalls() {
     let mut scene = bench_scene();
     scene.pusher.stall_force = Some(12.0);
-    scene.fixels = [-0.015, 0.015]
-        .map(|y| Fixel {
-            pose: Pose::new(0.05, y, 0.0),
-            shape: disc(),
-        })
-        .to_vec();
+    scene.fixels = fixels(&disc(0.005), &[[0.05, -0.015], [0.05, 0.015]]);
     let start = Start {
         pusher: Pose::new(-0.032, 0.0, 0.0),
         speed: SpeedProfile::constant(0.02),

@@ -9,6 +9,7 @@
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.
+//! - [`pushed_scene`]: a scene with given shapes.
 //! - [`data_root`], [`recorded_cases`]: where recorded experiments lie, and how they are run.
 //! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
 //!   problems.
@@ -29,6 +30,7 @@ mod recorded_case;
 mod residual;
 mod rng;
 mod scaled_problem;
+mod scenes;
 mod survey;
 mod vector;
 
@@ -42,4 +44,5 @@ pub use jam::{gap_margin, may_jam};
 pub use modes::enumerate_modes;
 pub use recorded_case::{RecordedCase, RecordedError, recorded_cases};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
+pub use scenes::{disc, fixels, pushed_scene, square};
 pub use survey::{Tally, survey};

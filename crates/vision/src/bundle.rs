@@ -204,8 +204,9 @@ fn scaled_inverse(matrix: LensBlock) -> Option<LensBlock> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use stickslip_filter::Streams;
+
+    use super::*;
 
     const STD: f64 = 0.05;
 

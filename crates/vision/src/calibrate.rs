@@ -1,8 +1,8 @@
 //! From frames of a tag board to a calibrated camera: [`calibrate`].
 //!
-//! Homographies give a first focal length and first poses (Zhang 2000), a bundle over all frames
-//! the rest. Corners are first fitted as if edges were straight in the image, then twice more in
-//! the image that the lens found so far straightens.
+//! Homographies give a first focal length and first poses (Zhang 2000); bundle adjustment over all
+//! frames gives the rest. Corners are first fitted as if the lens had no distortion, then twice more
+//! in the image undistorted by the lens found so far.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -34,7 +34,8 @@ pub struct Calibration {
     pub frames: usize,
     /// Tags in them that were used.
     pub tags: usize,
-    /// Tags that were left out since they fit the rest badly, or their border no lines.
+    /// Tags that were left out because no lines fit their border, or because they do not fit the
+    /// rest.
     pub left_out: usize,
     /// Standard deviations of the lens's numbers fx, fy, cx, cy (px), k1, k2, p1, p2.
     pub lens_std: [f64; 8],

@@ -18,7 +18,7 @@ const SMALLEST: usize = 32;
 pub struct Detector {
     decoder: Arc<Mutex<AprilTagDecoder>>,
     size: ImageSize,
-    /// The library shares an image out among the threads it finds, and its last digits depend on
+    /// The library divides an image among the threads that it finds, and its last digits depend on
     /// their number: it gets one.
     one_thread: rayon::ThreadPool,
 }
@@ -38,7 +38,7 @@ impl Detector {
     /// # Panics
     /// If a side is 0 or above 65535, or the system gives no thread.
     pub fn new(size: [u32; 2]) -> Self {
-        // finer than by every second pixel, the library misses tags
+        // the library looks at every second pixel by default; at full resolution it misses tags
         let config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11])
             .expect("the library has this family");
         let size = ImageSize {
@@ -89,9 +89,8 @@ impl Detector {
         tags
     }
 
-    /// What the library finds. Its thread is waited for outside of any pool: a thread of a pool
-    /// that waits inside takes up the next frame meanwhile, which waits in turn, one within the
-    /// other until the stack is full.
+    /// Runs the library on its own thread and blocks on a channel. Inside rayon (`install`), a waiting
+    /// thread would steal the next frame, which waits in turn, nested until the stack overflows.
     fn decode(&self, image: &GrayImage) -> Vec<Detection> {
         let view =
             Image::new(self.size, image.as_raw().clone()).expect("an image of the detector's size");

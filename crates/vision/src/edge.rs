@@ -25,7 +25,7 @@ const RULES: Rules = Rules {
 /// Half width of the band that is fitted, as a share of a cell, and at least (px).
 pub(crate) const WIDEST_BAND: f64 = 0.6;
 pub(crate) const LEAST_BAND: f64 = 2.0;
-/// Other edges are at least this many times the blur away from the band.
+/// Distance between the band and other edges, in units of the blur.
 const CLEAR: f64 = 2.5;
 /// Blur at first (px).
 const FIRST_BLUR: f64 = 0.8;
@@ -80,9 +80,9 @@ pub(crate) struct Equations {
 }
 
 impl Edge {
-    /// Fits the edge near a rough one, from corner to corner with the dark side on the left in the
-    /// image, to the samples near it; what is `cell` (px) away from it on either side or beyond its
-    /// ends has other levels. `None` where there is no such edge.
+    /// Fits an edge to the samples near a rough one, which runs from corner to corner with its dark
+    /// side on the left in the image. Pixels more than `cell` (px) from it or beyond its ends belong
+    /// to other cells of the tag. `None` where there is no such edge.
     pub(crate) fn fit(samples: &[Sample], rough: [Vector2<f64>; 2], cell: f64) -> Option<Self> {
         let way = rough[1] - rough[0];
         let edge = Self {
@@ -108,13 +108,13 @@ impl Edge {
         RowVector2::new(1.0, self.along.dot(&(point - self.middle)))
     }
 
-    /// To the right of the way from corner to corner, y pointing down: anti-clockwise as printed,
-    /// the outside.
+    /// Unit vector to the right of `along` (y pointing down). Corners go round anti-clockwise as
+    /// printed, so this is the outside.
     fn outward(&self) -> Vector2<f64> {
         Vector2::new(-self.along.y, self.along.x)
     }
 
-    /// Way along the edge and distance outside it.
+    /// Position along the edge and distance outside it (px).
     fn coordinates(&self, at: Vector2<f64>) -> [f64; 2] {
         let from = at - self.middle;
         let along = self.along.dot(&from);

@@ -20,12 +20,12 @@ const MODEL_STD: f64 = 0.005;
 /// Corners off by more than this, and by more than their noise explains, are not those of a square
 /// on the plane (px).
 const WORST_MISFIT: f64 = 0.2;
-/// So many times their noise.
+/// The same in standard deviations of their noise.
 const NOISE: f64 = 5.0;
-/// Coordinates of four corners less numbers of a pose and a size.
+/// Degrees of freedom: coordinates of four corners less the numbers of a pose and a size.
 const FREEDOM: f64 = 4.0;
-/// Poses that move less than this are found (m) and (rad).
-const FOUND: f64 = 1e-12;
+/// The iteration ends with a step below this (m, rad).
+const NEGLIGIBLE: f64 = 1e-12;
 const ITERATIONS: usize = 20;
 
 /// Where a tag's print is on its body.
@@ -47,8 +47,8 @@ pub struct Measurement {
     pub pose: Pose,
     /// Covariance of (x, y, θ) (m², m rad, rad²).
     pub covariance: Matrix3<f64>,
-    /// Edge of the black square as it is seen (m); far from the given one, that or the height is
-    /// wrong.
+    /// Edge of the black square as measured (m); where it is far from the given one, the given size
+    /// or height is wrong.
     pub size: f64,
     /// Squared misfit of the corners in units of their noise, 4 degrees of freedom.
     pub chi2: f64,
@@ -77,7 +77,7 @@ impl Measurement {
                 .solve(&(jacobian.transpose() * weight * residual));
             pose = Pose::new(pose.x + step[0], pose.y + step[1], pose.theta + step[2]);
             size += step[3];
-            if step.amax() < FOUND {
+            if step.amax() < NEGLIGIBLE {
                 let chi2 = (residual.transpose() * weight * residual).x;
                 let tolerance = WORST_MISFIT.max(NOISE * square.covariance.diagonal().max().sqrt());
                 let covariance =
@@ -161,10 +161,11 @@ fn wrapped(pose: Pose) -> Pose {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::camera::tests::camera;
     use nalgebra::Vector3;
     use stickslip_filter::Streams;
+
+    use super::*;
+    use crate::camera::tests::camera;
 
     const PLACE: TagPlace = TagPlace {
         size: 0.028,

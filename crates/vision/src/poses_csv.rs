@@ -94,10 +94,11 @@ fn numbers(measurement: &Measurement) -> [f64; NUMBERS.len()] {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::track::FrameSighting;
     use nalgebra::Matrix3;
     use stickslip_dynamics::Pose;
+
+    use super::*;
+    use crate::track::FrameSighting;
 
     #[test]
     fn write_poses_has_a_cell_for_every_column() {

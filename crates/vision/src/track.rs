@@ -11,6 +11,7 @@ use crate::tags::{BodyTag, Tags};
 
 /// Frames that share a detector.
 const CHUNK: usize = 32;
+
 /// What a frame shows of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sighting {
@@ -85,8 +86,8 @@ pub enum TrackError {
     },
 }
 
-/// A picture as it was loaded, and what is seen in it.
-struct Seen {
+/// What one image shows, with its hash.
+struct ProcessedFrame {
     digest: u64,
     sighting: FrameSighting,
 }
@@ -106,10 +107,10 @@ pub fn track<E: From<TrackError> + Send>(
         let detector = Detector::new(camera.lens().size);
         let frames = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
         frames
-            .map(|index| look(&detector, load(index)?, camera, tags).map_err(E::from))
-            .collect::<Result<Vec<Seen>, E>>()
+            .map(|index| process(&detector, load(index)?, camera, tags).map_err(E::from))
+            .collect::<Result<Vec<ProcessedFrame>, E>>()
     };
-    let seen: Vec<Vec<Seen>> = (0..count.div_ceil(CHUNK))
+    let seen: Vec<Vec<ProcessedFrame>> = (0..count.div_ceil(CHUNK))
         .into_par_iter()
         .map(chunk)
         .collect::<Result<_, E>>()?;
@@ -129,12 +130,12 @@ pub fn track<E: From<TrackError> + Send>(
 }
 
 /// What one image shows.
-fn look(
+fn process(
     detector: &Detector,
     (name, image): (String, GrayImage),
     camera: &Camera,
     tags: &Tags,
-) -> Result<Seen, TrackError> {
+) -> Result<ProcessedFrame, TrackError> {
     let (size, expected) = ([image.width(), image.height()], camera.lens().size);
     if size != expected {
         let text = |[columns, rows]: [u32; 2]| format!("{columns} x {rows}");
@@ -147,17 +148,18 @@ fn look(
     let found = detector.find(&image);
     let sighting = FrameSighting {
         repeated: false,
-        object: sight(&found, &tags.object, camera),
-        pusher: sight(&found, &tags.pusher, camera),
+        object: measure(&found, &tags.object, camera),
+        pusher: measure(&found, &tags.pusher, camera),
         tags: found.iter().map(|tag| tag.id).collect(),
     };
-    Ok(Seen {
+    Ok(ProcessedFrame {
         digest: digest(&image),
         sighting,
     })
 }
 
-fn sight(found: &[FoundTag], body: &BodyTag, camera: &Camera) -> Sighting {
+/// The pose of one body.
+fn measure(found: &[FoundTag], body: &BodyTag, camera: &Camera) -> Sighting {
     let mut of_body = found.iter().filter(|tag| tag.id == body.id);
     let Some(tag) = of_body.next() else {
         return Sighting::Missing;
@@ -173,8 +175,8 @@ fn sight(found: &[FoundTag], body: &BodyTag, camera: &Camera) -> Sighting {
 }
 
 impl Track {
-    /// Poses of the object by frame, angles continued from pose to pose; `None` where there is
-    /// none, or none of that time.
+    /// Poses of the object by frame, angles without jumps; `None` where there is none, or where the
+    /// frame repeats the one before.
     pub fn object(&self) -> Vec<Option<Pose>> {
         self.poses(|frame| frame.object)
     }
@@ -239,8 +241,8 @@ fn nearest_turn(angle: f64, before: f64) -> f64 {
     angle + std::f64::consts::TAU * ((before - angle) / std::f64::consts::TAU).round()
 }
 
-/// A number that differs between images that differ, but for one in 10¹⁹ (FNV-1a, by words of eight
-/// bytes).
+/// Hash of an image (FNV-1a over words of eight bytes); two different images share it with a
+/// probability of 1e-19.
 fn digest(image: &GrayImage) -> u64 {
     image
         .as_raw()

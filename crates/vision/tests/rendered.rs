@@ -361,63 +361,76 @@ fn track_doubts_a_tag_that_is_there_twice() {
     }
 }
 
-#[test]
-fn calibrate_says_what_the_frames_lack() {
-    let (BoardRecording { frames, size }, board) = &*BOARD;
-    let refused = |frames: &[CalibrationFrame], board: &BoardOnTable, flat: usize| {
-        calibrate(
-            &BoardRecording {
-                frames: frames.to_vec(),
-                size: *size,
-            },
-            board,
-            flat,
-        )
-        .unwrap_err()
+/// Why a calibration from some frames of the recording is refused.
+fn refusal(frames: &[CalibrationFrame], board: &BoardOnTable) -> CalibrationError {
+    let recording = BoardRecording {
+        frames: frames.to_vec(),
+        size: BOARD.0.size,
     };
-    let empty = |frame: &CalibrationFrame| CalibrationFrame {
+    calibrate(&recording, board, 0).unwrap_err()
+}
+
+fn without_tags(frame: &CalibrationFrame) -> CalibrationFrame {
+    CalibrationFrame {
         tags: Vec::new(),
         ..frame.clone()
-    };
+    }
+}
 
-    let none: Vec<CalibrationFrame> = frames.iter().map(empty).collect();
-    assert_eq!(
-        refused(&none, board, 0),
-        CalibrationError::NoTag { frames: 12 }
-    );
-
-    let other = BoardOnTable {
-        board: Board {
-            first_tag: 300,
-            ..board.board
-        },
-        ..*board
-    };
-    let text = refused(frames, &other, 0).to_string();
-    assert!(
-        text.contains("on the board, which has 300 to 334; found: 100, 101,")
-            && text.contains("Correct first_tag"),
-        "{text}"
-    );
+#[test]
+fn calibrate_says_what_the_frames_lack() {
+    let (BoardRecording { frames, .. }, board) = &*BOARD;
+    let none: Vec<CalibrationFrame> = frames.iter().map(without_tags).collect();
+    let no_tag = CalibrationError::NoTag { frames: 12 };
+    assert_eq!(refusal(&none, board), no_tag);
 
     let mut no_flat = frames.clone();
-    no_flat[0] = empty(&frames[0]);
-    assert_eq!(
-        refused(&no_flat, board, 0),
-        CalibrationError::FlatFrame {
-            name: "0.png".to_owned(),
-            found: 0
-        }
-    );
+    no_flat[0] = without_tags(&frames[0]);
+    let flat_frame = CalibrationError::FlatFrame {
+        name: "0.png".to_owned(),
+        found: 0,
+    };
+    assert_eq!(refusal(&no_flat, board), flat_frame);
 
-    assert_eq!(
-        refused(&frames[..3], board, 0),
-        CalibrationError::TooFewFrames {
-            usable: 3,
-            frames: 3
-        }
-    );
+    let too_few = CalibrationError::TooFewFrames {
+        usable: 3,
+        frames: 3,
+    };
+    assert_eq!(refusal(&frames[..3], board), too_few);
 
+    let flat_only = refusal(&vec![frames[0].clone(); 6], board);
+    let no_tilt = matches!(flat_only, CalibrationError::NoTilt { .. });
+    assert!(no_tilt, "{flat_only}");
+}
+
+#[test]
+fn calibrate_says_what_is_wrong_with_the_board() {
+    let (BoardRecording { frames, .. }, on_table) = &*BOARD;
+    let text = |board: Board| {
+        let board = BoardOnTable { board, ..*on_table };
+        refusal(frames, &board).to_string()
+    };
+    let other = text(Board {
+        first_tag: 300,
+        ..on_table.board
+    });
+    assert!(
+        other.contains("on the board, which has 300 to 334; found: 100, 101,")
+            && other.contains("Correct first_tag"),
+        "{other}"
+    );
+    let stretched = text(Board {
+        gap: 0.012,
+        ..on_table.board
+    });
+    assert!(
+        stretched.contains("px is good. Measure tag_size and gap"),
+        "{stretched}"
+    );
+}
+
+#[test]
+fn search_board_refuses_frames_of_several_sizes() {
     let load = |index: usize| {
         Ok::<_, CalibrationError>((
             format!("{index}.png"),
@@ -428,29 +441,6 @@ fn calibrate_says_what_the_frames_lack() {
     assert!(
         text.contains("2.png: the image has 64 x 49 pixels, 0.png has 64 x 48")
             && text.contains("Take the odd ones out"),
-        "{text}"
-    );
-
-    let flat_only = vec![frames[0].clone(); 6];
-    assert!(
-        matches!(
-            refused(&flat_only, board, 0),
-            CalibrationError::NoTilt { .. }
-        ),
-        "{}",
-        refused(&flat_only, board, 0)
-    );
-
-    let stretched = BoardOnTable {
-        board: Board {
-            gap: 0.012,
-            ..board.board
-        },
-        ..*board
-    };
-    let text = refused(frames, &stretched, 0).to_string();
-    assert!(
-        text.contains("px is good. Measure tag_size and gap"),
         "{text}"
     );
 }

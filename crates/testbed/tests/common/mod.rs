@@ -1,56 +1,14 @@
 //! The scene `bench-scene` and its recorded trajectories.
 #![allow(dead_code, reason = "each test file uses a part")]
 
-use stickslip_dynamics::{
-    Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape, SpeedProfile, Start,
-};
-use stickslip_testkit::data_root;
-
-/// A disc of 5 mm.
-pub fn disc() -> Shape {
-    Shape::new(vec![Part::Disc {
-        radius: 0.005,
-        centre: [0.0; 2],
-    }])
-    .expect("a disc")
-}
+use stickslip_dynamics::{Pose, Scene, SpeedProfile, Start};
+use stickslip_testkit::{data_root, disc, fixels, pushed_scene, square};
 
 /// `bench-scene/scene.toml`.
 pub fn bench_scene() -> Scene {
-    let corners = vec![
-        [-0.025, -0.025],
-        [0.025, -0.025],
-        [0.025, 0.025],
-        [-0.025, 0.025],
-    ];
-    let fixel = |(x, y)| Fixel {
-        pose: Pose::new(x, y, 0.0),
-        shape: disc(),
-    };
-    Scene {
-        gravity: 9.81,
-        object: Object {
-            mass: 0.5,
-            inertia: 2.083_333_333_333_333_5e-4,
-            shape: Shape::new(vec![Part::Polygon { vertices: corners }]).expect("a square"),
-        },
-        feet: Feet::Tripod {
-            angle: std::f64::consts::FRAC_PI_2,
-        },
-        pusher: Pusher {
-            shape: disc(),
-            stall_force: None,
-        },
-        fixels: [(0.0794, 0.0591), (0.1203, -0.0458), (0.0606, 0.0485)]
-            .map(fixel)
-            .to_vec(),
-        nominal: Friction {
-            mu_s: 0.3,
-            mu_p: 0.3,
-            mu_f: 0.3,
-            d_tri: 0.02,
-        },
-    }
+    let pin = disc(0.005);
+    let positions = [[0.0794, 0.0591], [0.1203, -0.0458], [0.0606, 0.0485]];
+    pushed_scene(square(0.05), pin.clone(), fixels(&pin, &positions))
 }
 
 /// Pushed at 20 mm/s for 6.6 s.

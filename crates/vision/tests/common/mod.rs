@@ -8,11 +8,12 @@
 )]
 
 use image::GrayImage;
-use stickslip_dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
+use stickslip_dynamics::{Pose, Scene};
 use stickslip_filter::Streams;
 use stickslip_rendering::{
     self as rendered, Appearance, BodyPoses, Exposure, Optics, RenderScene, Renderer, TagMount,
 };
+use stickslip_testkit::{disc, fixels, pushed_scene, square};
 use stickslip_vision::{
     Board, BoardOnTable, BoardRecording, BodyTag, Calibration, CalibrationError, Camera,
     Measurement, Sighting, TagPlace, Tags, Track, TrackError, calibrate, search_board, tag_cells,
@@ -33,43 +34,8 @@ pub struct Rig {
 
 /// A square of 50 mm, a pusher with a radius of 6 mm, three fixels.
 pub fn scene() -> Scene {
-    let disc = |radius: f64| {
-        Shape::new(vec![Part::Disc {
-            radius,
-            centre: [0.0, 0.0],
-        }])
-        .unwrap()
-    };
-    let vertices = vec![
-        [-0.025, -0.025],
-        [0.025, -0.025],
-        [0.025, 0.025],
-        [-0.025, 0.025],
-    ];
-    let fixel = |x: f64, y: f64| Fixel {
-        pose: Pose::new(x, y, 0.0),
-        shape: disc(0.005),
-    };
-    Scene {
-        gravity: 9.81,
-        object: Object {
-            mass: 0.5,
-            inertia: 2e-4,
-            shape: Shape::new(vec![Part::Polygon { vertices }]).unwrap(),
-        },
-        feet: Feet::Tripod { angle: 0.0 },
-        pusher: Pusher {
-            shape: disc(0.006),
-            stall_force: None,
-        },
-        fixels: vec![fixel(0.13, 0.018), fixel(0.13, -0.02), fixel(0.12, 0.06)],
-        nominal: Friction {
-            mu_s: 0.3,
-            mu_p: 0.3,
-            mu_f: 0.3,
-            d_tri: 0.02,
-        },
-    }
+    let positions = [[0.13, 0.018], [0.13, -0.02], [0.12, 0.06]];
+    pushed_scene(square(0.05), disc(0.006), fixels(&disc(0.005), &positions))
 }
 
 /// The true camera: 0.62 m above the table, tilted by 5.5 degrees.
