@@ -25,7 +25,7 @@ fn said(particle: &Particle, report: &Report) -> Said {
     let numbers = [q.x, q.y, q.theta, v.vx, v.vy, v.omega, report.residual];
     let bits = numbers
         .iter()
-        .chain(&particle.warm.to_array())
+        .chain(particle.warm.fields())
         .map(|x| x.to_bits())
         .collect();
     Said {
