@@ -8,9 +8,9 @@ const MOST_ITERATIONS: usize = 255;
 /// Routes in the order in which the solver tries them, with their names.
 const ROUTES: [(Route, &str); 4] = [
     (Route::Newton, "newton"),
-    (Route::Continuation, "continuation"),
+    (Route::SmoothedNewton, "continuation"),
     (Route::Homotopy, "homotopy"),
-    (Route::Modes, "modes"),
+    (Route::ModeSearch, "modes"),
 ];
 
 /// Outcomes, routes, iterations and residuals of particle-steps.

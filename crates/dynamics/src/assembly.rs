@@ -11,7 +11,7 @@ use crate::geometry::transform::Transform;
 use crate::input::{Body, PusherMotion};
 use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::unknowns::Unknowns;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
 use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
 use crate::scene::{Feet, Fixel, Scene};
@@ -101,7 +101,7 @@ impl<const W: usize> Assembly<W> {
 
     /// Normal impulses (N s) of one body.
     #[inline(always)]
-    pub fn normal_impulses(&self, p: &Impulses<W>, body: Body) -> Lanes<W> {
+    pub fn normal_impulses(&self, p: &Unknowns<W>, body: Body) -> Lanes<W> {
         let mut sum = Lanes::ZERO;
         for (row, p_n) in self.rows.iter().zip(&p.normal) {
             if row.body == body {
@@ -249,7 +249,7 @@ impl<const W: usize> Assembly<W> {
 
     /// The impulses and twists that the particles remember, as a start.
     #[inline(always)]
-    pub fn load_warm_start(&self, rho: f64, particles: &Particles<W>, p: &mut Impulses<W>) {
+    pub fn load_warm_start(&self, rho: f64, particles: &Particles<W>, p: &mut Unknowns<W>) {
         let Twist { vx, vy, omega } = particles.twist;
         p.v = [vx, vy, omega * rho];
         let warm = &particles.warm;
@@ -272,7 +272,7 @@ impl<const W: usize> Assembly<W> {
     /// Remembers the impulses, of the contacts the first [`REMEMBERED`] that press, and where the
     /// pusher stands.
     #[inline(always)]
-    pub fn store_warm_start(&self, p: &Impulses<W>, particles: &mut Particles<W>) {
+    pub fn store_warm_start(&self, p: &Unknowns<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
         warm.feet = p.feet;
         warm.pusher_yield = p.pusher_yield;
@@ -324,7 +324,10 @@ impl<const W: usize> Assembly<W> {
             let gap = row.gap.0[lane];
             let ([nx, ny, normal], [.., tangential]) =
                 (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
-            let (approach, slip) = (gap / h - numbers.gap.0[lane], -numbers.slip.0[lane]);
+            let (approach, slip) = (
+                gap / h - numbers.gap_offset.0[lane],
+                -numbers.slip_offset.0[lane],
+            );
             ContactPoint {
                 normal: [nx, ny],
                 arm: [
@@ -387,12 +390,12 @@ fn row<const W: usize>(
     ContactRow {
         n: [keep(nx), keep(ny), keep((x * ny - y * nx) * inv_rho)],
         t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * inv_rho)],
-        gap: present.select(
+        gap_offset: present.select(
             gap * rate - (nx * u[0] + ny * u[1]),
-            ContactRow::<W>::OPEN.gap,
+            ContactRow::<W>::OPEN.gap_offset,
         ),
         // the way back to the pose lies in the gap already
-        slip: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
+        slip_offset: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
         nd: keep(nd),
         td: keep(td),
         mu: keep(other.mu),

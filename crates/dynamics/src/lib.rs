@@ -25,7 +25,7 @@ pub use input::{Body, PusherMotion, StepInput};
 pub use ncp::problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};
 pub use ncp::report::{Outcome, Report, Route, TOLERANCE};
 pub use ncp::rows::{ContactRow, FootRow, Ncp};
-pub use ncp::unknowns::Impulses;
+pub use ncp::unknowns::Unknowns;
 pub use particles::{ContactImpulse, Particle, Particles, WarmStart};
 pub use rollout::{Rollout, RolloutError, RolloutStart};
 pub use scene::{Feet, Fixel, Object, Pusher, Scene};

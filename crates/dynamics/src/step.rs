@@ -15,7 +15,7 @@ use crate::input::{Body, PusherMotion, StepInput};
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::Report;
 use crate::ncp::rows::Ncp;
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
 use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
 use crate::scene::Scene;
@@ -49,7 +49,7 @@ pub struct StepWork<const W: usize> {
     narrow: NarrowPhase<W>,
     chunks: Vec<Assembly<W>>,
     ncps: Vec<Ncp<W>>,
-    impulses: Vec<Impulses<W>>,
+    impulses: Vec<Unknowns<W>>,
     reports: Vec<[Report; W]>,
     solver: Solver<W>,
     /// Of steps in which every particle has its own.
@@ -104,7 +104,7 @@ impl<const W: usize> StepWork<W> {
     pub fn solution(&self, particle: usize) -> StepSolution {
         let (chunk, lane) = (particle / W, particle % W);
         let problem = self.problem(particle);
-        let mut alone = Impulses::<1>::zero(problem.contacts.len());
+        let mut alone = Unknowns::<1>::zero(problem.contacts.len());
         self.impulses[chunk].pack_lane(&self.ncps[chunk], lane, &mut alone, 0);
         alone.to_solution(0, &problem)
     }
@@ -115,7 +115,7 @@ impl<const W: usize> StepWork<W> {
         self.ncps
             .resize_with(chunks.max(self.ncps.len()), Ncp::empty);
         self.impulses
-            .resize_with(chunks.max(self.impulses.len()), || Impulses::zero(0));
+            .resize_with(chunks.max(self.impulses.len()), || Unknowns::zero(0));
         self.reports.resize(chunks, [Report::UNSOLVED; W]);
     }
 }
@@ -370,7 +370,7 @@ impl<const W: usize> Source<W> for Problems<'_, W> {
     }
 
     #[inline(always)]
-    fn start(&self, chunk: usize, _: &Ncp<W>, p: &mut Impulses<W>) {
+    fn start(&self, chunk: usize, _: &Ncp<W>, p: &mut Unknowns<W>) {
         self.chunks[chunk].load_warm_start(self.scene.rho, &self.particles[chunk], p);
     }
 }

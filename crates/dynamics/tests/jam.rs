@@ -172,7 +172,7 @@ fn infeasible_step(
     assert!(
         report.residual > TOLERANCE
             && particle.pose.is_finite()
-            && particle.warm.fields().iter().all(|x| x.is_finite())
+            && particle.warm.fields().into_iter().all(|x| x.is_finite())
     );
     report
 }

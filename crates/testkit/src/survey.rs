@@ -74,9 +74,9 @@ impl Tally {
 fn index_of(route: Route) -> usize {
     match route {
         Route::Newton => 0,
-        Route::Continuation => 1,
+        Route::SmoothedNewton => 1,
         Route::Homotopy => 2,
-        Route::Modes => 3,
+        Route::ModeSearch => 3,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The mixed nonlinear complementarity problem of one time step, its unknowns and its residual.
 
+pub(crate) mod max_abs;
 pub(crate) mod natural_map;
 pub(crate) mod problem;
 pub(crate) mod report;

@@ -1,19 +1,17 @@
-//! The natural map of the mixed NCP at one point: [`NaturalMap`], what the certificate and the fast
-//! solver share.
+//! The natural map of the mixed NCP at one point: [`NaturalMap`], shared by the certificate
+//! [`Ncp::residual`] and the Newton iteration.
 //!
-//! Its zeros are the solutions. A foot's row is p − Π(p − s), Π the projection on the friction
-//! disc; a contact's rows are min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row is
-//! min(F_stall − F, y).
+//! Its zeros are the solutions. A foot's row is p − Π(p − s), with Π the projection onto the
+//! friction disc; a contact's rows are min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row
+//! is min(F_stall − F, y). The largest row is the residual of model.md, "What solved means".
 
-use stickslip_lanes::{Lanes, copy_lane};
+use stickslip_lanes::Lanes;
 
-use crate::ncp::rows::{ContactRow, Ncp, ROOM, Triple, Worst, square};
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::max_abs::MaxAbs;
+use crate::ncp::rows::{ContactRow, Ncp, ROOM, Triple, add_scaled, square};
+use crate::ncp::unknowns::Unknowns;
 
-/// Keeps quotients finite.
-pub const TINY: f64 = 1e-300;
-
-/// The natural map at one point, with what leads to it.
+/// The velocities at one point on which the natural map, and its linearisation, depend.
 #[derive(Clone, Debug)]
 pub struct NaturalMap<const W: usize> {
     /// Velocity that follows from the impulses, less the point's.
@@ -21,17 +19,17 @@ pub struct NaturalMap<const W: usize> {
     /// Slip velocity s of each foot.
     pub slips: [[Lanes<W>; 2]; 3],
     /// One per contact.
-    pub contacts: Vec<ContactMap<W>>,
+    pub contacts: Vec<ContactVelocity<W>>,
     /// F_stall − F.
     pub slack: Lanes<W>,
 }
 
-/// One contact.
+/// Relative velocity of the two bodies at one contact.
 #[derive(Clone, Copy, Debug)]
-pub struct ContactMap<const W: usize> {
+pub struct ContactVelocity<const W: usize> {
     /// Gap velocity γ + κ p_n.
     pub gap: Lanes<W>,
-    /// Slip velocity s.
+    /// Slip velocity s; 0 where the contact is open and carries nothing in every lane.
     pub slip: Lanes<W>,
 }
 
@@ -48,38 +46,40 @@ impl<const W: usize> Default for NaturalMap<W> {
 }
 
 impl<const W: usize> NaturalMap<W> {
-    /// Takes the map at `p`; returns its largest row (m/s).
+    /// Evaluates the map at `z`; returns its largest row (m/s).
     #[inline(always)]
-    pub fn take(&mut self, ncp: &Ncp<W>, p: &Impulses<W>) -> Lanes<W> {
-        self.imbalance = ncp.imbalance(p);
-        self.slack = ncp.stall - ncp.resistance(p);
-        let mut worst = Worst::NONE;
-        worst.note(self.slack.min(p.pusher_yield));
-        for off in self.imbalance {
-            worst.note(off);
+    pub fn evaluate(&mut self, ncp: &Ncp<W>, z: &Unknowns<W>) -> Lanes<W> {
+        self.imbalance = ncp.imbalance(z);
+        self.slack = ncp.stall - ncp.resistance(z);
+        let mut largest = MaxAbs::ZERO;
+        // stall pair and Newton–Euler rows
+        largest.accumulate(self.slack.min(z.pusher_yield));
+        for row in self.imbalance {
+            largest.accumulate(row);
         }
-        let mut squares = Worst::NONE;
-        for (slip, (foot, p_k)) in self.slips.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
-            *slip = foot.slip(&p.v);
-            squares.note(square(&miss(foot.bound, p_k, slip)));
+        // feet: one root for the largest of their squared lengths
+        let mut squares = MaxAbs::ZERO;
+        for (slip, (foot, p_k)) in self.slips.iter_mut().zip(ncp.feet.iter().zip(&z.feet)) {
+            *slip = foot.slip(&z.v);
+            squares.accumulate(square(&foot_violation(foot.bound, p_k, slip)));
         }
-        worst.note(squares.root());
+        largest.accumulate(squares.sqrt());
+        // contacts
         self.contacts.clear();
-        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
+        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(z.contacts()) {
             let gap = row
-                .gap_velocity(&p.v, p.pusher_yield)
+                .gap_velocity(&z.v, z.pusher_yield)
                 .add_mul(ncp.compliance, *p_n);
-            worst.note(p_n.min(gap));
+            largest.accumulate(p_n.min(gap));
             let mut slip = Lanes::ZERO;
-            // where a contact carries nothing and stays open in every lane, its slip makes no
-            // difference
+            // the slip of a contact that is open and carries nothing enters no row
             if ((p_n.abs() + p_t.abs()).gt(Lanes::ZERO) | gap.lt(Lanes::ZERO)).any() {
-                slip = row.slip_velocity(&p.v, p.pusher_yield);
-                worst.note(slip_violation(row, slip, [*p_n, *p_t]));
+                slip = row.slip_velocity(&z.v, z.pusher_yield);
+                largest.accumulate(friction_violation(row, slip, [*p_n, *p_t]));
             }
-            self.contacts.push(ContactMap { gap, slip });
+            self.contacts.push(ContactVelocity { gap, slip });
         }
-        worst.size()
+        largest.value()
     }
 
     /// Copies one lane of `ncp` into lane `slot` of `to`, a map of `contacts` contacts, without the
@@ -93,67 +93,96 @@ impl<const W: usize> NaturalMap<W> {
         contacts: usize,
         slot: usize,
     ) {
-        copy_lane(to.singles_mut(), slot, self.singles(), lane);
-        to.contacts.resize(contacts, ContactMap::OPEN);
-        let mut k = 0;
-        for (map, _) in self
-            .contacts
-            .iter()
-            .zip(&ncp.contacts)
-            .filter(|(_, row)| row.is_present(lane))
-        {
-            to.contacts[k].gap.0[slot] = map.gap.0[lane];
-            to.contacts[k].slip.0[slot] = map.slip.0[lane];
-            k += 1;
+        for k in 0..3 {
+            to.imbalance[k].0[slot] = self.imbalance[k].0[lane];
+            to.slips[k][0].0[slot] = self.slips[k][0].0[lane];
+            to.slips[k][1].0[slot] = self.slips[k][1].0[lane];
         }
-        for map in &mut to.contacts[k..] {
-            let ContactMap { gap, slip } = ContactMap::<1>::OPEN;
-            (map.gap.0[slot], map.slip.0[slot]) = (gap.0[0], slip.0[0]);
+        to.slack.0[slot] = self.slack.0[lane];
+        to.contacts.resize(contacts, ContactVelocity::PADDING);
+        let mut packed = 0;
+        for (from, row) in self.contacts.iter().zip(&ncp.contacts) {
+            if row.is_present(lane) {
+                from.copy_lane(lane, &mut to.contacts[packed], slot);
+                packed += 1;
+            }
+        }
+        for beyond in &mut to.contacts[packed..] {
+            ContactVelocity::<1>::PADDING.copy_lane(0, beyond, slot);
         }
     }
+}
 
-    /// What does not belong to a contact.
-    #[inline(always)]
-    fn singles(&self) -> [&Lanes<W>; 10] {
-        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&self.imbalance, &self.slips);
-        [x, y, turn, ax, ay, bx, by, cx, cy, &self.slack]
-    }
+impl<const W: usize> ContactVelocity<W> {
+    /// Of a row that only pads.
+    const PADDING: Self = Self {
+        gap: ContactRow::<W>::OPEN.gap_offset,
+        slip: Lanes::ZERO,
+    };
 
     #[inline(always)]
-    fn singles_mut(&mut self) -> [&mut Lanes<W>; 10] {
-        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&mut self.imbalance, &mut self.slips);
-        [x, y, turn, ax, ay, bx, by, cx, cy, &mut self.slack]
+    fn copy_lane<const V: usize>(&self, lane: usize, to: &mut ContactVelocity<V>, slot: usize) {
+        to.gap.0[slot] = self.gap.0[lane];
+        to.slip.0[slot] = self.slip.0[lane];
     }
 }
 
 /// Π(p − s) − p of a foot.
 #[inline(always)]
-fn miss<const W: usize>(bound: Lanes<W>, p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2]) -> [Lanes<W>; 2] {
-    let z = [p[0] - slip[0], p[1] - slip[1]];
-    let size = square(&z);
-    let sliding = size.gt(bound * bound);
+fn foot_violation<const W: usize>(
+    bound: Lanes<W>,
+    p: &[Lanes<W>; 2],
+    slip: &[Lanes<W>; 2],
+) -> [Lanes<W>; 2] {
+    let trial = [p[0] - slip[0], p[1] - slip[1]];
+    let size = square(&trial);
+    let slides = size.gt(bound * bound);
     let shrink = bound * size.inverse_sqrt();
     [
-        sliding.select((-p[0]).add_mul(shrink, z[0]), -slip[0]),
-        sliding.select((-p[1]).add_mul(shrink, z[1]), -slip[1]),
+        slides.select((-p[0]).add_mul(shrink, trial[0]), -slip[0]),
+        slides.select((-p[1]).add_mul(shrink, trial[1]), -slip[1]),
     ]
-}
-
-impl<const W: usize> ContactMap<W> {
-    /// Of a row that only pads.
-    const OPEN: Self = Self {
-        gap: ContactRow::<W>::OPEN.gap,
-        slip: Lanes::ZERO,
-    };
 }
 
 /// The friction row of a contact: p_t − clamp(p_t − s, ±μ p_n).
 #[inline(always)]
-fn slip_violation<const W: usize>(
+fn friction_violation<const W: usize>(
     row: &ContactRow<W>,
     slip: Lanes<W>,
     [p_n, p_t]: [Lanes<W>; 2],
 ) -> Lanes<W> {
     let bound = row.mu * p_n.max(Lanes::ZERO);
     p_t - (p_t - slip).min(bound).max(-bound)
+}
+
+impl<const W: usize> Ncp<W> {
+    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the
+    /// certificate of a solution.
+    pub fn residual(&self, z: &Unknowns<W>) -> Lanes<W> {
+        NaturalMap::default().evaluate(self, z)
+    }
+
+    /// Velocity that follows from the impulses by the Newton–Euler rows, less the velocity in `z`.
+    #[inline(always)]
+    pub fn imbalance(&self, z: &Unknowns<W>) -> Triple<W> {
+        let mut v = self.free;
+        for (foot, p) in self.feet.iter().zip(&z.feet) {
+            foot.add_wrench(&mut v, p);
+        }
+        for (row, (p_n, p_t)) in self.contacts.iter().zip(z.contacts()) {
+            add_scaled(&mut v, &row.n, *p_n);
+            add_scaled(&mut v, &row.t, *p_t);
+        }
+        [v[0] - z.v[0], v[1] - z.v[1], v[2] - z.v[2]]
+    }
+
+    /// F / m: the impulse with which the object resists the pusher along d.
+    #[inline(always)]
+    pub fn resistance(&self, z: &Unknowns<W>) -> Lanes<W> {
+        let mut force = Lanes::ZERO;
+        for (row, (p_n, p_t)) in self.contacts.iter().zip(z.contacts()) {
+            force = force.add_mul(*p_n, row.nd).add_mul(*p_t, row.td);
+        }
+        force
+    }
 }

@@ -15,17 +15,17 @@ pub enum Outcome {
     Failed,
 }
 
-/// Which solver the answer came from.
+/// The solver that the answer came from, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Route {
-    /// Semismooth Newton from the warm start.
+    /// Semismooth Newton iteration from the warm start.
     Newton,
-    /// Smoothed Newton steps from the warm start.
-    Continuation,
-    /// Smoothing homotopy, polished.
+    /// Newton steps on smoothed rows from the warm start.
+    SmoothedNewton,
+    /// Smoothing homotopy, its end refined.
     Homotopy,
     /// Exhaustive search over contact modes.
-    Modes,
+    ModeSearch,
 }
 
 /// What is known of one particle's step.
@@ -35,14 +35,14 @@ pub struct Report {
     pub outcome: Outcome,
     /// Natural-map residual of the rigid problem (m/s).
     pub residual: f64,
-    /// Newton steps of the solvers that run side by side.
+    /// Newton steps of the two solvers that run in lanes.
     pub iterations: u32,
     /// Where the answer came from.
     pub route: Route,
 }
 
 impl Report {
-    /// Of a step that no solver has looked at.
+    /// Of a step that no solver has tried yet.
     pub(crate) const UNSOLVED: Self = Self {
         outcome: Outcome::Failed,
         residual: f64::INFINITY,

@@ -1,14 +1,17 @@
-//! The unknowns of the mixed NCP, `W` particles side by side: [`Impulses`].
+//! The unknowns of the mixed NCP, `W` particles side by side: [`Unknowns`].
 
-use stickslip_lanes::{Lanes, copy_lane};
+use std::iter::Zip;
+use std::slice;
+
+use stickslip_lanes::Lanes;
 
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::rows::{Ncp, ROOM, Triple};
 use crate::se2::Twist;
 
-/// Unknowns of an [`Ncp`], all in m/s.
+/// Unknowns z = (v⁺, p_n, p_t, p_k, y) of an [`Ncp`], all in m/s.
 #[derive(Clone, Debug)]
-pub struct Impulses<const W: usize> {
+pub struct Unknowns<const W: usize> {
     /// Velocity v⁺.
     pub v: Triple<W>,
     /// p_n / m per contact.
@@ -17,11 +20,11 @@ pub struct Impulses<const W: usize> {
     pub tangential: Vec<Lanes<W>>,
     /// p_k / m per foot.
     pub feet: [[Lanes<W>; 2]; 3],
-    /// Speed y by which the pusher gives way.
+    /// Speed y by which the pusher yields.
     pub pusher_yield: Lanes<W>,
 }
 
-impl<const W: usize> Impulses<W> {
+impl<const W: usize> Unknowns<W> {
     /// No impulse at all on `contacts` contacts, at rest.
     pub fn zero(contacts: usize) -> Self {
         let zeros = || {
@@ -38,10 +41,31 @@ impl<const W: usize> Impulses<W> {
         }
     }
 
+    /// Makes all numbers zero, on `contacts` contacts; memory is reused.
+    pub fn clear(&mut self, contacts: usize) {
+        self.normal.clear();
+        self.tangential.clear();
+        self.resize(contacts);
+        (self.v, self.feet, self.pusher_yield) =
+            ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
+    }
+
     /// Makes room for `contacts` contacts; new entries are zero.
     pub fn resize(&mut self, contacts: usize) {
         self.normal.resize(contacts, Lanes::ZERO);
         self.tangential.resize(contacts, Lanes::ZERO);
+    }
+
+    /// The start without any impulse: the free motion.
+    pub fn cold_start(&mut self, ncp: &Ncp<W>) {
+        self.clear(ncp.contacts.len());
+        self.v = ncp.free;
+    }
+
+    /// (p_n, p_t) of every contact.
+    #[inline(always)]
+    pub fn contacts(&self) -> Zip<slice::Iter<'_, Lanes<W>>, slice::Iter<'_, Lanes<W>>> {
+        self.normal.iter().zip(&self.tangential)
     }
 
     /// Copies all lanes; memory is reused.
@@ -57,105 +81,80 @@ impl<const W: usize> Impulses<W> {
     #[inline(always)]
     pub fn blend(&mut self, from: &Self, to: &Self, share: Lanes<W>) {
         self.copy_from(to);
-        self.zip(from, |to, from| from + share * (to - from));
-    }
-
-    /// Replaces every number by a function of it and of its like in `other`.
-    #[inline(always)]
-    fn zip(&mut self, other: &Self, f: impl Fn(Lanes<W>, Lanes<W>) -> Lanes<W>) {
-        let pairs = self.v.iter_mut().zip(&other.v);
-        let feet = self
-            .feet
-            .as_flattened_mut()
-            .iter_mut()
-            .zip(other.feet.as_flattened());
-        let normal = self.normal.iter_mut().zip(&other.normal);
-        let tangential = self.tangential.iter_mut().zip(&other.tangential);
-        for (to, from) in pairs.chain(feet).chain(normal).chain(tangential) {
-            *to = f(*to, *from);
+        for (to, from) in [
+            (&mut self.v[..], &from.v[..]),
+            (self.feet.as_flattened_mut(), from.feet.as_flattened()),
+            (&mut self.normal, &from.normal),
+            (&mut self.tangential, &from.tangential),
+            (
+                slice::from_mut(&mut self.pusher_yield),
+                slice::from_ref(&from.pusher_yield),
+            ),
+        ] {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = *from + share * (*to - *from);
+            }
         }
-        self.pusher_yield = f(self.pusher_yield, other.pusher_yield);
     }
 
-    /// Makes all numbers zero, on `contacts` contacts; memory is reused.
-    pub fn clear(&mut self, contacts: usize) {
-        self.normal.clear();
-        self.tangential.clear();
-        self.resize(contacts);
-        (self.v, self.feet, self.pusher_yield) =
-            ([Lanes::ZERO; 3], [[Lanes::ZERO; 2]; 3], Lanes::ZERO);
-    }
-
-    /// The start without any impulse: the free motion.
-    pub fn cold_start(&mut self, ncp: &Ncp<W>) {
-        self.clear(ncp.contacts.len());
-        self.v = ncp.free;
-    }
-
-    /// Copies one lane's numbers into lane `slot` of `to`, on the contacts that the lane has in
-    /// `ncp`; what contacts `to` has beyond these carry nothing.
+    /// Copies one lane into lane `slot` of `to`, on the contacts that the lane has in `ncp`;
+    /// contacts that `to` has beyond these get no impulse.
     #[inline(always)]
     pub fn pack_lane<const V: usize>(
         &self,
         ncp: &Ncp<W>,
         lane: usize,
-        to: &mut Impulses<V>,
+        to: &mut Unknowns<V>,
         slot: usize,
     ) {
-        copy_lane(to.singles_mut(), slot, self.singles(), lane);
-        let mut k = 0;
-        for (row, (p_n, p_t)) in ncp
-            .contacts
-            .iter()
-            .zip(self.normal.iter().zip(&self.tangential))
-        {
+        self.copy_body_lane(lane, to, slot);
+        let mut packed = 0;
+        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(self.contacts()) {
             if row.is_present(lane) {
-                to.normal[k].0[slot] = p_n.0[lane];
-                to.tangential[k].0[slot] = p_t.0[lane];
-                k += 1;
+                to.normal[packed].0[slot] = p_n.0[lane];
+                to.tangential[packed].0[slot] = p_t.0[lane];
+                packed += 1;
             }
         }
-        for (p_n, p_t) in to.normal[k..].iter_mut().zip(&mut to.tangential[k..]) {
+        let beyond = to.normal[packed..]
+            .iter_mut()
+            .zip(&mut to.tangential[packed..]);
+        for (p_n, p_t) in beyond {
             (p_n.0[slot], p_t.0[slot]) = (0.0, 0.0);
         }
     }
 
-    /// The inverse of [`Impulses::pack_lane`]; contacts that the lane does not have carry nothing.
+    /// The inverse of [`Unknowns::pack_lane`]; contacts that the lane does not have get no impulse.
     #[inline(always)]
     pub fn unpack_lane<const V: usize>(
         &mut self,
         ncp: &Ncp<W>,
         lane: usize,
-        from: &Impulses<V>,
+        from: &Unknowns<V>,
         slot: usize,
     ) {
-        copy_lane(self.singles_mut(), lane, from.singles(), slot);
-        let mut k = 0;
-        for (row, (to_n, to_t)) in ncp
-            .contacts
-            .iter()
-            .zip(self.normal.iter_mut().zip(&mut self.tangential))
-        {
+        from.copy_body_lane(slot, self, lane);
+        let mut packed = 0;
+        let contacts = self.normal.iter_mut().zip(&mut self.tangential);
+        for (row, (to_n, to_t)) in ncp.contacts.iter().zip(contacts) {
             let (mut p_n, mut p_t) = (0.0, 0.0);
             if row.is_present(lane) {
-                (p_n, p_t) = (from.normal[k].0[slot], from.tangential[k].0[slot]);
-                k += 1;
+                (p_n, p_t) = (from.normal[packed].0[slot], from.tangential[packed].0[slot]);
+                packed += 1;
             }
             (to_n.0[lane], to_t.0[lane]) = (p_n, p_t);
         }
     }
 
-    /// What does not belong to a contact.
+    /// Copies what does not belong to a contact from one lane into lane `slot` of `to`.
     #[inline(always)]
-    fn singles(&self) -> [&Lanes<W>; 10] {
-        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&self.v, &self.feet);
-        [x, y, turn, ax, ay, bx, by, cx, cy, &self.pusher_yield]
-    }
-
-    #[inline(always)]
-    fn singles_mut(&mut self) -> [&mut Lanes<W>; 10] {
-        let ([x, y, turn], [[ax, ay], [bx, by], [cx, cy]]) = (&mut self.v, &mut self.feet);
-        [x, y, turn, ax, ay, bx, by, cx, cy, &mut self.pusher_yield]
+    fn copy_body_lane<const V: usize>(&self, lane: usize, to: &mut Unknowns<V>, slot: usize) {
+        for k in 0..3 {
+            to.v[k].0[slot] = self.v[k].0[lane];
+            to.feet[k][0].0[slot] = self.feet[k][0].0[lane];
+            to.feet[k][1].0[slot] = self.feet[k][1].0[lane];
+        }
+        to.pusher_yield.0[slot] = self.pusher_yield.0[lane];
     }
 
     /// One lane in SI units, for the problem it solves.

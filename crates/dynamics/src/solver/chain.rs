@@ -1,9 +1,9 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
-//! The semismooth Newton iteration answers almost always. What it leaves of a whole block of
-//! particles goes to the smoothed Newton steps, packed together, still side by side; a smoothing
-//! homotopy, then an exhaustive search over contact modes take what is left, one by one. Whatever
-//! route an answer came by, it counts as solved only where [`Ncp::residual`] says so.
+//! The semismooth Newton iteration answers almost always. What it leaves over of a whole block of
+//! particles goes to the smoothed Newton steps, packed together, still side by side; then one by one
+//! to a smoothing homotopy and an exhaustive search over contact modes. Whatever route an answer
+//! came by, it counts as solved only where [`Ncp::residual`] says so.
 
 use stickslip_lanes::Lanes;
 
@@ -11,38 +11,38 @@ use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
 use crate::ncp::rows::Ncp;
-use crate::ncp::unknowns::Impulses;
-use crate::solver::fallback::SlowSolver;
-use crate::solver::lane_queue::Place;
-use crate::solver::newton::{Goal, NEAR};
-use crate::solver::newton_block::{FastSolver, Iterated};
-use crate::solver::smoothed_path::{Block, Continuation, Descent, End};
+use crate::ncp::unknowns::Unknowns;
+use crate::solver::fallback::Fallback;
+use crate::solver::lane_queue::LaneIndex;
+use crate::solver::newton::NewtonSettings;
+use crate::solver::newton_block::NewtonBlock;
+use crate::solver::smoothed_newton::{SmoothedNewton, SmoothingSchedule, WarmBlock};
 use crate::solver::source::Source;
+use crate::solver::stick_predictor::SLIP_WEIGHT_NEAR;
 
-/// What the fast solver tries: a residual below [`TOLERANCE`], which counts in the end, for the
+/// Of the first solver. It aims below [`TOLERANCE`], which decides in the end, for the sake of the
 /// impulses of feet that slip slowly.
-const FAST: Goal = Goal {
-    residual: 1e-10,
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
     iterations: 32,
-    weight: NEAR,
+    slip_weight: SLIP_WEIGHT_NEAR,
 };
 
-/// Ways down from a warm start that the smoothed steps try one after the other: from next to it,
-/// from afar, and slowly.
-const DESCENTS: [Descent; 3] = [
-    Descent {
+/// Smoothing schedules, tried in turn: from next to the warm start, from far away, and slowly.
+const SCHEDULES: [SmoothingSchedule; 3] = [
+    SmoothingSchedule {
         start: 1e-7,
         reduction: 0.01,
         near: 1e6,
         sliding: 0.9999,
     },
-    Descent {
+    SmoothingSchedule {
         start: 1e-1,
         reduction: 0.01,
         near: 1e3,
         sliding: 0.9999,
     },
-    Descent {
+    SmoothingSchedule {
         start: 1e-3,
         reduction: 0.1,
         near: 10.0,
@@ -61,11 +61,11 @@ const DESCENTS: [Descent; 3] = [
 /// assert_eq!((report.outcome, solution.twist), (Outcome::Solved, twist));
 /// ```
 pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
-    let (mut ncps, mut p, mut reports) =
-        ([Ncp::empty()], [Impulses::zero(0)], [[Report::UNSOLVED]]);
-    Solver::default().solve(&mut Cold(problem), &mut ncps, &mut p, &mut reports);
-    let ([p], [[report]]) = (p, reports);
-    (p.to_solution(0, problem), report)
+    let (mut ncps, mut z, mut reports) =
+        ([Ncp::empty()], [Unknowns::zero(0)], [[Report::UNSOLVED]]);
+    Solver::default().solve(&mut Cold(problem), &mut ncps, &mut z, &mut reports);
+    let ([z], [[report]]) = (z, reports);
+    (z.to_solution(0, problem), report)
 }
 
 /// A single problem without a warm start.
@@ -76,164 +76,155 @@ impl Source<1> for Cold<'_> {
         ncp.assign(std::array::from_ref(self.0));
     }
 
-    fn start(&self, _: usize, ncp: &Ncp<1>, p: &mut Impulses<1>) {
-        p.cold_start(ncp);
+    fn start(&self, _: usize, ncp: &Ncp<1>, z: &mut Unknowns<1>) {
+        z.cold_start(ncp);
     }
 }
 
 /// Solves mixed NCPs; holds the working memory.
 #[derive(Clone, Debug)]
 pub struct Solver<const W: usize> {
-    fast: FastSolver<W>,
+    newton: NewtonBlock<W>,
+    smoothed: SmoothedNewton<W>,
+    fallback: Fallback,
     map: NaturalMap<W>,
-    warm: Vec<Impulses<W>>,
-    left: Vec<Place>,
-    kept: Vec<Place>,
-    continuation: Continuation<W>,
-    slow: SlowSolver,
+    warm: Vec<Unknowns<W>>,
+    unsolved: Vec<LaneIndex>,
+    still_unsolved: Vec<LaneIndex>,
 }
 
 impl<const W: usize> Default for Solver<W> {
     fn default() -> Self {
         Self {
-            fast: FastSolver::default(),
+            newton: NewtonBlock::default(),
+            smoothed: SmoothedNewton::default(),
+            fallback: Fallback::default(),
             map: NaturalMap::default(),
             warm: Vec::new(),
-            left: Vec::new(),
-            kept: Vec::new(),
-            continuation: Continuation::default(),
-            slow: SlowSolver::default(),
+            unsolved: Vec::new(),
+            still_unsolved: Vec::new(),
         }
     }
 }
 
 impl<const W: usize> Solver<W> {
     /// Solves the block of problems that comes from `source`, `W` to a chunk; leaves the problems
-    /// in `ncps`, their solutions in `p`.
+    /// in `ncps`, their solutions in `z`.
     #[inline(always)]
     pub fn solve(
         &mut self,
         source: &mut impl Source<W>,
         ncps: &mut [Ncp<W>],
-        p: &mut [Impulses<W>],
+        z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
         assert!(
-            ncps.len() == p.len() && p.len() == reports.len(),
-            "as many chunks of impulses and reports as of problems"
+            ncps.len() == z.len() && z.len() == reports.len(),
+            "as many chunks of unknowns and reports as of problems"
         );
-        self.warm
-            .resize_with(ncps.len().max(self.warm.len()), || Impulses::zero(0));
-        for places in [&mut self.left, &mut self.kept] {
-            places.clear();
-            // as many as can be left: how many there are changes from step to step, and no step
-            // after the first may allocate
-            places.reserve(W * ncps.len());
+        self.reserve(ncps.len());
+        // all problems by the Newton iteration
+        let unsolved = &mut self.unsolved;
+        self.newton.solve(source, ncps, z, NEWTON, &mut |end| {
+            reports[end.index.chunk][end.index.lane] = Report {
+                outcome: Outcome::Solved,
+                residual: end.residual,
+                iterations: end.iterations,
+                route: Route::Newton,
+            };
+            if end.residual > TOLERANCE {
+                unsolved.push(end.index);
+            }
+        });
+        // what it leaves over
+        if !self.unsolved.is_empty() {
+            self.solve_unsolved(source, ncps, z, reports);
         }
-        let left = &mut self.left;
-        self.fast.solve(
-            source,
-            ncps,
-            p,
-            FAST,
-            &mut |Iterated {
-                      place,
-                      residual,
-                      iterations,
-                  }| {
-                reports[place.chunk][place.lane] = Report {
-                    outcome: Outcome::Solved,
-                    residual,
-                    iterations,
-                    route: Route::Newton,
-                };
-                if residual > TOLERANCE {
-                    left.push(place);
-                }
-            },
-        );
-        if !self.left.is_empty() {
-            self.solve_left(source, ncps, p, reports);
-        }
-        for ((ncp, p), reports) in ncps.iter().zip(p).zip(reports) {
-            rest_exactly(ncp, p, &mut self.map, reports);
+        for ((ncp, z), reports) in ncps.iter().zip(z).zip(reports) {
+            rest_exactly(ncp, z, &mut self.map, reports);
         }
     }
 
-    /// The problems that the fast solver left, packed together; then one by one what is left of
-    /// them.
+    /// Makes room for as many unsolved problems as there can be: their number changes from step to
+    /// step, and no step after the first may allocate.
     #[inline(always)]
-    fn solve_left(
+    fn reserve(&mut self, chunks: usize) {
+        self.warm
+            .resize_with(chunks.max(self.warm.len()), || Unknowns::zero(0));
+        for indices in [&mut self.unsolved, &mut self.still_unsolved] {
+            indices.clear();
+            indices.reserve(W * chunks);
+        }
+    }
+
+    /// The unsolved problems from their warm starts: packed together, then one by one.
+    #[inline(always)]
+    fn solve_unsolved(
         &mut self,
         source: &impl Source<W>,
         ncps: &[Ncp<W>],
-        p: &mut [Impulses<W>],
+        z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
-        for &Place { chunk, .. } in &self.left {
+        for &LaneIndex { chunk, .. } in &self.unsolved {
             source.start(chunk, &ncps[chunk], &mut self.warm[chunk]);
         }
-        let block = Block {
+        // smoothed Newton steps
+        let block = WarmBlock {
             ncps,
             warm: &self.warm,
         };
-        for descent in &DESCENTS {
-            self.kept.clear();
-            let mut finish = |end: &End<'_, W>| {
-                let place = self.left[end.task];
-                let report = &mut reports[place.chunk][place.lane];
-                report.route = Route::Continuation;
-                report.iterations += end.steps;
-                report.residual = end.residual;
-                if end.residual <= TOLERANCE {
-                    p[place.chunk].unpack_lane(
-                        &ncps[place.chunk],
-                        place.lane,
-                        end.impulses,
-                        end.lane,
-                    );
-                } else {
-                    self.kept.push(place);
-                }
-            };
-            self.continuation
-                .solve(block, &self.left, descent, TOLERANCE, &mut finish);
-            std::mem::swap(&mut self.left, &mut self.kept);
+        for schedule in &SCHEDULES {
+            let (unsolved, still_unsolved) = (&self.unsolved, &mut self.still_unsolved);
+            still_unsolved.clear();
+            self.smoothed
+                .solve(block, unsolved, schedule, TOLERANCE, &mut |end| {
+                    let LaneIndex { chunk, lane } = end.index;
+                    let report = &mut reports[chunk][lane];
+                    report.route = Route::SmoothedNewton;
+                    report.iterations += end.steps;
+                    report.residual = end.residual;
+                    if end.residual <= TOLERANCE {
+                        z[chunk].unpack_lane(&ncps[chunk], lane, end.z, end.slot);
+                    } else {
+                        still_unsolved.push(end.index);
+                    }
+                });
+            std::mem::swap(&mut self.unsolved, &mut self.still_unsolved);
         }
-        for &Place { chunk, lane } in &self.left {
-            let solution = self.slow.solve(
-                &ncps[chunk],
-                &self.warm[chunk],
-                lane,
-                &mut reports[chunk][lane],
-            );
-            p[chunk].unpack_lane(&ncps[chunk], lane, solution, 0);
+        // homotopy, search over modes, compliant problem
+        for &LaneIndex { chunk, lane } in &self.unsolved {
+            let (ncp, report) = (&ncps[chunk], &mut reports[chunk][lane]);
+            let solution = self.fallback.solve(ncp, &self.warm[chunk], lane, report);
+            z[chunk].unpack_lane(ncp, lane, solution, 0);
         }
     }
 }
 
-/// A velocity that is zero but for rounding becomes zero where the certificate agrees, so that a
+/// Sets velocities to zero that are zero but for rounding, where the certificate agrees, so that a
 /// stuck object never drifts.
 #[inline(always)]
 fn rest_exactly<const W: usize>(
     ncp: &Ncp<W>,
-    p: &mut Impulses<W>,
+    z: &mut Unknowns<W>,
     map: &mut NaturalMap<W>,
     reports: &mut [Report; W],
 ) {
+    // lanes that nearly rest
     let mut fastest = Lanes::ZERO;
-    for v in &p.v {
+    for v in &z.v {
         fastest = fastest.max(v.abs());
     }
     let nearly = fastest.gt(Lanes::ZERO) & !fastest.gt(Lanes::splat(TOLERANCE));
     if !nearly.any() {
         return;
     }
-    let velocity = p.v;
-    for v in &mut p.v {
+    // their residual at rest
+    let velocity = z.v;
+    for v in &mut z.v {
         *v = nearly.select(Lanes::ZERO, *v);
     }
-    let residual = map.take(ncp, p);
+    let residual = map.evaluate(ncp, z);
     let mut exact = nearly & !residual.gt(Lanes::splat(TOLERANCE));
     for (lane, report) in reports.iter_mut().enumerate() {
         exact.set(lane, exact.lane(lane) && report.outcome == Outcome::Solved);
@@ -241,7 +232,8 @@ fn rest_exactly<const W: usize>(
             report.residual = residual.0[lane];
         }
     }
-    for (v, moving) in p.v.iter_mut().zip(velocity) {
+    // the others go on as they were
+    for (v, moving) in z.v.iter_mut().zip(velocity) {
         *v = exact.select(Lanes::ZERO, moving);
     }
 }

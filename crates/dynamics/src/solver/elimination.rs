@@ -1,26 +1,26 @@
-//! Gauss elimination, `W` systems side by side: [`solve_three`] and [`solve_four`].
+//! Gauss elimination: [`solve_three`] and [`solve_four`] of `W` systems side by side, without
+//! pivoting; [`solve_dense`] of one system, with it.
 //!
-//! The equations are the three momentum balances, then the stall pair. They are eliminated as they
-//! stand: the balances' matrix is the identity and what resists motion, whose pivots stay large,
-//! however much stiffer some directions are held than others; only a sliding contact may bring one
-//! near zero. Such a step is badly off, and it is for the certificate to say so: looking for better
-//! pivots costs every step a tenth and leaves as many problems of the recorded logs to the
-//! homotopy.
+//! In lanes, the equations are the three momentum balances, then the stall pair, eliminated in that
+//! order. The balances' matrix is the identity plus what resists motion, so its pivots stay large
+//! however much stiffer some directions are than others; only a sliding contact may bring one near
+//! zero. A bad pivot gives a bad step, which the residual test rejects. Searching for better pivots
+//! costs every step a tenth and leaves as many problems of the recorded logs to the homotopy.
 //!
-//! Written out, so that no number of it leaves the registers.
+//! Written out, so that every number stays in a register.
 
 use stickslip_lanes::Lanes;
 
 /// The unknowns of three equations: three coefficients each, then the right-hand side.
 #[inline(always)]
 pub fn solve_three<const W: usize>([a, b, c]: &[[Lanes<W>; 4]; 3]) -> [Lanes<W>; 3] {
-    let [per_a, per_b] = inverse_pivots(a, b);
-    let [b, c]: [[_; 3]; 2] = [without_first(b, a, per_a), without_first(c, a, per_a)];
-    let c: [_; 2] = without_first(&c, &b, per_b);
+    let [inv_a, inv_b] = inverse_pivots(a, b);
+    let [b, c]: [[_; 3]; 2] = [without_first(b, a, inv_a), without_first(c, a, inv_a)];
+    let c: [_; 2] = without_first(&c, &b, inv_b);
 
     let z = c[1] * (Lanes::splat(1.0) / c[0]);
-    let y = b[2].sub_mul(b[1], z) * per_b;
-    let x = a[3].sub_mul(a[1], y).sub_mul(a[2], z) * per_a;
+    let y = b[2].sub_mul(b[1], z) * inv_b;
+    let x = a[3].sub_mul(a[1], y).sub_mul(a[2], z) * inv_a;
     [x, y, z]
 }
 
@@ -28,25 +28,25 @@ pub fn solve_three<const W: usize>([a, b, c]: &[[Lanes<W>; 4]; 3]) -> [Lanes<W>;
 /// unknown is zero, the others are those of [`solve_three`] to the bit.
 #[inline(always)]
 pub fn solve_four<const W: usize>([a, b, c, d]: &[[Lanes<W>; 5]; 4]) -> [Lanes<W>; 4] {
-    let [per_a, per_b] = inverse_pivots(a, b);
+    let [inv_a, inv_b] = inverse_pivots(a, b);
     let [b, c, d]: [[_; 4]; 3] = [
-        without_first(b, a, per_a),
-        without_first(c, a, per_a),
-        without_first(d, a, per_a),
+        without_first(b, a, inv_a),
+        without_first(c, a, inv_a),
+        without_first(d, a, inv_a),
     ];
-    let [c, d]: [[_; 3]; 2] = [without_first(&c, &b, per_b), without_first(&d, &b, per_b)];
-    let [per_c, per_d] = inverse_pivots(&c, &d);
-    let d: [_; 2] = without_first(&d, &c, per_c);
+    let [c, d]: [[_; 3]; 2] = [without_first(&c, &b, inv_b), without_first(&d, &b, inv_b)];
+    let [inv_c, inv_d] = inverse_pivots(&c, &d);
+    let d: [_; 2] = without_first(&d, &c, inv_c);
 
-    let w = d[1] * per_d;
-    let z = c[2].sub_mul(c[1], w) * per_c;
-    let y = b[3].sub_mul(b[1], z).sub_mul(b[2], w) * per_b;
-    let x = a[4].sub_mul(a[1], y).sub_mul(a[2], z).sub_mul(a[3], w) * per_a;
+    let w = d[1] * inv_d;
+    let z = c[2].sub_mul(c[1], w) * inv_c;
+    let y = b[3].sub_mul(b[1], z).sub_mul(b[2], w) * inv_b;
+    let x = a[4].sub_mul(a[1], y).sub_mul(a[2], z).sub_mul(a[3], w) * inv_a;
     [x, y, z, w]
 }
 
-/// One over the first coefficient of `a`, and over what eliminating with it leaves of the second
-/// one of `b`: two divisions at once.
+/// The reciprocals of the first coefficient of `a`, and of the second one of `b` after `a` has
+/// eliminated its first: the two divisions do not wait for each other.
 #[inline(always)]
 fn inverse_pivots<const N: usize, const W: usize>(
     a: &[Lanes<W>; N],
@@ -58,8 +58,8 @@ fn inverse_pivots<const N: usize, const W: usize>(
     ]
 }
 
-/// An equation less its first unknown, by means of `pivot`, `inverse` one over its first
-/// coefficient; M is N − 1.
+/// `equation` with its first unknown eliminated by `pivot`, whose first coefficient has the
+/// reciprocal `inverse`; M is N − 1.
 #[inline(always)]
 fn without_first<const N: usize, const M: usize, const W: usize>(
     equation: &[Lanes<W>; N],
@@ -74,14 +74,49 @@ fn without_first<const N: usize, const M: usize, const W: usize>(
     rest
 }
 
+/// Solves the dense N×N system m x = b by elimination with row pivoting; `None` where a pivot is at
+/// most `singular` times the largest entry.
+pub fn solve_dense<const N: usize>(
+    mut m: [[f64; N]; N],
+    mut b: [f64; N],
+    singular: f64,
+) -> Option<[f64; N]> {
+    let largest = m.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs()));
+    for c in 0..N {
+        let pivot = (c..N).fold(c, |best, r| {
+            if m[r][c].abs() > m[best][c].abs() {
+                r
+            } else {
+                best
+            }
+        });
+        m.swap(c, pivot);
+        b.swap(c, pivot);
+        if m[c][c].abs() <= singular * largest || !m[c][c].is_finite() {
+            return None;
+        }
+        for r in c + 1..N {
+            let f = m[r][c] / m[c][c];
+            for k in c..N {
+                m[r][k] -= f * m[c][k];
+            }
+            b[r] -= f * b[c];
+        }
+    }
+    for c in (0..N).rev() {
+        let tail: f64 = (c + 1..N).map(|k| m[c][k] * b[k]).sum();
+        b[c] = (b[c] - tail) / m[c][c];
+    }
+    Some(b)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::mode_rows::solve_dense;
 
-    /// A matrix like those of the balances: the identity, and two directions held with stiffness k.
+    /// A matrix like those of the balances: the identity, and two directions of penalty stiffness k.
     fn equations<const N: usize, const M: usize>(k: f64) -> [[f64; M]; N] {
-        let held = |i: usize, j: usize| {
+        let stiff = |i: usize, j: usize| {
             libm::sin((i + 1) as f64) * libm::sin((j + 1) as f64) + 0.3 * libm::cos((i * j) as f64)
         };
         std::array::from_fn(|i| {
@@ -89,7 +124,7 @@ mod tests {
                 if j == N {
                     1.0 + i as f64
                 } else {
-                    f64::from(u8::from(i == j)) + k * held(i, j)
+                    f64::from(u8::from(i == j)) + k * stiff(i, j)
                 }
             })
         })

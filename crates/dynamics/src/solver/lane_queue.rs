@@ -1,68 +1,62 @@
-//! Problems from different chunks, side by side: [`Packed`].
+//! Problems from different chunks, side by side: [`LaneQueue`].
 
 use stickslip_lanes::Mask;
 
 use crate::ncp::rows::Ncp;
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::unknowns::Unknowns;
 
-/// One particle of a block: which chunk of lanes, and which lane of it.
-#[derive(Clone, Copy, Debug)]
-pub struct Place {
-    /// Number of the chunk.
+/// Names one particle of a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LaneIndex {
+    /// Number of its chunk.
     pub chunk: usize,
-    /// Lane of it.
+    /// Lane of the chunk.
     pub lane: usize,
 }
 
-/// Up to `W` problems, each in a lane of its own without the rows that padded it, with the point
-/// that its solver has come to.
+/// Up to `W` problems, each in a lane of its own without padding rows, with the point that its
+/// solver has reached. A lane that has finished is free for the next problem.
 #[derive(Clone, Debug)]
-pub struct Packed<const W: usize> {
+pub struct LaneQueue<const W: usize> {
     /// The problems.
     pub ncp: Ncp<W>,
     /// The points.
-    pub p: Impulses<W>,
+    pub z: Unknowns<W>,
     /// Lanes with a problem.
     pub busy: Mask<W>,
-    /// What the problem in each lane is called by who put it there.
-    pub tags: [usize; W],
+    /// The particle that the problem in each lane belongs to.
+    pub indices: [LaneIndex; W],
 }
 
-impl<const W: usize> Default for Packed<W> {
+impl<const W: usize> Default for LaneQueue<W> {
     fn default() -> Self {
         Self {
             ncp: Ncp::empty(),
-            p: Impulses::zero(0),
+            z: Unknowns::zero(0),
             busy: Mask::splat(false),
-            tags: [0; W],
+            indices: [LaneIndex::default(); W],
         }
     }
 }
 
-impl<const W: usize> Packed<W> {
+impl<const W: usize> LaneQueue<W> {
     /// Removes all problems and their contacts.
     pub fn clear(&mut self) {
         self.ncp.clear();
-        self.p.clear(0);
+        self.z.clear(0);
         self.busy = Mask::splat(false);
     }
 
-    /// Copies lane `lane` of a chunk into a free lane, whose number it returns; `None` where none
-    /// is free.
+    /// Copies the problem `index` from its chunk's problems and points into a free lane, whose
+    /// number it returns; `None` where none is free.
     #[inline(always)]
-    pub fn load(
-        &mut self,
-        ncp: &Ncp<W>,
-        p: &Impulses<W>,
-        lane: usize,
-        tag: usize,
-    ) -> Option<usize> {
+    pub fn load(&mut self, index: LaneIndex, ncp: &Ncp<W>, z: &Unknowns<W>) -> Option<usize> {
         let slot = (0..W).find(|slot| !self.busy.lane(*slot))?;
-        ncp.pack_lane(lane, &mut self.ncp, slot);
-        self.p.resize(self.ncp.contacts.len());
-        p.pack_lane(ncp, lane, &mut self.p, slot);
+        ncp.pack_lane(index.lane, &mut self.ncp, slot);
+        self.z.resize(self.ncp.contacts.len());
+        z.pack_lane(ncp, index.lane, &mut self.z, slot);
         self.busy.set(slot, true);
-        self.tags[slot] = tag;
+        self.indices[slot] = index;
         Some(slot)
     }
 }

@@ -1,13 +1,13 @@
 //! The linear system of one Newton step on an [`Ncp`], with all impulses eliminated:
 //! [`Linearised`].
 //!
-//! Every impulse is a linear function of the twist and of the pusher's yield y; what is left is a
-//! 3×3 system in the twist, whatever the number of contacts, and one equation in y.
+//! Every impulse is a linear function of the twist and of the pusher's yield y. Eliminating them
+//! leaves a 3×3 system in the twist, whatever the number of contacts, and one equation in y.
 
 use stickslip_lanes::{Lanes, Mask};
 
 use crate::ncp::rows::{ContactRow, FootRow, Ncp, ROOM, Triple, dot};
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::unknowns::Unknowns;
 use crate::solver::elimination::{solve_four, solve_three};
 
 /// Linear model of one contact: dp_n = n − nn dγ, dp_t = t − tn dγ − tt ds.
@@ -37,16 +37,16 @@ pub struct FootStep<const W: usize> {
 impl<const W: usize> FootStep<W> {
     /// Moves the impulse `p` of `foot` by its step under a change `dv` of the twist.
     #[inline(always)]
-    fn take(&self, foot: &FootRow<W>, dv: &Triple<W>, open: Mask<W>, p: &mut [Lanes<W>; 2]) {
+    fn apply(&self, foot: &FootRow<W>, dv: &Triple<W>, lanes: Mask<W>, p: &mut [Lanes<W>; 2]) {
         let ds = foot.slip(dv);
         for (p, (r, k)) in p.iter_mut().zip(self.r.iter().zip(&self.k)) {
-            *p = open.select((*p + *r).sub_mul(k[0], ds[0]).sub_mul(k[1], ds[1]), *p);
+            *p = lanes.select((*p + *r).sub_mul(k[0], ds[0]).sub_mul(k[1], ds[1]), *p);
         }
     }
 }
 
-/// The stall pair, linearised: slack·d(F_stall − F) + pusher·dy = rhs, both coefficients at least
-/// 0.
+/// Linear model of the stall pair: slack·d(F_stall − F) + pusher·dy = rhs, both coefficients at
+/// least 0.
 #[derive(Clone, Copy, Debug)]
 pub struct StallStep<const W: usize> {
     /// Coefficient of the slack.
@@ -57,14 +57,14 @@ pub struct StallStep<const W: usize> {
     pub rhs: Lanes<W>,
 }
 
-/// Weight of y below which nothing determines it: the pusher then holds.
+/// Coefficient of y below which no equation determines y: it is then set to 0.
 const UNDETERMINED: f64 = 1e-9;
 
 impl<const W: usize> StallStep<W> {
-    /// The pusher yields and the object resists with the stall force where `yields`, else it keeps
-    /// its commanded motion.
+    /// Where `yields`, the object resists with the stall force; elsewhere the pusher keeps its
+    /// commanded motion.
     #[inline(always)]
-    pub fn decided(yields: Mask<W>, slack: Lanes<W>, pusher_yield: Lanes<W>) -> Self {
+    pub fn in_mode(yields: Mask<W>, slack: Lanes<W>, pusher_yield: Lanes<W>) -> Self {
         let one = Lanes::splat(1.0);
         Self {
             slack: yields.zero_unless(one),
@@ -75,19 +75,19 @@ impl<const W: usize> StallStep<W> {
 
     /// Whether y is 0 and stays so in every lane.
     #[inline(always)]
-    fn holds_all(&self, pusher_yield: Lanes<W>) -> bool {
+    fn keeps_zero(&self, pusher_yield: Lanes<W>) -> bool {
         !(self.slack.abs() + pusher_yield.abs() + self.rhs.abs())
             .gt(Lanes::ZERO)
             .any()
     }
 }
 
-/// All rows of a problem, linearised at a guess.
+/// All rows of a problem, linearised at one point.
 #[derive(Clone, Debug)]
 pub struct Linearised<const W: usize> {
-    /// Velocity that follows from the guess's impulses, less the guess's own.
+    /// Velocity that follows from the point's impulses, less the point's own.
     pub imbalance: Triple<W>,
-    /// Those contacts, by number, that carry an impulse or may come to: the others keep none.
+    /// The contacts, by number, that carry an impulse or may come to; the others keep none.
     pub contacts: Vec<(usize, ContactStep<W>)>,
     /// One per foot.
     pub feet: [FootStep<W>; 3],
@@ -115,54 +115,53 @@ impl<const W: usize> Default for Linearised<W> {
 }
 
 impl<const W: usize> Linearised<W> {
-    /// Moves `p` by the full Newton step in the lanes of `open`, however badly conditioned.
+    /// Moves `z` by the full Newton step in the given lanes, however badly conditioned.
     #[inline(always)]
-    pub fn step(&self, ncp: &Ncp<W>, p: &mut Impulses<W>, open: Mask<W>) {
+    pub fn step(&self, ncp: &Ncp<W>, z: &mut Unknowns<W>, lanes: Mask<W>) {
         let momentum = self.momentum(ncp);
-        let [x, y, turn, dy] = if self.stall.holds_all(p.pusher_yield) {
+        let [x, y, turn, dy] = if self.stall.keeps_zero(z.pusher_yield) {
             let [x, y, turn] = solve_three(&momentum.equations());
             [x, y, turn, Lanes::ZERO]
         } else {
-            solve_four(
-                &self
-                    .push(ncp)
-                    .bordered(&self.stall, &momentum, p.pusher_yield),
-            )
+            let border = self.border(ncp);
+            solve_four(&border.equations(&self.stall, &momentum, z.pusher_yield))
         };
-        self.take_step([x, y, turn], dy, ncp, p, open);
+        self.apply([x, y, turn], dy, ncp, z, lanes);
     }
 
+    /// Moves all unknowns by their steps under the changes dv and dy.
+    ///
     /// The twist is updated rather than summed from the impulses, which would round at the size of
     /// the impulses.
     #[inline(always)]
-    fn take_step(
+    fn apply(
         &self,
         dv: Triple<W>,
         dy: Lanes<W>,
         ncp: &Ncp<W>,
-        p: &mut Impulses<W>,
-        open: Mask<W>,
+        z: &mut Unknowns<W>,
+        lanes: Mask<W>,
     ) {
-        // no loop: across the feet instead of the lanes, the compiler would gather lane by lane
-        let ([a, b, c], [foot_a, foot_b, foot_c]) = (&mut p.feet, &ncp.feet);
-        self.feet[0].take(foot_a, &dv, open, a);
-        self.feet[1].take(foot_b, &dv, open, b);
-        self.feet[2].take(foot_c, &dv, open, c);
+        // no loop: the compiler would vectorise across the feet instead of the lanes, with gathers
+        let ([a, b, c], [foot_a, foot_b, foot_c]) = (&mut z.feet, &ncp.feet);
+        self.feet[0].apply(foot_a, &dv, lanes, a);
+        self.feet[1].apply(foot_b, &dv, lanes, b);
+        self.feet[2].apply(foot_c, &dv, lanes, c);
         for (i, step) in &self.contacts {
-            let (row, p_n, p_t) = (&ncp.contacts[*i], &mut p.normal[*i], &mut p.tangential[*i]);
+            let (row, p_n, p_t) = (&ncp.contacts[*i], &mut z.normal[*i], &mut z.tangential[*i]);
             let dgamma = dot(&row.n, &dv).add_mul(row.nd, dy);
             let ds = dot(&row.t, &dv).add_mul(row.td, dy);
-            *p_n = open.select((*p_n + step.n).sub_mul(step.nn, dgamma), *p_n);
-            *p_t = open.select(
+            *p_n = lanes.select((*p_n + step.n).sub_mul(step.nn, dgamma), *p_n);
+            *p_t = lanes.select(
                 (*p_t + step.t)
                     .sub_mul(step.tt, ds)
                     .sub_mul(step.tn, dgamma),
                 *p_t,
             );
         }
-        p.pusher_yield = open.select(p.pusher_yield + dy, p.pusher_yield);
-        for (v, dv) in p.v.iter_mut().zip(dv) {
-            *v = open.select(*v + dv, *v);
+        z.pusher_yield = lanes.select(z.pusher_yield + dy, z.pusher_yield);
+        for (v, dv) in z.v.iter_mut().zip(dv) {
+            *v = lanes.select(*v + dv, *v);
         }
     }
 
@@ -179,22 +178,16 @@ impl<const W: usize> Linearised<W> {
     }
 
     #[inline(always)]
-    fn push(&self, ncp: &Ncp<W>) -> Push<W> {
-        let o = Lanes::ZERO;
-        let mut push = Push {
-            column: [o; 3],
-            row: [o; 3],
-            corner: o,
-            rhs: o,
-        };
+    fn border(&self, ncp: &Ncp<W>) -> Border<W> {
+        let mut border = Border::ZERO;
         for (i, step) in &self.contacts {
-            push.add_contact(&ncp.contacts[*i], step);
+            border.add_contact(&ncp.contacts[*i], step);
         }
-        push
+        border
     }
 }
 
-/// The three momentum balances, condensed: matrix·dv = rhs where the pusher's yield stays.
+/// The three momentum balances with the impulses eliminated: matrix·dv = rhs at dy = 0.
 struct Momentum<const W: usize> {
     matrix: [Triple<W>; 3],
     rhs: Triple<W>,
@@ -210,7 +203,7 @@ impl<const W: usize> Momentum<W> {
         Self { matrix, rhs }
     }
 
-    /// As rows of coefficients and right-hand side.
+    /// Each row's coefficients, then its right-hand side.
     #[inline(always)]
     fn equations(&self) -> [[Lanes<W>; 4]; 3] {
         let (a, r) = (&self.matrix, &self.rhs);
@@ -253,17 +246,25 @@ impl<const W: usize> Momentum<W> {
     }
 }
 
-/// The pusher's force F, by which the object resists along d: dF = rhs − row·dv − corner dy; and
-/// what its yield does to the momentum: matrix·dv + column dy = rhs.
-struct Push<const W: usize> {
+/// What y adds to the system: matrix·dv + column dy = momentum's rhs, and the impulse F with which
+/// the object resists the pusher changes by dF = rhs − row·dv − corner dy.
+struct Border<const W: usize> {
     column: Triple<W>,
     row: Triple<W>,
     corner: Lanes<W>,
     rhs: Lanes<W>,
 }
 
-impl<const W: usize> Push<W> {
-    /// [`Momentum::add_contact`] with n and t extended by their parts along d.
+impl<const W: usize> Border<W> {
+    /// Of no contact.
+    const ZERO: Self = Self {
+        column: [Lanes::ZERO; 3],
+        row: [Lanes::ZERO; 3],
+        corner: Lanes::ZERO,
+        rhs: Lanes::ZERO,
+    };
+
+    /// [`Momentum::add_contact`], with nd and td as the fourth components of n and t.
     #[inline(always)]
     fn add_contact(
         &mut self,
@@ -285,7 +286,7 @@ impl<const W: usize> Push<W> {
 
     /// The system in (dv, dy) whose fourth row is the stall pair; `pusher_yield` is the present y.
     #[inline(always)]
-    fn bordered(
+    fn equations(
         &self,
         stall: &StallStep<W>,
         momentum: &Momentum<W>,

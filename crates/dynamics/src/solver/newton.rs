@@ -1,72 +1,97 @@
-//! The fast solver: a semismooth Newton iteration on the natural map of the mixed NCP, `W`
-//! particles side by side.
+//! Semismooth Newton iteration on the natural map of the mixed NCP, `W` particles side by side:
+//! [`Newton`].
 //!
-//! Every row is either held (its velocity is driven to zero) or given (its impulse is known up to
-//! the other rows), decided by the natural map of the iterate as in Alart & Curnier (1991), in
-//! which slips have weights of their own. Held rows enter with a finite stiffness k and keep their
-//! impulse from one iteration to the next (a method of multipliers), so that redundant contacts do
-//! no harm. The error shrinks by K/(K + k) an iteration once the modes are right, K what else
-//! resists; a particle's warm start is its last step's impulses. Stiff rows answer sooner, soft
-//! ones where modes contradict each other: the iterations take turns.
+//! As in Alart & Curnier (1991), the natural map of the iterate chooses every row's mode: either
+//! the row is *active*, and its velocity is driven to zero (the gap of a closed contact, the slip of
+//! a sticking one or of a sticking foot), or its impulse follows from the other rows. Slips have
+//! weights of their own in that choice. An active row has a finite penalty stiffness k and keeps its
+//! impulse from one iteration to the next (a method of multipliers), so redundant contacts do no
+//! harm. Once the modes are right, the error shrinks by K/(K + k) an iteration, K the stiffness of
+//! what else resists. The start is the particle's last step. A stiff penalty converges sooner, a
+//! soft one copes better with modes that contradict each other: the iterations alternate.
 
 use stickslip_lanes::{Lanes, Mask};
 
-use crate::ncp::natural_map::{ContactMap, NaturalMap, TINY};
-use crate::ncp::rows::{self, ContactRow, Ncp};
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::natural_map::NaturalMap;
+use crate::ncp::rows::Ncp;
+use crate::ncp::unknowns::Unknowns;
+use crate::solver::contact_mode::{ContactMode, Penalty};
 use crate::solver::linearised::{ContactStep, FootStep, Linearised, StallStep};
+use crate::solver::stick_predictor::StickPredictor;
 
-/// Stiffness k of held rows, in units of the object's mass per step: well above that of sliding
-/// feet, bound / slip speed, which hold a jammed object's creep of 1e-8 m/s.
+/// Stiff penalty, in units of the object's mass per step: well above the stiffness of sliding feet,
+/// bound / slip speed, which resist the creep of a jammed object at 1e-8 m/s.
 const STIFF: f64 = 5.0e8;
 
-/// The same where stiff iterations have come to nothing: softer by what impulses of rows that
-/// contradict each other may grow.
+/// Soft penalty, for where stiff iterations do not converge: active rows that contradict each other
+/// drive their impulses up in proportion to it.
 const SOFT: f64 = 3.0e6;
 
 /// So many iterations are stiff, as many soft, and so on.
-const TURN: f64 = 8.0;
+const ALTERNATION: f64 = 8.0;
 
-/// Weight of slip against impulse where feet near a solution are told to stick or slide.
-pub const NEAR: f64 = 2.0e8;
-
-/// Weight of impulse against slip where closed contacts are told so, in units of the inertia that
-/// resists the slip.
-const CONTACT: f64 = 4.0;
-
-/// When the iteration ends.
+/// When the iteration ends, and how it chooses the modes of feet.
 #[derive(Clone, Copy, Debug)]
-pub struct Goal {
-    /// Residual aimed at (m/s).
-    pub residual: f64,
+pub struct NewtonSettings {
+    /// Residual at which a lane has converged (m/s).
+    pub tolerance: f64,
     /// Most iterations.
     pub iterations: u32,
-    /// Weight k of slip against impulse where feet are told to stick or slide: [`NEAR`] a solution,
-    /// 1 from afar.
-    pub weight: f64,
+    /// Weight k of a foot's slip against its impulse, see [`StickPredictor`]:
+    /// [`SLIP_WEIGHT_NEAR`](crate::solver::stick_predictor::SLIP_WEIGHT_NEAR) a solution, 1 far
+    /// from one.
+    pub slip_weight: f64,
 }
 
-/// How long all lanes of a chunk iterate, whether open or not.
+/// How long all lanes of a chunk iterate, whether running or not.
 #[derive(Clone, Copy, Debug)]
-pub struct Together {
+pub struct BatchLimits {
     /// Most iterations.
     pub iterations: u32,
-    /// Open lanes for which one is worth it, at least 1.
+    /// Fewest running lanes, at least 1, for which another iteration is worth it.
     pub lanes: u32,
 }
 
-impl Together {
-    /// Until no lane is open.
+impl BatchLimits {
+    /// Until no lane runs.
     #[inline(always)]
-    pub fn to_the_end(goal: &Goal) -> Self {
+    pub fn until_finished(settings: &NewtonSettings) -> Self {
         Self {
-            iterations: goal.iterations,
+            iterations: settings.iterations,
             lanes: 1,
         }
     }
 }
 
-/// The fast solver's working memory.
+/// How far each lane is.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<const W: usize> {
+    /// Residual at the present point (m/s).
+    pub residual: Lanes<W>,
+    /// Iterations taken.
+    pub iterations: Lanes<W>,
+    /// Lanes that have neither converged nor taken all iterations.
+    pub running: Mask<W>,
+}
+
+impl<const W: usize> Progress<W> {
+    /// Nothing to do.
+    pub const NONE: Self = Self {
+        residual: Lanes::ZERO,
+        iterations: Lanes::ZERO,
+        running: Mask::splat(false),
+    };
+
+    /// Copies one lane into lane `slot` of `to`.
+    #[inline(always)]
+    pub fn pack_lane(&self, lane: usize, to: &mut Self, slot: usize) {
+        to.residual.0[slot] = self.residual.0[lane];
+        to.iterations.0[slot] = self.iterations.0[lane];
+        to.running.set(slot, self.running.lane(lane));
+    }
+}
+
+/// The Newton iteration with its working memory.
 #[derive(Clone, Debug)]
 pub struct Newton<const W: usize> {
     map: NaturalMap<W>,
@@ -82,96 +107,73 @@ impl<const W: usize> Default for Newton<W> {
     }
 }
 
-/// How far each lane is.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress<const W: usize> {
-    /// Residual at the present point (m/s).
-    pub residual: Lanes<W>,
-    /// Iterations taken.
-    pub iterations: Lanes<W>,
-    /// Lanes that have neither reached their goal nor taken all iterations.
-    pub open: Mask<W>,
-}
-
-impl<const W: usize> Progress<W> {
-    /// Nothing to do.
-    pub const NONE: Self = Self {
-        residual: Lanes::ZERO,
-        iterations: Lanes::ZERO,
-        open: Mask::splat(false),
-    };
-
-    /// Copies one lane into lane `slot` of `to`.
-    #[inline(always)]
-    pub fn pack_lane(&self, lane: usize, to: &mut Self, slot: usize) {
-        to.residual.0[slot] = self.residual.0[lane];
-        to.iterations.0[slot] = self.iterations.0[lane];
-        to.open.set(slot, self.open.lane(lane));
-    }
-}
-
 impl<const W: usize> Newton<W> {
-    /// Iterates from `p` (velocity and impulses) until every lane has reached its goal or taken all
-    /// iterations; returns the residuals.
+    /// Iterates from `z` until every lane has converged or taken all iterations; returns the
+    /// residuals.
     #[inline(always)]
-    pub fn solve(&mut self, ncp: &Ncp<W>, p: &mut Impulses<W>, goal: Goal) -> Lanes<W> {
-        self.begin(ncp, p, goal, Together::to_the_end(&goal))
-            .residual
+    pub fn solve(
+        &mut self,
+        ncp: &Ncp<W>,
+        z: &mut Unknowns<W>,
+        settings: NewtonSettings,
+    ) -> Lanes<W> {
+        let limits = BatchLimits::until_finished(&settings);
+        self.begin(ncp, z, settings, limits).residual
     }
 
-    /// The same while it is worth it for all lanes together.
+    /// Iterates all lanes from `z` within `limits`; [`Newton::iterate`] continues.
     #[inline(always)]
     pub fn begin(
         &mut self,
         ncp: &Ncp<W>,
-        p: &mut Impulses<W>,
-        goal: Goal,
-        together: Together,
+        z: &mut Unknowns<W>,
+        settings: NewtonSettings,
+        limits: BatchLimits,
     ) -> Progress<W> {
-        let residual = self.map.take(ncp, p);
+        let residual = self.map.evaluate(ncp, z);
         let mut progress = Progress {
             residual,
             iterations: Lanes::ZERO,
-            open: residual.gt(Lanes::splat(goal.residual)),
+            running: residual.gt(Lanes::splat(settings.tolerance)),
         };
-        for _ in 0..together.iterations {
-            if progress.open.count() < together.lanes {
+        for _ in 0..limits.iterations {
+            if progress.running.count() < limits.lanes {
                 break;
             }
-            self.advance(ncp, p, goal, &mut progress);
+            self.iterate(ncp, z, settings, &mut progress);
         }
         progress
     }
 
-    /// One iteration of the open lanes, from the point that they have come to.
+    /// One iteration of the running lanes; `z` is the point at which the map was last evaluated.
     ///
-    /// Lanes that are done keep their result while others go on, so a lane's bits do not depend on
-    /// its neighbours.
+    /// Finished lanes keep their result while others go on, so a lane's bits do not depend on its
+    /// neighbours.
     #[inline(always)]
-    pub fn advance(
+    pub fn iterate(
         &mut self,
         ncp: &Ncp<W>,
-        p: &mut Impulses<W>,
-        goal: Goal,
+        z: &mut Unknowns<W>,
+        settings: NewtonSettings,
         progress: &mut Progress<W>,
     ) {
         let Progress {
             residual,
             iterations,
-            open,
+            running,
         } = progress;
+        let stiffness = stiffness(*iterations);
         self.linearised
-            .by_natural_map(ncp, p, &self.map, goal.weight, stiffness(*iterations));
-        self.linearised.step(ncp, p, *open);
-        *residual = open.select(self.map.take(ncp, p), *residual);
-        *iterations += open.zero_unless(Lanes::splat(1.0));
-        *open = *open
-            & residual.gt(Lanes::splat(goal.residual))
-            & iterations.lt(Lanes::splat(f64::from(goal.iterations)));
+            .natural_map(ncp, z, &self.map, settings.slip_weight, stiffness);
+        self.linearised.step(ncp, z, *running);
+        *residual = running.select(self.map.evaluate(ncp, z), *residual);
+        *iterations += running.zero_unless(Lanes::splat(1.0));
+        *running = *running
+            & residual.gt(Lanes::splat(settings.tolerance))
+            & iterations.lt(Lanes::splat(f64::from(settings.iterations)));
     }
 
-    /// Copies what one lane of `ncp` has come to into lane `slot` of `to`, whose problems are
-    /// `packed`.
+    /// Copies the map of one lane of `ncp` into lane `slot` of `to`, whose problems are `packed`.
     #[inline(always)]
     pub fn pack_lane(
         &self,
@@ -186,246 +188,42 @@ impl<const W: usize> Newton<W> {
     }
 }
 
-/// Stiffness of the next iteration of lanes that have taken `iterations`.
+/// Penalty stiffness of the next iteration of lanes that have taken `iterations`.
 #[inline(always)]
 fn stiffness<const W: usize>(iterations: Lanes<W>) -> Lanes<W> {
-    let turn = (iterations + 0.5) * (0.5 / TURN);
-    let soft = (turn - (turn - 0.5).round()).gt(Lanes::splat(0.5));
+    let period = (iterations + 0.5) * (0.5 / ALTERNATION);
+    let soft = (period - (period - 0.5).round()).gt(Lanes::splat(0.5));
     soft.select(Lanes::splat(SOFT), Lanes::splat(STIFF))
 }
 
 impl<const W: usize> Linearised<W> {
-    /// The natural map's own choice of modes at `p`, where it is `map`.
+    /// Linearises at `z`, where the natural map is `map`, in the modes that the map chooses.
     #[inline(always)]
-    fn by_natural_map(
+    fn natural_map(
         &mut self,
         ncp: &Ncp<W>,
-        p: &Impulses<W>,
+        z: &Unknowns<W>,
         map: &NaturalMap<W>,
-        weight: f64,
+        slip_weight: f64,
         stiffness: Lanes<W>,
     ) {
         self.imbalance = map.imbalance;
         for k in 0..3 {
-            self.feet[k] = FootStep::decided(
-                ncp.feet[k].bound,
-                &p.feet[k],
-                &map.slips[k],
-                weight,
-                stiffness,
-            );
+            let (bound, p, slip) = (ncp.feet[k].bound, &z.feet[k], &map.slips[k]);
+            let predictor = StickPredictor::new(p, slip, slip_weight);
+            let slides = predictor.exceeds(bound);
+            self.feet[k] = FootStep::in_mode(bound, p, slip, &predictor, slides, stiffness);
         }
         self.contacts.clear();
-        let hold = Hold::new(stiffness, ncp.compliance);
-        let points = p.normal.iter().zip(&p.tangential);
-        for (i, ((row, contact), (p_n, p_t))) in ncp
-            .contacts
-            .iter()
-            .zip(&map.contacts)
-            .zip(points)
-            .enumerate()
-        {
-            if let Some(step) = contact.linearised(row, [*p_n, *p_t], &hold) {
+        let penalty = Penalty::new(stiffness, ncp.compliance);
+        let points = map.contacts.iter().zip(z.contacts());
+        for (i, (row, (velocity, (p_n, p_t)))) in ncp.contacts.iter().zip(points).enumerate() {
+            let p = [*p_n, *p_t];
+            if let Some(mode) = ContactMode::by_natural_map(row, p, velocity) {
+                let step = ContactStep::in_mode(p, velocity, mode, &penalty);
                 self.contacts.push((i, step));
             }
         }
-        self.stall = StallStep::decided(p.pusher_yield.gt(map.slack), map.slack, p.pusher_yield);
-    }
-}
-
-/// What it would take to hold a foot: the impulse z = p − k s, k the weight of slip against
-/// impulse.
-#[derive(Clone, Copy, Debug)]
-pub struct Holding<const W: usize> {
-    z: [Lanes<W>; 2],
-    /// |z|².
-    square: Lanes<W>,
-    /// k.
-    weight: f64,
-}
-
-impl<const W: usize> Holding<W> {
-    /// Of a foot with impulse p and slip velocity s.
-    #[inline(always)]
-    pub fn new(p: &[Lanes<W>; 2], slip: &[Lanes<W>; 2], weight: f64) -> Self {
-        let k = Lanes::splat(weight);
-        let z = [p[0].sub_mul(k, slip[0]), p[1].sub_mul(k, slip[1])];
-        Self {
-            z,
-            square: rows::square(&z),
-            weight,
-        }
-    }
-}
-
-impl<const W: usize> FootStep<W> {
-    /// A foot that sticks while what would hold it is within its bound, else slides.
-    #[inline(always)]
-    fn decided(
-        bound: Lanes<W>,
-        p: &[Lanes<W>; 2],
-        slip: &[Lanes<W>; 2],
-        weight: f64,
-        stiffness: Lanes<W>,
-    ) -> Self {
-        let holding = Holding::new(p, slip, weight);
-        Self::in_mode(
-            bound,
-            p,
-            slip,
-            &holding,
-            holding.square.gt(bound * bound),
-            stiffness,
-        )
-    }
-
-    /// A foot that slides where `slides`, with p = bound z / |z|; elsewhere its slip is driven to
-    /// zero with `stiffness`.
-    ///
-    /// Sliding is linearised with p itself, kept inside its disc, in place of bound z / |z|
-    /// (Andersen et al. 2000): far from the solution, where p and s do not oppose each other yet,
-    /// the impulse then does not turn too far.
-    #[inline(always)]
-    pub fn in_mode(
-        bound: Lanes<W>,
-        p: &[Lanes<W>; 2],
-        slip: &[Lanes<W>; 2],
-        holding: &Holding<W>,
-        slides: Mask<W>,
-        stiffness: Lanes<W>,
-    ) -> Self {
-        let held = [-slip[0] * stiffness, -slip[1] * stiffness];
-        let Holding { z, square, weight } = *holding;
-        let unit = square.inverse_sqrt();
-        // k |s|, where it slides
-        let speed = (-bound).add_mul(square, unit).max(bound);
-        let rim = bound * bound;
-        let size = rows::square(p).max(rim);
-        // one division for k / speed and the share of p that is inside the disc
-        let inverse = Lanes::splat(1.0) / (speed * size).max(Lanes::splat(TINY));
-        // in this order a foot without a bound has 0 here, however fast it slips
-        let inside = inverse * rim * weight;
-        let full = inverse * size * weight * bound;
-        let u = [z[0] * unit, z[1] * unit];
-        let q = [p[0] * inside, p[1] * inside];
-        Self {
-            r: [
-                slides.select((-p[0]).add_mul(bound, u[0]), held[0]),
-                slides.select((-p[1]).add_mul(bound, u[1]), held[1]),
-            ],
-            k: [
-                [
-                    slides.select(full.sub_mul(q[0], u[0]), stiffness),
-                    slides.zero_unless(-q[0] * u[1]),
-                ],
-                [
-                    slides.zero_unless(-q[1] * u[0]),
-                    slides.select(full.sub_mul(q[1], u[1]), stiffness),
-                ],
-            ],
-        }
-    }
-}
-
-impl<const W: usize> ContactMap<W> {
-    /// Open, sticking or sliding either way; `None` where it is open in every lane and carries
-    /// nothing.
-    #[inline(always)]
-    fn linearised(
-        &self,
-        row: &ContactRow<W>,
-        p: [Lanes<W>; 2],
-        hold: &Hold<W>,
-    ) -> Option<ContactStep<W>> {
-        let one = Lanes::splat(1.0);
-        let closed = (p[0] * one.add_mul(row.n[2], row.n[2])).gt(self.gap);
-        if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
-            return None;
-        }
-        let inertia = one.add_mul(row.t[2], row.t[2]) * CONTACT;
-        let z = (-self.slip).add_mul(p[1], inertia);
-        let sliding = z.abs().gt(row.mu * p[0].max(Lanes::ZERO) * inertia);
-        let mode = Mode {
-            closed,
-            sliding,
-            ratio: z.sign() * row.mu,
-        };
-        Some(ContactStep::in_mode(p, [self.gap, self.slip], mode, hold))
-    }
-}
-
-/// What a contact does.
-#[derive(Clone, Copy, Debug)]
-pub struct Mode<const W: usize> {
-    /// Its gap is held at zero.
-    pub closed: Mask<W>,
-    /// p_t = ratio p_n; else its slip is held at zero, where it is closed.
-    pub sliding: Mask<W>,
-    /// ±μ.
-    pub ratio: Lanes<W>,
-}
-
-/// How hard a contact's held rows are held, in units of the object's mass per step.
-#[derive(Clone, Copy, Debug)]
-pub struct Hold<const W: usize> {
-    gap: Lanes<W>,
-    slip: Lanes<W>,
-}
-
-impl<const W: usize> Hold<W> {
-    /// With stiffness k, in the gap row in series with its compliance κ.
-    #[inline(always)]
-    pub fn new(stiffness: Lanes<W>, compliance: Lanes<W>) -> Self {
-        // bodies are rigid but where no solution exists: no division then
-        let yields = compliance.gt(Lanes::ZERO).any();
-        let gap = if yields {
-            stiffness / Lanes::splat(1.0).add_mul(compliance, stiffness)
-        } else {
-            stiffness
-        };
-        Self {
-            gap,
-            slip: stiffness,
-        }
-    }
-}
-
-impl<const W: usize> ContactStep<W> {
-    /// A contact of impulses `p` and velocities (γ, s) in a given mode.
-    #[inline(always)]
-    pub fn in_mode(
-        p: [Lanes<W>; 2],
-        [gamma, slip]: [Lanes<W>; 2],
-        mode: Mode<W>,
-        hold: &Hold<W>,
-    ) -> Self {
-        let n = mode.closed.select(-gamma * hold.gap, -p[0]);
-        let nn = mode.closed.zero_unless(hold.gap);
-        let free = mode.sliding | !mode.closed;
-        Self {
-            n,
-            t: free.select((-p[1]).add_mul(mode.ratio, p[0] + n), -slip * hold.slip),
-            nn,
-            tn: free.zero_unless(mode.ratio * nn),
-            tt: free.select(Lanes::ZERO, hold.slip),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn foot_without_friction_lets_go_of_its_impulse_however_fast_it_slips() {
-        let vector = |x: f64| [Lanes([x]), Lanes([-0.5 * x])];
-        for slip in [1e-12, 1e-3, 1.0, 1e6] {
-            for p in [0.0, 1e-6, 3.0] {
-                let step =
-                    FootStep::decided(Lanes::ZERO, &vector(p), &vector(slip), NEAR, Lanes([STIFF]));
-                assert_eq!(step.r, vector(p).map(|p| -p), "slip {slip}, impulse {p}");
-                assert_eq!(step.k, [[Lanes::ZERO; 2]; 2], "slip {slip}, impulse {p}");
-            }
-        }
+        self.stall = StallStep::in_mode(z.pusher_yield.gt(map.slack), map.slack, z.pusher_yield);
     }
 }

@@ -1,16 +1,16 @@
-//! The fast solver on a block of chunks: [`FastSolver`].
+//! The semismooth Newton iteration on a block of chunks: [`NewtonBlock`].
 //!
-//! A few iterations are enough for most lanes of a chunk. The others go on packed together, and one
-//! that is done makes room for the next, so that no chunk iterates for one lane.
+//! Most lanes of a chunk need few iterations. The others are packed into a queue of lanes and go on
+//! there; a lane that finishes takes the next problem, so that no chunk iterates for one lane.
 
 use crate::ncp::rows::Ncp;
-use crate::ncp::unknowns::Impulses;
-use crate::solver::lane_queue::{Packed, Place};
-use crate::solver::newton::{Goal, Newton, Progress, Together};
+use crate::ncp::unknowns::Unknowns;
+use crate::solver::lane_queue::{LaneIndex, LaneQueue};
+use crate::solver::newton::{BatchLimits, Newton, NewtonSettings, Progress};
 use crate::solver::source::Source;
 
-/// How long the lanes of a chunk iterate together where there are other chunks to be packed with.
-const TOGETHER: Together = Together {
+/// How long a chunk iterates as a whole where its last lanes can be queued with those of others.
+const BATCH: BatchLimits = BatchLimits {
     iterations: 4,
     lanes: 4,
 };
@@ -18,8 +18,8 @@ const TOGETHER: Together = Together {
 /// How the iteration of one particle ended.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterated {
-    /// Which one it was.
-    pub place: Place,
+    /// Which particle.
+    pub index: LaneIndex,
     /// Its residual (m/s).
     pub residual: f64,
     /// Its iterations.
@@ -28,110 +28,110 @@ pub struct Iterated {
 
 /// [`Newton`] on a block, with its working memory.
 #[derive(Clone, Debug)]
-pub struct FastSolver<const W: usize> {
-    together: Newton<W>,
-    alone: Newton<W>,
-    packed: Packed<W>,
+pub struct NewtonBlock<const W: usize> {
+    chunk: Newton<W>,
+    queued: Newton<W>,
+    queue: LaneQueue<W>,
     progress: Progress<W>,
 }
 
-impl<const W: usize> Default for FastSolver<W> {
+impl<const W: usize> Default for NewtonBlock<W> {
     fn default() -> Self {
         Self {
-            together: Newton::default(),
-            alone: Newton::default(),
-            packed: Packed::default(),
+            chunk: Newton::default(),
+            queued: Newton::default(),
+            queue: LaneQueue::default(),
             progress: Progress::NONE,
         }
     }
 }
 
-impl<const W: usize> FastSolver<W> {
-    /// Iterates every lane of every chunk that comes from `source` until it has reached its goal or
-    /// taken all iterations, and tells `finish` of it. What becomes of a lane does not depend on
-    /// the others.
+impl<const W: usize> NewtonBlock<W> {
+    /// Iterates every lane of every chunk that comes from `source` until it converges or has taken
+    /// all iterations, and reports each to `finish`. A lane's result does not depend on the others.
     #[inline(always)]
     pub fn solve(
         &mut self,
         source: &mut impl Source<W>,
         ncps: &mut [Ncp<W>],
-        p: &mut [Impulses<W>],
-        goal: Goal,
+        z: &mut [Unknowns<W>],
+        settings: NewtonSettings,
         finish: &mut impl FnMut(Iterated),
     ) {
-        self.packed.clear();
-        // a single chunk has nothing to be packed with
-        let together = if ncps.len() > 1 {
-            TOGETHER
+        self.queue.clear();
+        // a single chunk's lanes have nobody to share a queue with
+        let limits = if ncps.len() > 1 {
+            BATCH
         } else {
-            Together::to_the_end(&goal)
+            BatchLimits::until_finished(&settings)
         };
         for chunk in 0..ncps.len() {
+            // the chunk as a whole
             source.load(chunk, &mut ncps[chunk]);
-            source.start(chunk, &ncps[chunk], &mut p[chunk]);
+            source.start(chunk, &ncps[chunk], &mut z[chunk]);
             let progress = self
-                .together
-                .begin(&ncps[chunk], &mut p[chunk], goal, together);
-            for lane in (!progress.open).lanes() {
-                finish(progress.ended(Place { chunk, lane }, lane));
+                .chunk
+                .begin(&ncps[chunk], &mut z[chunk], settings, limits);
+            for lane in (!progress.running).lanes() {
+                finish(progress.iterated(LaneIndex { chunk, lane }, lane));
             }
-            for lane in progress.open.lanes() {
-                while self.packed.busy.all() {
-                    self.go_on(ncps, p, goal, finish);
+            // its unfinished lanes, queued as soon as there is room
+            for lane in progress.running.lanes() {
+                while self.queue.busy.all() {
+                    self.iterate_queue(ncps, z, settings, finish);
                 }
-                self.pack(&ncps[chunk], &p[chunk], &progress, Place { chunk, lane });
+                self.enqueue(
+                    LaneIndex { chunk, lane },
+                    &ncps[chunk],
+                    &z[chunk],
+                    &progress,
+                );
             }
         }
-        while self.packed.busy.any() {
-            self.go_on(ncps, p, goal, finish);
+        while self.queue.busy.any() {
+            self.iterate_queue(ncps, z, settings, finish);
         }
     }
 
-    /// Copies a lane of the chunk that was begun last to the lanes that go on.
+    /// Copies a lane of the chunk that was begun last into the queue.
     #[inline(always)]
-    fn pack(
-        &mut self,
-        ncp: &Ncp<W>,
-        p: &Impulses<W>,
-        progress: &Progress<W>,
-        Place { chunk, lane }: Place,
-    ) {
-        if let Some(slot) = self.packed.load(ncp, p, lane, chunk * W + lane) {
-            self.together
-                .pack_lane(ncp, lane, &mut self.alone, &self.packed.ncp, slot);
-            progress.pack_lane(lane, &mut self.progress, slot);
+    fn enqueue(&mut self, index: LaneIndex, ncp: &Ncp<W>, z: &Unknowns<W>, progress: &Progress<W>) {
+        if let Some(slot) = self.queue.load(index, ncp, z) {
+            self.chunk
+                .pack_lane(ncp, index.lane, &mut self.queued, &self.queue.ncp, slot);
+            progress.pack_lane(index.lane, &mut self.progress, slot);
         }
     }
 
-    /// One iteration of the packed lanes; those that are done go back where they came from.
+    /// One iteration of the queued lanes; results of those that finish go back to their chunks.
     #[inline(always)]
-    fn go_on(
+    fn iterate_queue(
         &mut self,
         ncps: &[Ncp<W>],
-        p: &mut [Impulses<W>],
-        goal: Goal,
+        z: &mut [Unknowns<W>],
+        settings: NewtonSettings,
         finish: &mut impl FnMut(Iterated),
     ) {
-        let packed = &mut self.packed;
-        self.alone
-            .advance(&packed.ncp, &mut packed.p, goal, &mut self.progress);
-        let done = packed.busy & !self.progress.open;
-        for slot in done.lanes() {
-            let place = Place {
-                chunk: packed.tags[slot] / W,
-                lane: packed.tags[slot] % W,
-            };
-            p[place.chunk].unpack_lane(&ncps[place.chunk], place.lane, &packed.p, slot);
-            finish(self.progress.ended(place, slot));
+        let queue = &mut self.queue;
+        self.queued
+            .iterate(&queue.ncp, &mut queue.z, settings, &mut self.progress);
+        let finished = queue.busy & !self.progress.running;
+        for slot in finished.lanes() {
+            let index = queue.indices[slot];
+            let LaneIndex { chunk, lane } = index;
+            z[chunk].unpack_lane(&ncps[chunk], lane, &queue.z, slot);
+            finish(self.progress.iterated(index, slot));
         }
-        packed.busy = packed.busy & !done;
+        queue.busy = queue.busy & !finished;
     }
 }
 
 impl<const W: usize> Progress<W> {
-    fn ended(&self, place: Place, lane: usize) -> Iterated {
+    /// The progress in one lane, which belongs to particle `index`.
+    #[inline(always)]
+    fn iterated(&self, index: LaneIndex, lane: usize) -> Iterated {
         Iterated {
-            place,
+            index,
             residual: self.residual.0[lane],
             iterations: self.iterations.0[lane] as u32,
         }

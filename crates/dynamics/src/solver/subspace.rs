@@ -1,6 +1,8 @@
-//! Lines, intervals and dual bases in the space of (v, y), for the search over contact modes.
+//! Points, lines and dual bases in the space of (v, y), for the search over contact modes:
+//! [`Equation`].
 
-use crate::solver::mode_rows::{Vector, dot, norm, plus, solve_dense};
+use crate::solver::elimination::solve_dense;
+use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Pivots below this share of the largest entry make vectors dependent.
 pub const DEPENDENT: f64 = 1e-13;
@@ -12,51 +14,6 @@ pub struct Equation {
     pub row: Vector<4>,
     /// Right-hand side.
     pub value: f64,
-}
-
-/// (v_x, v_y, ρ ω).
-pub fn first_three(v: &Vector<4>) -> Vector<3> {
-    [v[0], v[1], v[2]]
-}
-
-/// Intersects the interval with slope τ + offset ≥ 0.
-pub fn clip(interval: &mut (f64, f64), slope: f64, offset: f64) {
-    if slope.abs() < 1e-14 {
-        if offset < 0.0 {
-            *interval = (1.0, 0.0);
-        }
-    } else if slope > 0.0 {
-        interval.0 = interval.0.max(-offset / slope);
-    } else {
-        interval.1 = interval.1.min(-offset / slope);
-    }
-}
-
-/// Range of q·s/|s| for s on the segment from a to b; everything where the segment meets the
-/// origin.
-pub fn unit_range(q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> (f64, f64) {
-    let cross = |p: [f64; 2], r: [f64; 2]| p[0] * r[1] - p[1] * r[0];
-    let size = q[0].hypot(q[1]);
-    let (la, lb) = (a[0].hypot(a[1]), b[0].hypot(b[1]));
-    let turn = cross(a, b);
-    let opposite = a[0] * b[0] + a[1] * b[1] < 0.0 && turn.abs() <= 1e-12 * la * lb;
-    if la < 1e-13 || lb < 1e-13 || opposite {
-        return (-size, size);
-    }
-    let (at_a, at_b) = (
-        (q[0] * a[0] + q[1] * a[1]) / la,
-        (q[0] * b[0] + q[1] * b[1]) / lb,
-    );
-    let mut range = (at_a.min(at_b), at_a.max(at_b));
-    // q (or its opposite) lies between the two directions
-    let (qa, qb) = (cross(a, q) * turn, cross(q, b) * turn);
-    if qa > 0.0 && qb > 0.0 {
-        range.1 = size;
-    }
-    if qa < 0.0 && qb < 0.0 {
-        range.0 = -size;
-    }
-    range
 }
 
 /// A unit vector orthogonal to three vectors; `None` where they are dependent.
@@ -90,7 +47,7 @@ pub fn dual_basis(g: &[Vector<4>; 4]) -> Option<[Vector<4>; 4]> {
 
 /// The V of least length that best satisfies the equations.
 pub fn least_squares<const N: usize>(equations: &[Equation; N]) -> Vector<4> {
-    // (A Aᵀ + tiny) z = b, V = Aᵀ z; two rounds of refinement remove the effect of tiny
+    // (A Aᵀ + tiny) z = b, V = Aᵀ z; two refinements remove the effect of tiny
     let gram: [[f64; N]; N] = std::array::from_fn(|i| {
         std::array::from_fn(|j| {
             dot(&equations[i].row, &equations[j].row) + if i == j { 1e-12 } else { 0.0 }
@@ -104,7 +61,7 @@ pub fn least_squares<const N: usize>(equations: &[Equation; N]) -> Vector<4> {
             break;
         };
         for (e, z) in equations.iter().zip(z) {
-            v = plus(&v, z, &e.row);
+            v = add_scaled(&v, z, &e.row);
         }
     }
     v

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use stickslip_dynamics::{
-    Dynamics, Feet, Fixel, Friction, Impulses, Lanes, Object, Part, Particle, Pose, Pusher,
-    PusherMotion, Report, Scene, Shape, StepInput, StepProblem, StepSolution, StepWork, Twist,
+    Dynamics, Feet, Fixel, Friction, Lanes, Object, Part, Particle, Pose, Pusher, PusherMotion,
+    Report, Scene, Shape, StepInput, StepProblem, StepSolution, StepWork, Twist, Unknowns,
 };
 
 /// One camera frame [s].
@@ -193,11 +193,11 @@ pub fn fastest(problem: &StepProblem) -> f64 {
 
 /// A solution in the solver's units, from the definitions: impulses over the mass, rotation at the
 /// radius of gyration.
-pub fn normalised(problem: &StepProblem, solution: &StepSolution) -> Impulses<1> {
+pub fn normalised(problem: &StepProblem, solution: &StepSolution) -> Unknowns<1> {
     let (m, gyration) = (problem.mass, (problem.inertia / problem.mass).sqrt());
     let over_mass = |p: &f64| Lanes([p / m]);
     let Twist { vx, vy, omega } = solution.twist;
-    Impulses {
+    Unknowns {
         v: [Lanes([vx]), Lanes([vy]), Lanes([gyration * omega])],
         normal: solution.normal.iter().map(over_mass).collect(),
         tangential: solution.tangential.iter().map(over_mass).collect(),

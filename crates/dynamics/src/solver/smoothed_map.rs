@@ -1,19 +1,22 @@
-//! The smoothed NCP: every row depends smoothly on a speed ε, and at ε = 0 it is the NCP itself.
+//! The smoothed NCP at one point, [`SmoothedMap`], and its linearisation.
 //!
-//! Complementarity pairs a ⟂ b become a + b − sqrt((a − b)² + 4ε²) = 0 (Chen & Harker 1993),
-//! friction becomes bound·s + p σ = 0 with σ = sqrt(|s|² + ε²), linearised as it stands (the
-//! primal–dual form of Andersen, Christiansen, Conn & Overton 2000).
+//! Every row depends smoothly on a speed ε, and at ε = 0 it is the NCP itself. Complementarity pairs
+//! a ⟂ b become a + b − sqrt((a − b)² + 4ε²) = 0 (Chen & Harker 1993); friction becomes bound·s + p
+//! σ = 0 with σ = sqrt(|s|² + ε²), linearised as it stands (the primal–dual form of Andersen,
+//! Christiansen, Conn & Overton 2000).
 
 use stickslip_lanes::Lanes;
 
-use crate::ncp::rows::{ContactRow, FootRow, Ncp, ROOM, Worst, square};
-use crate::ncp::unknowns::Impulses;
+use crate::ncp::max_abs::MaxAbs;
+use crate::ncp::rows::{ContactRow, FootRow, Ncp, ROOM, square};
+use crate::ncp::unknowns::Unknowns;
 use crate::solver::linearised::{ContactStep, FootStep, Linearised, StallStep};
 
-/// Largest stiffness a smoothed row may reach.
+/// Largest stiffness of a smoothed row.
 const STIFFEST: f64 = 1.0e13;
 
-/// The smoothed rows at one point and ε, with what leads to them.
+/// The smoothed rows at one point and ε, with the intermediate numbers that their linearisation
+/// needs too.
 #[derive(Clone, Debug)]
 pub struct SmoothedMap<const W: usize> {
     epsilon: Lanes<W>,
@@ -27,7 +30,7 @@ pub struct SmoothedMap<const W: usize> {
 struct SmoothedFoot<const W: usize> {
     slip: [Lanes<W>; 2],
     /// 1/σ.
-    inverse: Lanes<W>,
+    inv_sigma: Lanes<W>,
 }
 
 /// One contact.
@@ -36,14 +39,17 @@ struct SmoothedContact<const W: usize> {
     pair: SmoothedPair<W>,
     slip: Lanes<W>,
     /// 1/σ.
-    inverse: Lanes<W>,
+    inv_sigma: Lanes<W>,
 }
 
-/// A pair a ⟂ b: a − b, the root sqrt((a − b)² + 4ε²), and a + b less the root.
+/// A pair a ⟂ b.
 #[derive(Clone, Copy, Debug)]
 struct SmoothedPair<const W: usize> {
+    /// a − b.
     difference: Lanes<W>,
+    /// sqrt((a − b)² + 4ε²).
     root: Lanes<W>,
+    /// a + b less the root.
     value: Lanes<W>,
 }
 
@@ -52,7 +58,7 @@ impl<const W: usize> Default for SmoothedMap<W> {
         let o = Lanes::ZERO;
         let foot = SmoothedFoot {
             slip: [o; 2],
-            inverse: o,
+            inv_sigma: o,
         };
         Self {
             epsilon: o,
@@ -68,49 +74,52 @@ impl<const W: usize> Default for SmoothedMap<W> {
 }
 
 impl<const W: usize> SmoothedMap<W> {
-    /// Takes the rows at `p`, smoothed with `epsilon`; returns the largest violation (m/s).
+    /// Evaluates the rows at `z`, smoothed with `epsilon`; returns the largest violation (m/s).
     #[inline(always)]
-    pub fn take(&mut self, ncp: &Ncp<W>, p: &Impulses<W>, epsilon: Lanes<W>) -> Lanes<W> {
+    pub fn evaluate(&mut self, ncp: &Ncp<W>, z: &Unknowns<W>, epsilon: Lanes<W>) -> Lanes<W> {
         self.epsilon = epsilon;
         let squared = epsilon * epsilon;
-        let mut worst = Worst::NONE;
+        let mut largest = MaxAbs::ZERO;
+        // contacts
         self.contacts.clear();
-        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(p.normal.iter().zip(&p.tangential)) {
-            let gap = row.gap_velocity(&p.v, p.pusher_yield) + ncp.compliance * *p_n;
+        for (row, (p_n, p_t)) in ncp.contacts.iter().zip(z.contacts()) {
+            let gap = row.gap_velocity(&z.v, z.pusher_yield) + ncp.compliance * *p_n;
             let pair = SmoothedPair::new(*p_n, gap, squared);
-            let slip = row.slip_velocity(&p.v, p.pusher_yield);
-            let inverse = squared.add_mul(slip, slip).inverse_sqrt();
-            worst.note(pair.value);
-            worst.note(p_t.add_mul(row.mu * p_n.max(Lanes::ZERO), slip * inverse));
+            let slip = row.slip_velocity(&z.v, z.pusher_yield);
+            let inv_sigma = squared.add_mul(slip, slip).inverse_sqrt();
+            largest.accumulate(pair.value);
+            largest.accumulate(p_t.add_mul(row.mu * p_n.max(Lanes::ZERO), slip * inv_sigma));
             self.contacts.push(SmoothedContact {
                 pair,
                 slip,
-                inverse,
+                inv_sigma,
             });
         }
-        let mut squares = Worst::NONE;
-        for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&p.feet)) {
-            let slip = foot.slip(&p.v);
-            let inverse = squared
+        // feet: one root for the largest of their squared lengths
+        let mut squares = MaxAbs::ZERO;
+        for (map, (foot, p_k)) in self.feet.iter_mut().zip(ncp.feet.iter().zip(&z.feet)) {
+            let slip = foot.slip(&z.v);
+            let inv_sigma = squared
                 .add_mul(slip[0], slip[0])
                 .add_mul(slip[1], slip[1])
                 .inverse_sqrt();
-            let off = [
-                p_k[0].add_mul(foot.bound, slip[0] * inverse),
-                p_k[1].add_mul(foot.bound, slip[1] * inverse),
+            let violation = [
+                p_k[0].add_mul(foot.bound, slip[0] * inv_sigma),
+                p_k[1].add_mul(foot.bound, slip[1] * inv_sigma),
             ];
-            squares.note(square(&off));
-            *map = SmoothedFoot { slip, inverse };
+            squares.accumulate(square(&violation));
+            *map = SmoothedFoot { slip, inv_sigma };
         }
+        largest.accumulate(squares.sqrt());
+        // the stall pair of pushers that may stall
         let finite = ncp.stall.lt(Lanes::splat(f64::INFINITY));
         self.stall = SmoothedPair::new(
-            finite.zero_unless(ncp.stall) - ncp.resistance(p),
-            p.pusher_yield,
+            finite.zero_unless(ncp.stall) - ncp.resistance(z),
+            z.pusher_yield,
             squared,
         );
-        worst.note(squares.root());
-        worst.note(finite.zero_unless(self.stall.value));
-        worst.size()
+        largest.accumulate(finite.zero_unless(self.stall.value));
+        largest.value()
     }
 }
 
@@ -128,9 +137,9 @@ impl<const W: usize> SmoothedPair<W> {
         }
     }
 
-    /// Linearised in a, b and ε, and aimed at another ε.
+    /// Linearised in a, b and ε, towards the target ε.
     #[inline(always)]
-    fn linearised(&self, aim: &Aim<W>) -> Pair<W> {
+    fn linearised(&self, aim: &Aim<W>) -> LinearPair<W> {
         let Self {
             difference,
             root,
@@ -143,7 +152,7 @@ impl<const W: usize> SmoothedPair<W> {
         let more = Lanes::splat(2.0) - less;
         let forward = difference.gt(Lanes::ZERO);
         let value = value - aim.epsilon * 4.0 * (inverse * sum) * (aim.target - aim.epsilon);
-        Pair {
+        LinearPair {
             a: forward.select(less, more),
             b: forward.select(more, less),
             value,
@@ -151,24 +160,24 @@ impl<const W: usize> SmoothedPair<W> {
     }
 }
 
-/// A smoothed pair a ⟂ b, linearised.
-struct Pair<const W: usize> {
+/// A smoothed pair a ⟂ b, linearised: a da + b db = −value.
+struct LinearPair<const W: usize> {
     /// Coefficient of da.
     a: Lanes<W>,
     /// Coefficient of db.
     b: Lanes<W>,
-    /// The value that da and db have to undo.
+    /// The value that da and db make up for.
     value: Lanes<W>,
 }
 
 impl<const W: usize> Linearised<W> {
-    /// The smoothed rows at `p`, where they are `map`, linearised in unknowns and ε and aimed at ε
-    /// = `target`.
+    /// The smoothed rows at `z`, where they are `map`, linearised in the unknowns and ε, towards ε =
+    /// `target`.
     #[inline(always)]
-    pub fn smoothed(
+    pub fn smoothed_map(
         &mut self,
         ncp: &Ncp<W>,
-        p: &Impulses<W>,
+        z: &Unknowns<W>,
         map: &SmoothedMap<W>,
         target: Lanes<W>,
     ) {
@@ -176,41 +185,35 @@ impl<const W: usize> Linearised<W> {
             epsilon: map.epsilon,
             target,
         };
-        self.imbalance = ncp.imbalance(p);
+        self.imbalance = ncp.imbalance(z);
         self.contacts.clear();
-        let points = p.normal.iter().zip(&p.tangential);
-        for (i, ((row, contact), (p_n, p_t))) in ncp
-            .contacts
-            .iter()
-            .zip(&map.contacts)
-            .zip(points)
-            .enumerate()
-        {
-            self.contacts
-                .push((i, aim.contact(row, contact, [*p_n, *p_t], ncp.compliance)));
+        let points = map.contacts.iter().zip(z.contacts());
+        for (i, (row, (contact, (p_n, p_t)))) in ncp.contacts.iter().zip(points).enumerate() {
+            let step = aim.contact(row, contact, [*p_n, *p_t], ncp.compliance);
+            self.contacts.push((i, step));
         }
         let ([a, b, c], [map_a, map_b, map_c]) = (&ncp.feet, &map.feet);
-        // no loop, as in `Linearised::take_step`
+        // no loop, as in `Linearised::apply`
         self.feet = [
-            aim.foot(a, map_a, &p.feet[0]),
-            aim.foot(b, map_b, &p.feet[1]),
-            aim.foot(c, map_c, &p.feet[2]),
+            aim.foot(a, map_a, &z.feet[0]),
+            aim.foot(b, map_b, &z.feet[1]),
+            aim.foot(c, map_c, &z.feet[2]),
         ];
-        self.stall = aim.stall(ncp, &map.stall, p.pusher_yield);
+        self.stall = aim.stall(ncp, &map.stall, z.pusher_yield);
     }
 }
 
-/// Where a linearisation is taken and where it shall lead.
+/// ε at which the rows are linearised, and the ε that the step is to reach.
 struct Aim<const W: usize> {
     epsilon: Lanes<W>,
     target: Lanes<W>,
 }
 
 impl<const W: usize> Aim<W> {
-    /// σ linearised at the target, over σ, for 1/σ.
+    /// σ extrapolated linearly to the target, over σ.
     #[inline(always)]
-    fn shift(&self, inverse: Lanes<W>) -> Lanes<W> {
-        Lanes::splat(1.0) + self.epsilon * (self.target - self.epsilon) * inverse * inverse
+    fn sigma_ratio(&self, inv_sigma: Lanes<W>) -> Lanes<W> {
+        Lanes::splat(1.0) + self.epsilon * (self.target - self.epsilon) * inv_sigma * inv_sigma
     }
 
     #[inline(always)]
@@ -227,16 +230,16 @@ impl<const W: usize> Aim<W> {
             Lanes::splat(1.0) / (pair.a.max(Lanes::splat(2.0 / STIFFEST)) + compliance * pair.b);
         let (r_n, nn) = (-pair.value * weight, pair.b * weight);
 
-        let inverse = map.inverse;
+        let inv_sigma = map.inv_sigma;
         let bound = row.mu * p[0].max(Lanes::ZERO);
-        let unit = map.slip * inverse;
+        let unit = map.slip * inv_sigma;
         // the matrix uses p_t clamped to the cone, which keeps its diagonal positive
         let clamped = p[1].min(bound).max(-bound);
-        let tt = ((bound + clamped * unit) * inverse).min(Lanes::splat(STIFFEST));
+        let tt = ((bound + clamped * unit) * inv_sigma).min(Lanes::splat(STIFFEST));
         let ratio = p[0].gt(Lanes::ZERO).zero_unless(-row.mu * unit);
         ContactStep {
             n: r_n,
-            t: ratio * r_n - (bound * unit + p[1] * self.shift(inverse)),
+            t: ratio * r_n - (bound * unit + p[1] * self.sigma_ratio(inv_sigma)),
             nn,
             tn: ratio * nn,
             tt,
@@ -245,19 +248,19 @@ impl<const W: usize> Aim<W> {
 
     #[inline(always)]
     fn foot(&self, foot: &FootRow<W>, map: &SmoothedFoot<W>, p: &[Lanes<W>; 2]) -> FootStep<W> {
-        let SmoothedFoot { slip, inverse } = *map;
-        let shift = self.shift(inverse);
-        let unit = [slip[0] * inverse, slip[1] * inverse];
+        let SmoothedFoot { slip, inv_sigma } = *map;
+        let ratio = self.sigma_ratio(inv_sigma);
+        let unit = [slip[0] * inv_sigma, slip[1] * inv_sigma];
         let size = square(p).sqrt();
         let outside = size.gt(foot.bound);
         let one = Lanes::splat(1.0);
-        let shrink = outside.select(foot.bound / outside.select(size, one), one) * inverse;
+        let shrink = outside.select(foot.bound / outside.select(size, one), one) * inv_sigma;
         let inside = [p[0] * shrink, p[1] * shrink];
-        let bound = foot.bound * inverse;
+        let bound = foot.bound * inv_sigma;
         FootStep {
             r: [
-                -(foot.bound * unit[0] + p[0] * shift),
-                -(foot.bound * unit[1] + p[1] * shift),
+                -(foot.bound * unit[0] + p[0] * ratio),
+                -(foot.bound * unit[1] + p[1] * ratio),
             ],
             k: [
                 [bound + inside[0] * unit[0], inside[0] * unit[1]],

@@ -1,0 +1,149 @@
+//! What a choice of generators demands of V = (v, y): [`ModeConditions`].
+
+use crate::solver::generator::Generator;
+use crate::solver::interval::Interval;
+use crate::solver::scalar_ncp::{Candidate, ScalarContact, ScalarNcp};
+use crate::solver::subspace::Equation;
+use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
+
+/// Violations below this (m/s, relative to the speed scale) do not exclude a mode.
+const SLACK: f64 = 1e-9;
+
+/// A linear condition row·V + offset ≥ 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Inequality {
+    /// Coefficients.
+    pub row: Vector<4>,
+    /// Constant.
+    pub offset: f64,
+}
+
+/// A problem, and how far a solution may miss its conditions.
+pub struct ModeConditions {
+    /// The problem.
+    pub problem: ScalarNcp,
+    /// Violations below this do not exclude a mode (m/s).
+    pub slack: f64,
+}
+
+impl ModeConditions {
+    /// Of one problem.
+    pub fn new(problem: ScalarNcp) -> Self {
+        Self {
+            slack: SLACK * problem.speed_scale.max(1.0),
+            problem,
+        }
+    }
+
+    /// One equation per generator: its gap velocity vanishes; of a contact's second edge the slip
+    /// velocity; of the stall pair y.
+    pub fn equations<const N: usize>(&self, chosen: &[Generator; N]) -> [Equation; N] {
+        std::array::from_fn(|k| {
+            let Some(i) = chosen[k].contact else {
+                return Equation {
+                    row: [0.0, 0.0, 0.0, 1.0],
+                    value: 0.0,
+                };
+            };
+            let c = &self.problem.contacts[i];
+            let sticks = k > 0 && chosen[k - 1].contact == Some(i);
+            let (row, offset) = if sticks {
+                (c.t, c.slip_offset)
+            } else {
+                (c.n, c.gap_offset)
+            };
+            Equation {
+                row,
+                value: -offset,
+            }
+        })
+    }
+
+    /// What holds at a solution in this mode: gaps are open, slips oppose the friction, y ≥ 0.
+    pub fn inequalities(&self, chosen: &[Generator]) -> Vec<Inequality> {
+        let gap_is_open = |c: &ScalarContact| Inequality {
+            row: c.n,
+            offset: c.gap_offset,
+        };
+        let mut all: Vec<_> = self.problem.contacts.iter().map(gap_is_open).collect();
+        all.push(Inequality {
+            row: [0.0, 0.0, 0.0, 1.0],
+            offset: 0.0,
+        });
+        for generator in chosen {
+            // p_t = sign μ p_n opposes the slip
+            if let Some(c) = generator.contact.map(|i| &self.problem.contacts[i]) {
+                all.push(Inequality {
+                    row: c.t.map(|x| -generator.sign * x),
+                    offset: -generator.sign * c.slip_offset,
+                });
+            }
+        }
+        all
+    }
+
+    /// Whether V violates one of `inequalities` by more than the slack, and more than it can gain
+    /// over a distance of `margin`.
+    pub fn violates(&self, inequalities: &[Inequality], v: &Vector<4>, margin: f64) -> bool {
+        inequalities.iter().any(|Inequality { row, offset }| {
+            dot(row, v) + offset < -self.slack - margin * norm(row)
+        })
+    }
+
+    /// The point V with the chosen generators' impulses `alpha` and feet that slide.
+    pub fn candidate(&self, chosen: &[Generator], alpha: &[f64], v: Vector<4>) -> Candidate {
+        let mut candidate = Candidate {
+            v,
+            contacts: vec![[0.0; 2]; self.problem.contacts.len()],
+            feet: self.sliding_feet(&v),
+        };
+        for (generator, &a) in chosen.iter().zip(alpha) {
+            if let Some(i) = generator.contact {
+                let [p_n, p_t] = &mut candidate.contacts[i];
+                *p_n += a.max(0.0);
+                *p_t += a.max(0.0) * generator.sign * self.problem.contacts[i].mu;
+            }
+        }
+        candidate
+    }
+
+    fn sliding_feet(&self, v: &Vector<4>) -> [[f64; 2]; 3] {
+        self.problem.feet.map(|foot| {
+            let s = foot.slip(v);
+            let length = s[0].hypot(s[1]);
+            if length > 1e-12 {
+                s.map(|x| -foot.bound * x / length)
+            } else {
+                [0.0; 2]
+            }
+        })
+    }
+
+    /// Largest |w·Σ J_kᵀ p_k| that the feet can bring about.
+    pub fn friction_bound(&self, w: &Vector<3>) -> f64 {
+        self.problem
+            .feet
+            .iter()
+            .map(|foot| foot.bound * foot.slip(w)[0].hypot(foot.slip(w)[1]))
+            .sum()
+    }
+
+    /// w·T(V) without the feet's part.
+    pub fn load_along(&self, w: &Vector<4>, v: &Vector<4>) -> f64 {
+        dot(
+            &velocity(w),
+            &add_scaled(&velocity(v), -1.0, &self.problem.free),
+        ) + w[3] * self.problem.stall
+    }
+
+    /// Range of w·T(V) for V on the segment from a to b.
+    pub fn range_along(&self, w: &Vector<4>, a: &Vector<4>, b: &Vector<4>) -> Interval {
+        let mut range = Interval::hull(self.load_along(w, a), self.load_along(w, b));
+        for foot in &self.problem.feet {
+            let part = Interval::of_directions(foot.slip(w), foot.slip(a), foot.slip(b));
+            range.low += foot.bound * part.low;
+            range.high += foot.bound * part.high;
+        }
+        range
+    }
+}
