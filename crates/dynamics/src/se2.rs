@@ -73,7 +73,8 @@ fields!(Twist, 3: vx, vy, omega);
 fields!(Wrench, 3: fx, fy, torque);
 
 impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Pose<T> {
-    /// The pose after moving with `twist` for `h` seconds: q + h v (eq. 6, last line).
+    /// The pose after moving with `twist` for `h` seconds: q + h v (docs/method.md (10); paper eq.
+    /// 6).
     #[inline(always)]
     pub fn advance(&self, twist: Twist<T>, h: f64) -> Self {
         Self {

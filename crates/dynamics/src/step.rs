@@ -1,5 +1,5 @@
-//! One time step Γ, and Γ' with noise (eq. 3 and 6), for a block of particles side by side:
-//! [`Dynamics::step_block`].
+//! One time step Γ, and Γ' with noise (docs/method.md (11); paper eq. 3 and 6), for a block of
+//! particles side by side: [`Dynamics::step_block`].
 //!
 //! Gaps are taken at the poses at the start of the step; the mixed NCP gives the twist at its end;
 //! q⁺ = q + h v⁺.

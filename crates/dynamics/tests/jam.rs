@@ -13,7 +13,7 @@ use stickslip_testkit::{enumerate_modes, gap_margin, may_jam, residual_si};
 const H: f64 = 0.01;
 const SPEED: f64 = 0.02;
 
-/// Compliance of the gap rows where there is no rigid solution (model.md, "Jamming").
+/// Compliance of the gap rows where there is no rigid solution (docs/method.md (14)).
 const COMPLIANCE: f64 = 1e-6;
 
 /// The square with two fixels that touch its face, symmetrically; a disc pushes it against them

@@ -25,7 +25,7 @@ pub struct Tactile {
     pub false_positive: f64,
     /// Probability that a touched sensor reads 0.
     pub false_negative: f64,
-    /// Force at which the sensor switches (N).
+    /// Force at which the sensor switches (N) (docs/method.md (22)).
     pub touch_force: f64,
 }
 
@@ -52,15 +52,16 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterSettings {
     /// w_app per step of 1/30 s, as a share of μ_s m g h per linear axis, times the radius of
-    /// gyration for rotation.
+    /// gyration for rotation (docs/method.md (19)).
     pub force_std: f64,
-    /// w_β per step of 1/30 s, multiplicative.
+    /// w_β per step of 1/30 s, multiplicative (docs/method.md (20)).
     pub parameter_std: f64,
-    /// Effective sample size / N below which the set is resampled.
+    /// Effective sample size / N below which the set is resampled (docs/method.md (18)).
     pub resample_below: f64,
-    /// Widens the camera's standard deviations.
+    /// Widens the camera's standard deviations (docs/method.md (23)).
     pub likelihood_scale: f64,
-    /// Physical limits of the friction parameters, of d_tri in m: τ clamps to them.
+    /// Physical limits of the friction parameters, of d_tri in m: τ clamps to them (docs/method.md
+    /// (20)).
     pub limits: Friction<Limits>,
 }
 
@@ -113,8 +114,8 @@ pub struct Setup {
 
 impl Setup {
     /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`]
-    /// standard deviations of that pose. What stood farther behind the log contradicts: it is
-    /// dragged to that distance.
+    /// standard deviations of that pose (docs/method.md (13)). What stood farther behind the log
+    /// contradicts: it is dragged to that distance.
     pub(crate) fn most_pusher_lag(&self) -> f64 {
         PUSHER_SIGMAS * self.camera.map_or(0.0, |camera| camera.pusher_position_std)
     }

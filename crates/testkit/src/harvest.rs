@@ -17,7 +17,7 @@ use crate::survey::{Tally, judge};
 /// are kept each time.
 pub const MOST_PARTICLES: usize = 64;
 
-/// Largest residual of a step that counts as solved (m/s; model.md, "What solved means").
+/// Largest residual of a step that counts as solved (m/s; docs/method.md, "The certificate").
 const TOLERANCE: f64 = 1e-9;
 
 /// Disturbed forms of each harvested step.

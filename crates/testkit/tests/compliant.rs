@@ -6,7 +6,7 @@ use stickslip_testkit::{Corpus, residual_si};
 
 const CORPUS: Corpus = Corpus { seed: 1 };
 
-/// κ of model.md, "Jamming".
+/// κ of docs/method.md (14).
 const COMPLIANCE: f64 = 1e-6;
 
 /// The residual of a problem with compliant gap rows, W_nᵀ v + ψ/h + ∂ψ/∂t + κ p_n/m, at

@@ -1,9 +1,9 @@
 //! The natural map of the mixed NCP at one point: [`NaturalMap`], shared by the certificate
-//! [`Ncp::residual`] and the Newton iteration.
+//! [`Ncp::residual`] and the Newton iteration (docs/method.md (16)).
 //!
 //! Its zeros are the solutions. A foot's row is p − Π(p − s), with Π the projection onto the
 //! friction disc; a contact's rows are min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row
-//! is min(F_stall − F, y). The largest row is the residual of model.md, "What solved means".
+//! is min(F_stall − F, y). The largest row is the residual of docs/method.md, "The certificate".
 
 use stickslip_lanes::Lanes;
 
@@ -156,7 +156,7 @@ fn friction_violation<const W: usize>(
 }
 
 impl<const W: usize> Ncp<W> {
-    /// The natural-map residual (m/s): the largest violation of any row of eq. (1)–(2), the
+    /// The natural-map residual (m/s): the largest violation of any row of docs/method.md (16), the
     /// certificate of a solution.
     pub fn residual(&self, z: &Unknowns<W>) -> Lanes<W> {
         NaturalMap::default().evaluate(self, z)

@@ -1,5 +1,5 @@
-//! The mixed nonlinear complementarity problem of one time step (eq. 1–2) in SI units:
-//! [`StepProblem`] and [`StepSolution`].
+//! The mixed nonlinear complementarity problem of one time step (docs/method.md (3) to (9), (12);
+//! paper eq. 1–2) in SI units: [`StepProblem`] and [`StepSolution`].
 //!
 //! Unknowns are the twist v⁺, per contact the normal and tangential impulse (p_n, p_t), per foot a
 //! planar friction impulse p_k, and the speed y ≥ 0 by which a stalled pusher falls short of its

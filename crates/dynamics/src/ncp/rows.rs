@@ -82,8 +82,7 @@ pub struct Ncp<const W: usize> {
     pub contacts: Vec<ContactRow<W>>,
     /// F_stall h / m (m/s); infinite for a rigid pusher.
     pub stall: Lanes<W>,
-    /// Compliance κ of the gap rows: 0, or that of model.md's "Jamming" where no exact solution
-    /// exists.
+    /// Compliance κ of the gap rows: 0, or κ of docs/method.md (14) where no exact solution exists.
     pub compliance: Lanes<W>,
 }
 

@@ -29,7 +29,7 @@ const COLD_SMOOTHINGS: [f64; 2] = [1.0, 1e-1];
 /// Smoothing with which it begins where the pusher yields at its stall force.
 const YIELDING_SMOOTHING: f64 = 1e-4;
 
-/// Compliance κ of the gap rows where no exact solution exists (model.md, "Jamming").
+/// Compliance κ of the gap rows where no exact solution exists (docs/method.md (14)).
 const COMPLIANCE: f64 = 1e-6;
 
 /// Compliance ten times above the first one on the way to the compliant solution.

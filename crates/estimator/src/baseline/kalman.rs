@@ -1,5 +1,5 @@
 //! The Kalman filter baseline: Newton's law with all contact forces as unknown disturbance, per
-//! axis.
+//! axis (docs/method.md (30)).
 //!
 //! Each of x, y, θ follows a white-noise acceleration whose level is the one of greatest likelihood
 //! on the visible part of the log, so that it is a fair rival. While the camera is dark it goes on

@@ -1,5 +1,5 @@
-//! The particle filter over contact dynamics, one row at a time: [`ContactFilter`], grasp
-//! acquisition as the paper's section III-D has it.
+//! The particle filter over contact dynamics, one row at a time: [`ContactFilter`], docs/method.md,
+//! "The particle filter" (paper §III-D).
 
 use stickslip_dynamics::{Pose, StepInput};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};

@@ -1,5 +1,5 @@
-//! The particle filter's model of a pushed object (eq. 6): Γ' as transition, camera and tactile
-//! sensors as observation.
+//! The particle filter's model of a pushed object (docs/method.md (17) to (27); paper eq. 6): Γ' as
+//! transition, camera and tactile sensors as observation.
 
 use stickslip_dynamics::{Dynamics, Level, Pose, StepInput, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
@@ -16,7 +16,7 @@ use crate::particle::tactile_likelihood::TactileLikelihood;
 use crate::setup::{Camera, Setup};
 
 /// Best log-likelihood below which no particle explains the observation: the particles are
-/// reinitialised around it.
+/// reinitialised around it (docs/method.md (27)).
 const COLLAPSED: f64 = -6.0;
 
 /// Whether the friction parameters take a random step.

@@ -2,7 +2,8 @@
 
 use stickslip_dynamics::Pose;
 
-/// Where in a particle's past the camera looks: between two slots of its history.
+/// Where in a particle's past the camera looks: between two slots of its history (docs/method.md
+/// (29)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LatencyCompensation {
     /// Slot of the earlier pose.

@@ -1,5 +1,5 @@
-//! Γ' for a block of particles (eq. 6): noise, the step, and Φ, which keeps of the parameters what
-//! took part.
+//! Γ' for a block of particles (docs/method.md (19) to (22); paper eq. 6): noise, the step, and Φ,
+//! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
     Body, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
@@ -18,7 +18,8 @@ const CHUNKS: usize = BLOCK / LANES;
 /// Time step to which the noise settings refer (s).
 const NOISE_STEP: f64 = 1.0 / 30.0;
 
-/// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, Table I).
+/// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
+/// paper Table I).
 const MOVING: f64 = 1e-9;
 
 /// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of
@@ -55,7 +56,7 @@ impl Involved {
         }
     };
 
-    /// Φ: the parameters that took part (Table I).
+    /// Φ: the parameters that took part (docs/method.md (21); paper Table I).
     #[inline(always)]
     fn phi(&self) -> Friction<Mask<LANES>> {
         Friction {
@@ -123,7 +124,8 @@ impl Propagation {
         );
     }
 
-    /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen.
+    /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen
+    /// (docs/method.md (20)).
     #[inline(always)]
     fn load(
         &mut self,
@@ -192,7 +194,7 @@ impl Propagation {
     }
 
     /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, its
-    /// variance proportional to h.
+    /// variance proportional to h (docs/method.md (19)).
     #[inline(always)]
     fn apply_force(
         &mut self,
@@ -264,7 +266,8 @@ impl Propagation {
         }
     }
 
-    /// Writes the block back; Φ keeps only the parameters that took part (Table I).
+    /// Writes the block back; Φ keeps only the parameters that took part (docs/method.md (21);
+    /// paper Table I).
     #[inline(always)]
     fn store(&mut self, model: &ContactModel<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
@@ -328,7 +331,7 @@ fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
     (*vx * *vx + *vy * *vy + turn * turn).gt(Lanes::splat(MOVING * MOVING))
 }
 
-/// β + β w within the limits.
+/// β + β w within the limits (docs/method.md (20)).
 #[inline(always)]
 fn disturbed(value: Column, w: Column, limits: &Limits) -> Column {
     (value + value * w)

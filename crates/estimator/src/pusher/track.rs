@@ -1,4 +1,4 @@
-//! The pusher's own motion from its measured poses: [`PusherTrack`].
+//! The pusher's own motion from its measured poses: [`PusherTrack`] (docs/method.md (30), (31)).
 //!
 //! Off-line it is the fixed-interval smoother of a constant-velocity Kalman filter, as in the
 //! paper, per axis; the level of its white-noise acceleration is the one of greatest likelihood
