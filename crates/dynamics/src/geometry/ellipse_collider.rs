@@ -32,7 +32,7 @@ pub(crate) fn collide_ellipses<const W: usize>(
     }
 }
 
-/// Finds the contacts of a pair that have an ellipse, in the object's arms and the world frame.
+/// Finds the contacts of a pair that have an ellipse, in the world frame.
 struct EllipseCollider<'a> {
     pair: &'a Pair<'a>,
     found: &'a mut Vec<EllipseContact>,

@@ -90,6 +90,7 @@ impl<const W: usize> NarrowPhase<W> {
         }
     }
 
+    /// [`collide`](Self::collide) in the lanes of `active`, where the bodies may touch.
     #[inline(always)]
     fn collide_pair(&mut self, pair: &Pair<'_, Lanes<W>>, active: Mask<W>) {
         let (object, other) = (pair.object.shape.outline(), pair.other.shape.outline());
@@ -115,10 +116,9 @@ impl<const W: usize> NarrowPhase<W> {
 
         // overlaps that no feature shows
         if !object.edges.is_empty() && !other.edges.is_empty() {
-            let id = LEAST_PENETRATION;
             PolygonCollider {
                 pair,
-                id,
+                id: LEAST_PENETRATION,
                 active,
                 manifold,
             }
