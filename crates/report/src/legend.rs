@@ -34,7 +34,7 @@ impl Legend {
         }
     }
 
-    /// It drawn from `left` on, `room` wide (px), below `top`; and its height.
+    /// Draws the legend from `left` on, `room` wide (px), below `top`; also returns its height.
     pub fn draw(&self, [left, top]: [f64; 2], room: f64) -> (Markup, f64) {
         let mut at = [0.0, 0.0];
         let mut placed = Vec::new();

@@ -78,7 +78,7 @@ pub(crate) fn place(marks: &[Mark], axis: &Axis) -> Names {
 }
 
 impl Names {
-    /// They drawn, lines from `top` down, in a panel whose left end is at `left`.
+    /// Draws the names, lines from `top` down, in a panel whose left end is at `left`.
     pub fn draw(&self, [left, top]: [f64; 2]) -> Markup {
         html! {
             @for name in &self.placed {

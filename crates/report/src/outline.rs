@@ -2,10 +2,11 @@
 
 use stickslip_dynamics::{Part, Pose, Shape};
 
-/// Corners of a full turn.
+/// Corners by which a full circle is drawn.
 const TURN: usize = 48;
 
-/// How far beside its boundary a part is asked whether it goes on, as a share of the shape's size.
+/// Distance outside a part's edge at which another part is looked for, as a share of the shape's
+/// bounding radius: an edge with a part beyond it is a seam.
 const BESIDE: f64 = 1e-4;
 
 /// A body in the plane (m): areas to fill and lines to draw.
@@ -135,6 +136,7 @@ fn visible(shape: &Shape, own: usize, area: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
             0.5 * (start[0] + end[0]) + beside * dy / length,
             0.5 * (start[1] + end[1]) - beside * dx / length,
         ];
+        // a seam between parts is not drawn
         if shape
             .parts()
             .iter()

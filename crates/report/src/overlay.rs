@@ -232,7 +232,7 @@ impl Overlay {
 }
 
 impl Body {
-    /// It drawn with an outline in pixels.
+    /// Draws the body with its outline in pixels.
     fn draw(&self, outline: &Outline) -> Markup {
         let area: String = outline
             .areas

@@ -1,5 +1,5 @@
-//! Quantities against time: [`TimeFigure`], any number of panels over one time axis. Errors of
-//! methods, estimated parameters.
+//! Quantities against time, as errors and estimated parameters: [`TimeFigure`], any number of panels
+//! over one time axis.
 
 use maud::{Markup, html};
 
@@ -37,7 +37,7 @@ pub struct TimeFigure {
     pub columns: usize,
     /// Size of one panel, its own axis included (px).
     pub panel_size: [f64; 2],
-    /// What bands are, as "10–90 % of 20 seeds"; empty: not told.
+    /// What bands are, as "10–90 % of 20 seeds"; empty: not shown.
     pub band_name: String,
 }
 
