@@ -1,5 +1,5 @@
 //! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log
-//! of 600 frames, camera and touch sensors weighing all the way: wall time and the latency of a
+//! of 600 frames, camera and touch sensors weighing throughout: wall time and the latency of a
 //! frame, on one thread and on two. `... -- NAME` runs that log only.
 
 use std::error::Error;
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let case = cases
             .iter()
             .find(|case| case.occlusion == Occlusion::None)
-            .ok_or("no case without a blackout")?;
+            .ok_or("no case without an occlusion")?;
         write(log, case, &mut results)?;
     }
     Ok(())

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let case = cases
         .iter()
         .find(|case| case.occlusion == Occlusion::None)
-        .ok_or("no case without a blackout")?;
+        .ok_or("no case without an occlusion")?;
     let log = part(&case.log);
     let mut counts = vec![100, 500, 1_000, 10_000, 100_000, 250_000];
     counts.extend(

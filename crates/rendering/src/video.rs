@@ -12,9 +12,9 @@ use crate::recorded_motion::RecordedMotion;
 use crate::renderer::Renderer;
 
 /// Time that the hand takes to come and to go (s).
-const REACH_TIME: f64 = 0.35;
+const APPROACH_TIME: f64 = 0.35;
 /// Distance that it comes (m).
-const REACH: f64 = 0.30;
+const APPROACH: f64 = 0.30;
 /// How far the hand's middle is past the tag it covers, seen from the pusher, whose own tag it
 /// leaves free (m).
 const PAST_TAG: f64 = 0.022;
@@ -73,12 +73,12 @@ impl Video<'_> {
         let Range { start, end } = self.settings.covered;
         let from = self.motion.time.get(start).filter(|_| start < end)?;
         let to = self.motion.time.get(end - 1).unwrap_or(&f64::INFINITY);
-        let away = ((from - time).max(time - to) / REACH_TIME).max(0.0);
+        let away = ((from - time).max(time - to) / APPROACH_TIME).max(0.0);
         if away > 1.0 {
             return None;
         }
         let push = self.motion.push_direction();
-        let past = Pose::new(0.0, 0.0, push).rotate([PAST_TAG + REACH * away, 0.0]);
+        let past = Pose::new(0.0, 0.0, push).rotate([PAST_TAG + APPROACH * away, 0.0]);
         let [x, y, _] = self
             .renderer
             .camera()

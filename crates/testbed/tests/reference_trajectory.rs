@@ -13,7 +13,7 @@ use stickslip_testbed::{
 /// Frames until the pusher stands still.
 const PUSHED: usize = 198;
 
-/// Contacts of this stiffness (N/m), bristles that give way in proportion, even friction, a rigid
+/// Contacts of this stiffness (N/m), bristles that slip in proportion, even friction, a rigid
 /// drive.
 fn run(stiffness: f64) -> Trace {
     let scene = bench_scene();

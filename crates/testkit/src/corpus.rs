@@ -37,9 +37,9 @@ pub enum Family {
     Scattered,
     /// A rigid pusher presses the object against one to three fixels that face it.
     Jam,
-    /// The same with a drive that may give way.
+    /// The same with a drive that may stall.
     StalledJam,
-    /// A face of the pusher against a face of fixels, half of them with a drive that may give way.
+    /// A face of the pusher against a face of fixels, half of them with a drive that may stall.
     FaceJam,
     /// The pusher and two or three fixels around the object.
     Grasp,
@@ -312,7 +312,7 @@ fn duplicated(builder: &mut ProblemBuilder) {
 fn frictionless(builder: &mut ProblemBuilder) {
     let towards = builder.rng.direction();
     for _ in 0..builder.rng.below(9) {
-        // Normals within a half-plane leave a way out, so that most of these have a solution.
+        // Normals within a half-plane leave an escape, so that most of these have a solution.
         let (other, normal) = (any_other(builder), builder.tilted(towards, 1.5));
         let contact = builder.contact_anywhere(other, normal);
         builder.add(contact);

@@ -62,18 +62,18 @@ fn main() {
     }
     for pixels in [1.0, 2.0, 4.0, 6.0, 8.0, 12.0] {
         // at the object's height a pixel is about half a millimetre
-        let way = Pose::new(pixels * 0.6 / 1205.0, 0.0, 0.0);
+        let travel = Pose::new(pixels * 0.6 / 1205.0, 0.0, 0.0);
         row(
             &format!("moved by {pixels} px"),
             &Rig::new(Optics::default(), 3),
-            way,
+            travel,
             &calibration.camera,
         );
     }
 }
 
-fn row(name: &str, rig: &Rig, way: Pose, camera: &stickslip_vision::Camera) {
-    let (frames, truth) = rig.random_frames(FRAMES, way, 5);
+fn row(name: &str, rig: &Rig, travel: Pose, camera: &stickslip_vision::Camera) {
+    let (frames, truth) = rig.random_frames(FRAMES, travel, 5);
     let Ok(track) = rig.track(&frames, camera) else {
         println!("{name:<26} nothing found");
         return;

@@ -93,9 +93,9 @@ impl Camera {
     /// camera.
     pub(crate) fn on_plane(&self, ideal: Vector2<f64>, z: f64) -> Option<Vector2<f64>> {
         let to_world = self.to_camera.inverse();
-        let way = to_world.rotation * self.lens.direction(ideal).push(1.0);
-        let depth = (z - to_world.translation.z) / way.z;
-        (depth > 0.0 && depth.is_finite()).then(|| (to_world.translation + way * depth).xy())
+        let direction = to_world.rotation * self.lens.direction(ideal).push(1.0);
+        let depth = (z - to_world.translation.z) / direction.z;
+        (depth > 0.0 && depth.is_finite()).then(|| (to_world.translation + direction * depth).xy())
     }
 }
 

@@ -84,16 +84,16 @@ impl Edge {
     /// side on the left in the image. Pixels more than `cell` (px) from it or beyond its ends belong
     /// to other cells of the tag. `None` where there is no such edge.
     pub(crate) fn fit(samples: &[Sample], rough: [Vector2<f64>; 2], cell: f64) -> Option<Self> {
-        let way = rough[1] - rough[0];
+        let side = rough[1] - rough[0];
         let edge = Self {
             middle: (rough[0] + rough[1]) / 2.0,
-            along: way / way.norm(),
+            along: side / side.norm(),
             blur: FIRST_BLUR,
             ..Self::default()
         };
         // a second fit, in the band that is free of other edges by the first one's blur
-        let first = edge.fit_in_band(samples, way.norm() / 2.0, cell)?;
-        let found = first.fit_in_band(samples, way.norm() / 2.0, cell)?;
+        let first = edge.fit_in_band(samples, side.norm() / 2.0, cell)?;
+        let found = first.fit_in_band(samples, side.norm() / 2.0, cell)?;
         (found.offset.abs() <= cell && found.turn.abs() < 0.2).then_some(found)
     }
 
@@ -276,10 +276,10 @@ mod tests {
     /// Pixels about the corners' line, moved outwards by `offset` and turned by `turn`, seen with a
     /// blur, fading light and noise.
     fn samples(offset: f64, turn: f64, blur: f64, noise: f64, draw: u64) -> Vec<Sample> {
-        let way = CORNERS[1] - CORNERS[0];
+        let side = CORNERS[1] - CORNERS[0];
         let edge = Edge {
             middle: (CORNERS[0] + CORNERS[1]) / 2.0,
-            along: way.normalize(),
+            along: side.normalize(),
             offset,
             turn,
             ..Edge::default()

@@ -97,15 +97,15 @@ fn cell(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
     (to - from).norm() / 8.0
 }
 
-/// The pixels within the band and some more about the way from corner to corner.
+/// The pixels within the band and some more about the edge from corner to corner.
 fn near(image: &GrayImage, from: Vector2<f64>, to: Vector2<f64>) -> Vec<Sample> {
-    let reach = (WIDEST_BAND * cell(from, to)).max(LEAST_BAND) + SLACK;
+    let half_width = (WIDEST_BAND * cell(from, to)).max(LEAST_BAND) + SLACK;
     let length = (to - from).norm();
     let along = (to - from) / length;
     let range = |axis: usize, end: u32| {
         let [low, high] = [
-            from[axis].min(to[axis]) - reach,
-            from[axis].max(to[axis]) + reach,
+            from[axis].min(to[axis]) - half_width,
+            from[axis].max(to[axis]) + half_width,
         ];
         low.ceil().max(0.0) as u32..(high.floor() + 1.0).clamp(0.0, f64::from(end)) as u32
     };
@@ -113,7 +113,7 @@ fn near(image: &GrayImage, from: Vector2<f64>, to: Vector2<f64>) -> Vec<Sample> 
     for row in range(1, image.height()) {
         for column in range(0, image.width()) {
             let at = Vector2::new(f64::from(column), f64::from(row));
-            if (at - from).perp(&along).abs() <= reach
+            if (at - from).perp(&along).abs() <= half_width
                 && (0.0..=length).contains(&(at - from).dot(&along))
             {
                 samples.push(Sample {

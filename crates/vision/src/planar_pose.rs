@@ -1,12 +1,14 @@
 //! A pose on the table from the corners of a tag: [`Measurement`].
 //!
-//! The print of a tag lies in a plane at a known height, in a known place on its body, so that its
-//! four corners are functions of the body's planar pose and of the black square's size: x ↦
-//! lens(camera(pose ∘ place(corner))). The size is left free: ink that spreads, exposure and blur
-//! move all four edges alike, and no pose must follow them. Gauss–Newton on the corners' ideal
-//! pixels, weighted by their covariance C, gives the pose, its covariance (JᵀC⁻¹J)⁻¹, and χ² with 8
-//! - 4 degrees of freedom. Where χ² / 4 is above 1 the corners are off by more than their noise,
-//! and the covariance is raised by it (the scale factor of Birge 1932).
+//! The print of a tag lies in a plane of known height, at a known place on its body. So its four
+//! corners are functions of the body's planar pose and of the black square's size:
+//! x ↦ lens(camera(pose ∘ place(corner))). The size is left free: ink that spreads, exposure and blur
+//! move all four edges alike, and no pose must follow them.
+//!
+//! Gauss–Newton on the corners' ideal pixels, weighted by their covariance C, gives the pose, its
+//! covariance (JᵀC⁻¹J)⁻¹, and χ² with 4 degrees of freedom: 8 coordinates less 4 unknowns. Where
+//! χ² / 4 is above 1 the corners are off by more than their noise, and the covariance is scaled by
+//! it (Birge 1932).
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2};
 use stickslip_dynamics::Pose;

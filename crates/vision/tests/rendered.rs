@@ -89,8 +89,8 @@ fn calibrate_finds_the_camera() {
 /// Bias at most 0.05 mm and 0.05 degrees, all tags found, errors as large as predicted.
 #[test]
 fn track_measures_poses_with_the_noise_it_predicts() {
-    for (way, seed) in [(Pose::default(), 5), (Pose::new(1e-3, 5e-4, 0.01), 6)] {
-        let (frames, truth) = RIG.random_frames(40, way, seed);
+    for (travel, seed) in [(Pose::default(), 5), (Pose::new(1e-3, 5e-4, 0.01), 6)] {
+        let (frames, truth) = RIG.random_frames(40, travel, seed);
         let track = track(&frames).unwrap();
         let (mut object, mut pusher) = (Errors::default(), Errors::default());
         for (frame, [true_object, true_pusher]) in track.frames.iter().zip(&truth) {

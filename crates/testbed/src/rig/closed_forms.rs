@@ -129,10 +129,11 @@ fn sliding_block_stops_where_friction_has_eaten_its_energy() {
             },
             0.5,
         );
-        let way = speed * speed / (2.0 * rig.mu_s * GRAVITY);
+        let travel = speed * speed / (2.0 * rig.mu_s * GRAVITY);
         // bristles take a few µm to stretch, and as many to let go
         assert!(
-            (state.object.x - 0.6 * way).abs() < 1e-5 && (state.object.y + 0.8 * way).abs() < 1e-5,
+            (state.object.x - 0.6 * travel).abs() < 1e-5
+                && (state.object.y + 0.8 * travel).abs() < 1e-5,
             "{:?}",
             state.object
         );
@@ -170,15 +171,15 @@ fn sliding_block_on_friction_that_varies_with_speed_stops_where_the_quadrature_s
         },
         0.5,
     );
-    // way = ∫ v dv / (μ g φ(v)), φ(v) = 1 − 0.2 (v² − 0.05²) / (v² + 0.05²), by the midpoint rule
+    // travel = ∫ v dv / (μ g φ(v)), φ(v) = 1 − 0.2 (v² − 0.05²) / (v² + 0.05²), by the midpoint rule
     let slow =
         |v: f64| v / (rig.mu_s * GRAVITY * (1.0 - 0.2 * (v * v - 2.5e-3) / (v * v + 2.5e-3)));
-    let way: f64 = (0..3000)
+    let travel: f64 = (0..3000)
         .map(|k| 1e-4 * slow(1e-4 * (f64::from(k) + 0.5)))
         .sum();
     assert!(
-        (state.object.x - way).abs() < 1e-5,
-        "{} {way}",
+        (state.object.x - travel).abs() < 1e-5,
+        "{} {travel}",
         state.object.x
     );
 }
@@ -387,8 +388,8 @@ fn bristles_hold_below_their_limit_and_slip_above() {
             start(SPEED),
         );
         let trace = rig.run(&trial(&scene, &start)).expect("a trace");
-        let way = trace.frames.last().expect("frames").object.x;
-        assert_eq!(way > 0.01, moves, "{share}: {way}");
-        assert!(moves || way < 3.0 * Bristles::default().give, "{way}");
+        let travel = trace.frames.last().expect("frames").object.x;
+        assert_eq!(travel > 0.01, moves, "{share}: {travel}");
+        assert!(moves || travel < 3.0 * Bristles::default().give, "{travel}");
     }
 }
