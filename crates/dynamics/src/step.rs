@@ -113,9 +113,9 @@ impl<const W: usize> StepWork<W> {
         self.chunks
             .resize_with(chunks.max(self.chunks.len()), Assembly::default);
         self.ncps
-            .resize_with(chunks.max(self.ncps.len()), Ncp::empty);
+            .resize_with(chunks.max(self.ncps.len()), Ncp::default);
         self.impulses
-            .resize_with(chunks.max(self.impulses.len()), || Unknowns::zero(0));
+            .resize_with(chunks.max(self.impulses.len()), Unknowns::default);
         self.reports.resize(chunks, [Report::UNSOLVED; W]);
     }
 }

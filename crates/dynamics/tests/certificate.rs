@@ -15,7 +15,7 @@ fn indices() -> std::ops::Range<u64> {
 }
 
 fn certificate(problem: &StepProblem, solution: &StepSolution) -> f64 {
-    let mut ncp = Ncp::<1>::empty();
+    let mut ncp = Ncp::<1>::default();
     ncp.assign(std::array::from_ref(problem));
     ncp.residual(&normalised(problem, solution)).0[0]
 }

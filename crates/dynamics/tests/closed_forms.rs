@@ -53,7 +53,7 @@ const NO_PUSHER: StepInput = StepInput {
 
 /// Steps until the twist is zero; the number of steps. Twists may be off by 1e-9 m/s or, at the
 /// radius of gyration, 1e-7 rad/s.
-fn walk(
+fn step_until_rest(
     particle: &mut Particle,
     speed: impl Fn(&Twist) -> f64,
     expected: impl Fn(u64) -> f64,
@@ -89,7 +89,7 @@ fn sliding_block_stops_after_the_steps_and_the_way_of_the_closed_form() {
             twist,
             ..at(Pose::new(0.3, -0.2, 0.7))
         };
-        let steps = walk(
+        let steps = step_until_rest(
             &mut particle,
             |v| v.vx * cos + v.vy * sin,
             |k| BLOCK.slide_speed(speed, k),
@@ -121,7 +121,7 @@ fn spinning_block_stops_after_the_steps_and_the_angle_of_the_closed_form() {
             },
             ..at(Pose::new(0.3, -0.2, 0.7))
         };
-        let steps = walk(&mut particle, |v| v.omega, |k| BLOCK.spin_speed(omega, k));
+        let steps = step_until_rest(&mut particle, |v| v.omega, |k| BLOCK.spin_speed(omega, k));
         let Stop {
             steps: expected,
             travel,

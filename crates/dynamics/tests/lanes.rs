@@ -11,16 +11,16 @@ use stickslip_dynamics::{
 
 const PARTICLES: usize = 16;
 
-/// Everything that a step says of a particle, as bits.
+/// Everything that a step returns of a particle, as bits.
 #[derive(Debug, PartialEq)]
-struct Said {
+struct StepResult {
     numbers: Vec<u64>,
     outcome: Outcome,
     route: Route,
     iterations: u32,
 }
 
-fn said(particle: &Particle, report: &Report) -> Said {
+fn step_result(particle: &Particle, report: &Report) -> StepResult {
     let (q, v) = (particle.pose, particle.twist);
     let numbers = [q.x, q.y, q.theta, v.vx, v.vy, v.omega, report.residual];
     let bits = numbers
@@ -28,7 +28,7 @@ fn said(particle: &Particle, report: &Report) -> Said {
         .chain(particle.warm.fields())
         .map(|x| x.to_bits())
         .collect();
-    Said {
+    StepResult {
         numbers: bits,
         outcome: report.outcome,
         route: report.route,
@@ -42,7 +42,7 @@ fn run<const W: usize>(
     inputs: &[StepInput],
     friction: &[Friction; PARTICLES],
     start: &[Particle; PARTICLES],
-) -> Vec<Vec<Said>> {
+) -> Vec<Vec<StepResult>> {
     let mut particles = *start;
     let mut works: Vec<StepWork<W>> = (0..PARTICLES / W).map(|_| StepWork::default()).collect();
     let mut all = vec![];
@@ -56,7 +56,7 @@ fn run<const W: usize>(
                 block
                     .iter()
                     .zip(&reports)
-                    .map(|(particle, report)| said(particle, report)),
+                    .map(|(particle, report)| step_result(particle, report)),
             );
         }
         all.push(row);
@@ -70,7 +70,7 @@ fn run_as_block<const W: usize>(
     inputs: &[StepInput],
     friction: &[Friction; PARTICLES],
     start: &[Particle; PARTICLES],
-) -> Vec<Vec<Said>> {
+) -> Vec<Vec<StepResult>> {
     let mut chunks = vec![Particles::<W>::default(); PARTICLES / W];
     for (i, (particle, friction)) in start.iter().zip(friction).enumerate() {
         chunks[i / W].set(i % W, particle, friction);
@@ -79,14 +79,14 @@ fn run_as_block<const W: usize>(
     let mut step = |input| {
         dynamics.step_block(input, &mut chunks, &mut work);
         (0..PARTICLES)
-            .map(|i| said(&chunks[i / W].get(i % W), &work.reports()[i / W][i % W]))
+            .map(|i| step_result(&chunks[i / W].get(i % W), &work.reports()[i / W][i % W]))
             .collect()
     };
     inputs.iter().map(&mut step).collect()
 }
 
 #[track_caller]
-fn assert_same(one: &[Vec<Said>], many: &[Vec<Said>], lanes: usize) {
+fn assert_same(one: &[Vec<StepResult>], many: &[Vec<StepResult>], lanes: usize) {
     for (frame, (one, many)) in one.iter().zip(many).enumerate() {
         for (i, (one, many)) in one.iter().zip(many).enumerate() {
             assert_eq!(one, many, "{lanes} lanes, frame {frame}, particle {i}");
@@ -102,13 +102,13 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// Compares all widths and instruction sets; returns what one lane said.
+/// Compares all widths and instruction sets; returns the results of one lane at a time.
 fn assert_independent(
     dynamics: &Dynamics,
     inputs: &[StepInput],
     friction: &[Friction; PARTICLES],
     start: &[Particle; PARTICLES],
-) -> Vec<Said> {
+) -> Vec<StepResult> {
     let one = run::<1>(dynamics, inputs, friction, start);
     assert_same(&one, &run::<2>(dynamics, inputs, friction, start), 2);
     assert_same(
@@ -178,13 +178,21 @@ fn mixed_particles(rng: &mut Rng) -> ([Particle; PARTICLES], [Friction; PARTICLE
 fn step_of_mixed_particles_past_fixels_gives_the_same_bits_for_every_number_of_lanes() {
     let (start, friction) = mixed_particles(&mut Rng(3));
     let inputs: Vec<_> = (0..260).map(bench_input).collect();
-    let said = assert_independent(&Dynamics::new(bench_scene()), &inputs, &friction, &start);
+    let results = assert_independent(&Dynamics::new(bench_scene()), &inputs, &friction, &start);
     assert!(
-        said.iter().filter(|s| s.iterations > 1).count() > 1000,
+        results
+            .iter()
+            .filter(|result| result.iterations > 1)
+            .count()
+            > 1000,
         "most particles were pushed"
     );
     assert!(
-        said.iter().filter(|s| s.iterations > 4).count() > 50,
+        results
+            .iter()
+            .filter(|result| result.iterations > 4)
+            .count()
+            > 50,
         "some lanes go on when the others of their chunk are done"
     );
 }
@@ -204,20 +212,20 @@ fn step_with_some_particles_jammed_gives_the_same_bits_for_every_number_of_lanes
             fixel(disc(0.005), 0.0305, -0.015),
         ]);
         scene.pusher.stall_force = stall_force;
-        let said = assert_independent(&Dynamics::new(scene), &inputs, &friction, &start);
-        let unsolved = said
+        let results = assert_independent(&Dynamics::new(scene), &inputs, &friction, &start);
+        let unsolved = results
             .iter()
-            .filter(|s| s.outcome == Outcome::Infeasible)
+            .filter(|result| result.outcome == Outcome::Infeasible)
             .count();
         assert_eq!(
             unsolved > 20,
             stall_force.is_none(),
             "{unsolved} of {} are infeasible",
-            said.len()
+            results.len()
         );
         assert!(
-            said.iter().any(|s| s.route != Route::Newton),
-            "the slow solvers took part"
+            results.iter().any(|result| result.route != Route::Newton),
+            "the later solvers took part"
         );
     }
 }

@@ -51,7 +51,7 @@ fn squeezed() -> (Scene, Particle) {
 }
 
 /// Distance between two poses, rotation at the radius of gyration (m).
-fn way(dynamics: &Dynamics, a: &Pose, b: &Pose) -> f64 {
+fn pose_distance(dynamics: &Dynamics, a: &Pose, b: &Pose) -> f64 {
     (a.x - b.x)
         .hypot(a.y - b.y)
         .hypot(dynamics.scene().object.gyration_radius() * (a.theta - b.theta))
@@ -80,7 +80,7 @@ fn squeezed_object_does_not_creep() {
                 Outcome::Solved
             )
         });
-        let crept = way(&dynamics, &settled, &particle.pose);
+        let crept = pose_distance(&dynamics, &settled, &particle.pose);
         assert!(crept < 1e-5, "{inside}: {crept}");
     }
 }
@@ -136,7 +136,7 @@ fn lag_is_a_pusher_that_starts_where_it_stands() {
         let (behind, ahead) = (advance(&input(0.0), lag), advance(&input(lag), 0.0));
         assert_eq!((behind.0, ahead.0), (Outcome::Solved, Outcome::Solved));
         assert!(
-            way(&dynamics, &behind.1.pose, &ahead.1.pose) < 1e-9,
+            pose_distance(&dynamics, &behind.1.pose, &ahead.1.pose) < 1e-9,
             "{behind:?} {ahead:?}"
         );
         assert!((behind.1.pusher_lag - FRAME * behind.2).abs() < 1e-15);

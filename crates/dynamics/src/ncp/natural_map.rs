@@ -35,12 +35,11 @@ pub struct ContactVelocity<const W: usize> {
 
 impl<const W: usize> Default for NaturalMap<W> {
     fn default() -> Self {
-        let o = Lanes::ZERO;
         Self {
-            imbalance: [o; 3],
-            slips: [[o; 2]; 3],
+            imbalance: [Lanes::ZERO; 3],
+            slips: [[Lanes::ZERO; 2]; 3],
             contacts: Vec::with_capacity(ROOM),
-            slack: o,
+            slack: Lanes::ZERO,
         }
     }
 }

@@ -33,7 +33,7 @@ pub fn add_scaled<const W: usize>(a: &mut Triple<W>, b: &Triple<W>, s: Lanes<W>)
 }
 
 /// One foot: slip velocity s = (v_x + jx v_θ, v_y + jy v_θ), friction bound μ_s p_ns / m.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct FootRow<const W: usize> {
     /// −r_y / ρ.
     pub jx: Lanes<W>,
@@ -170,23 +170,20 @@ impl<const W: usize> ContactRow<W> {
     }
 }
 
-impl<const W: usize> Ncp<W> {
+impl<const W: usize> Default for Ncp<W> {
     /// No contact, no friction, at rest; a workspace to fill.
-    pub fn empty() -> Self {
-        let foot = FootRow {
-            jx: Lanes::ZERO,
-            jy: Lanes::ZERO,
-            bound: Lanes::ZERO,
-        };
+    fn default() -> Self {
         Self {
             free: [Lanes::ZERO; 3],
-            feet: [foot; 3],
+            feet: [FootRow::default(); 3],
             contacts: Vec::with_capacity(ROOM),
             stall: Lanes::splat(f64::INFINITY),
             compliance: Lanes::ZERO,
         }
     }
+}
 
+impl<const W: usize> Ncp<W> {
     /// Removes all contacts and compliance; the caller overwrites the rest.
     pub fn clear(&mut self) {
         self.contacts.clear();

@@ -24,6 +24,12 @@ pub struct Unknowns<const W: usize> {
     pub pusher_yield: Lanes<W>,
 }
 
+impl<const W: usize> Default for Unknowns<W> {
+    fn default() -> Self {
+        Self::zero(0)
+    }
+}
+
 impl<const W: usize> Unknowns<W> {
     /// No impulse at all on `contacts` contacts, at rest.
     pub fn zero(contacts: usize) -> Self {

@@ -14,6 +14,9 @@ const ATTEMPTS: u32 = 6;
 /// Width at which a piece is not halved any more.
 const NARROWEST: f64 = 1e-12;
 
+/// Refines a candidate and says whether it is a certified solution.
+pub type Accept<'a> = dyn FnMut(&Candidate) -> bool + 'a;
+
 /// What is known of a subset of generators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finding {
@@ -50,7 +53,7 @@ pub fn bisect(
     whole: Interval,
     max_pieces: usize,
     examine: &mut dyn FnMut(Interval) -> Piece,
-    accept: &mut dyn FnMut(&Candidate) -> bool,
+    accept: &mut Accept<'_>,
 ) -> Finding {
     let mut stack = vec![whole];
     let mut finding = Finding::Excluded;

@@ -61,8 +61,11 @@ const SCHEDULES: [SmoothingSchedule; 3] = [
 /// assert_eq!((report.outcome, solution.twist), (Outcome::Solved, twist));
 /// ```
 pub fn solve(problem: &StepProblem) -> (StepSolution, Report) {
-    let (mut ncps, mut z, mut reports) =
-        ([Ncp::empty()], [Unknowns::zero(0)], [[Report::UNSOLVED]]);
+    let (mut ncps, mut z, mut reports) = (
+        [Ncp::default()],
+        [Unknowns::default()],
+        [[Report::UNSOLVED]],
+    );
     Solver::default().solve(&mut Cold(problem), &mut ncps, &mut z, &mut reports);
     let ([z], [[report]]) = (z, reports);
     (z.to_solution(0, problem), report)
@@ -82,7 +85,7 @@ impl Source<1> for Cold<'_> {
 }
 
 /// Solves mixed NCPs; holds the working memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Solver<const W: usize> {
     newton: NewtonBlock<W>,
     smoothed: SmoothedNewton<W>,
@@ -91,20 +94,6 @@ pub struct Solver<const W: usize> {
     warm: Vec<Unknowns<W>>,
     unsolved: Vec<LaneIndex>,
     still_unsolved: Vec<LaneIndex>,
-}
-
-impl<const W: usize> Default for Solver<W> {
-    fn default() -> Self {
-        Self {
-            newton: NewtonBlock::default(),
-            smoothed: SmoothedNewton::default(),
-            fallback: Fallback::default(),
-            map: NaturalMap::default(),
-            warm: Vec::new(),
-            unsolved: Vec::new(),
-            still_unsolved: Vec::new(),
-        }
-    }
 }
 
 impl<const W: usize> Solver<W> {
@@ -150,7 +139,7 @@ impl<const W: usize> Solver<W> {
     #[inline(always)]
     fn reserve(&mut self, chunks: usize) {
         self.warm
-            .resize_with(chunks.max(self.warm.len()), || Unknowns::zero(0));
+            .resize_with(chunks.max(self.warm.len()), Unknowns::default);
         for indices in [&mut self.unsolved, &mut self.still_unsolved] {
             indices.clear();
             indices.reserve(W * chunks);

@@ -39,7 +39,7 @@ const SOFT_COMPLIANCE: f64 = 10.0;
 const COMPLIANT_SMOOTHINGS: [f64; 4] = [1.0, 1e-2, 1e2, 1e-4];
 
 /// Homotopy, exhaustive search and compliant solution, in this order, with their working memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Fallback {
     ncp: Ncp<1>,
     scalar: ScalarNcp,
@@ -47,19 +47,6 @@ pub struct Fallback {
     nearest: Unknowns<1>,
     homotopy: Homotopy,
     refiner: Refiner,
-}
-
-impl Default for Fallback {
-    fn default() -> Self {
-        Self {
-            ncp: Ncp::empty(),
-            scalar: ScalarNcp::default(),
-            start: Unknowns::zero(0),
-            nearest: Unknowns::zero(0),
-            homotopy: Homotopy::default(),
-            refiner: Refiner::default(),
-        }
-    }
 }
 
 impl Fallback {

@@ -47,14 +47,13 @@ pub struct Homotopy {
 
 impl Default for Homotopy {
     fn default() -> Self {
-        let none = Unknowns::zero(0);
         Self {
             map: SmoothedMap::default(),
             linearised: Linearised::default(),
-            settled: none.clone(),
-            iterate: none.clone(),
-            full: none.clone(),
-            trial: none,
+            settled: Unknowns::default(),
+            iterate: Unknowns::default(),
+            full: Unknowns::default(),
+            trial: Unknowns::default(),
             level: Level::new(),
         }
     }
@@ -149,8 +148,12 @@ impl Homotopy {
             #[inline(always)]
             || {
                 self.map.evaluate(ncp, &self.iterate, Lanes([from]));
-                self.linearised
-                    .smoothed_map(ncp, &self.iterate, &self.map, Lanes([target]));
+                self.linearised.linearise_smoothed_map(
+                    ncp,
+                    &self.iterate,
+                    &self.map,
+                    Lanes([target]),
+                );
                 self.linearised.step(ncp, &mut self.full, Mask::splat(true));
             },
         );

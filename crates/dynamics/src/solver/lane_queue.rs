@@ -31,8 +31,8 @@ pub struct LaneQueue<const W: usize> {
 impl<const W: usize> Default for LaneQueue<W> {
     fn default() -> Self {
         Self {
-            ncp: Ncp::empty(),
-            z: Unknowns::zero(0),
+            ncp: Ncp::default(),
+            z: Unknowns::default(),
             busy: Mask::splat(false),
             indices: [LaneIndex::default(); W],
         }

@@ -26,7 +26,7 @@ pub struct ContactStep<const W: usize> {
 }
 
 /// Linear model of one foot: dp = r − K ds.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct FootStep<const W: usize> {
     /// dp at ds = 0.
     pub r: [Lanes<W>; 2],
@@ -97,18 +97,14 @@ pub struct Linearised<const W: usize> {
 
 impl<const W: usize> Default for Linearised<W> {
     fn default() -> Self {
-        let o = Lanes::ZERO;
         Self {
-            imbalance: [o; 3],
+            imbalance: [Lanes::ZERO; 3],
             contacts: Vec::with_capacity(ROOM),
-            feet: [FootStep {
-                r: [o; 2],
-                k: [[o; 2]; 2],
-            }; 3],
+            feet: [FootStep::default(); 3],
             stall: StallStep {
-                slack: o,
+                slack: Lanes::ZERO,
                 pusher: Lanes::splat(1.0),
-                rhs: o,
+                rhs: Lanes::ZERO,
             },
         }
     }

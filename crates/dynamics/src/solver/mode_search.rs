@@ -10,7 +10,7 @@
 //! rigorously on every piece: pieces without a solution are discarded, what remains is handed to
 //! `accept`. Where nothing remains, there is no solution.
 
-use crate::solver::bisection::{Finding, Piece, bisect};
+use crate::solver::bisection::{Accept, Finding, Piece, bisect};
 use crate::solver::elimination::solve_dense;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
@@ -42,9 +42,8 @@ const MAX_PIECES: [usize; 2] = [2_000, 50_000];
 /// End of lines and curves (m/s): no impulse or speed is so large.
 const FARTHEST: f64 = 1e6;
 
-/// Searches all modes, and again with more pieces where something was unclear; `accept` refines and
-/// certifies a candidate.
-pub fn search(problem: &ScalarNcp, accept: &mut dyn FnMut(&Candidate) -> bool) -> Verdict {
+/// Searches all modes, and again with more pieces where something was unclear.
+pub fn search(problem: &ScalarNcp, accept: &mut Accept<'_>) -> Verdict {
     let mut verdict = Verdict::Unresolved;
     for max_pieces in MAX_PIECES {
         verdict = ModeSearch::new(problem, max_pieces).run(accept);
@@ -100,7 +99,7 @@ impl ModeSearch {
     }
 
     /// Examines all subsets of generators until one has a solution.
-    fn run(&self, accept: &mut dyn FnMut(&Candidate) -> bool) -> Verdict {
+    fn run(&self, accept: &mut Accept<'_>) -> Verdict {
         let mut verdict = Verdict::Infeasible;
         for size in CHEAPEST_FIRST {
             for subset in subsets(self.generators.len(), size) {
@@ -115,7 +114,7 @@ impl ModeSearch {
         verdict
     }
 
-    fn examine(&self, chosen: &[Generator], accept: &mut dyn FnMut(&Candidate) -> bool) -> Finding {
+    fn examine(&self, chosen: &[Generator], accept: &mut Accept<'_>) -> Finding {
         // a rigid pusher does not yield: its stall pair is always among them
         if self.rigid && chosen[0].contact.is_some() {
             return Finding::Excluded;
@@ -131,7 +130,7 @@ impl ModeSearch {
 
     /// One generator: only the stall pair, or a single cone edge that carries the whole stall
     /// force.
-    fn single(&self, generator: &Generator, accept: &mut dyn FnMut(&Candidate) -> bool) -> Finding {
+    fn single(&self, generator: &Generator, accept: &mut Accept<'_>) -> Finding {
         let problem = &self.conditions.problem;
         let contact = generator.contact.map(|i| &problem.contacts[i]);
         // its impulse
@@ -161,11 +160,7 @@ impl ModeSearch {
     }
 
     /// Four generators: V is a point.
-    fn point(
-        &self,
-        chosen: &[Generator; 4],
-        accept: &mut dyn FnMut(&Candidate) -> bool,
-    ) -> Finding {
+    fn point(&self, chosen: &[Generator; 4], accept: &mut Accept<'_>) -> Finding {
         let conditions = &self.conditions;
         let Some(dual) = dual_basis(&chosen.map(|c| c.g)) else {
             return Finding::Excluded;
@@ -190,7 +185,7 @@ impl ModeSearch {
     fn degenerate<const N: usize>(
         &self,
         chosen: &[Generator; N],
-        accept: &mut dyn FnMut(&Candidate) -> bool,
+        accept: &mut Accept<'_>,
     ) -> Finding {
         let equations = self.conditions.equations(chosen);
         let v = least_squares(&equations);
@@ -204,7 +199,7 @@ impl ModeSearch {
     }
 
     /// Three generators: V on a line V0 + τ d.
-    fn line(&self, chosen: &[Generator; 3], accept: &mut dyn FnMut(&Candidate) -> bool) -> Finding {
+    fn line(&self, chosen: &[Generator; 3], accept: &mut Accept<'_>) -> Finding {
         let conditions = &self.conditions;
         // the line, and the direction m in which no generator pushes
         let equations = conditions.equations(chosen);
@@ -269,11 +264,7 @@ impl ModeSearch {
     }
 
     /// Two generators: V on a curve, whose v is 1-Lipschitz in its load.
-    fn curve(
-        &self,
-        chosen: &[Generator; 2],
-        accept: &mut dyn FnMut(&Candidate) -> bool,
-    ) -> Finding {
+    fn curve(&self, chosen: &[Generator; 2], accept: &mut Accept<'_>) -> Finding {
         let conditions = &self.conditions;
         let Some(curve) = ModeCurve::new(conditions, chosen) else {
             return Finding::Excluded;

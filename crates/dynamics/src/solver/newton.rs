@@ -74,14 +74,18 @@ pub struct Progress<const W: usize> {
     pub running: Mask<W>,
 }
 
-impl<const W: usize> Progress<W> {
-    /// Nothing to do.
-    pub const NONE: Self = Self {
-        residual: Lanes::ZERO,
-        iterations: Lanes::ZERO,
-        running: Mask::splat(false),
-    };
+impl<const W: usize> Default for Progress<W> {
+    /// Nothing runs.
+    fn default() -> Self {
+        Self {
+            residual: Lanes::ZERO,
+            iterations: Lanes::ZERO,
+            running: Mask::splat(false),
+        }
+    }
+}
 
+impl<const W: usize> Progress<W> {
     /// Copies one lane into lane `slot` of `to`.
     #[inline(always)]
     pub fn pack_lane(&self, lane: usize, to: &mut Self, slot: usize) {
@@ -92,19 +96,10 @@ impl<const W: usize> Progress<W> {
 }
 
 /// The Newton iteration with its working memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Newton<const W: usize> {
     map: NaturalMap<W>,
     linearised: Linearised<W>,
-}
-
-impl<const W: usize> Default for Newton<W> {
-    fn default() -> Self {
-        Self {
-            map: NaturalMap::default(),
-            linearised: Linearised::default(),
-        }
-    }
 }
 
 impl<const W: usize> Newton<W> {
@@ -164,7 +159,7 @@ impl<const W: usize> Newton<W> {
         } = progress;
         let stiffness = stiffness(*iterations);
         self.linearised
-            .natural_map(ncp, z, &self.map, settings.slip_weight, stiffness);
+            .linearise_natural_map(ncp, z, &self.map, settings.slip_weight, stiffness);
         self.linearised.step(ncp, z, *running);
         *residual = running.select(self.map.evaluate(ncp, z), *residual);
         *iterations += running.zero_unless(Lanes::splat(1.0));
@@ -199,7 +194,7 @@ fn stiffness<const W: usize>(iterations: Lanes<W>) -> Lanes<W> {
 impl<const W: usize> Linearised<W> {
     /// Linearises at `z`, where the natural map is `map`, in the modes that the map chooses.
     #[inline(always)]
-    fn natural_map(
+    fn linearise_natural_map(
         &mut self,
         ncp: &Ncp<W>,
         z: &Unknowns<W>,

@@ -27,23 +27,12 @@ pub struct Iterated {
 }
 
 /// [`Newton`] on a block, with its working memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct NewtonBlock<const W: usize> {
     chunk: Newton<W>,
     queued: Newton<W>,
     queue: LaneQueue<W>,
     progress: Progress<W>,
-}
-
-impl<const W: usize> Default for NewtonBlock<W> {
-    fn default() -> Self {
-        Self {
-            chunk: Newton::default(),
-            queued: Newton::default(),
-            queue: LaneQueue::default(),
-            progress: Progress::NONE,
-        }
-    }
 }
 
 impl<const W: usize> NewtonBlock<W> {

@@ -36,7 +36,7 @@ pub struct Refiner {
 impl Default for Refiner {
     fn default() -> Self {
         Self {
-            z: Unknowns::zero(0),
+            z: Unknowns::default(),
             fixed_modes: FixedModeNewton::default(),
             newton: Newton::default(),
             map: NaturalMap::default(),

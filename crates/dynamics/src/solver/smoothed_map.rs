@@ -26,7 +26,7 @@ pub struct SmoothedMap<const W: usize> {
 }
 
 /// Friction of one foot.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct SmoothedFoot<const W: usize> {
     slip: [Lanes<W>; 2],
     /// 1/σ.
@@ -43,7 +43,7 @@ struct SmoothedContact<const W: usize> {
 }
 
 /// A pair a ⟂ b.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct SmoothedPair<const W: usize> {
     /// a − b.
     difference: Lanes<W>,
@@ -55,20 +55,11 @@ struct SmoothedPair<const W: usize> {
 
 impl<const W: usize> Default for SmoothedMap<W> {
     fn default() -> Self {
-        let o = Lanes::ZERO;
-        let foot = SmoothedFoot {
-            slip: [o; 2],
-            inv_sigma: o,
-        };
         Self {
-            epsilon: o,
-            feet: [foot; 3],
+            epsilon: Lanes::ZERO,
+            feet: [SmoothedFoot::default(); 3],
             contacts: Vec::with_capacity(ROOM),
-            stall: SmoothedPair {
-                difference: o,
-                root: o,
-                value: o,
-            },
+            stall: SmoothedPair::default(),
         }
     }
 }
@@ -174,7 +165,7 @@ impl<const W: usize> Linearised<W> {
     /// The smoothed rows at `z`, where they are `map`, linearised in the unknowns and ε, towards ε =
     /// `target`.
     #[inline(always)]
-    pub fn smoothed_map(
+    pub fn linearise_smoothed_map(
         &mut self,
         ncp: &Ncp<W>,
         z: &Unknowns<W>,

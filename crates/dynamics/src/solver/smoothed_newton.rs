@@ -68,7 +68,7 @@ pub struct Finished<'a, const W: usize> {
 }
 
 /// The smoothed Newton steps with their working memory.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SmoothedNewton<const W: usize> {
     queue: LaneQueue<W>,
     progress: Progress<W>,
@@ -94,24 +94,15 @@ struct Progress<const W: usize> {
     residual: Lanes<W>,
 }
 
-impl<const W: usize> Default for SmoothedNewton<W> {
+impl<const W: usize> Default for Progress<W> {
     fn default() -> Self {
-        let o = Lanes::ZERO;
         Self {
-            queue: LaneQueue::default(),
-            progress: Progress {
-                epsilon: o,
-                smallest: o,
-                next_attempt: o,
-                due: Mask::splat(false),
-                steps: o,
-                residual: o,
-            },
-            map: SmoothedMap::default(),
-            linearised: Linearised::default(),
-            trial: Unknowns::zero(0),
-            fixed_modes: FixedModeNewton::default(),
-            certificate: NaturalMap::default(),
+            epsilon: Lanes::ZERO,
+            smallest: Lanes::ZERO,
+            next_attempt: Lanes::ZERO,
+            due: Mask::splat(false),
+            steps: Lanes::ZERO,
+            residual: Lanes::ZERO,
         }
     }
 }
@@ -233,7 +224,8 @@ impl<const W: usize> SmoothedNewton<W> {
             return;
         }
         let target = near.select(progress.epsilon * schedule.reduction, progress.epsilon);
-        self.linearised.smoothed_map(ncp, z, &self.map, target);
+        self.linearised
+            .linearise_smoothed_map(ncp, z, &self.map, target);
         self.linearised.step(ncp, z, stepping);
         progress.epsilon = stepping.select(target, progress.epsilon);
         progress.steps += stepping.zero_unless(Lanes::splat(1.0));

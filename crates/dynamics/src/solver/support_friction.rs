@@ -28,15 +28,17 @@ pub struct SupportFriction {
 impl SupportFriction {
     /// Of these feet.
     pub fn new(feet: &[ScalarFoot; 3]) -> Self {
-        let mut ncp = Ncp::empty();
-        ncp.feet = feet.map(|f| FootRow {
-            jx: Lanes([f.jx]),
-            jy: Lanes([f.jy]),
-            bound: Lanes([f.bound]),
-        });
+        let row = |foot: ScalarFoot| FootRow {
+            jx: Lanes([foot.jx]),
+            jy: Lanes([foot.jy]),
+            bound: Lanes([foot.bound]),
+        };
         Self {
-            ncp,
-            z: Unknowns::zero(0),
+            ncp: Ncp {
+                feet: feet.map(row),
+                ..Ncp::default()
+            },
+            z: Unknowns::default(),
             newton: Newton::default(),
             homotopy: Homotopy::default(),
         }
