@@ -16,7 +16,7 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
         &["scene", "input", "particles", "start"],
         &["ncp/"],
         &["solver/"],
-        &["prepared_scene", "assembly"],
+        &["feet", "prepared_scene", "assembly"],
         &["step", "rollout"],
     ],
 )];

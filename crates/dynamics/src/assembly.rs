@@ -14,13 +14,14 @@ use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
 use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
-use crate::scene::{Feet, Fixel, Scene};
-use crate::se2::{Pose, Twist, Wrench};
+use crate::scene::{Fixel, Scene};
+use crate::se2::{Twist, Wrench};
 
 /// Which contact each row of a chunk's problems stands for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Assembly<const W: usize> {
     rows: Vec<Row<W>>,
+    /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
     scaling: Scaling<W>,
 }
@@ -51,16 +52,6 @@ struct Scaling<const W: usize> {
     stall: Option<(f64, [Lanes<W>; 2])>,
 }
 
-impl<const W: usize> Default for Assembly<W> {
-    fn default() -> Self {
-        Self {
-            rows: Vec::new(),
-            search_distance: Lanes::ZERO,
-            scaling: Scaling::default(),
-        }
-    }
-}
-
 impl Body {
     /// Numbered from 1; 0 is no body.
     fn number(self) -> usize {
@@ -89,7 +80,7 @@ struct Other<'a, const W: usize> {
 impl<const W: usize> Assembly<W> {
     /// Contacts with gaps below `search_distance` (m) take part from now on.
     #[inline(always)]
-    pub fn seek(&mut self, search_distance: Lanes<W>) {
+    pub fn set_search_distance(&mut self, search_distance: Lanes<W>) {
         self.search_distance = search_distance;
     }
 
@@ -399,60 +390,5 @@ fn row<const W: usize>(
         nd: keep(nd),
         td: keep(td),
         mu: keep(other.mu),
-    }
-}
-
-impl Scene {
-    /// Where the feet stand in the object's frame (m); those of a tripod of radius 1.
-    pub(crate) fn stance(&self) -> [[f64; 2]; 3] {
-        match self.feet {
-            Feet::Tripod { angle } => [0.0, 1.0, -1.0].map(|turn| {
-                let (sin, cos) = libm::sincos(angle + turn * (2.0 / 3.0 * std::f64::consts::PI));
-                [cos, sin]
-            }),
-            Feet::Known { positions, .. } => positions,
-        }
-    }
-
-    /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
-    /// (m).
-    #[inline(always)]
-    fn foot_arms<const W: usize>(
-        &self,
-        stance: &[[f64; 2]; 3],
-        object: &Transform<Lanes<W>>,
-        d_tri: Lanes<W>,
-    ) -> [[Lanes<W>; 2]; 3] {
-        let radius = match self.feet {
-            Feet::Tripod { .. } => d_tri,
-            Feet::Known { .. } => Lanes::splat(1.0),
-        };
-        let mut arms = [[Lanes::ZERO; 2]; 3];
-        for (arm, place) in arms.iter_mut().zip(stance) {
-            let [x, y] = object.rotate(*place);
-            *arm = [radius * x, radius * y];
-        }
-        arms
-    }
-
-    /// Each foot's share of the weight.
-    fn foot_loads(&self) -> [f64; 3] {
-        match self.feet {
-            Feet::Tripod { .. } => [1.0 / 3.0; 3],
-            Feet::Known { loads, .. } => loads,
-        }
-    }
-
-    /// The feet of an object at angle `theta`: arms in the world frame, friction bounds for a step
-    /// of `h` seconds.
-    pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
-        let total = friction.mu_s * self.object.mass * self.gravity * h;
-        let object = Transform::from(Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
-        let arms = self.foot_arms(&self.stance(), &object, Lanes([friction.d_tri]));
-        let loads = self.foot_loads();
-        std::array::from_fn(|k| Foot {
-            arm: arms[k].map(|x| x.0[0]),
-            bound: total * loads[k],
-        })
     }
 }

@@ -1,6 +1,7 @@
 //! Planar frictional contact dynamics of one pushed object.
 
 mod assembly;
+mod feet;
 mod friction;
 mod geometry;
 mod input;

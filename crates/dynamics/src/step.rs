@@ -44,30 +44,16 @@ pub struct Dynamics {
 
 /// Working memory of [`Dynamics::step_block`], `W` particles to a chunk; nothing is allocated once
 /// it has grown.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct StepWork<const W: usize> {
     narrow: NarrowPhase<W>,
     chunks: Vec<Assembly<W>>,
     ncps: Vec<Ncp<W>>,
-    impulses: Vec<Unknowns<W>>,
+    unknowns: Vec<Unknowns<W>>,
     reports: Vec<[Report; W]>,
     solver: Solver<W>,
     /// Of steps in which every particle has its own.
     pushers: Vec<Option<PusherContext<W>>>,
-}
-
-impl<const W: usize> Default for StepWork<W> {
-    fn default() -> Self {
-        Self {
-            narrow: NarrowPhase::default(),
-            chunks: Vec::new(),
-            ncps: Vec::new(),
-            impulses: Vec::new(),
-            reports: Vec::new(),
-            solver: Solver::default(),
-            pushers: Vec::new(),
-        }
-    }
 }
 
 impl<const W: usize> StepWork<W> {
@@ -80,7 +66,7 @@ impl<const W: usize> StepWork<W> {
     /// contacts, by lane of a chunk.
     #[inline(always)]
     pub fn normal_impulses(&self, chunk: usize, body: Body) -> Lanes<W> {
-        self.chunks[chunk].normal_impulses(&self.impulses[chunk], body)
+        self.chunks[chunk].normal_impulses(&self.unknowns[chunk], body)
     }
 
     /// The body of each contact in the last step's problem of one particle.
@@ -105,7 +91,7 @@ impl<const W: usize> StepWork<W> {
         let (chunk, lane) = (particle / W, particle % W);
         let problem = self.problem(particle);
         let mut alone = Unknowns::<1>::zero(problem.contacts.len());
-        self.impulses[chunk].pack_lane(&self.ncps[chunk], lane, &mut alone, 0);
+        self.unknowns[chunk].pack_lane(&self.ncps[chunk], lane, &mut alone, 0);
         alone.to_solution(0, &problem)
     }
 
@@ -114,8 +100,8 @@ impl<const W: usize> StepWork<W> {
             .resize_with(chunks.max(self.chunks.len()), Assembly::default);
         self.ncps
             .resize_with(chunks.max(self.ncps.len()), Ncp::default);
-        self.impulses
-            .resize_with(chunks.max(self.impulses.len()), Unknowns::default);
+        self.unknowns
+            .resize_with(chunks.max(self.unknowns.len()), Unknowns::default);
         self.reports.resize(chunks, [Report::UNSOLVED; W]);
     }
 }
@@ -228,7 +214,7 @@ impl Dynamics {
         // how far apart contacts are looked for
         work.resize(particles.len());
         for (chunk, particles) in particles.iter().enumerate() {
-            work.chunks[chunk].seek(self.search_distance(context, chunk, particles));
+            work.chunks[chunk].set_search_distance(self.search_distance(context, chunk, particles));
         }
 
         // solve all chunks, then again those that moved farther than was looked for
@@ -238,7 +224,7 @@ impl Dynamics {
                 narrow,
                 chunks,
                 ncps,
-                impulses,
+                unknowns,
                 reports,
                 solver,
                 ..
@@ -254,7 +240,7 @@ impl Dynamics {
             solver.solve(
                 &mut problems,
                 &mut ncps[asked.clone()],
-                &mut impulses[asked.clone()],
+                &mut unknowns[asked.clone()],
                 &mut reports[asked.clone()],
             );
             asked = self.too_narrow(context, asked.start, work);
@@ -284,7 +270,7 @@ impl Dynamics {
                 & needed.lt(Lanes::splat(f64::INFINITY))
                 & searched.lt(Lanes::splat(WIDEST));
             if wider.any() {
-                work.chunks[chunk].seek(wider.select(needed * 2.0, searched));
+                work.chunks[chunk].set_search_distance(wider.select(needed * 2.0, searched));
                 return chunk..chunk + 1;
             }
         }
@@ -301,7 +287,7 @@ impl Dynamics {
     ) {
         particles.twist = work.twist(chunk, self.scene.inv_rho);
         particles.pose = particles.pose.advance(particles.twist, h);
-        work.chunks[chunk].store_warm_start(&work.impulses[chunk], particles);
+        work.chunks[chunk].store_warm_start(&work.unknowns[chunk], particles);
     }
 
     /// No point of the object is faster.
@@ -379,7 +365,7 @@ impl<const W: usize> StepWork<W> {
     /// Solved twists of one chunk.
     #[inline(always)]
     fn twist(&self, chunk: usize, inv_rho: f64) -> Twist<Lanes<W>> {
-        let [vx, vy, scaled] = self.impulses[chunk].v;
+        let [vx, vy, scaled] = self.unknowns[chunk].v;
         Twist {
             vx,
             vy,

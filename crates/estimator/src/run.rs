@@ -26,6 +26,25 @@ pub struct Run {
 
 /// Runs a method over a log; `progress` is told every finished row.
 ///
+/// ```
+/// use stickslip::{Occlusion, RunOptions, run};
+///
+/// # let folder = "../cli/demo/slide-ell-disc-110";
+/// let scene = std::fs::read_to_string(format!("{folder}/scene.toml"))?;
+/// let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;
+/// let file = std::fs::File::open(format!("{folder}/log.csv"))?;
+/// let (log, _) = stickslip_formats::read_log(file, "log.csv")?;
+///
+/// // the camera is dark from row 200 on
+/// let occlusion = Occlusion::Rows { from: 200, to: None };
+/// let options = RunOptions { occlusion, ..RunOptions::default() };
+/// let result = run(&setup, &log, &options, &mut |_| ())?;
+/// let last = result.estimate.rows.last().expect("as many rows as the log");
+/// println!("{:?} with friction {:?}", last.pose, last.friction);
+/// # assert!(last.pose.is_some() && !last.visual);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Where the log has no visible object pose, the scene lacks what the method needs, or options are
 /// out of range.
