@@ -7,6 +7,8 @@
     reason = "each user needs a part of it; a test that cannot go on fails"
 )]
 
+use std::sync::LazyLock;
+
 use image::GrayImage;
 use stickslip_dynamics::{Pose, Scene};
 use stickslip_filter::Streams;
@@ -24,6 +26,17 @@ pub const OBJECT_TAG: u16 = 3;
 pub const PUSHER_TAG: u16 = 7;
 /// Height of the board's print above the table (m).
 pub const BOARD_THICKNESS: f64 = 0.003;
+
+/// The rig that tests share.
+pub static RIG: LazyLock<Rig> = LazyLock::new(|| Rig::new(Optics::default(), 1));
+/// Twelve frames of its board.
+pub static BOARD: LazyLock<(BoardRecording, BoardOnTable)> = LazyLock::new(|| {
+    let (frames, board) = RIG.board_frames(12);
+    (found(&frames), board)
+});
+/// Its calibration from them.
+pub static CALIBRATION: LazyLock<Calibration> =
+    LazyLock::new(|| calibrate(&BOARD.0, &BOARD.1, 0).unwrap());
 
 /// A rendered rig.
 pub struct Rig {
