@@ -6,7 +6,7 @@ mod common;
 
 use std::fs;
 
-use common::{Experiment, STOP, json, stickslip};
+use common::{Experiment, STOP, stickslip};
 
 /// Few particles: these tests look at the program, not at the filter.
 const FEW: [&str; 2] = ["--particles", "16"];

@@ -6,20 +6,13 @@ mod bag;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use bag::{Line, MS, file, file_with, object, pose, pusher, quaternion, stamped, touch, wrench};
+use bag::{
+    Line, MS, Order, file, file_with, object, pose, pusher, quaternion, read, stamped, topics,
+    touch, wrench, xs,
+};
 use mcap::Compression;
 use stickslip::Log;
-use stickslip_dynamics::Pose;
-use stickslip_formats::{LogWarning, Topics, read_log_mcap};
-
-fn topics(mappings: &[&str]) -> Topics {
-    Topics::new(mappings.iter().map(|text| text.parse().unwrap())).unwrap()
-}
-
-#[track_caller]
-fn read(bytes: &[u8]) -> (Log, Vec<LogWarning>) {
-    read_log_mcap(bytes, "bag.mcap", &Topics::default()).unwrap_or_else(|error| panic!("{error}"))
-}
+use stickslip_formats::read_log_mcap;
 
 /// The log of these messages, which must be read without a warning.
 #[track_caller]
@@ -27,10 +20,6 @@ fn log(lines: &[Line]) -> Log {
     let (log, warnings) = read(&file(lines));
     assert_eq!(warnings, []);
     log
-}
-
-fn xs(poses: &[Option<Pose>]) -> Vec<Option<f64>> {
-    poses.iter().map(|pose| pose.map(|pose| pose.x)).collect()
 }
 
 #[test]

@@ -6,16 +6,15 @@ mod bag;
 
 use std::io::Cursor;
 
-use bag::{BOOL, Line, MS, POSE, file, file_with, object, pose, pusher, stamped, touch, wrench};
+use bag::{
+    BOOL, Line, MS, Order, POSE, file, file_with, object, pose, pusher, read, stamped, topics,
+    touch, wrench, xs,
+};
 use mcap::Compression;
 use proptest::prelude::*;
 use stickslip::Log;
 use stickslip_dynamics::Pose;
 use stickslip_formats::{Topics, read_log_mcap, write_log_mcap};
-
-fn topics(mappings: &[&str]) -> Topics {
-    Topics::new(mappings.iter().map(|text| text.parse().unwrap())).unwrap()
-}
 
 #[track_caller]
 fn refused(lines: &[Line], topics: &Topics, words: &str) {

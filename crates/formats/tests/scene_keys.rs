@@ -130,72 +130,57 @@ fn known_key_in_a_wrong_table_is_refused_with_its_place() {
 
 #[test]
 fn missing_key_is_refused_at_its_table() {
-    refused(
-        "gravity = 9.81 ",
-        "#",
-        "1:1",
-        &["`gravity`", "missing", "m/s^2"],
-    );
-    refused(
-        "mass = 0.50\n",
-        "",
-        "3:1",
-        &["`object.mass`", "missing", "kg"],
-    );
-    refused(
-        "inertia = 2.1e-4\n",
-        "",
-        "3:1",
-        &["`object.inertia`", "missing", "kg m^2"],
-    );
-    refused(
-        "friction = 0.28\n",
-        "",
-        "8:1",
-        &["`support.friction`", "missing"],
-    );
-    refused(
-        "tripod_radius = 0.02 ",
-        "#",
-        "8:1",
-        &["`support.tripod_radius`", "missing", " m"],
-    );
-    refused(
-        "friction = 0.30\n",
-        "",
-        "13:1",
-        &["`pusher.friction`", "missing"],
-    );
-    refused(
-        "friction = 0.25\n",
-        "",
-        "21:1",
-        &["`fixels.friction`", "missing"],
-    );
-    refused(
-        "position = [0.2, -0.018] ",
-        "#",
-        "29:1",
-        &["`fixel[2].position`", "missing"],
-    );
-    refused(
-        "position_std = 3.0e-4\n",
-        "",
-        "33:1",
-        &["`camera.position_std`", "missing"],
-    );
-    refused(
-        "orientation_std = 5.2e-3\n",
-        "",
-        "33:1",
-        &["`camera.orientation_std`", "missing"],
-    );
-    refused(
-        "{ radius = 0.005 }",
-        "{}",
-        "15:12",
-        &["`pusher.shape[1].disc.radius`", "missing"],
-    );
+    for (from, to, place, key, unit) in [
+        ("gravity = 9.81 ", "#", "1:1", "`gravity`", "m/s^2"),
+        ("mass = 0.50\n", "", "3:1", "`object.mass`", "kg"),
+        (
+            "inertia = 2.1e-4\n",
+            "",
+            "3:1",
+            "`object.inertia`",
+            "kg m^2",
+        ),
+        ("friction = 0.28\n", "", "8:1", "`support.friction`", ""),
+        (
+            "tripod_radius = 0.02 ",
+            "#",
+            "8:1",
+            "`support.tripod_radius`",
+            " m",
+        ),
+        ("friction = 0.30\n", "", "13:1", "`pusher.friction`", ""),
+        ("friction = 0.25\n", "", "21:1", "`fixels.friction`", ""),
+        (
+            "position = [0.2, -0.018] ",
+            "#",
+            "29:1",
+            "`fixel[2].position`",
+            "",
+        ),
+        (
+            "position_std = 3.0e-4\n",
+            "",
+            "33:1",
+            "`camera.position_std`",
+            "",
+        ),
+        (
+            "orientation_std = 5.2e-3\n",
+            "",
+            "33:1",
+            "`camera.orientation_std`",
+            "",
+        ),
+        (
+            "{ radius = 0.005 }",
+            "{}",
+            "15:12",
+            "`pusher.shape[1].disc.radius`",
+            "",
+        ),
+    ] {
+        refused(from, to, place, &[key, "missing", unit]);
+    }
     refused_text(
         "gravity = 9.81\n",
         "1:1",

@@ -7,6 +7,9 @@ use std::io::Cursor;
 
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
+use stickslip::Log;
+use stickslip_dynamics::Pose;
+use stickslip_formats::{LogWarning, Topics, read_log_mcap};
 
 /// Milliseconds in nanoseconds.
 pub const MS: i64 = 1_000_000;
@@ -168,4 +171,17 @@ pub fn file_with(lines: &[Line], compression: Option<Compression>, chunk: u64) -
 
 pub fn file(lines: &[Line]) -> Vec<u8> {
     file_with(lines, None, 1 << 20)
+}
+
+pub fn topics(mappings: &[&str]) -> Topics {
+    Topics::new(mappings.iter().map(|text| text.parse().unwrap())).unwrap()
+}
+
+#[track_caller]
+pub fn read(bytes: &[u8]) -> (Log, Vec<LogWarning>) {
+    read_log_mcap(bytes, "bag.mcap", &Topics::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+pub fn xs(poses: &[Option<Pose>]) -> Vec<Option<f64>> {
+    poses.iter().map(|pose| pose.map(|pose| pose.x)).collect()
 }
