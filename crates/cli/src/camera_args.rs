@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::{Rows, ThreadArgs, positive};
+use crate::arg_values::{Rows, ThreadArgs, positive};
 
 /// Arguments of `stickslip calibrate`.
 #[derive(Debug, Args)]

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use anyhow::Result;
+use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::diagnosis::{Finding, Severity, diagnose};
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, Program};
 use crate::experiment::{read_log_file, read_scene_file};
 use crate::output::show_result;
 use crate::verdict::Verdict;
@@ -31,7 +32,7 @@ struct Report {
 /// Runs the command.
 pub fn check(args: &CheckArgs) -> Result<Verdict> {
     let setup = read_scene_file(&args.scene)?;
-    let (log, verdict) = read_log_file(&args.log, &args.topics.topics()?)?;
+    let (log, verdict) = read_log_file(&args.log, &args.topics.topics(Program::command())?)?;
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
     show_result(args.json, &report, || report.to_string())?;

@@ -3,14 +3,12 @@
 
 use std::fmt;
 
-use crate::output::talk;
-use crate::verdict::Verdict;
-
 /// An error with the next step.
 #[derive(Debug)]
 pub struct Hinted {
     message: String,
-    help: String,
+    /// The next step.
+    pub help: String,
 }
 
 impl fmt::Display for Hinted {
@@ -27,20 +25,6 @@ pub fn hinted(message: impl Into<String>, help: impl Into<String>) -> anyhow::Er
         message: message.into(),
         help: help.into(),
     })
-}
-
-/// Tells standard error what failed, and ends with that error's exit code.
-pub fn tell(error: &anyhow::Error) -> Verdict {
-    if let Some(error) = error.downcast_ref::<clap::Error>() {
-        // clap's own words; that they cannot be told changes nothing
-        let _ = error.print();
-        return Verdict::BadArguments;
-    }
-    talk(format_args!("error: {}", one_line(error)));
-    if let Some(hinted) = error.downcast_ref::<Hinted>() {
-        talk(format_args!("help: {}", hinted.help));
-    }
-    Verdict::Failed
 }
 
 /// An error and its causes in one line.

@@ -52,7 +52,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let (experiment, verdict) = read_experiment(
         &args.scene,
         &args.log,
-        &args.topics.topics()?,
+        &args.topics.topics(Program::command())?,
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;

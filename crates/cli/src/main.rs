@@ -7,6 +7,7 @@
     reason = "they panic where the reader has left; `output` does not"
 )]
 
+mod arg_values;
 mod args;
 mod calibrate;
 mod camera_args;
@@ -50,6 +51,6 @@ fn main() -> ExitCode {
         Command::Render(args) => render::render(&args),
     };
     result
-        .unwrap_or_else(|error| failure::tell(&error))
+        .unwrap_or_else(|error| output::tell(&error))
         .exit_code()
 }

@@ -10,7 +10,8 @@ use std::io::{self, ErrorKind, Write};
 use anyhow::Result;
 use serde::Serialize;
 
-use crate::failure::hinted;
+use crate::failure::{Hinted, hinted, one_line};
+use crate::verdict::Verdict;
 
 /// Writes results to standard output, with one newline at their end; to nobody where the reader has
 /// left.
@@ -41,6 +42,20 @@ pub fn show_result(
 /// say so.
 pub fn talk(text: impl Display) {
     let _ = write(&mut io::stderr().lock(), text);
+}
+
+/// Tells standard error what failed, and ends with that error's exit code.
+pub fn tell(error: &anyhow::Error) -> Verdict {
+    if let Some(error) = error.downcast_ref::<clap::Error>() {
+        // clap's own words; that they cannot be told changes nothing
+        let _ = error.print();
+        return Verdict::BadArguments;
+    }
+    talk(format_args!("error: {}", one_line(error)));
+    if let Some(hinted) = error.downcast_ref::<Hinted>() {
+        talk(format_args!("help: {}", hinted.help));
+    }
+    Verdict::Failed
 }
 
 fn write(stream: &mut impl Write, text: impl Display) -> io::Result<()> {

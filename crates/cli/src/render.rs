@@ -14,7 +14,7 @@ use stickslip_rendering::{
 };
 use stickslip_vision::{BoardOnTable, write_board, write_tags};
 
-use crate::args::Rows;
+use crate::arg_values::Rows;
 use crate::camera_args::RenderArgs;
 use crate::camera_setup::CameraSetup;
 use crate::experiment::{log_path, read_folder, reference_name};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use stickslip_evaluation::{Physics, paper::PaperExperiment};
 
-use crate::args::{ThreadArgs, particles, positive};
+use crate::arg_values::{ThreadArgs, particles, positive};
 
 /// Arguments of `stickslip simulate`.
 #[derive(Debug, Args)]

@@ -1,10 +1,8 @@
 //! Which topic of an MCAP log is which, on the command line: [`TopicArgs`].
 
 use clap::error::ErrorKind;
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use stickslip_formats::{TopicMapping, Topics};
-
-use crate::args::Program;
 
 /// Which topic of an MCAP log is which.
 #[derive(Debug, Args)]
@@ -16,11 +14,10 @@ pub struct TopicArgs {
 }
 
 impl TopicArgs {
-    /// All topics; mappings that contradict each other are bad arguments.
-    pub fn topics(&self) -> anyhow::Result<Topics> {
-        let contradicting = |error| {
-            Program::command().error(ErrorKind::ArgumentConflict, format!("--topic: {error}"))
-        };
+    /// All topics; mappings that contradict each other are bad arguments of `program`.
+    pub fn topics(&self, mut program: Command) -> anyhow::Result<Topics> {
+        let contradicting =
+            |error| program.error(ErrorKind::ArgumentConflict, format!("--topic: {error}"));
         Ok(Topics::new(self.mappings.iter().cloned()).map_err(contradicting)?)
     }
 }

@@ -2,7 +2,7 @@
 
 use stickslip_filter::{SeriesError, SettingsError};
 
-use crate::row::RowError;
+use crate::row::{LONGEST_PAUSE, RowError};
 
 /// Why a method could not be run on a log.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,7 +19,7 @@ pub enum RunError {
     /// Two rows are so far apart that nothing can be said of what happened between them.
     #[error(
         "row {row} is at {to} s and the row before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or cut the log in the pause",
-        longest = crate::pusher::schedule::LONGEST_PAUSE
+        longest = LONGEST_PAUSE
     )]
     Pause {
         /// The later row, from 0.

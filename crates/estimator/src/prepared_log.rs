@@ -7,8 +7,9 @@ use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
 use crate::options::RunOptions;
 use crate::particle::observer::Observer;
-use crate::pusher::schedule::{LONGEST_PAUSE, Schedule};
+use crate::pusher::schedule::Schedule;
 use crate::pusher::track::PusherTrack;
+use crate::row::LONGEST_PAUSE;
 use crate::setup::Setup;
 
 /// Refuses a log whose steps no substeps can follow.

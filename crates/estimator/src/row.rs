@@ -2,6 +2,10 @@
 
 use stickslip_dynamics::Pose;
 
+/// Longest time between two rows (s): a log that pauses longer mixes two clocks or two recordings,
+/// and its substeps would fill the memory.
+pub(crate) const LONGEST_PAUSE: f64 = 600.0;
+
 /// The measurements of one instant, `None` where there is none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
@@ -56,7 +60,7 @@ pub enum RowError {
     /// Nothing can be said of what happened since the row before.
     #[error(
         "the row is at {to} s and the latest before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or start a new tracker",
-        longest = crate::pusher::schedule::LONGEST_PAUSE
+        longest = LONGEST_PAUSE
     )]
     Pause {
         /// Time of the latest row (s).

@@ -9,9 +9,9 @@ use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measu
 use crate::particle::observer::Observer;
 use crate::particle::view::ParticleView;
 use crate::pusher::causal::CausalTrack;
-use crate::pusher::schedule::{LONGEST_PAUSE, split};
-use crate::pusher::track::{TrackedPose, motion};
-use crate::row::{Row, RowError};
+use crate::pusher::schedule::split;
+use crate::pusher::tracked_pose::{TrackedPose, motion};
+use crate::row::{LONGEST_PAUSE, Row, RowError};
 use crate::setup::{Camera, Setup};
 
 /// Direction in which a pusher that has not moved yet may give way.

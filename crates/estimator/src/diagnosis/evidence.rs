@@ -3,7 +3,7 @@
 use stickslip_dynamics::{Placed, Pose, Shape, narrow_phase};
 
 use crate::log::Log;
-use crate::pusher::track::LONGEST_BRIDGE;
+use crate::pusher::tracked_pose::LONGEST_BRIDGE;
 use crate::setup::Setup;
 
 /// Half the time over which an object's motion is judged (s).

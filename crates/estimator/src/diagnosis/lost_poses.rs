@@ -4,7 +4,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
-use crate::pusher::track::LONGEST_BRIDGE;
+use crate::pusher::tracked_pose::LONGEST_BRIDGE;
 
 /// Share of missing object poses that is worth a warning.
 const MANY: f64 = 0.2;

@@ -2,7 +2,7 @@
 
 use super::evidence::{Evidence, median};
 use super::finding::{Finding, Subject};
-use crate::pusher::schedule::LONGEST_PAUSE;
+use crate::row::LONGEST_PAUSE;
 
 /// Slowest camera that follows a push (s).
 const SLOWEST: f64 = 0.2;

@@ -7,9 +7,10 @@ use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::particle::history::PoseHistory;
-use crate::particle::model::{ContactModel, ParameterNoise, StepPlan};
+use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
+use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
 use crate::particle::sums::Reference;
 use crate::particle::view::ParticleView;
@@ -132,7 +133,7 @@ impl<'o> ContactFilter<'o> {
         }
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
-        if slots > self.filter.model().columns.history() {
+        if slots > self.filter.model().columns().history() {
             self.filter.change_model(|model| model.keep_history(slots));
         }
     }

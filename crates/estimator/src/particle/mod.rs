@@ -9,6 +9,7 @@ mod model;
 mod observation;
 pub(crate) mod observer;
 mod propagation;
+mod step_plan;
 mod summary;
 mod sums;
 mod tactile_likelihood;

@@ -1,7 +1,7 @@
 //! The particle filter's model of a pushed object (docs/method.md (17) to (27); paper eq. 6): Γ' as
 //! transition, camera and tactile sensors as observation.
 
-use stickslip_dynamics::{Dynamics, Level, Pose, StepInput, on_widest};
+use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::wrapped;
@@ -10,51 +10,15 @@ use crate::particle::chunk::{Column, LANES, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
-use crate::particle::propagation::Propagation;
-use crate::particle::sums::{Reference, Sums};
+use crate::particle::propagation::{Propagation, Transition};
+use crate::particle::step_plan::StepPlan;
+use crate::particle::sums::Sums;
 use crate::particle::tactile_likelihood::TactileLikelihood;
 use crate::setup::{Camera, Setup};
 
 /// Best log-likelihood below which no particle explains the observation: the particles are
 /// reinitialised around it (docs/method.md (27)).
 const COLLAPSED: f64 = -6.0;
-
-/// Whether the friction parameters take a random step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ParameterNoise {
-    /// β̂ = β + w_β τ(β).
-    Drawn,
-    /// β̂ = β, while the camera is occluded.
-    Frozen,
-}
-
-/// The step to one row.
-#[derive(Clone, Debug)]
-pub struct StepPlan {
-    /// Substeps; their lengths sum to the step's.
-    pub substeps: Vec<StepInput>,
-    /// Whether the pusher moves.
-    pub driven: bool,
-    /// Whether the parameters take a random step.
-    pub parameter_noise: ParameterNoise,
-    /// History slot for the pose at the end of the step, where past poses are kept.
-    pub slot: usize,
-    /// Values near the estimate, about which sums are taken.
-    pub reference: Reference,
-}
-
-impl StepPlan {
-    /// No step at all.
-    pub(crate) fn none(reference: Reference) -> Self {
-        Self {
-            substeps: Vec::new(),
-            driven: false,
-            parameter_noise: ParameterNoise::Frozen,
-            slot: 0,
-            reference,
-        }
-    }
-}
 
 /// The model of one setup, started at one pose.
 ///
@@ -63,10 +27,7 @@ impl StepPlan {
 /// [`TactileLikelihood`].
 #[derive(Clone, Debug)]
 pub struct ContactModel<'o> {
-    pub(crate) dynamics: Dynamics,
-    pub(crate) setup: Setup,
-    pub(crate) columns: Columns,
-    pub(crate) observer: Option<&'o dyn Observer>,
+    transition: Transition<'o>,
     camera: Camera,
     start: Pose,
     camera_likelihood: CameraLikelihood,
@@ -78,10 +39,12 @@ impl<'o> ContactModel<'o> {
     pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
         let columns = Columns::new(setup.scene.fixels.len(), history);
         Self {
-            dynamics: Dynamics::new(setup.scene.clone()),
-            setup: setup.clone(),
-            columns,
-            observer: None,
+            transition: Transition {
+                dynamics: Dynamics::new(setup.scene.clone()),
+                setup: setup.clone(),
+                columns,
+                observer: None,
+            },
             camera,
             start,
             camera_likelihood: CameraLikelihood::new(&camera, &setup.filter, columns),
@@ -91,16 +54,23 @@ impl<'o> ContactModel<'o> {
 
     /// The same, with an `observer` that is shown every step solved.
     #[must_use]
-    pub fn observed(self, observer: Option<&'o dyn Observer>) -> Self {
-        Self { observer, ..self }
+    pub fn observed(mut self, observer: Option<&'o dyn Observer>) -> Self {
+        self.transition.observer = observer;
+        self
+    }
+
+    /// Which column holds what.
+    pub fn columns(&self) -> Columns {
+        self.transition.columns
     }
 
     /// From now on each particle keeps `poses` past poses, at least as many as before.
     pub fn keep_history(&mut self, poses: usize) {
-        let setup = &self.setup;
-        self.columns = Columns::new(self.columns.fixels(), poses);
-        self.camera_likelihood = CameraLikelihood::new(&self.camera, &setup.filter, self.columns);
-        self.tactile_likelihood = TactileLikelihood::new(&setup.tactile, self.columns);
+        let columns = Columns::new(self.columns().fixels(), poses);
+        let setup = &self.transition.setup;
+        self.camera_likelihood = CameraLikelihood::new(&self.camera, &setup.filter, columns);
+        self.tactile_likelihood = TactileLikelihood::new(&setup.tactile, columns);
+        self.transition.columns = columns;
     }
 
     /// A camera pose's worth of noise around `pose`.
@@ -121,7 +91,7 @@ impl Model for ContactModel<'_> {
     type Sums = Sums;
 
     fn columns(&self) -> usize {
-        self.columns.count()
+        self.transition.columns.count()
     }
 
     fn scratch(&self) -> Propagation {
@@ -137,10 +107,10 @@ impl Model for ContactModel<'_> {
                 block,
                 Columns::FRICTION,
                 i,
-                self.setup.scene.nominal.fields(),
+                self.transition.setup.scene.nominal.fields(),
             );
-            for slot in 0..self.columns.history() {
-                write(block, self.columns.past_pose(slot), i, pose.fields());
+            for slot in 0..self.columns().history() {
+                write(block, self.columns().past_pose(slot), i, pose.fields());
             }
         }
     }
@@ -152,7 +122,7 @@ impl Model for ContactModel<'_> {
         block: &mut BlockMut<'_>,
         scratch: &mut Propagation,
     ) {
-        scratch.propagate(self, plan, draw, block);
+        scratch.propagate(&self.transition, plan, draw, block);
     }
 
     fn log_likelihood(&self, observation: &Observation, block: &Block<'_>, out: &mut [f64]) {
@@ -172,7 +142,7 @@ impl Model for ContactModel<'_> {
         on_widest(
             Level::new(),
             #[inline(always)]
-            || sums.evaluate(block, weights, &plan.reference, self.columns),
+            || sums.evaluate(block, weights, &plan.reference, self.columns()),
         );
     }
 
@@ -205,7 +175,7 @@ impl Model for ContactModel<'_> {
         };
         for (i, particle) in block.particles() {
             let chunk = shown(
-                self.columns,
+                self.columns(),
                 observation.latency,
                 &block.as_block(),
                 i / LANES,
@@ -217,7 +187,7 @@ impl Model for ContactModel<'_> {
                 y: drawn.y - shown.y,
                 theta: wrapped(drawn.theta - shown.theta),
             };
-            let past = (0..self.columns.history()).map(|slot| self.columns.past_pose(slot));
+            let past = (0..self.columns().history()).map(|slot| self.columns().past_pose(slot));
             for column in std::iter::once(Columns::POSE).chain(past) {
                 for (axis, shift) in shift.fields().into_iter().enumerate() {
                     block.column_mut(column + axis)[i] += shift;

@@ -2,15 +2,15 @@
 //! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
-    Body, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
-use crate::particle::model::{ContactModel, ParameterNoise, StepPlan};
 use crate::particle::observer::{Observer, SolvedStep};
-use crate::setup::Limits;
+use crate::particle::step_plan::{ParameterNoise, StepPlan};
+use crate::setup::{Limits, Setup};
 
 /// Chunks of particles in a block.
 const CHUNKS: usize = BLOCK / LANES;
@@ -25,6 +25,19 @@ const MOVING: f64 = 1e-9;
 /// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of
 /// which three numbers are used.
 const FORCE_PAIR: u32 = 2;
+
+/// Γ' of one setup: what moves the particles.
+#[derive(Clone, Debug)]
+pub(crate) struct Transition<'o> {
+    /// Γ of the scene.
+    pub dynamics: Dynamics,
+    /// Noise, limits and sensors.
+    pub setup: Setup,
+    /// Which column holds what.
+    pub columns: Columns,
+    /// Is shown every step solved.
+    pub observer: Option<&'o dyn Observer>,
+}
 
 /// Working memory for the particles of one block.
 #[derive(Debug)]
@@ -84,7 +97,7 @@ impl Propagation {
     /// Moves the particles of `block` over one step.
     pub fn propagate(
         &mut self,
-        model: &ContactModel<'_>,
+        transition: &Transition<'_>,
         plan: &StepPlan,
         draw: Draw,
         block: &mut BlockMut<'_>,
@@ -93,34 +106,34 @@ impl Propagation {
         on_widest(
             level,
             #[inline(always)]
-            || self.load(model, plan, draw, block),
+            || self.load(transition, plan, draw, block),
         );
         for (part, input) in plan.substeps.iter().enumerate() {
             let pair = FORCE_PAIR + 2 * part as u32;
             on_widest(
                 level,
                 #[inline(always)]
-                || self.apply_force(model, input.h, draw, pair, block),
+                || self.apply_force(transition, input.h, draw, pair, block),
             );
-            if let Some(observer) = model.observer {
+            if let Some(observer) = transition.observer {
                 observer.before_step(input, &self.particles[..chunks]);
             }
-            model
+            transition
                 .dynamics
                 .step_block(input, &mut self.particles[..chunks], &mut self.work);
             on_widest(
                 level,
                 #[inline(always)]
-                || self.note_contacts(model, chunks),
+                || self.note_contacts(transition, chunks),
             );
-            if let Some(observer) = model.observer {
+            if let Some(observer) = transition.observer {
                 self.show(observer, block.len());
             }
         }
         on_widest(
             level,
             #[inline(always)]
-            || self.store(model, plan, block),
+            || self.store(transition, plan, block),
         );
     }
 
@@ -129,7 +142,7 @@ impl Propagation {
     #[inline(always)]
     fn load(
         &mut self,
-        model: &ContactModel<'_>,
+        transition: &Transition<'_>,
         plan: &StepPlan,
         draw: Draw,
         block: &BlockMut<'_>,
@@ -139,8 +152,8 @@ impl Propagation {
             self.draw_normals(draw, 0, block);
         }
         let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
-        let most_lag = Lanes::splat(model.setup.most_pusher_lag());
-        let settings = &model.setup.filter;
+        let most_lag = Lanes::splat(transition.setup.most_pusher_lag());
+        let settings = &transition.setup.filter;
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();
         let limits = settings.limits.fields();
         for chunk in 0..block.len().div_ceil(LANES) {
@@ -198,15 +211,15 @@ impl Propagation {
     #[inline(always)]
     fn apply_force(
         &mut self,
-        model: &ContactModel<'_>,
+        transition: &Transition<'_>,
         h: f64,
         draw: Draw,
         pair: u32,
         block: &BlockMut<'_>,
     ) {
         self.draw_normals(draw, pair, block);
-        let scene = &model.setup.scene;
-        let share = model.setup.filter.force_std
+        let scene = &transition.setup.scene;
+        let share = transition.setup.filter.force_std
             * scene.object.mass
             * scene.gravity
             * NOISE_STEP
@@ -246,8 +259,8 @@ impl Propagation {
 
     /// Adds what took part in the last substep.
     #[inline(always)]
-    fn note_contacts(&mut self, model: &ContactModel<'_>, chunks: usize) {
-        let scene = &model.setup.scene;
+    fn note_contacts(&mut self, transition: &Transition<'_>, chunks: usize) {
+        let scene = &transition.setup.scene;
         let rho = scene.object.gyration_radius();
         let pressed =
             |work: &StepWork<LANES>, chunk, body| work.normal_impulses(chunk, body).gt(Lanes::ZERO);
@@ -269,10 +282,10 @@ impl Propagation {
     /// Writes the block back; Φ keeps only the parameters that took part (docs/method.md (21);
     /// paper Table I).
     #[inline(always)]
-    fn store(&mut self, model: &ContactModel<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
+    fn store(&mut self, transition: &Transition<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
-        let touch_impulse = Lanes::splat(model.setup.tactile.touch_force * last_h);
-        let rho = model.setup.scene.object.gyration_radius();
+        let touch_impulse = Lanes::splat(transition.setup.tactile.touch_force * last_h);
+        let rho = transition.setup.scene.object.gyration_radius();
         let driven = Mask::splat(plan.driven);
         for chunk in 0..block.len().div_ceil(LANES) {
             let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
@@ -301,21 +314,21 @@ impl Propagation {
             flags.set(Columns::CONTACT_PUSHER, pusher);
             let pressed = moving(&particles.twist, rho) | pusher;
             flags.set(Columns::IDLE, !(pressed & driven));
-            for j in 0..model.setup.scene.fixels.len() {
+            for j in 0..transition.setup.scene.fixels.len() {
                 let touches = self
                     .work
                     .normal_impulses(chunk, Body::Fixel(j))
                     .gt(touch_impulse);
-                flags.set(model.columns.contact_fixel(j), touches);
-                let against = model.columns.driven_contact_fixel(j);
+                flags.set(transition.columns.contact_fixel(j), touches);
+                let against = transition.columns.driven_contact_fixel(j);
                 let before = flags.get(against);
                 flags.set(against, pressed & touches | !pressed & before);
             }
             flags.write();
-            if model.columns.history() > 0 {
+            if transition.columns.history() > 0 {
                 store_columns(
                     block,
-                    model.columns.past_pose(plan.slot),
+                    transition.columns.past_pose(plan.slot),
                     chunk,
                     particles.pose.fields(),
                 );

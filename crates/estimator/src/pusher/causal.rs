@@ -9,7 +9,7 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMultipleModel};
 
 use crate::error::RunError;
-use crate::pusher::track::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
+use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::setup::Camera;
 
 /// Models of the pusher's motion: times T (s) in which the noise of the motion reaches that of one

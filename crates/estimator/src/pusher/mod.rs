@@ -4,3 +4,4 @@ pub(crate) mod causal;
 pub(crate) mod schedule;
 pub(crate) mod smoothed;
 pub(crate) mod track;
+pub(crate) mod tracked_pose;

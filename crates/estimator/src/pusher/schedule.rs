@@ -10,10 +10,6 @@ const LONGEST_STEP: f64 = 0.055;
 /// Length that the parts of a split step do not exceed (s).
 const SPLIT_TO: f64 = 0.05;
 
-/// Longest time between two rows (s): a log that pauses longer mixes two clocks or two recordings,
-/// and its substeps would fill the memory.
-pub(crate) const LONGEST_PAUSE: f64 = 600.0;
-
 /// The substeps of every step of a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {

@@ -8,7 +8,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::error::RunError;
 use crate::log::Log;
-use crate::pusher::track::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
+use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::setup::Camera;
 
 /// Tracks the pusher of `log`, one pose per row; without a `camera` its poses count as exact.

@@ -1,0 +1,42 @@
+//! The step to one row, as the model is told of it: [`StepPlan`].
+
+use stickslip_dynamics::StepInput;
+
+use crate::particle::sums::Reference;
+
+/// Whether the friction parameters take a random step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterNoise {
+    /// β̂ = β + w_β τ(β).
+    Drawn,
+    /// β̂ = β, while the camera is occluded.
+    Frozen,
+}
+
+/// The step to one row.
+#[derive(Clone, Debug)]
+pub struct StepPlan {
+    /// Substeps; their lengths sum to the step's.
+    pub substeps: Vec<StepInput>,
+    /// Whether the pusher moves.
+    pub driven: bool,
+    /// Whether the parameters take a random step.
+    pub parameter_noise: ParameterNoise,
+    /// History slot for the pose at the end of the step, where past poses are kept.
+    pub slot: usize,
+    /// Values near the estimate, about which sums are taken.
+    pub reference: Reference,
+}
+
+impl StepPlan {
+    /// No step at all.
+    pub(crate) fn none(reference: Reference) -> Self {
+        Self {
+            substeps: Vec::new(),
+            driven: false,
+            parameter_noise: ParameterNoise::Frozen,
+            slot: 0,
+            reference,
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The pusher at one row of its track: [`TrackedPose`], and the motion between two of them.
+
+use stickslip_dynamics::{Pose, PusherMotion};
+use stickslip_filter::AxisEstimate;
+
+/// Longest gap in the pusher's poses that its tracker bridges (s); in a longer one the pusher is
+/// off the plane.
+pub const LONGEST_BRIDGE: f64 = 0.2;
+
+/// Standard deviation of a velocity about 0 at the first measurement (m/s, rad/s).
+pub(crate) const INITIAL_VELOCITY_STD: f64 = 0.1;
+
+/// Standard deviations of its own that a tracked speed must exceed to tell the pusher's direction.
+const TELLING: f64 = 3.0;
+
+/// Speed below which a pusher stands, however exactly its poses are known (m/s): the recoil of a
+/// stalled drive tells no direction.
+const STANDSTILL: f64 = 1e-5;
+
+/// The pusher at one row of its track.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackedPose {
+    /// Pose.
+    pub pose: Pose,
+    /// Velocity (m/s).
+    pub velocity: [f64; 2],
+    /// Standard deviation of the tracked speed (m/s); 0 where poses are exact.
+    pub speed_std: f64,
+}
+
+impl TrackedPose {
+    /// Of the tracked x, y and θ.
+    pub(crate) fn of([x, y, theta]: [AxisEstimate; 3]) -> Self {
+        Self {
+            pose: Pose::new(x.position, y.position, theta.position),
+            velocity: [x.velocity, y.velocity],
+            speed_std: (x.velocity_variance + y.velocity_variance).sqrt(),
+        }
+    }
+
+    /// Whether the tracked speed is more than what noise makes of a pusher that stands.
+    pub fn moves(&self) -> bool {
+        let speed = self.velocity[0].hypot(self.velocity[1]);
+        speed > TELLING * self.speed_std && speed > STANDSTILL
+    }
+}
+
+/// The pusher during a step of length `h` (s) from `now` to `next`; `last` is its last direction of
+/// motion.
+pub(crate) fn motion(
+    now: Option<TrackedPose>,
+    next: Option<TrackedPose>,
+    h: f64,
+    last: [f64; 2],
+) -> Option<PusherMotion> {
+    let (now, next) = (now?, next?);
+    // not that of the step, which holds the corrections of a causal track: they may point
+    // backwards
+    let [vx, vy] = next.velocity;
+    let direction = if next.moves() {
+        [vx / vx.hypot(vy), vy / vx.hypot(vy)]
+    } else {
+        last
+    };
+    Some(PusherMotion {
+        pose: now.pose,
+        twist: now.pose.twist_to(next.pose, h),
+        direction,
+    })
+}
+
+/// Whether a gap from `from` to `to` (s) without a pusher pose is bridged.
+pub(crate) fn bridged(from: f64, to: f64) -> bool {
+    to - from <= LONGEST_BRIDGE + 1e-9
+}
