@@ -72,7 +72,12 @@ pub const CRATES: [Rules; 14] = [
     ),
     Rules::of(
         "crates/report",
-        &["crates/dynamics", "crates/estimator", "crates/evaluation"],
+        &[
+            "crates/dynamics",
+            "crates/estimator",
+            "crates/formats",
+            "crates/evaluation",
+        ],
     ),
     Rules::of(
         "crates/cli",
