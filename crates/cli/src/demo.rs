@@ -109,7 +109,7 @@ fn tables(experiment: &ReportedExperiment<'_>) -> String {
 /// The particle filter's friction beside its nominal and true values.
 fn friction(experiment: &ReportedExperiment<'_>, estimate: &Estimate) -> Table {
     let nominal = &experiment.setup.scene.nominal;
-    let mut table = Table::new(["friction", "told", "particle", "truth"]);
+    let mut table = Table::new(["friction", "nominal", "particle", "truth"]);
     for (parameter, truth) in Parameter::at_end(estimate).iter().zip(experiment.friction) {
         table.push([
             parameter.name.to_owned(),

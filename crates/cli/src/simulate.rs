@@ -166,7 +166,7 @@ fn friction(setup: &Setup, facts: &TruthFacts) -> Table {
     } else {
         "-".to_owned()
     };
-    let mut table = Table::new(["friction", "told", "truth"]);
+    let mut table = Table::new(["friction", "nominal", "truth"]);
     for (name, nominal, truth) in [
         ("mu_s", number(nominal.mu_s), facts.mu_s.map(number)),
         ("mu_p", number(nominal.mu_p), facts.mu_p.map(number)),

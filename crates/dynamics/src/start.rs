@@ -1,8 +1,8 @@
-//! How an experiment begins, and what the pusher is told to do: [`Start`].
+//! How an experiment begins, and what the pusher is commanded to do: [`Start`].
 
 use crate::se2::Pose;
 
-/// How an experiment begins, and what the pusher is told to do: `[start]` of a scene file.
+/// How an experiment begins, and what the pusher is commanded to do: `[start]` of a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Pose of the object, at rest.

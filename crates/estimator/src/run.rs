@@ -24,7 +24,7 @@ pub struct Run {
     pub collapses: u32,
 }
 
-/// Runs a method over a log; `progress` is told every finished row.
+/// Runs a method over a log; `progress` gets the number of every finished row.
 ///
 /// ```
 /// use stickslip::{Occlusion, RunOptions, run};

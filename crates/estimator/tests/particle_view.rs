@@ -1,4 +1,4 @@
-//! What a watch sees of the particles: all of them, with the weights that the estimate is made
+//! What an observer sees of the particles: all of them, with the weights that the estimate is made
 //! with; and it changes no bit of a run.
 
 use std::sync::Mutex;
@@ -121,7 +121,7 @@ fn watched(options: &RunOptions) -> (Run, Vec<Moments>) {
 }
 
 #[test]
-fn a_watch_sees_the_particles_that_the_estimate_is_made_of() {
+fn an_observer_sees_the_particles_that_the_estimate_is_made_of() {
     let options = RunOptions {
         particles: 100,
         occlusion: Occlusion::Rows { from: 30, to: None },
@@ -176,7 +176,7 @@ fn a_watch_sees_the_particles_that_the_estimate_is_made_of() {
 }
 
 #[test]
-fn a_watch_changes_no_bit() {
+fn an_observer_changes_no_bit() {
     let options = RunOptions {
         particles: 100,
         ..RunOptions::default()

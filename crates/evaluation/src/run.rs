@@ -35,7 +35,7 @@ pub struct ScoredRun {
 }
 
 impl ScoredRun {
-    /// Runs `variant` on an experiment and scores it; a `watch` changes no result.
+    /// Runs `variant` on an experiment and scores it; an `observer` changes no result.
     ///
     /// # Errors
     /// Those of [`stickslip::run`].
@@ -43,14 +43,14 @@ impl ScoredRun {
         variant: Variant,
         experiment: &Experiment,
         conditions: &RunConditions,
-        watch: Option<&dyn Observer>,
+        observer: Option<&dyn Observer>,
     ) -> Result<Self, RunError> {
         let Experiment { setup, log, .. } = experiment;
         let options = conditions.options(variant);
         let Run {
             estimate, unsolved, ..
-        } = match watch {
-            Some(watch) => run_observed(setup, log, &options, watch, &mut |_| ())?,
+        } = match observer {
+            Some(observer) => run_observed(setup, log, &options, observer, &mut |_| ())?,
             None => run(setup, log, &options, &mut |_| ())?,
         };
         let scores = score(

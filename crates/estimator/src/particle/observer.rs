@@ -37,7 +37,7 @@ pub trait Observer: Debug + Sync {
     /// The particles after a row, weighed by what was measured there; the first one is the row
     /// where the estimate begins. Rows come in order, from one thread. Only the particle filter has
     /// any.
-    fn on_row(&self, row: usize, cloud: &ParticleView<'_>) {
-        let _ = (row, cloud);
+    fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
+        let _ = (row, particles);
     }
 }

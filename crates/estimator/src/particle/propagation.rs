@@ -245,7 +245,7 @@ impl Propagation {
         }
     }
 
-    /// Shows a watch the block's last step.
+    /// Shows an observer the block's last step.
     fn show(&self, observer: &dyn Observer, particles: usize) {
         let reports = self.work.reports().as_flattened();
         for (i, report) in reports.iter().enumerate().take(particles) {

@@ -1,4 +1,4 @@
-//! The step to one row, as the model is told of it: [`StepPlan`].
+//! The step to one row, as the model gets it: [`StepPlan`].
 
 use stickslip_dynamics::StepInput;
 

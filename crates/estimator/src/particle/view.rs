@@ -1,4 +1,4 @@
-//! The particle set after a row, as a watch sees it: [`ParticleView`].
+//! The particle set after a row, as an observer sees it: [`ParticleView`].
 
 use stickslip_dynamics::{Friction, Pose};
 use stickslip_filter::{LogWeights, ParticleSet};

@@ -2,8 +2,9 @@
 //!
 //! Off-line it is the fixed-interval smoother of a constant-velocity Kalman filter, as in the
 //! paper, per axis; the level of its white-noise acceleration is the one of greatest likelihood
-//! over the whole series. Causally that level cannot be known: there a bank of filters from lively
-//! to nearly unaccelerated runs side by side, each weighed by how well it has predicted so far. A
+//! over the whole series. Causally that level cannot be known: there an
+//! interacting multiple model filter weighs models from lively to nearly unaccelerated by how well
+//! each has predicted so far. A
 //! contact can only push, so a noisy position source ratchets the object forward by two or three of
 //! its standard deviations: the track is a first-order error.
 
