@@ -1,5 +1,5 @@
-//! Looking over a run's shoulder: a [`Observer`] is shown every time step that is solved, and the
-//! particles after every row.
+//! Looks at a run without changing it: an [`Observer`] is shown every time step that is solved, and
+//! the particles after every row.
 
 use std::fmt::Debug;
 
