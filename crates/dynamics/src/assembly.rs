@@ -5,9 +5,10 @@ use stickslip_lanes::{Lanes, Mask};
 use crate::friction::Friction;
 use crate::geometry::contact::Contact;
 use crate::geometry::narrow_phase::NarrowPhase;
-use crate::geometry::placed::Placed;
+use crate::geometry::placed::{Placed, may_touch};
 use crate::geometry::shape::Shape;
 use crate::geometry::transform::Transform;
+use crate::geometry::vec2::{Vec2, splat};
 use crate::input::{Body, PusherMotion};
 use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
@@ -71,10 +72,11 @@ struct Other<'a, const W: usize> {
     motion: Option<&'a PusherMotion<Lanes<W>>>,
     /// Direction in which it may give way.
     direction: [Lanes<W>; 2],
-    /// The lanes in which it is there.
-    present: Mask<W>,
+
     /// Commanded speed along it from where the body stands to its pose (m/s).
     catch_up: Lanes<W>,
+    /// The lanes in which it may touch the object.
+    active: Mask<W>,
 }
 
 impl<const W: usize> Assembly<W> {
@@ -120,38 +122,61 @@ impl<const W: usize> Assembly<W> {
 
         // contacts with the pusher, which may stall
         if let Some(pusher) = pusher {
-            let pusher = Other {
-                body: Body::Pusher,
-                shape: &scene.pusher.shape,
-                transform: pusher.transform,
-                mu: particles.friction.mu_p,
-                motion: Some(&pusher.motion),
-                direction: self
-                    .scaling
-                    .stall
-                    .map_or([Lanes::ZERO; 2], |(_, direction)| direction),
-                present: pusher.present,
-                catch_up: particles.pusher_lag * context.rate,
-            };
-            self.collide(scene, &object, &pusher, narrow, ncp);
+            let shape = &scene.pusher.shape;
+            let active = self.may_touch(scene, &object, shape, pusher.transform.origin);
+            let active = active & pusher.present;
+            if active.any() {
+                let stall = self.scaling.stall;
+                let pusher = Other {
+                    body: Body::Pusher,
+                    shape,
+                    transform: pusher.transform,
+                    mu: particles.friction.mu_p,
+                    motion: Some(&pusher.motion),
+                    direction: stall.map_or([Lanes::ZERO; 2], |(_, direction)| direction),
+                    catch_up: particles.pusher_lag * context.rate,
+                    active,
+                };
+                self.collide(scene, &object, &pusher, narrow, ncp);
+            }
         }
 
         // contacts with the fixels
         for (j, (Fixel { shape, .. }, transform)) in
             scene.fixels.iter().zip(&prepared.fixels).enumerate()
         {
-            let fixel = Other {
-                body: Body::Fixel(j),
-                shape,
-                transform: transform.splat(),
-                mu: particles.friction.mu_f,
-                motion: None,
-                direction: [Lanes::ZERO; 2],
-                present: Mask::splat(true),
-                catch_up: Lanes::ZERO,
-            };
-            self.collide(scene, &object, &fixel, narrow, ncp);
+            let active = self.may_touch(scene, &object, shape, splat(transform.origin));
+            if active.any() {
+                let fixel = Other {
+                    body: Body::Fixel(j),
+                    shape,
+                    transform: transform.splat(),
+                    mu: particles.friction.mu_f,
+                    motion: None,
+                    direction: [Lanes::ZERO; 2],
+                    catch_up: Lanes::ZERO,
+                    active,
+                };
+                self.collide(scene, &object, &fixel, narrow, ncp);
+            }
         }
+    }
+
+    /// Where the object may come nearer to a body than contacts are sought: a far body costs no
+    /// more than this.
+    #[inline(always)]
+    fn may_touch(
+        &self,
+        scene: &Scene,
+        object: &Transform<Lanes<W>>,
+        other: &Shape,
+        origin: Vec2<Lanes<W>>,
+    ) -> Mask<W> {
+        may_touch(
+            [&scene.object.shape, other],
+            [object.origin, origin],
+            self.search_distance,
+        )
     }
 
     /// What does not depend on contacts: free velocity, feet, stall force.
@@ -221,9 +246,7 @@ impl<const W: usize> Assembly<W> {
             shape: other.shape,
             transform: other.transform,
         };
-        let nowhere = Lanes::splat(f64::NEG_INFINITY);
-        let search_distance = other.present.select(self.search_distance, nowhere);
-        narrow.collide(placed, other_placed, search_distance);
+        narrow.collide(placed, other_placed, self.search_distance, other.active);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
             let key = (other.body.number() * Contact::<W>::ID_COUNT as usize + contact.id as usize)
                 as f64;

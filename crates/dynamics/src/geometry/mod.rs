@@ -24,5 +24,5 @@ mod separation;
 pub(crate) mod shape;
 pub(crate) mod shape_error;
 pub(crate) mod transform;
-mod vec2;
+pub(crate) mod vec2;
 mod vertex_collider;

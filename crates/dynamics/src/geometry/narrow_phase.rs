@@ -28,7 +28,7 @@ use crate::geometry::edge_search::EdgeProjection;
 use crate::geometry::ellipse_collider::collide_ellipses;
 use crate::geometry::ellipse_contact::EllipseContact;
 use crate::geometry::pair::{FirstIds, Pair};
-use crate::geometry::placed::Placed;
+use crate::geometry::placed::{Placed, may_touch};
 use crate::geometry::polygon_collider::PolygonCollider;
 use crate::geometry::vertex_collider::VertexCollider;
 
@@ -60,7 +60,13 @@ pub fn narrow_phase(
 ) {
     let mut narrow = NarrowPhase::<1>::default();
     let [object, other] = [object, other].map(Placed::splat);
-    narrow.collide(object, other, Lanes([search_distance]));
+    let origins = [object.transform.origin, other.transform.origin];
+    let search_distance = Lanes([search_distance]);
+    let active = may_touch([object.shape, other.shape], origins, search_distance);
+    if !active.any() {
+        return;
+    }
+    narrow.collide(object, other, search_distance, active);
     let contacts = narrow.contacts().filter(|found| found.present.lane(0));
     out.extend(contacts.map(|found| found.lane(0)));
 }
@@ -74,23 +80,21 @@ pub(crate) struct NarrowPhase<const W: usize> {
 }
 
 impl<const W: usize> NarrowPhase<W> {
-    /// Finds the contacts of two bodies whose gap is below `search_distance` (m).
+    /// Finds the contacts of two bodies whose gap is below `search_distance` (m), in the `active`
+    /// lanes: those in which they [`may_touch`], of which there is one.
     #[inline(always)]
     pub fn collide(
         &mut self,
         object: Placed<'_, Lanes<W>>,
         other: Placed<'_, Lanes<W>>,
         search_distance: Lanes<W>,
+        active: Mask<W>,
     ) {
         self.manifold.clear(object.shape.bounding_radius());
-        let active = object.may_touch(&other, search_distance);
-        if active.any() {
-            let pair = Pair::new(object, other, search_distance);
-            self.collide_pair(&pair, active);
-        }
+        let pair = Pair::new(object, other, search_distance);
+        self.collide_pair(&pair, active);
     }
 
-    /// [`collide`](Self::collide) in the lanes of `active`, where the bodies may touch.
     #[inline(always)]
     fn collide_pair(&mut self, pair: &Pair<'_, Lanes<W>>, active: Mask<W>) {
         let (object, other) = (pair.object.shape.outline(), pair.other.shape.outline());

@@ -4,7 +4,7 @@ use stickslip_lanes::{Lanes, Mask};
 
 use crate::geometry::shape::Shape;
 use crate::geometry::transform::Transform;
-use crate::geometry::vec2::{dot, sub};
+use crate::geometry::vec2::{Vec2, dot, sub};
 use crate::se2::Pose;
 
 /// A shape at a pose, with the pose's sine and cosine.
@@ -43,13 +43,17 @@ impl<'a, const W: usize> Placed<'a, Lanes<W>> {
             transform: self.transform.lane(lane),
         }
     }
+}
 
-    /// Where the bounding discs of two bodies are less than `distance` (m) apart: elsewhere no gap
-    /// can be below it.
-    #[inline(always)]
-    pub(crate) fn may_touch(&self, other: &Self, distance: Lanes<W>) -> Mask<W> {
-        let apart = sub(self.transform.origin, other.transform.origin);
-        let limit = distance + (self.shape.bounding_radius() + other.shape.bounding_radius());
-        limit.gt(Lanes::ZERO) & dot(apart, apart).lt(limit * limit)
-    }
+/// Where the bounding discs of two bodies at `origins` (m) are less than `distance` (m) apart:
+/// elsewhere no gap can be below it.
+#[inline(always)]
+pub(crate) fn may_touch<const W: usize>(
+    [object, other]: [&Shape; 2],
+    origins: [Vec2<Lanes<W>>; 2],
+    distance: Lanes<W>,
+) -> Mask<W> {
+    let apart = sub(origins[0], origins[1]);
+    let limit = distance + (object.bounding_radius() + other.bounding_radius());
+    limit.gt(Lanes::ZERO) & dot(apart, apart).lt(limit * limit)
 }
