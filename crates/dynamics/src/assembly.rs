@@ -109,7 +109,7 @@ impl<const W: usize> Assembly<W> {
     pub fn collect(
         &mut self,
         prepared: &PreparedScene,
-        (context, pusher): (&StepContext<'_, W>, Option<&PusherContext<W>>),
+        (context, pusher): (&StepContext, Option<&PusherContext<W>>),
         particles: &Particles<W>,
         narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
@@ -192,7 +192,7 @@ impl<const W: usize> Assembly<W> {
             ref stance,
             ..
         }: &PreparedScene,
-        (&StepContext { h, rate, .. }, pusher): (&StepContext<'_, W>, Option<&PusherContext<W>>),
+        (&StepContext { h, rate, .. }, pusher): (&StepContext, Option<&PusherContext<W>>),
         (particles, object): (&Particles<W>, &Transform<Lanes<W>>),
         ncp: &mut Ncp<W>,
     ) {

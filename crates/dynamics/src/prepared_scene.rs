@@ -1,5 +1,5 @@
 //! What the steps of a scene have in common ([`PreparedScene`]), and what the particles of one step
-//! have ([`StepContext`]).
+//! have: its length ([`StepContext`]) and their [`Pushers`].
 
 use stickslip_lanes::{Lanes, Mask};
 
@@ -47,7 +47,7 @@ impl PreparedScene {
         pushers: &[Option<PusherMotion>; W],
     ) -> Option<PusherContext<W>> {
         let first = pushers.iter().flatten().next()?;
-        let mut context = PusherContext::same(self, first);
+        let mut context: PusherContext<W> = SharedPusher::new(self, Some(first)).of(0)?;
         for (lane, pusher) in pushers.iter().enumerate() {
             context.present.set(lane, pusher.is_some());
             if let Some(pusher) = pusher {
@@ -58,24 +58,34 @@ impl PreparedScene {
     }
 }
 
-/// What the particles of a chunk share in one step, and what drives each.
+/// The length of one step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StepContext<'a, const W: usize> {
+pub(crate) struct StepContext {
     /// h (s).
     pub h: f64,
     /// 1/h (1/s).
     pub rate: f64,
-    pub pushers: Pushers<'a, W>,
 }
 
-/// The pusher of every chunk of particles.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Pushers<'a, const W: usize> {
-    /// The same for all; `None` while it is off the plane.
-    Shared(Option<PusherContext<W>>),
-    /// One for each particle, chunk by chunk.
-    Each(&'a [Option<PusherContext<W>>]),
+impl StepContext {
+    pub fn new(h: f64) -> Self {
+        Self { h, rate: 1.0 / h }
+    }
 }
+
+/// The pusher of every chunk of particles in one step.
+pub(crate) trait Pushers<const W: usize> {
+    /// That of one chunk; `None` while it is off the plane in every lane.
+    fn of(&self, chunk: usize) -> Option<PusherContext<W>>;
+}
+
+/// The same pusher for all particles; its lanes are made where they are used.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SharedPusher(Option<(PusherMotion, Transform, f64)>);
+
+/// One pusher for each particle, chunk by chunk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EachPusher<'a, const W: usize>(pub &'a [Option<PusherContext<W>>]);
 
 /// A pusher's motion and where it stands, lane by lane.
 #[derive(Clone, Copy, Debug)]
@@ -88,53 +98,40 @@ pub(crate) struct PusherContext<const W: usize> {
     pub present: Mask<W>,
 }
 
-impl<'a, const W: usize> StepContext<'a, W> {
-    /// One input for all particles.
-    #[inline(always)]
-    pub fn shared(scene: &PreparedScene, input: &StepInput) -> Self {
-        let pusher = input.pusher.as_ref();
-        Self {
-            h: input.h,
-            rate: 1.0 / input.h,
-            pushers: Pushers::Shared(pusher.map(|pusher| PusherContext::same(scene, pusher))),
-        }
+impl SharedPusher {
+    pub fn new(scene: &PreparedScene, pusher: Option<&PusherMotion>) -> Self {
+        Self(pusher.map(|motion| {
+            let speed = fastest_point(scene, &motion.twist);
+            (*motion, Transform::from(motion.pose), speed)
+        }))
     }
+}
 
-    /// Every particle with a pusher of its own.
+impl<const W: usize> Pushers<W> for SharedPusher {
     #[inline(always)]
-    pub fn each(h: f64, pushers: &'a [Option<PusherContext<W>>]) -> Self {
-        Self {
-            h,
-            rate: 1.0 / h,
-            pushers: Pushers::Each(pushers),
-        }
+    fn of(&self, _: usize) -> Option<PusherContext<W>> {
+        let (motion, transform, speed) = self.0.as_ref()?;
+        Some(PusherContext {
+            motion: motion.splat(),
+            transform: transform.splat(),
+            speed: Lanes::splat(*speed),
+            present: Mask::splat(true),
+        })
     }
+}
 
-    /// The pusher of one chunk.
+impl<const W: usize> Pushers<W> for EachPusher<'_, W> {
     #[inline(always)]
-    pub fn pusher(&self, chunk: usize) -> Option<&PusherContext<W>> {
-        match &self.pushers {
-            Pushers::Shared(pusher) => pusher.as_ref(),
-            Pushers::Each(pushers) => pushers[chunk].as_ref(),
-        }
+    fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
+        self.0[chunk]
     }
 }
 
 impl<const W: usize> PusherContext<W> {
-    /// The same pusher in every lane.
-    #[inline(always)]
-    fn same(scene: &PreparedScene, pusher: &PusherMotion) -> Self {
-        Self {
-            motion: pusher.splat(),
-            transform: Transform::from(pusher.pose).splat(),
-            speed: Lanes::splat(fastest_point(scene, &pusher.twist)),
-            present: Mask::splat(true),
-        }
-    }
-
     /// Overwrites one lane.
     fn set(&mut self, scene: &PreparedScene, lane: usize, pusher: &PusherMotion) {
-        let alone = PusherContext::<1>::same(scene, pusher);
+        let alone: Option<PusherContext<1>> = SharedPusher::new(scene, Some(pusher)).of(0);
+        let alone = alone.expect("there is a pusher");
         for (to, from) in self.numbers_mut().into_iter().zip(alone.numbers()) {
             to.0[lane] = from.0[0];
         }

@@ -17,7 +17,9 @@ use crate::ncp::report::Report;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
-use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
+use crate::prepared_scene::{
+    EachPusher, PreparedScene, PusherContext, Pushers, SharedPusher, StepContext,
+};
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
 use crate::solver::chain::Solver;
@@ -159,8 +161,8 @@ impl Dynamics {
         self.dispatch::<W>(
             #[inline(always)]
             || {
-                let context = StepContext::shared(&self.scene, input);
-                self.step_lanes(&context, particles, work);
+                let pusher = SharedPusher::new(&self.scene, input.pusher.as_ref());
+                self.step_lanes(input.h, &pusher, particles, work);
             },
         );
     }
@@ -189,7 +191,7 @@ impl Dynamics {
         contexts.extend(pushers.iter().map(|pushers| self.scene.pushers(pushers)));
         self.dispatch::<W>(
             #[inline(always)]
-            || self.step_lanes(&StepContext::each(h, &contexts), particles, work),
+            || self.step_lanes(h, &EachPusher(&contexts), particles, work),
         );
         work.pushers = contexts;
     }
@@ -207,14 +209,19 @@ impl Dynamics {
     #[inline(always)]
     fn step_lanes<const W: usize>(
         &self,
-        context: &StepContext<'_, W>,
+        h: f64,
+        pushers: &impl Pushers<W>,
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
     ) {
         // how far apart contacts are looked for
         work.resize(particles.len());
         for (chunk, particles) in particles.iter().enumerate() {
-            work.chunks[chunk].set_search_distance(self.search_distance(context, chunk, particles));
+            work.chunks[chunk].set_search_distance(self.search_distance(
+                h,
+                pushers.of(chunk).as_ref(),
+                particles,
+            ));
         }
 
         // solve all chunks, then again those that moved farther than was looked for
@@ -231,7 +238,8 @@ impl Dynamics {
             } = work;
             let mut problems = Problems {
                 scene: &self.scene,
-                context,
+                context: StepContext::new(h),
+                pushers,
                 first: asked.start,
                 particles: &particles[asked.clone()],
                 chunks: &mut chunks[asked.clone()],
@@ -243,12 +251,12 @@ impl Dynamics {
                 &mut unknowns[asked.clone()],
                 &mut reports[asked.clone()],
             );
-            asked = self.too_narrow(context, asked.start, work);
+            asked = self.too_narrow(h, pushers, asked.start, work);
         }
 
         // q⁺ = q + h v⁺, and what the particles remember
         for (chunk, particles) in particles.iter_mut().enumerate() {
-            self.integrate(context.h, particles, chunk, work);
+            self.integrate(h, particles, chunk, work);
         }
     }
 
@@ -257,7 +265,8 @@ impl Dynamics {
     #[inline(always)]
     fn too_narrow<const W: usize>(
         &self,
-        context: &StepContext<'_, W>,
+        h: f64,
+        pushers: &impl Pushers<W>,
         first: usize,
         work: &mut StepWork<W>,
     ) -> Range<usize> {
@@ -265,7 +274,7 @@ impl Dynamics {
         for chunk in first..count {
             let searched = work.chunks[chunk].search_distance();
             let object = self.point_speed(&work.twist(chunk, self.scene.inv_rho));
-            let needed = (object + pusher_speed(context, chunk)) * context.h;
+            let needed = (object + pusher_speed(pushers.of(chunk).as_ref())) * h;
             let wider = needed.gt(searched)
                 & needed.lt(Lanes::splat(f64::INFINITY))
                 & searched.lt(Lanes::splat(WIDEST));
@@ -301,23 +310,23 @@ impl Dynamics {
     #[inline(always)]
     fn search_distance<const W: usize>(
         &self,
-        context: &StepContext<'_, W>,
-        chunk: usize,
+        h: f64,
+        pusher: Option<&PusherContext<W>>,
         particles: &Particles<W>,
     ) -> Lanes<W> {
         let Wrench { fx, fy, torque } = &particles.applied;
         let kick = length_at_most(fx, fy) * self.scene.inv_mass
             + torque.abs() * (self.scene.inv_inertia * self.object_radius);
-        let pusher = pusher_speed(context, chunk);
+        let pusher = pusher_speed(pusher);
         let object = (self.point_speed(&particles.twist) + kick).max(pusher);
-        (object * 1.5 + pusher) * context.h + MARGIN
+        (object * 1.5 + pusher) * h + MARGIN
     }
 }
 
-/// Speed of the fastest point of each pusher of a chunk (m/s).
+/// Speed of the fastest point of each pusher of a chunk (m/s); 0 off the plane.
 #[inline(always)]
-fn pusher_speed<const W: usize>(context: &StepContext<'_, W>, chunk: usize) -> Lanes<W> {
-    match context.pusher(chunk) {
+fn pusher_speed<const W: usize>(pusher: Option<&PusherContext<W>>) -> Lanes<W> {
+    match pusher {
         Some(pusher) => pusher.speed,
         None => Lanes::ZERO,
     }
@@ -333,9 +342,10 @@ fn length_at_most<const W: usize>(x: &Lanes<W>, y: &Lanes<W>) -> Lanes<W> {
 }
 
 /// The problems of some chunks of particles.
-struct Problems<'a, const W: usize> {
+struct Problems<'a, P, const W: usize> {
     scene: &'a PreparedScene,
-    context: &'a StepContext<'a, W>,
+    context: StepContext,
+    pushers: &'a P,
     /// Number of the first chunk.
     first: usize,
     particles: &'a [Particles<W>],
@@ -343,12 +353,12 @@ struct Problems<'a, const W: usize> {
     narrow: &'a mut NarrowPhase<W>,
 }
 
-impl<const W: usize> Source<W> for Problems<'_, W> {
+impl<P: Pushers<W>, const W: usize> Source<W> for Problems<'_, P, W> {
     #[inline(always)]
     fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
         self.chunks[chunk].collect(
             self.scene,
-            (self.context, self.context.pusher(self.first + chunk)),
+            (&self.context, self.pushers.of(self.first + chunk).as_ref()),
             &self.particles[chunk],
             self.narrow,
             ncp,
