@@ -4,7 +4,7 @@
 use stickslip_lanes::{Lanes, Mask};
 
 use crate::geometry::transform::Transform;
-use crate::input::{PusherMotion, StepInput};
+use crate::input::PusherMotion;
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
 
