@@ -74,8 +74,8 @@ impl Dynamics {
     /// pusher of its own.
     ///
     /// `pushers` holds the pusher's poses where steps begin and end, (N, T + 1), trajectory after
-    /// trajectory. The pusher moves straight from one to the next; where the scene gives it a stall
-    /// force, it may fall behind. A trajectory depends on nothing but its start and its pusher, and
+    /// trajectory: start i under pusher i. The pusher moves straight from one to the next; where the
+    /// scene gives it a stall force, it may fall behind, by as much as the object holds it back. A trajectory depends on nothing but its start and its pusher, and
     /// is the same, bit for bit, as step by step with [`Dynamics::step`]. One thread runs; share the
     /// starts among threads for more.
     ///

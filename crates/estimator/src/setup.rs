@@ -60,8 +60,8 @@ pub struct FilterSettings {
     pub resample_below: f64,
     /// Widens the camera's standard deviations (docs/method.md (23)).
     pub likelihood_scale: f64,
-    /// Physical limits of the friction parameters, of d_tri in m: τ clamps to them (docs/method.md
-    /// (20)).
+    /// Physical limits of the friction parameters, of d_tri in m, to which proposed values are
+    /// clamped (docs/method.md (20)).
     pub limits: Friction<Limits>,
 }
 

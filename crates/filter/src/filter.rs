@@ -75,8 +75,8 @@ impl<M: Model> ParticleFilter<M> {
     ///
     /// What concerns one block of particles happens in one parallel pass over the blocks; what needs
     /// all of them comes before it (choosing ancestors) and after it (normalising the weights, adding
-    /// the blocks' sums). If no particle explains the observation, the particles are reinitialised
-    /// around it.
+    /// the blocks' sums). If no particle explains the part of the observation that a reinitialisation
+    /// can improve, or all weights are zero, the particles are reinitialised around it.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
         let resampled = self.satisfies_resample_condition();

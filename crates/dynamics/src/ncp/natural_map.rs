@@ -3,7 +3,8 @@
 //!
 //! Its zeros are the solutions. A foot's row is p − Π(p − s), with Π the projection onto the
 //! friction disc; a contact's rows are min(p_n, γ) and p_t − clamp(p_t − s, ±μ p_n); the stall row
-//! is min(F_stall − F, y). The largest row is the residual of docs/method.md, "The certificate".
+//! is min((F_stall h − F)/m, y). The largest row is the residual of docs/method.md, "The
+//! certificate".
 
 use stickslip_lanes::Lanes;
 
@@ -20,7 +21,7 @@ pub struct NaturalMap<const W: usize> {
     pub slips: [[Lanes<W>; 2]; 3],
     /// One per contact.
     pub contacts: Vec<ContactVelocity<W>>,
-    /// F_stall − F.
+    /// (F_stall h − F)/m.
     pub slack: Lanes<W>,
 }
 

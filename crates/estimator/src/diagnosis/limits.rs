@@ -1,4 +1,5 @@
-//! Nominal friction within the filter's limits: a particle filter never leaves them.
+//! Nominal friction within the filter's limits: a parameter outside them is moved to the limit as
+//! soon as it takes part in a step with the camera on.
 
 use stickslip_dynamics::Feet;
 

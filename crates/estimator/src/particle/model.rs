@@ -24,7 +24,7 @@ const COLLAPSED: f64 = -6.0;
 ///
 /// A new sensor is one more field of [`Observation`] and one more term of
 /// [`log_likelihood`](Model::log_likelihood), in a file beside [`CameraLikelihood`] and
-/// [`TactileLikelihood`].
+/// [`TactileLikelihood`]; docs/method.md, "From the paper to the code", lists the whole way.
 #[derive(Clone, Debug)]
 pub struct ContactModel<'o> {
     transition: Transition<'o>,
