@@ -124,19 +124,6 @@ impl<const W: usize> Default for Lanes<W> {
     }
 }
 
-/// Copies lane `lane` of each number in `from` into lane `slot` of its partner in `to`.
-#[inline(always)]
-pub fn copy_lane<const N: usize, const V: usize, const W: usize>(
-    to: [&mut Lanes<V>; N],
-    slot: usize,
-    from: [&Lanes<W>; N],
-    lane: usize,
-) {
-    for k in 0..N {
-        to[k].0[slot] = from[k].0[lane];
-    }
-}
-
 macro_rules! lane_wise {
     ($($operator:ident $method:ident $sign:tt),*) => {$(
         impl<const W: usize> $operator for Lanes<W> {

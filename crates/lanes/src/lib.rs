@@ -19,6 +19,6 @@ pub use box_muller::box_muller;
 pub use dispatch::on_widest;
 pub use exp::exponentials;
 pub use fearless_simd::Level;
-pub use lanes::{Lanes, copy_lane};
+pub use lanes::Lanes;
 pub use mask::Mask;
 pub use trig::sin_cos;
