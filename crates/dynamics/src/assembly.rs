@@ -18,6 +18,14 @@ use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
 use crate::scene::{Fixel, Scene};
 use crate::se2::{Twist, Wrench};
 
+/// Gaps and overlaps up to this are closed (m): an object at rest is not to creep after the rounding
+/// of its contacts.
+const CLOSED: f64 = 1e-8;
+
+/// Cosine of the angle between the pusher's motion and a contact normal below which it is not the
+/// motion that presses.
+const PRESSING: f64 = 0.5;
+
 /// Which contact each row of a chunk's problems stands for.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly<const W: usize> {
@@ -53,16 +61,6 @@ struct Scaling<const W: usize> {
     stall: Option<(f64, [Lanes<W>; 2])>,
 }
 
-impl Body {
-    /// Numbered from 1; 0 is no body.
-    fn number(self) -> usize {
-        match self {
-            Body::Pusher => 1,
-            Body::Fixel(j) => 2 + j,
-        }
-    }
-}
-
 /// The other body of a pair during one step.
 struct Other<'a, const W: usize> {
     body: Body,
@@ -70,11 +68,6 @@ struct Other<'a, const W: usize> {
     transform: Transform<Lanes<W>>,
     mu: Lanes<W>,
     motion: Option<&'a PusherMotion<Lanes<W>>>,
-    /// Direction in which it may give way.
-    direction: [Lanes<W>; 2],
-
-    /// Commanded speed along it from where the body stands to its pose (m/s).
-    catch_up: Lanes<W>,
     /// The lanes in which it may touch the object.
     active: Mask<W>,
 }
@@ -126,18 +119,16 @@ impl<const W: usize> Assembly<W> {
             let active = self.may_touch(scene, &object, shape, pusher.transform.origin);
             let active = active & pusher.present;
             if active.any() {
-                let stall = self.scaling.stall;
                 let pusher = Other {
                     body: Body::Pusher,
                     shape,
                     transform: pusher.transform,
                     mu: particles.friction.mu_p,
                     motion: Some(&pusher.motion),
-                    direction: stall.map_or([Lanes::ZERO; 2], |(_, direction)| direction),
-                    catch_up: particles.pusher_lag * context.rate,
                     active,
                 };
                 self.collide(scene, &object, &pusher, narrow, ncp);
+                self.let_pusher_yield(particles, ncp);
             }
         }
 
@@ -153,12 +144,42 @@ impl<const W: usize> Assembly<W> {
                     transform: transform.splat(),
                     mu: particles.friction.mu_f,
                     motion: None,
-                    direction: [Lanes::ZERO; 2],
-                    catch_up: Lanes::ZERO,
                     active,
                 };
                 self.collide(scene, &object, &fixel, narrow, ncp);
             }
+        }
+    }
+
+    /// The direction in which the pusher gives way (docs/method.md (12)), written into its contacts:
+    /// along its motion where that presses on the object, else along the normal of its nearest
+    /// contact.
+    #[inline(always)]
+    fn let_pusher_yield(&mut self, particles: &Particles<W>, ncp: &mut Ncp<W>) {
+        let rate = self.scaling.rate;
+        let Some((_, direction)) = &mut self.scaling.stall else {
+            return;
+        };
+        // the normal of the nearest contact
+        let mut nearest = Lanes::splat(f64::INFINITY);
+        let mut normal = *direction;
+        for (row, contact) in self.rows.iter().zip(&ncp.contacts) {
+            let nearer = row.present & row.gap.lt(nearest);
+            nearest = nearer.select(row.gap, nearest);
+            for k in 0..2 {
+                normal[k] = nearer.select(contact.n[k], normal[k]);
+            }
+        }
+        let along = normal[0] * direction[0] + normal[1] * direction[1];
+        let presses = along.gt(Lanes::splat(PRESSING));
+        for k in 0..2 {
+            direction[k] = presses.select(direction[k], normal[k]);
+        }
+        // the way from where it stands to its pose lies in the gap already
+        let [x, y] = particles.pusher_lag;
+        let catch_up = [x * rate, y * rate];
+        for contact in &mut ncp.contacts {
+            contact.let_yield(*direction, catch_up);
         }
     }
 
@@ -248,16 +269,18 @@ impl<const W: usize> Assembly<W> {
         };
         narrow.collide(placed, other_placed, self.search_distance, other.active);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
+            let gap = contact.gap;
+            let gap = gap.abs().gt(Lanes::splat(CLOSED)).zero_unless(gap);
             let key = (other.body.number() * Contact::<W>::ID_COUNT as usize + contact.id as usize)
                 as f64;
             self.rows.push(Row {
                 body: other.body,
                 key,
                 present: contact.present,
-                gap: contact.gap,
+                gap,
             });
             ncp.contacts
-                .push(row(&self.scaling, object, other, contact));
+                .push(row(&self.scaling, object, other, contact, gap));
         }
     }
 
@@ -283,18 +306,30 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// Remembers the impulses, of the contacts the first [`REMEMBERED`] that press, and where the
-    /// pusher stands.
+    /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`] that
+    /// press, and where the pusher stands. What is unsolved would be a bad start: compliant impulses
+    /// are a million times too large.
     #[inline(always)]
-    pub fn store_warm_start(&self, p: &Unknowns<W>, particles: &mut Particles<W>) {
+    pub fn store_warm_start(&self, p: &Unknowns<W>, solved: Mask<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
-        warm.feet = p.feet;
-        warm.pusher_yield = p.pusher_yield;
-        particles.pusher_lag = p.pusher_yield * self.scaling.h;
+        for (to, from) in warm
+            .feet
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(p.feet.as_flattened())
+        {
+            *to = solved.zero_unless(*from);
+        }
+        warm.pusher_yield = solved.zero_unless(p.pusher_yield);
+        let way = p.pusher_yield * self.scaling.h;
+        particles.pusher_lag = match self.scaling.stall {
+            Some((_, [x, y])) => [x * way, y * way],
+            None => [Lanes::ZERO; 2],
+        };
         warm.contacts = [ContactImpulse::default(); REMEMBERED];
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
-            let pressed = p_n.gt(Lanes::ZERO);
+            let pressed = solved & p_n.gt(Lanes::ZERO);
             for (k, slot) in warm.contacts.iter_mut().enumerate() {
                 let here: Mask<W> = pressed & !(filled - k as f64).abs().gt(Lanes::ZERO);
                 slot.key = here.select(Lanes::splat(row.key), slot.key);
@@ -381,13 +416,13 @@ fn row<const W: usize>(
     object: &Transform<Lanes<W>>,
     other: &Other<'_, W>,
     contact: &Contact<W>,
+    gap: Lanes<W>,
 ) -> ContactRow<W> {
     let Scaling { inv_rho, rate, .. } = *scaling;
     let Contact {
         present,
         normal: [nx, ny],
         arm: [x, y],
-        gap,
         ..
     } = *contact;
     let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
@@ -398,8 +433,6 @@ fn row<const W: usize>(
         let Twist { vx, vy, omega } = motion.twist;
         [arm[1] * -omega + vx, arm[0] * omega + vy]
     });
-    let d = other.direction;
-    let (nd, td) = (nx * d[0] + ny * d[1], nx * d[1] - ny * d[0]);
     let keep = |value: Lanes<W>| present.zero_unless(value);
     ContactRow {
         n: [keep(nx), keep(ny), keep((x * ny - y * nx) * inv_rho)],
@@ -408,10 +441,9 @@ fn row<const W: usize>(
             gap * rate - (nx * u[0] + ny * u[1]),
             ContactRow::<W>::OPEN.gap_offset,
         ),
-        // the way back to the pose lies in the gap already
-        slip_offset: keep(ny * u[0] - nx * u[1] - td * other.catch_up),
-        nd: keep(nd),
-        td: keep(td),
+        slip_offset: keep(ny * u[0] - nx * u[1]),
+        nd: Lanes::ZERO,
+        td: Lanes::ZERO,
         mu: keep(other.mu),
     }
 }

@@ -46,3 +46,13 @@ pub enum Body {
     /// The fixel of this index.
     Fixel(usize),
 }
+
+impl Body {
+    /// Numbered from 1; 0 is no body.
+    pub(crate) fn number(self) -> usize {
+        match self {
+            Body::Pusher => 1,
+            Body::Fixel(j) => 2 + j,
+        }
+    }
+}

@@ -31,7 +31,7 @@ pub use particles::{ContactImpulse, Particle, Particles, WarmStart};
 pub use rollout::{Rollout, RolloutError, RolloutStart};
 pub use scene::{Feet, Fixel, Object, Pusher, Scene};
 pub use se2::{Pose, Twist, Wrench};
-pub use solver::chain::{Solver, solve};
+pub use solver::chain::{Solver, solve, solve_from};
 pub use start::{SpeedProfile, Start};
 pub use step::{Dynamics, StepWork};
 pub use stickslip_lanes::{Lanes, Level, Mask, on_widest, sin_cos};

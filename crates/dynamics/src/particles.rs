@@ -18,9 +18,9 @@ pub struct Particle {
     pub twist: Twist,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
-    /// Distance by which the pusher stands behind its pose, against its direction, because it gave
-    /// way in the step before (m); 0 where it stands at its pose.
-    pub pusher_lag: f64,
+    /// Way from where the pusher stands to its pose (m), world frame: by so much it gave way in the
+    /// step before; zero where it stands at its pose.
+    pub pusher_lag: [f64; 2],
     /// Impulses of the step before.
     pub warm: WarmStart,
 }
@@ -121,8 +121,8 @@ pub struct Particles<const W: usize> {
     pub applied: Wrench<Lanes<W>>,
     /// Friction parameters; d_tri in m.
     pub friction: Friction<Lanes<W>>,
-    /// Distance by which the pusher stands behind its pose (m).
-    pub pusher_lag: Lanes<W>,
+    /// Way from where the pusher stands to its pose (m), world frame.
+    pub pusher_lag: [Lanes<W>; 2],
     /// Impulses of the step before.
     pub warm: WarmStart<Lanes<W>>,
 }
@@ -134,14 +134,44 @@ fn set_lane<const W: usize, const N: usize>(to: [&mut Lanes<W>; N], lane: usize,
         .for_each(|(to, from)| to.0[lane] = *from);
 }
 
+impl Particle {
+    /// Leaves the pusher at most `most` (m) behind its pose: it is dragged there.
+    pub fn limit_pusher_lag(&mut self, most: f64) {
+        let lag = limited(self.pusher_lag.map(|x| Lanes([x])), most);
+        self.pusher_lag = lag.map(|x| x.0[0]);
+    }
+}
+
+/// A vector, shortened to `most` where it is longer.
+#[inline(always)]
+fn limited<const W: usize>([x, y]: [Lanes<W>; 2], most: f64) -> [Lanes<W>; 2] {
+    let squared = (x * x).add_mul(y, y);
+    let longer = squared.gt(Lanes::splat(most * most));
+    if !longer.any() {
+        return [x, y];
+    }
+    let share = longer.select(squared.inverse_sqrt() * most, Lanes::splat(1.0));
+    [x * share, y * share]
+}
+
 impl<const W: usize> Particles<W> {
+    /// [`Particle::limit_pusher_lag`] in every lane.
+    #[inline(always)]
+    pub fn limit_pusher_lag(&mut self, most: f64) {
+        self.pusher_lag = limited(self.pusher_lag, most);
+    }
+
     /// Overwrites one lane.
     pub fn set(&mut self, lane: usize, particle: &Particle, friction: &Friction) {
         set_lane(self.pose.fields_mut(), lane, particle.pose.fields());
         set_lane(self.twist.fields_mut(), lane, particle.twist.fields());
         set_lane(self.applied.fields_mut(), lane, particle.applied.fields());
         set_lane(self.friction.fields_mut(), lane, friction.fields());
-        self.pusher_lag.0[lane] = particle.pusher_lag;
+        set_lane(
+            self.pusher_lag.each_mut(),
+            lane,
+            particle.pusher_lag.each_ref(),
+        );
         set_lane(self.warm.fields_mut(), lane, particle.warm.fields());
     }
 
@@ -155,7 +185,7 @@ impl<const W: usize> Particles<W> {
             pose: self.pose.map(|x| x.0[lane]),
             twist: self.twist.map(|x| x.0[lane]),
             applied: self.applied.map(|x| x.0[lane]),
-            pusher_lag: self.pusher_lag.0[lane],
+            pusher_lag: self.pusher_lag.map(|x| x.0[lane]),
             warm,
         }
     }

@@ -6,14 +6,14 @@
 
 use std::ops::Range;
 
-use stickslip_lanes::{Lanes, Level, on_widest};
+use stickslip_lanes::{Lanes, Level, Mask, on_widest};
 
 use crate::assembly::Assembly;
 use crate::friction::Friction;
 use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::{Body, PusherMotion, StepInput};
 use crate::ncp::problem::{StepProblem, StepSolution};
-use crate::ncp::report::Report;
+use crate::ncp::report::{Outcome, Report};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
@@ -296,7 +296,11 @@ impl Dynamics {
     ) {
         particles.twist = work.twist(chunk, self.scene.inv_rho);
         particles.pose = particles.pose.advance(particles.twist, h);
-        work.chunks[chunk].store_warm_start(&work.unknowns[chunk], particles);
+        let mut solved = Mask::splat(true);
+        for (lane, report) in work.reports[chunk].iter().enumerate() {
+            solved.set(lane, report.outcome == Outcome::Solved);
+        }
+        work.chunks[chunk].store_warm_start(&work.unknowns[chunk], solved, particles);
     }
 
     /// No point of the object is faster.

@@ -32,7 +32,7 @@ fn step_result(particle: &Particle, report: &Report) -> StepResult {
         numbers: bits,
         outcome: report.outcome,
         route: report.route,
-        iterations: report.iterations,
+        iterations: report.systems,
     }
 }
 

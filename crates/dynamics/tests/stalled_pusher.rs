@@ -85,6 +85,34 @@ fn squeezed_object_does_not_creep() {
     }
 }
 
+/// What presses on a pusher presses it back, wherever its last motion went: also where that was a
+/// recoil by micrometres, or along the object's face. A rigid pusher has no solution here.
+#[test]
+fn pusher_gives_way_to_what_presses_on_it_whatever_its_last_direction() {
+    for direction in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.6, -0.8]] {
+        let mut input = pushing(FRAME, 0.020_982 - 0.008 + 2e-4, -0.003, 0.0);
+        input.pusher.as_mut().unwrap().direction = direction;
+        for stall_force in [Some(25.0), None] {
+            let (mut scene, mut particle) = squeezed();
+            scene.pusher.stall_force = stall_force;
+            let (dynamics, mut work) = (Dynamics::new(scene), StepWork::default());
+            let start = particle.pose;
+            let solved = (0..60)
+                .filter(|_| {
+                    step(&dynamics, &input, &mut particle, &mut work).outcome == Outcome::Solved
+                })
+                .count();
+            assert_eq!(
+                solved == 60,
+                stall_force.is_some(),
+                "{direction:?}, {stall_force:?}: {solved} of 60 solved"
+            );
+            let moved = pose_distance(&dynamics, &start, &particle.pose);
+            assert!(moved < 1e-3, "{direction:?}, {stall_force:?}: {moved}");
+        }
+    }
+}
+
 /// A pusher that stands s behind its pose is the pusher at the place where it stands, commanded s/h
 /// faster: the same step. The object's corners meet a face of the pusher's that is wider, so that
 /// gaps are linear and the two problems are equal but for rounding.
@@ -123,7 +151,7 @@ fn lag_is_a_pusher_that_starts_where_it_stands() {
                 }),
             }
         };
-        let advance = |input: &StepInput, pusher_lag: f64| {
+        let advance = |input: &StepInput, pusher_lag: [f64; 2]| {
             let mut particle = Particle {
                 pusher_lag,
                 ..at(Pose::default())
@@ -133,13 +161,17 @@ fn lag_is_a_pusher_that_starts_where_it_stands() {
             particle = one;
             (report.outcome, particle, work.solution(0).pusher_yield)
         };
-        let (behind, ahead) = (advance(&input(0.0), lag), advance(&input(lag), 0.0));
+        let (behind, ahead) = (
+            advance(&input(0.0), [lag * cos, lag * sin]),
+            advance(&input(lag), [0.0; 2]),
+        );
         assert_eq!((behind.0, ahead.0), (Outcome::Solved, Outcome::Solved));
         assert!(
             pose_distance(&dynamics, &behind.1.pose, &ahead.1.pose) < 1e-9,
             "{behind:?} {ahead:?}"
         );
-        assert!((behind.1.pusher_lag - FRAME * behind.2).abs() < 1e-15);
+        let [x, y] = behind.1.pusher_lag;
+        assert!((x.hypot(y) - FRAME * behind.2).abs() < 1e-15);
         yielded += u32::from(behind.2 > 1e-6);
     }
     assert!(yielded > 50, "{yielded}");

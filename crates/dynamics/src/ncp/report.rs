@@ -11,7 +11,7 @@ pub enum Outcome {
     Solved,
     /// It is proven that no solution exists; the velocity is that of the compliant problem.
     Infeasible,
-    /// Neither a solution nor a proof was found; the velocity is that of the compliant problem.
+    /// Neither a solution nor a proof was found within the limit on work; the velocity is that of the compliant problem.
     Failed,
 }
 
@@ -20,10 +20,8 @@ pub enum Outcome {
 pub enum Route {
     /// Semismooth Newton iteration from the warm start.
     Newton,
-    /// Newton steps on smoothed rows from the warm start.
-    SmoothedNewton,
-    /// Smoothing homotopy, its end refined.
-    Homotopy,
+    /// Path of smoothed solutions from the warm start.
+    SmoothedPath,
     /// Exhaustive search over contact modes.
     ModeSearch,
 }
@@ -35,8 +33,8 @@ pub struct Report {
     pub outcome: Outcome,
     /// Natural-map residual of the rigid problem (m/s).
     pub residual: f64,
-    /// Newton steps of the two solvers that run in lanes.
-    pub iterations: u32,
+    /// Linear systems solved for it.
+    pub systems: u32,
     /// Where the answer came from.
     pub route: Route,
 }
@@ -46,7 +44,7 @@ impl Report {
     pub(crate) const UNSOLVED: Self = Self {
         outcome: Outcome::Failed,
         residual: f64::INFINITY,
-        iterations: 0,
+        systems: 0,
         route: Route::Newton,
     };
 }

@@ -132,6 +132,15 @@ impl<const W: usize> ContactRow<W> {
         (dot(&self.t, v) + self.slip_offset).add_mul(self.td, pusher_yield)
     }
 
+    /// Makes it a contact of a body that gives way along `direction`, and moves at `catch_up` (m/s)
+    /// beside its commanded velocity, which its gap knows already.
+    #[inline(always)]
+    pub fn let_yield(&mut self, [dx, dy]: [Lanes<W>; 2], [x, y]: [Lanes<W>; 2]) {
+        self.nd = self.n[0] * dx + self.n[1] * dy;
+        self.td = self.t[0] * dx + self.t[1] * dy;
+        self.slip_offset -= self.t[0] * x + self.t[1] * y;
+    }
+
     /// Copies one lane into lane `slot` of `to`.
     #[inline(always)]
     fn copy_lane<const V: usize>(&self, lane: usize, to: &mut ContactRow<V>, slot: usize) {

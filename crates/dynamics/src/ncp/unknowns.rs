@@ -163,6 +163,29 @@ impl<const W: usize> Unknowns<W> {
         to.pusher_yield.0[slot] = self.pusher_yield.0[lane];
     }
 
+    /// Makes every lane a solution in SI units of `problem`.
+    pub fn assign(&mut self, solution: &StepSolution, problem: &StepProblem) {
+        let (m, contacts) = (problem.mass, problem.contacts.len());
+        assert!(
+            solution.normal.len() == contacts && solution.tangential.len() == contacts,
+            "one impulse per contact"
+        );
+        let rho = (problem.inertia / m).sqrt();
+        let Twist { vx, vy, omega } = solution.twist;
+        self.v = [vx, vy, omega * rho].map(Lanes::splat);
+        self.feet = solution.feet.map(|p| p.map(|x| Lanes::splat(x / m)));
+        self.pusher_yield = Lanes::splat(solution.pusher_yield);
+        self.resize(contacts);
+        for (to, from) in [
+            (&mut self.normal, &solution.normal),
+            (&mut self.tangential, &solution.tangential),
+        ] {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = Lanes::splat(from / m);
+            }
+        }
+    }
+
     /// One lane in SI units, for the problem it solves.
     pub fn to_solution(&self, lane: usize, problem: &StepProblem) -> StepSolution {
         let m = problem.mass;

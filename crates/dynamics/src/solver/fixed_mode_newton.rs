@@ -39,7 +39,7 @@ impl<const W: usize> Default for FixedModeNewton<W> {
 
 impl<const W: usize> FixedModeNewton<W> {
     /// At most `limit` Newton steps from `z`, in the modes that `z` itself shows, in the lanes of
-    /// `running`.
+    /// `running`; returns how many it took.
     ///
     /// An impulse above the share `sliding` of its bound counts as sliding.
     #[inline(always)]
@@ -50,7 +50,7 @@ impl<const W: usize> FixedModeNewton<W> {
         mut running: Mask<W>,
         sliding: f64,
         limit: u32,
-    ) {
+    ) -> u32 {
         // read the modes
         self.contacts.clear();
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(z.contacts()) {
@@ -65,15 +65,16 @@ impl<const W: usize> FixedModeNewton<W> {
         let yields = ncp.stall.lt(Lanes::splat(f64::INFINITY))
             & z.pusher_yield.gt(ncp.stall - ncp.resistance(z));
         // iterate
-        for _ in 0..limit {
+        for step in 0..limit {
             let before = (z.v, z.pusher_yield);
             self.linearise(ncp, z, &slides, yields);
             self.linearised.step(ncp, z, running);
             running = running & moved(z, &before);
             if !running.any() {
-                break;
+                return step + 1;
             }
         }
+        limit
     }
 
     #[inline(always)]

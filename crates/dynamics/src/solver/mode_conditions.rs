@@ -2,7 +2,7 @@
 
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
-use crate::solver::scalar_ncp::{Candidate, ScalarContact, ScalarNcp};
+use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 
@@ -24,13 +24,24 @@ pub struct ModeConditions {
     pub problem: ScalarNcp,
     /// Violations below this do not exclude a mode (m/s).
     pub slack: f64,
+    /// What holds at every solution: gaps are open, y ≥ 0.
+    open: Vec<Inequality>,
 }
 
 impl ModeConditions {
     /// Of one problem.
     pub fn new(problem: ScalarNcp) -> Self {
+        let gaps = problem.contacts.iter().map(|c| Inequality {
+            row: c.n,
+            offset: c.gap_offset,
+        });
+        let pusher_yield = Inequality {
+            row: [0.0, 0.0, 0.0, 1.0],
+            offset: 0.0,
+        };
         Self {
             slack: SLACK * problem.speed_scale.max(1.0),
+            open: gaps.chain([pusher_yield]).collect(),
             problem,
         }
     }
@@ -60,33 +71,26 @@ impl ModeConditions {
     }
 
     /// What holds at a solution in this mode: gaps are open, slips oppose the friction, y ≥ 0.
-    pub fn inequalities(&self, chosen: &[Generator]) -> Vec<Inequality> {
-        let gap_is_open = |c: &ScalarContact| Inequality {
-            row: c.n,
-            offset: c.gap_offset,
-        };
-        let mut all: Vec<_> = self.problem.contacts.iter().map(gap_is_open).collect();
-        all.push(Inequality {
-            row: [0.0, 0.0, 0.0, 1.0],
-            offset: 0.0,
-        });
-        for generator in chosen {
+    pub fn inequalities<'a>(
+        &'a self,
+        chosen: &'a [Generator],
+    ) -> impl Iterator<Item = Inequality> + 'a {
+        let slips = chosen.iter().filter_map(|generator| {
             // p_t = sign μ p_n opposes the slip
-            if let Some(c) = generator.contact.map(|i| &self.problem.contacts[i]) {
-                all.push(Inequality {
-                    row: c.t.map(|x| -generator.sign * x),
-                    offset: -generator.sign * c.slip_offset,
-                });
-            }
-        }
-        all
+            let c = &self.problem.contacts[generator.contact?];
+            Some(Inequality {
+                row: c.t.map(|x| -generator.sign * x),
+                offset: -generator.sign * c.slip_offset,
+            })
+        });
+        self.open.iter().copied().chain(slips)
     }
 
-    /// Whether V violates one of `inequalities` by more than the slack, and more than it can gain
-    /// over a distance of `margin`.
-    pub fn violates(&self, inequalities: &[Inequality], v: &Vector<4>, margin: f64) -> bool {
-        inequalities.iter().any(|Inequality { row, offset }| {
-            dot(row, v) + offset < -self.slack - margin * norm(row)
+    /// Whether V violates a condition of this mode by more than the slack, and more than it can
+    /// gain over a distance of `margin`.
+    pub fn violates(&self, chosen: &[Generator], v: &Vector<4>, margin: f64) -> bool {
+        self.inequalities(chosen).any(|Inequality { row, offset }| {
+            dot(&row, v) + offset < -self.slack - margin * norm(&row)
         })
     }
 
@@ -107,7 +111,8 @@ impl ModeConditions {
         candidate
     }
 
-    fn sliding_feet(&self, v: &Vector<4>) -> [[f64; 2]; 3] {
+    /// The impulses of feet that slide with V; none where one stands.
+    pub fn sliding_feet(&self, v: &Vector<4>) -> [[f64; 2]; 3] {
         self.problem.feet.map(|foot| {
             let s = foot.slip(v);
             let length = s[0].hypot(s[1]);
@@ -126,6 +131,15 @@ impl ModeConditions {
             .iter()
             .map(|foot| foot.bound * foot.slip(w)[0].hypot(foot.slip(w)[1]))
             .sum()
+    }
+
+    /// w·T(V) ≥ 0 at best, with the feet's friction all along w.
+    pub fn most_along(&self, w: &Vector<4>) -> Inequality {
+        let [x, y, turn, _] = *w;
+        Inequality {
+            row: [x, y, turn, 0.0],
+            offset: self.load_along(w, &[0.0; 4]) + self.friction_bound(&velocity(w)),
+        }
     }
 
     /// w·T(V) without the feet's part.

@@ -3,31 +3,41 @@
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
+use crate::solver::piece_search::{ModePath, Sample};
+use crate::solver::scalar_ncp::Candidate;
 use crate::solver::subspace::Equation;
+use crate::solver::support_friction::SupportFriction;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
+
+/// Error of a velocity from [`SupportFriction`] (m/s, relative where above 1), unless its residual is
+/// larger.
+const ROUNDING: f64 = 1e-13;
 
 /// The curve v(λ) = T⁻¹(`load_0` + λ `load`), λ the impulse of one generator; the fourth balance
 /// ties the impulse of the other one to it, `ratio` λ + `constant`. Of the two equations, one gives
 /// y, and w·v + `offset` = 0 is the other one with y eliminated.
-pub struct ModeCurve {
+pub struct ModeCurve<'a> {
+    conditions: &'a ModeConditions,
+    chosen: &'a [Generator; 2],
+    support: SupportFriction,
     /// Load at λ = 0.
-    pub load_0: Vector<3>,
+    load_0: Vector<3>,
     /// Change of the load with λ.
-    pub load: Vector<3>,
+    load: Vector<3>,
     /// Coefficients of the equation to solve.
-    pub w: Vector<3>,
+    w: Vector<3>,
     /// Its constant.
-    pub offset: f64,
+    offset: f64,
     ratio: f64,
     constant: f64,
     tied_is_first: bool,
     gives_y: Equation,
 }
 
-impl ModeCurve {
+impl<'a> ModeCurve<'a> {
     /// Of two generators; `None` where neither impulse is tied to the other, or y is not
     /// determined.
-    pub fn new(conditions: &ModeConditions, chosen: &[Generator; 2]) -> Option<Self> {
+    pub fn new(conditions: &'a ModeConditions, chosen: &'a [Generator; 2]) -> Option<Self> {
         let problem = &conditions.problem;
         let tied_is_first = chosen[0].g[3].abs() > chosen[1].g[3].abs();
         let (free, tied) = if tied_is_first {
@@ -47,6 +57,9 @@ impl ModeCurve {
         let (ratio, constant) = (-free.g[3] / tied.g[3], problem.stall / tied.g[3]);
         let k = solve.row[3] / gives_y.row[3];
         Some(Self {
+            conditions,
+            chosen,
+            support: SupportFriction::new(&problem.feet),
             load_0: add_scaled(&problem.free, constant, &velocity(&tied.g)),
             load: add_scaled(&velocity(&free.g), ratio, &velocity(&tied.g)),
             w: add_scaled(&velocity(&solve.row), -k, &velocity(&gives_y.row)),
@@ -59,7 +72,8 @@ impl ModeCurve {
     }
 
     /// The λ for which both impulses are positive and the feet's friction can balance the load.
-    pub fn interval(&self, conditions: &ModeConditions) -> Interval {
+    pub fn interval(&self) -> Interval {
+        let conditions = self.conditions;
         let mut interval = Interval {
             low: 0.0,
             high: f64::INFINITY,
@@ -73,7 +87,7 @@ impl ModeCurve {
     }
 
     /// The impulses of both generators.
-    pub fn impulses(&self, lambda: f64) -> [f64; 2] {
+    fn impulses(&self, lambda: f64) -> [f64; 2] {
         let tied = self.ratio * lambda + self.constant;
         if self.tied_is_first {
             [tied, lambda]
@@ -83,12 +97,53 @@ impl ModeCurve {
     }
 
     /// The pusher's yield that belongs to v.
-    pub fn pusher_yield(&self, v: &Vector<3>) -> f64 {
+    fn pusher_yield(&self, v: &Vector<3>) -> f64 {
         (self.gives_y.value - dot(&velocity(&self.gives_y.row), v)) / self.gives_y.row[3]
     }
 
     /// Most that the yield changes per change of v.
-    pub fn yield_gain(&self) -> f64 {
+    fn yield_gain(&self) -> f64 {
         norm(&velocity(&self.gives_y.row)) / self.gives_y.row[3].abs()
+    }
+}
+
+impl ModePath for ModeCurve<'_> {
+    fn sample(&mut self, x: f64) -> Sample {
+        let moved = self.support.solve(&add_scaled(&self.load_0, x, &self.load));
+        let [vx, vy, turn] = moved.v;
+        Sample {
+            x,
+            v: [vx, vy, turn, self.pusher_yield(&moved.v)],
+            feet: moved.feet,
+            miss: dot(&self.w, &moved.v) + self.offset,
+            error: f64::max(ROUNDING * (1.0 + norm(&moved.v)), moved.residual),
+            systems: moved.systems,
+        }
+    }
+
+    /// T⁻¹ is firmly nonexpansive, |Δv|² ≤ Δλ load·Δv. Added for both ends, whose velocities are
+    /// v_a and v_b, it leaves to every v between them |v − v_a|² + |v − v_b|² ≤ Δλ load·(v_b − v_a):
+    /// a ball about their middle, of radius zero where the object rests at both ends.
+    fn excludes(&self, a: &Sample, b: &Sample) -> bool {
+        let [v_a, v_b] = [velocity(&a.v), velocity(&b.v)];
+        let change = add_scaled(&v_b, -1.0, &v_a);
+        let rounding = a.error.max(b.error);
+        let along = dot(&self.load, &change).abs() + rounding * norm(&self.load);
+        let squared = 0.5 * (b.x - a.x) * along - 0.25 * dot(&change, &change);
+        let reach = squared.max(0.0).sqrt() + rounding;
+        let middle = add_scaled(&a.v, 1.0, &b.v).map(|x| 0.5 * x);
+        let miss = (dot(&self.w, &velocity(&middle)) + self.offset).abs();
+        miss > reach * norm(&self.w) + self.conditions.slack
+            || self
+                .conditions
+                .violates(self.chosen, &middle, reach * (1.0 + self.yield_gain()))
+    }
+
+    fn candidate(&self, at: &Sample) -> Candidate {
+        let alpha = self.impulses(at.x);
+        Candidate {
+            feet: at.feet,
+            ..self.conditions.candidate(self.chosen, &alpha, at.v)
+        }
     }
 }

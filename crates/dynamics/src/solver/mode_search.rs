@@ -6,29 +6,33 @@
 //! at most four linearly independent generators suffice. Each generator demands that its own row of
 //! V vanish (gap velocity, slip velocity where both edges of a contact are used, y for the stall
 //! pair), so a subset of four leaves a point, of three a line, of two a curve v(λ) = T⁻¹(…), of one
-//! again a point. Lines and curves are searched by interval bisection with bounds that hold
-//! rigorously on every piece: pieces without a solution are discarded, what remains is handed to
-//! `accept`. Where nothing remains, there is no solution.
+//! again a point. Most subsets are discarded by V alone: the half-spaces of open gaps, opposed
+//! slips and y ≥ 0 leave nothing of the plane, line or point. The other lines and curves are
+//! searched by halving, with bounds that hold rigorously on every piece: pieces without a solution
+//! are discarded, what remains is refined. Where nothing remains, there is no solution.
 
-use crate::solver::bisection::{Accept, Finding, Piece, bisect};
+use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::{Inequality, ModeConditions};
+use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::mode_curve::ModeCurve;
+use crate::solver::mode_line::{Line, LineBalance, ModeLine};
+use crate::solver::piece_search::{Finding, ModePath, Thoroughness, search_pieces};
+use crate::solver::plane_region::{PlaneRegion, complement};
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
-use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares, null_vector};
+use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares};
 use crate::solver::support_friction::SupportFriction;
-use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
+use crate::solver::vector::{add_scaled, dot, velocity};
 
 /// How the search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// `accept` took a candidate.
+    /// A candidate was certified.
     Solved,
     /// Every mode was excluded: the problem has no solution.
     Infeasible,
-    /// Some piece of some mode could be neither excluded nor accepted.
+    /// Some piece of some mode could be neither excluded nor certified.
     Unresolved,
 }
 
@@ -36,39 +40,74 @@ pub enum Verdict {
 /// every piece of a curve a problem of its own.
 const CHEAPEST_FIRST: [usize; 4] = [4, 1, 3, 2];
 
-/// Pieces of a line or curve examined before it counts as unclear, in a first and a second round.
-const MAX_PIECES: [usize; 2] = [2_000, 50_000];
+/// How thoroughly lines and curves are searched, in a first round and, where something was unclear,
+/// in later ones: most solutions show at a first glance, though seldom in the first subset.
+const ROUNDS: [Thoroughness; 3] = [
+    Thoroughness {
+        pieces: 30,
+        attempts: 1,
+    },
+    Thoroughness {
+        pieces: 2_000,
+        attempts: 6,
+    },
+    Thoroughness {
+        pieces: 50_000,
+        attempts: 6,
+    },
+];
 
 /// End of lines and curves (m/s): no impulse or speed is so large.
 const FARTHEST: f64 = 1e6;
 
-/// Searches all modes, and again with more pieces where something was unclear.
-pub fn search(problem: &ScalarNcp, accept: &mut Accept<'_>) -> Verdict {
-    let mut verdict = Verdict::Unresolved;
-    for max_pieces in MAX_PIECES {
-        verdict = ModeSearch::new(problem, max_pieces).run(accept);
-        if verdict != Verdict::Unresolved {
-            break;
+/// Searches all modes, and again more thoroughly where something was unclear and work is left.
+pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
+    let search = ModeSearch::new(problem);
+    let mut unclear = search.subsets(certifier);
+    for thoroughness in ROUNDS {
+        match search.round(&unclear, thoroughness, certifier) {
+            Round::Solved => return Verdict::Solved,
+            Round::Unclear(left) if left.is_empty() => return Verdict::Infeasible,
+            Round::Unclear(left) => unclear = left,
         }
     }
-    verdict
+    Verdict::Unresolved
 }
 
-/// All index sets of `size` out of `n`, in lexical order.
-fn subsets(n: usize, size: usize) -> Vec<Vec<usize>> {
-    if size == 0 {
-        return vec![Vec::new()];
+/// How a round ended.
+enum Round {
+    /// A candidate was certified.
+    Solved,
+    /// These subsets were not excluded.
+    Unclear(Vec<Subset>),
+}
+
+/// At most four generators, by number, in increasing order.
+#[derive(Clone, Copy, Debug)]
+struct Subset {
+    size: usize,
+    members: [usize; 4],
+}
+
+impl Subset {
+    fn of(members: &[usize]) -> Self {
+        let mut all = [0; 4];
+        all[..members.len()].copy_from_slice(members);
+        Self {
+            size: members.len(),
+            members: all,
+        }
     }
-    let tails = |first: usize| {
-        subsets(n - first - 1, size - 1)
-            .into_iter()
-            .map(move |tail| {
-                std::iter::once(first)
-                    .chain(tail.into_iter().map(|i| i + first + 1))
-                    .collect()
-            })
-    };
-    (0..n).flat_map(tails).collect()
+
+    fn members(&self) -> &[usize] {
+        &self.members[..self.size]
+    }
+
+    fn with(mut self, next: usize) -> Self {
+        self.members[self.size] = next;
+        self.size += 1;
+        self
+    }
 }
 
 /// The search of one problem.
@@ -76,11 +115,10 @@ struct ModeSearch {
     conditions: ModeConditions,
     generators: Vec<Generator>,
     rigid: bool,
-    max_pieces: usize,
 }
 
 impl ModeSearch {
-    fn new(problem: &ScalarNcp, max_pieces: usize) -> Self {
+    fn new(problem: &ScalarNcp) -> Self {
         let rigid = !problem.stall.is_finite();
         let mut problem = problem.clone();
         if rigid {
@@ -94,43 +132,110 @@ impl ModeSearch {
             generators: Generator::all(&problem),
             conditions: ModeConditions::new(problem),
             rigid,
-            max_pieces,
         }
     }
 
-    /// Examines all subsets of generators until one has a solution.
-    fn run(&self, accept: &mut Accept<'_>) -> Verdict {
-        let mut verdict = Verdict::Infeasible;
+    /// Examines subsets of generators until one has a solution.
+    fn round(
+        &self,
+        subsets: &[Subset],
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> Round {
+        let mut unclear = Vec::new();
         for size in CHEAPEST_FIRST {
-            for subset in subsets(self.generators.len(), size) {
-                let chosen: Vec<Generator> = subset.iter().map(|i| self.generators[*i]).collect();
-                match self.examine(&chosen, accept) {
-                    Finding::Solved => return Verdict::Solved,
-                    Finding::Unclear => verdict = Verdict::Unresolved,
+            for subset in subsets.iter().filter(|subset| subset.size == size) {
+                // without work left, none is excluded
+                if certifier.left() == 0 {
+                    unclear.push(*subset);
+                    continue;
+                }
+                certifier.spend(1);
+                let chosen = subset.members.map(|i| self.generators[i]);
+                match self.examine(&chosen[..size], thoroughness, certifier) {
+                    Finding::Solved => return Round::Solved,
+                    Finding::Unclear => unclear.push(*subset),
                     Finding::Excluded => {}
                 }
             }
         }
-        verdict
+        Round::Unclear(unclear)
     }
 
-    fn examine(&self, chosen: &[Generator], accept: &mut Accept<'_>) -> Finding {
-        // a rigid pusher does not yield: its stall pair is always among them
-        if self.rigid && chosen[0].contact.is_some() {
-            return Finding::Excluded;
+    /// The subsets for which V can meet the conditions of every two and three of their generators:
+    /// more generators demand more of V.
+    fn subsets(&self, certifier: &mut Certifier<'_>) -> Vec<Subset> {
+        let n = self.generators.len();
+        let pair = |i: usize, j: usize| [self.generators[i], self.generators[j]];
+        // one and two
+        let mut all: Vec<_> = (0..n).map(|i| Subset::of(&[i])).collect();
+        let mut possible = vec![false; n * n];
+        for i in 0..n {
+            for j in i + 1..n {
+                possible[i * n + j] = self.plane_is_possible(&pair(i, j));
+                if possible[i * n + j] {
+                    all.push(Subset::of(&[i, j]));
+                }
+            }
+            certifier.spend((n - i) as u32);
         }
+        // three and four: one more generator, possible with each of the others
+        for size in 2..4 {
+            let smaller: Vec<_> = all.iter().filter(|s| s.size == size).copied().collect();
+            for subset in smaller {
+                let last = subset.members()[size - 1];
+                for next in last + 1..n {
+                    let with_each = subset.members().iter().all(|i| possible[i * n + next]);
+                    let larger = subset.with(next);
+                    if with_each && (size == 3 || self.line_is_possible(&larger)) {
+                        all.push(larger);
+                    }
+                }
+            }
+            certifier.spend((all.len() / 2) as u32);
+        }
+        // a rigid pusher does not yield: its stall pair is always among them
+        all.retain(|subset| !self.rigid || subset.members[0] == 0);
+        all
+    }
+
+    /// Whether some V meets the conditions of two generators.
+    fn plane_is_possible(&self, chosen: &[Generator; 2]) -> bool {
+        let Some(mut region) = PlaneRegion::new(&self.conditions.equations(chosen)) else {
+            return true;
+        };
+        for inequality in self.conditions.inequalities(chosen) {
+            region.clip(&inequality, self.conditions.slack);
+        }
+        !region.is_empty()
+    }
+
+    /// Whether some V meets the conditions of three generators.
+    fn line_is_possible(&self, subset: &Subset) -> bool {
+        let [a, b, c, _] = subset.members;
+        let chosen = [a, b, c].map(|i| self.generators[i]);
+        Line::new(&self.conditions.equations(&chosen))
+            .is_none_or(|line| !line.interval(&self.conditions, &chosen).is_empty())
+    }
+
+    fn examine(
+        &self,
+        chosen: &[Generator],
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> Finding {
         match chosen {
-            [one] => self.single(one, accept),
-            [first, second] => self.curve(&[*first, *second], accept),
-            [a, b, c] => self.line(&[*a, *b, *c], accept),
-            [a, b, c, d] => self.point(&[*a, *b, *c, *d], accept),
+            [one] => self.single(one, certifier),
+            [first, second] => self.curve(&[*first, *second], thoroughness, certifier),
+            [a, b, c] => self.line(&[*a, *b, *c], thoroughness, certifier),
+            [a, b, c, d] => self.point(&[*a, *b, *c, *d], certifier),
             _ => Finding::Excluded,
         }
     }
 
     /// One generator: only the stall pair, or a single cone edge that carries the whole stall
     /// force.
-    fn single(&self, generator: &Generator, accept: &mut Accept<'_>) -> Finding {
+    fn single(&self, generator: &Generator, certifier: &mut Certifier<'_>) -> Finding {
         let problem = &self.conditions.problem;
         let contact = generator.contact.map(|i| &problem.contacts[i]);
         // its impulse
@@ -145,22 +250,23 @@ impl ModeSearch {
         // the velocity that follows
         let push = contact.map_or(0.0, |_| alpha);
         let load = add_scaled(&problem.free, push, &velocity(&generator.g));
-        let (v, feet) = SupportFriction::new(&problem.feet).solve(&load);
+        let moved = SupportFriction::new(&problem.feet).solve(&load);
+        certifier.spend(moved.systems);
+        let v = moved.v;
         let yielded = contact.map_or(0.0, |c| -(dot(&velocity(&c.n), &v) + c.gap_offset) / c.n[3]);
         let v = [v[0], v[1], v[2], yielded];
         let chosen = [*generator];
-        let inequalities = self.conditions.inequalities(&chosen);
-        if !yielded.is_finite() || self.conditions.violates(&inequalities, &v, 0.0) {
+        if !yielded.is_finite() || self.conditions.violates(&chosen, &v, 0.0) {
             return Finding::Excluded;
         }
-        Finding::of_candidate(accept(&Candidate {
-            feet,
+        Finding::of_candidate(certifier.certifies(&Candidate {
+            feet: moved.feet,
             ..self.conditions.candidate(&chosen, &[alpha], v)
         }))
     }
 
     /// Four generators: V is a point.
-    fn point(&self, chosen: &[Generator; 4], accept: &mut Accept<'_>) -> Finding {
+    fn point(&self, chosen: &[Generator; 4], certifier: &mut Certifier<'_>) -> Finding {
         let conditions = &self.conditions;
         let Some(dual) = dual_basis(&chosen.map(|c| c.g)) else {
             return Finding::Excluded;
@@ -168,9 +274,9 @@ impl ModeSearch {
         let equations = conditions.equations(chosen);
         let (rows, values) = (equations.map(|e| e.row), equations.map(|e| e.value));
         let Some(v) = solve_dense(rows, values, DEPENDENT) else {
-            return self.degenerate(chosen, accept);
+            return self.degenerate(chosen, certifier);
         };
-        if conditions.violates(&conditions.inequalities(chosen), &v, 0.0) {
+        if conditions.violates(chosen, &v, 0.0) {
             return Finding::Excluded;
         }
         let ranges = dual.map(|w| conditions.range_along(&w, &v, &v));
@@ -178,14 +284,14 @@ impl ModeSearch {
             return Finding::Excluded;
         }
         let alpha = ranges.map(|range| range.midpoint());
-        Finding::of_candidate(accept(&conditions.candidate(chosen, &alpha, v)))
+        Finding::of_candidate(certifier.certifies(&conditions.candidate(chosen, &alpha, v)))
     }
 
     /// Dependent rows: excluded where they contradict each other, else unclear.
     fn degenerate<const N: usize>(
         &self,
         chosen: &[Generator; N],
-        accept: &mut Accept<'_>,
+        certifier: &mut Certifier<'_>,
     ) -> Finding {
         let equations = self.conditions.equations(chosen);
         let v = least_squares(&equations);
@@ -195,109 +301,78 @@ impl ModeSearch {
         if miss > 10.0 * self.conditions.slack {
             return Finding::Excluded;
         }
-        Finding::of_candidate(accept(&self.conditions.candidate(chosen, &[0.0; N], v)))
+        Finding::of_candidate(certifier.certifies(&self.conditions.candidate(chosen, &[0.0; N], v)))
     }
 
-    /// Three generators: V on a line V0 + τ d.
-    fn line(&self, chosen: &[Generator; 3], accept: &mut Accept<'_>) -> Finding {
-        let conditions = &self.conditions;
-        // the line, and the direction m in which no generator pushes
-        let equations = conditions.equations(chosen);
-        let Some(m) = null_vector(&chosen.map(|c| c.g)) else {
-            return Finding::Excluded;
-        };
-        let Some(d) = null_vector(&equations.map(|e| e.row)) else {
-            return self.degenerate(chosen, accept);
-        };
-        let origin = least_squares(&equations);
-        let inequalities = conditions.inequalities(chosen);
-        let whole = self.line_interval(&origin, &d, &m, &inequalities);
-        if whole.is_empty() {
-            return Finding::Excluded;
-        }
-        let whole = Interval {
-            low: whole.low.max(-FARTHEST),
-            high: whole.high.min(FARTHEST),
-        };
-        // a piece of it needs impulses α ≥ 0 and nothing left along m
-        let [a, b, c] = chosen.map(|c| c.g);
-        let Some(dual) = dual_basis(&[a, b, c, m]) else {
-            return Finding::Excluded;
-        };
-        let mut examine = |piece: Interval| {
-            let at = |tau: f64| add_scaled(&origin, tau, &d);
-            let (low, high) = (at(piece.low), at(piece.high));
-            let [a, b, c, along_m] = dual.map(|w| conditions.range_along(&w, &low, &high));
-            let balanced = along_m.low <= conditions.slack && along_m.high >= -conditions.slack;
-            if !balanced || [a, b, c].iter().any(|r| r.high < -conditions.slack) {
-                return Piece::Excluded;
-            }
-            let alpha = [a, b, c].map(|range| range.midpoint());
-            Piece::Candidate(conditions.candidate(chosen, &alpha, at(piece.midpoint())))
-        };
-        bisect(whole, self.max_pieces, &mut examine, accept)
-    }
-
-    /// The part of the line where the inequalities hold and the friction of the feet can balance
-    /// along m.
-    fn line_interval(
+    /// Three generators: V on a line.
+    fn line(
         &self,
-        origin: &Vector<4>,
-        d: &Vector<4>,
-        m: &Vector<4>,
-        inequalities: &[Inequality],
-    ) -> Interval {
-        let conditions = &self.conditions;
-        let mut interval = Interval {
-            low: f64::NEG_INFINITY,
-            high: f64::INFINITY,
+        chosen: &[Generator; 3],
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> Finding {
+        let Some(balance) = LineBalance::new(chosen) else {
+            return Finding::Excluded;
         };
-        for Inequality { row, offset } in inequalities {
-            interval.clip(dot(row, d), dot(row, origin) + offset + conditions.slack);
-        }
-        let bound = conditions.friction_bound(&velocity(m)) + conditions.slack;
-        let at_origin = conditions.load_along(m, origin);
-        let slope = dot(&velocity(m), &velocity(d));
-        interval.clip(slope, at_origin + bound);
-        interval.clip(-slope, -at_origin + bound);
-        interval
+        let Some(line) = Line::new(&self.conditions.equations(chosen)) else {
+            return self.degenerate(chosen, certifier);
+        };
+        let mut path = ModeLine::new(&self.conditions, chosen, line, balance);
+        search_path(path.interval(), &mut path, thoroughness, certifier)
     }
 
-    /// Two generators: V on a curve, whose v is 1-Lipschitz in its load.
-    fn curve(&self, chosen: &[Generator; 2], accept: &mut Accept<'_>) -> Finding {
-        let conditions = &self.conditions;
-        let Some(curve) = ModeCurve::new(conditions, chosen) else {
-            return Finding::Excluded;
-        };
-        let whole = curve.interval(conditions);
-        if whole.is_empty() {
+    /// Two generators: V on a curve.
+    fn curve(
+        &self,
+        chosen: &[Generator; 2],
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> Finding {
+        if !self.plane_balances(chosen) {
             return Finding::Excluded;
         }
-        let whole = Interval {
-            high: whole.high.min(FARTHEST),
-            ..whole
-        };
-        let inequalities = conditions.inequalities(chosen);
-        let mut support = SupportFriction::new(&conditions.problem.feet);
-        let mut examine = |piece: Interval| {
-            let middle = piece.midpoint();
-            // no v of the piece is farther than this from the middle's
-            let reach = 0.5 * (piece.high - piece.low) * norm(&curve.load);
-            let (v, feet) = support.solve(&add_scaled(&curve.load_0, middle, &curve.load));
-            let miss = (dot(&curve.w, &v) + curve.offset).abs();
-            if miss > reach * norm(&curve.w) + conditions.slack {
-                return Piece::Excluded;
-            }
-            let v = [v[0], v[1], v[2], curve.pusher_yield(&v)];
-            if conditions.violates(&inequalities, &v, reach * (1.0 + curve.yield_gain())) {
-                return Piece::Excluded;
-            }
-            let alpha = curve.impulses(middle);
-            Piece::Candidate(Candidate {
-                feet,
-                ..conditions.candidate(chosen, &alpha, v)
-            })
-        };
-        bisect(whole, self.max_pieces, &mut examine, accept)
+        match ModeCurve::new(&self.conditions, chosen) {
+            Some(mut path) => search_path(path.interval(), &mut path, thoroughness, certifier),
+            None => Finding::Excluded,
+        }
     }
+
+    /// Whether at some V of a plane the friction of the feet can make up for what two generators do
+    /// not balance, with impulses α ≥ 0 of theirs.
+    fn plane_balances(&self, chosen: &[Generator; 2]) -> bool {
+        let conditions = &self.conditions;
+        let Some(mut region) = PlaneRegion::new(&conditions.equations(chosen)) else {
+            return true;
+        };
+        let [a, b] = chosen.map(|generator| generator.g);
+        let Some(dual) = complement(&a, &b).and_then(|[c, d]| dual_basis(&[a, b, c, d])) else {
+            return true;
+        };
+        let [alpha, beta, c, d] = dual.map(|w| conditions.most_along(&w));
+        let [less_c, less_d] = [dual[2], dual[3]].map(|w| conditions.most_along(&w.map(|x| -x)));
+        for inequality in conditions
+            .inequalities(chosen)
+            .chain([alpha, beta, c, d, less_c, less_d])
+        {
+            region.clip(&inequality, conditions.slack);
+        }
+        !region.is_empty()
+    }
+}
+
+/// Searches a line or curve as far as solutions are sought.
+fn search_path(
+    Interval { low, high }: Interval,
+    path: &mut impl ModePath,
+    thoroughness: Thoroughness,
+    certifier: &mut Certifier<'_>,
+) -> Finding {
+    let whole = Interval {
+        low: low.max(-FARTHEST),
+        high: high.min(FARTHEST),
+    };
+    if whole.is_empty() {
+        return Finding::Excluded;
+    }
+    search_pieces(whole, thoroughness, path, certifier)
 }

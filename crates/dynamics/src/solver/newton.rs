@@ -103,17 +103,16 @@ pub struct Newton<const W: usize> {
 }
 
 impl<const W: usize> Newton<W> {
-    /// Iterates from `z` until every lane has converged or taken all iterations; returns the
-    /// residuals.
+    /// Iterates from `z` until every lane has converged or taken all iterations.
     #[inline(always)]
     pub fn solve(
         &mut self,
         ncp: &Ncp<W>,
         z: &mut Unknowns<W>,
         settings: NewtonSettings,
-    ) -> Lanes<W> {
+    ) -> Progress<W> {
         let limits = BatchLimits::until_finished(&settings);
-        self.begin(ncp, z, settings, limits).residual
+        self.begin(ncp, z, settings, limits)
     }
 
     /// Iterates all lanes from `z` within `limits`; [`Newton::iterate`] continues.

@@ -6,11 +6,12 @@ use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::report::TOLERANCE;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
+use crate::solver::certifier::Refined;
 use crate::solver::fixed_mode_newton::FixedModeNewton;
 use crate::solver::newton::{Newton, NewtonSettings};
 
 /// Newton steps in fixed modes, and iterations of [`Newton`] after them.
-const ITERATIONS: u32 = 30;
+const ITERATIONS: u32 = 12;
 
 /// Of the Newton iteration, which may still be far from a solution.
 const SETTINGS: NewtonSettings = NewtonSettings {
@@ -20,7 +21,7 @@ const SETTINGS: NewtonSettings = NewtonSettings {
 };
 
 /// Shares of its bound above which an impulse is taken to slide, tried in turn.
-const SLIDING: [f64; 3] = [0.9999, 0.98, 0.8];
+const SLIDING: [f64; 2] = [0.9999, 0.98];
 
 /// The refinement with its working memory.
 #[derive(Clone, Debug)]
@@ -47,46 +48,44 @@ impl Default for Refiner {
 
 impl Refiner {
     /// Refines `guess` into `self.z`, in the modes that the guess shows, else by [`Newton`] from
-    /// the guess as it is; returns the residual.
-    pub fn refine(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> f64 {
-        let residual = self.try_modes(ncp, guess, &SLIDING, ITERATIONS);
-        if residual <= TOLERANCE {
-            return residual;
+    /// the guess as it is.
+    pub fn refine(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> Refined {
+        let mut systems = 0;
+        for sliding in SLIDING {
+            self.z.copy_from(guess);
+            let (residual, steps) = self.fixed_modes(ncp, sliding);
+            systems += steps;
+            if residual <= TOLERANCE {
+                return Refined {
+                    certified: true,
+                    systems,
+                };
+            }
         }
         self.z.copy_from(guess);
+        let end = on_widest(
+            self.level,
+            #[inline(always)]
+            || self.newton.solve(ncp, &mut self.z, SETTINGS),
+        );
+        Refined {
+            certified: end.residual.0[0] <= TOLERANCE,
+            systems: systems + end.iterations.0[0] as u32,
+        }
+    }
+
+    /// Newton steps in the modes that `self.z` shows: its residual then, and how many.
+    fn fixed_modes(&mut self, ncp: &Ncp<1>, sliding: f64) -> (f64, u32) {
         on_widest(
             self.level,
             #[inline(always)]
-            || self.newton.solve(ncp, &mut self.z, SETTINGS).0[0],
+            || {
+                let all = Mask::splat(true);
+                let steps = self
+                    .fixed_modes
+                    .solve(ncp, &mut self.z, all, sliding, ITERATIONS);
+                (self.map.evaluate(ncp, &self.z).0[0], steps)
+            },
         )
-    }
-
-    /// At most `limit` Newton steps from `guess` in the modes that it shows, for each share of
-    /// `sliding` until one is certified; leaves the last result in `self.z` and returns its
-    /// residual.
-    pub fn try_modes(
-        &mut self,
-        ncp: &Ncp<1>,
-        guess: &Unknowns<1>,
-        sliding: &[f64],
-        limit: u32,
-    ) -> f64 {
-        let mut residual = f64::INFINITY;
-        for &share in sliding {
-            self.z.copy_from(guess);
-            residual = on_widest(
-                self.level,
-                #[inline(always)]
-                || {
-                    self.fixed_modes
-                        .solve(ncp, &mut self.z, Mask::splat(true), share, limit);
-                    self.map.evaluate(ncp, &self.z).0[0]
-                },
-            );
-            if residual <= TOLERANCE {
-                break;
-            }
-        }
-        residual
     }
 }

@@ -1,5 +1,4 @@
-//! One Newton step on smoothed rows per reduction of ε, `W` particles side by side:
-//! [`SmoothedNewton`].
+//! The path of smoothed solutions, followed to ε = 0, `W` particles side by side: [`SmoothedPath`].
 //!
 //! Where an object jams or rests among redundant contacts, the natural map jumps between modes;
 //! smoothed rows do not. There is no line search: ε falls while the smoothed residual stays within a
@@ -8,9 +7,12 @@
 //! problem. Lanes in which fixed modes are due wait until half of all lanes are, so that neither
 //! kind of step runs for few.
 
-use stickslip_lanes::{Lanes, Mask};
+use std::slice::from_ref;
+
+use stickslip_lanes::{Lanes, Level, Mask, on_widest};
 
 use crate::ncp::natural_map::NaturalMap;
+use crate::ncp::report::TOLERANCE;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::solver::fixed_mode_newton::FixedModeNewton;
@@ -21,16 +23,32 @@ use crate::solver::smoothed_map::SmoothedMap;
 /// Smallest ε, as a share of the speed scale.
 const SMALLEST: f64 = 1e-11;
 
-/// Most Newton steps on smoothed rows.
-const STEPS: f64 = 30.0;
-
 /// Factor by which ε falls between one attempt with fixed modes and the next.
 const ATTEMPT_REDUCTION: f64 = 0.01;
 
 /// Newton steps in fixed modes.
 const FIXED_MODE_STEPS: u32 = 2;
 
-/// How ε falls from a warm start.
+/// Share of its bound above which an impulse is taken to slide.
+const SLIDING: f64 = 0.9999;
+
+/// Next to a warm start: nearly every Newton step reduces ε a hundredfold.
+pub const BOLD: SmoothingSchedule = SmoothingSchedule {
+    start: 1e-7,
+    reduction: 0.01,
+    near: 1e6,
+    steps: 30.0,
+};
+
+/// From far away.
+pub const CAREFUL: SmoothingSchedule = SmoothingSchedule {
+    start: 1.0,
+    reduction: 0.3,
+    near: 1.0,
+    steps: 60.0,
+};
+
+/// How ε falls.
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothingSchedule {
     /// First ε, as a share of the speed scale.
@@ -39,8 +57,8 @@ pub struct SmoothingSchedule {
     pub reduction: f64,
     /// Smoothed residual, in units of ε, below which ε may fall.
     pub near: f64,
-    /// Share of its bound above which an impulse is taken to slide.
-    pub sliding: f64,
+    /// Most Newton steps on smoothed rows.
+    pub steps: f64,
 }
 
 /// The problems of a block, `W` to a chunk, and the points they start from.
@@ -61,7 +79,7 @@ pub struct Finished<'a, const W: usize> {
     pub residual: f64,
     /// Newton steps on smoothed rows.
     pub steps: u32,
-    /// The result, in lane `slot`.
+    /// The result of that attempt, or the last point of the path, in lane `slot`.
     pub z: &'a Unknowns<W>,
     /// See `z`.
     pub slot: usize,
@@ -69,7 +87,7 @@ pub struct Finished<'a, const W: usize> {
 
 /// The smoothed Newton steps with their working memory.
 #[derive(Clone, Debug, Default)]
-pub struct SmoothedNewton<const W: usize> {
+pub struct SmoothedPath<const W: usize> {
     queue: LaneQueue<W>,
     progress: Progress<W>,
     map: SmoothedMap<W>,
@@ -107,7 +125,7 @@ impl<const W: usize> Default for Progress<W> {
     }
 }
 
-impl<const W: usize> SmoothedNewton<W> {
+impl<const W: usize> SmoothedPath<W> {
     /// Follows `schedule` from the warm starts of the given particles; tells `finish` how each
     /// ended, solved where its residual is at most `tolerance`. A particle's result does not depend
     /// on the others.
@@ -138,9 +156,9 @@ impl<const W: usize> SmoothedNewton<W> {
             // fixed modes, once enough lanes are due
             self.progress.update_due(self.queue.busy, near);
             if self.progress.enough_due(self.queue.busy) {
-                self.try_fixed_modes(schedule, tolerance);
+                self.try_fixed_modes(tolerance, schedule.steps);
             }
-            self.remove_finished(tolerance, finish);
+            self.remove_finished(tolerance, schedule.steps, finish);
             self.step(near, schedule);
         }
     }
@@ -169,14 +187,14 @@ impl<const W: usize> SmoothedNewton<W> {
 
     /// Newton in the modes that the smoothed points show, in the lanes where it is due.
     #[inline(always)]
-    fn try_fixed_modes(&mut self, schedule: &SmoothingSchedule, tolerance: f64) {
+    fn try_fixed_modes(&mut self, tolerance: f64, most_steps: f64) {
         let due = self.progress.due;
         self.trial.copy_from(&self.queue.z);
         self.fixed_modes.solve(
             &self.queue.ncp,
             &mut self.trial,
             due,
-            schedule.sliding,
+            SLIDING,
             FIXED_MODE_STEPS,
         );
         let residual = self.certificate.evaluate(&self.queue.ncp, &self.trial);
@@ -189,21 +207,30 @@ impl<const W: usize> SmoothedNewton<W> {
         // a lane without a smaller ε to go to has taken its last step
         let last =
             due & residual.gt(Lanes::splat(tolerance)) & !progress.epsilon.gt(progress.smallest);
-        progress.steps = last.select(Lanes::splat(STEPS), progress.steps);
+        progress.steps = last.select(Lanes::splat(most_steps), progress.steps);
         progress.due = Mask::splat(false);
     }
 
     /// Frees the lanes that are solved or have taken all steps.
     #[inline(always)]
-    fn remove_finished(&mut self, tolerance: f64, finish: &mut impl FnMut(&Finished<'_, W>)) {
+    fn remove_finished(
+        &mut self,
+        tolerance: f64,
+        most_steps: f64,
+        finish: &mut impl FnMut(&Finished<'_, W>),
+    ) {
         let (progress, queue) = (&self.progress, &mut self.queue);
         let solved = !progress.residual.gt(Lanes::splat(tolerance));
-        let exhausted = !progress.steps.lt(Lanes::splat(STEPS));
+        let exhausted = !progress.steps.lt(Lanes::splat(most_steps));
         let finished = queue.busy & !progress.due & (solved | exhausted);
         if !finished.any() {
             return;
         }
+        self.trial.resize(queue.ncp.contacts.len());
         for slot in finished.lanes() {
+            if progress.residual.0[slot] == f64::INFINITY {
+                queue.z.pack_lane(&queue.ncp, slot, &mut self.trial, slot);
+            }
             finish(&Finished {
                 index: queue.indices[slot],
                 residual: progress.residual.0[slot],
@@ -245,5 +272,37 @@ impl<const W: usize> Progress<W> {
     fn enough_due(&self, busy: Mask<W>) -> bool {
         let [due, busy] = [self.due.count(), busy.count()];
         due > 0 && 2 * due >= busy
+    }
+}
+
+impl SmoothedPath<1> {
+    /// Follows `schedule` in a single problem and leaves its end in `z`; its residual, infinite where
+    /// fixed modes were never tried, and the Newton steps.
+    pub fn solve_one(
+        &mut self,
+        level: Level,
+        ncp: &Ncp<1>,
+        start: &Unknowns<1>,
+        schedule: &SmoothingSchedule,
+        z: &mut Unknowns<1>,
+    ) -> (f64, u32) {
+        let block = WarmBlock {
+            ncps: from_ref(ncp),
+            warm: from_ref(start),
+        };
+        let mut end = (f64::INFINITY, 0);
+        z.resize(ncp.contacts.len());
+        on_widest(
+            level,
+            #[inline(always)]
+            || {
+                let only = [LaneIndex { chunk: 0, lane: 0 }];
+                self.solve(block, &only, schedule, TOLERANCE, &mut |finished| {
+                    z.unpack_lane(ncp, 0, finished.z, finished.slot);
+                    end = (finished.residual, finished.steps);
+                });
+            },
+        );
+        end
     }
 }

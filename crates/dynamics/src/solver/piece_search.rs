@@ -1,0 +1,280 @@
+//! Search along a line or curve by halving it: [`search_pieces`].
+
+use crate::solver::certifier::Certifier;
+use crate::solver::interval::Interval;
+use crate::solver::scalar_ncp::Candidate;
+use crate::solver::vector::Vector;
+
+/// Widths of pieces below which their middles are tried (m/s, relative where above 1). Where an
+/// object creeps, only the middle of a narrow piece is near the solution.
+const WIDTHS: [f64; 3] = [1e-5, 1e-8, 1e-11];
+
+/// Width at which a piece is not halved any more.
+const NARROWEST: f64 = 1e-12;
+
+/// Miss up to which a point is a root (m/s).
+const ROOT: f64 = 1e-11;
+
+/// Most steps of the search for a root.
+const ROOT_STEPS: u32 = 40;
+
+/// How thoroughly a line or curve is searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Thoroughness {
+    /// Most pieces.
+    pub pieces: u32,
+    /// Roots that are refined, and middles of pieces at each width; neighbouring pieces differ
+    /// little, so that more than some do not help.
+    pub attempts: u32,
+}
+
+/// What is known of a subset of generators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finding {
+    /// It has no solution.
+    Excluded,
+    /// A candidate was certified.
+    Solved,
+    /// Neither.
+    Unclear,
+}
+
+impl Finding {
+    /// Of a mode whose only candidate was certified or not.
+    pub fn of_candidate(certified: bool) -> Self {
+        if certified {
+            Self::Solved
+        } else {
+            Self::Unclear
+        }
+    }
+}
+
+/// A point of a line or curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Its place.
+    pub x: f64,
+    /// V there.
+    pub v: Vector<4>,
+    /// Impulses of the feet.
+    pub feet: [[f64; 2]; 3],
+    /// By how much it misses the last condition: zero at a solution.
+    pub miss: f64,
+    /// Error of V (m/s).
+    pub error: f64,
+    /// Linear systems that it took.
+    pub systems: u32,
+}
+
+/// A line or curve on which V meets all conditions of a mode but one.
+pub trait ModePath {
+    /// The point at x.
+    fn sample(&mut self, x: f64) -> Sample;
+
+    /// Whether there is no solution between two points.
+    fn excludes(&self, a: &Sample, b: &Sample) -> bool;
+
+    /// A point with the impulses of the mode.
+    fn candidate(&self, at: &Sample) -> Candidate;
+}
+
+/// Halves the whole interval until every piece is excluded or a candidate is certified; gives up
+/// after so many pieces, or where no work is left.
+pub fn search_pieces(
+    whole: Interval,
+    thoroughness: Thoroughness,
+    path: &mut impl ModePath,
+    certifier: &mut Certifier<'_>,
+) -> Finding {
+    let sample = |path: &mut _, x: f64, certifier: &mut Certifier<'_>| -> Sample {
+        let at = ModePath::sample(path, x);
+        certifier.spend(at.systems);
+        at
+    };
+    let ends = [whole.low, whole.high].map(|x| sample(path, x, certifier));
+    let mut stack = vec![ends];
+    let mut finding = Finding::Excluded;
+    let mut left = Attempts::new(thoroughness.attempts);
+    for piece in 0.. {
+        let Some([a, b]) = stack.pop() else {
+            break;
+        };
+        if piece == thoroughness.pieces || certifier.left() == 0 {
+            return Finding::Unclear;
+        }
+        if path.excludes(&a, &b) {
+            continue;
+        }
+        let width = (b.x - a.x) / (1.0 + a.x.abs().max(b.x.abs()));
+        // the root where the last condition changes its sign
+        if a.miss * b.miss <= 0.0 && left.takes_root(&a, &b, width) {
+            let root = root(path, a, b, certifier);
+            if certifier.certifies(&path.candidate(&root)) {
+                return Finding::Solved;
+            }
+            left.failed_root = root.x;
+        }
+        // the middle of a narrow piece, or where the condition holds all along
+        let middle = sample(path, 0.5 * (a.x + b.x), certifier);
+        if left.takes_middle(&middle, width) && certifier.certifies(&path.candidate(&middle)) {
+            return Finding::Solved;
+        }
+        // the lower half is next
+        if width < NARROWEST {
+            finding = Finding::Unclear;
+            continue;
+        }
+        stack.push([middle, b]);
+        stack.push([a, middle]);
+    }
+    finding
+}
+
+/// Candidates of a line or curve that may still be refined.
+struct Attempts {
+    roots: u32,
+    /// Middles of pieces of each width.
+    middles: [u32; WIDTHS.len()],
+    /// The last root that was none of the problem's solutions.
+    failed_root: f64,
+}
+
+impl Attempts {
+    fn new(each: u32) -> Self {
+        Self {
+            roots: each,
+            middles: [each; WIDTHS.len()],
+            failed_root: f64::NAN,
+        }
+    }
+
+    /// Whether to refine the root of a piece, and counts it: not where that is the one that failed.
+    fn takes_root(&mut self, a: &Sample, b: &Sample, width: f64) -> bool {
+        let known = width > WIDTHS[0] && (a.x..=b.x).contains(&self.failed_root);
+        !known && take(&mut self.roots)
+    }
+
+    /// Whether to refine the middle of a piece, and counts it.
+    fn takes_middle(&mut self, middle: &Sample, width: f64) -> bool {
+        match WIDTHS.iter().rposition(|limit| width < *limit) {
+            Some(k) => take(&mut self.middles[k]),
+            None => middle.miss.abs() <= ROOT && take(&mut self.roots),
+        }
+    }
+}
+
+/// Counts one down; whether there was one.
+fn take(left: &mut u32) -> bool {
+    let any = *left > 0;
+    *left = left.saturating_sub(1);
+    any
+}
+
+/// Between two points that miss the last condition to opposite sides, one that meets it: false
+/// position, with the miss of an end that stays halved (the Illinois algorithm).
+fn root(
+    path: &mut impl ModePath,
+    mut a: Sample,
+    mut b: Sample,
+    certifier: &mut Certifier<'_>,
+) -> Sample {
+    for _ in 0..ROOT_STEPS {
+        let size = a.x.abs().max(b.x.abs());
+        if a.miss == b.miss || (b.x - a.x).abs() <= 1e-15 * size {
+            break;
+        }
+        let x = (a.x * b.miss - b.x * a.miss) / (b.miss - a.miss);
+        let between = path.sample(x.clamp(a.x.min(b.x), a.x.max(b.x)));
+        certifier.spend(between.systems);
+        if between.miss.abs() <= f64::max(1e-14 * size, 1e-3 * ROOT) {
+            return between;
+        }
+        if between.miss * b.miss < 0.0 {
+            a = b;
+        } else {
+            a.miss *= 0.5;
+        }
+        b = between;
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::certifier::Refined;
+
+    /// The line V = (x, 0, 0, 0) with the condition sin(x) = level, |sin′| ≤ 1.
+    struct Wave {
+        level: f64,
+    }
+
+    impl ModePath for Wave {
+        fn sample(&mut self, x: f64) -> Sample {
+            Sample {
+                x,
+                v: [x, 0.0, 0.0, 0.0],
+                feet: [[0.0; 2]; 3],
+                miss: libm::sin(x) - self.level,
+                error: 0.0,
+                systems: 1,
+            }
+        }
+
+        fn excludes(&self, a: &Sample, b: &Sample) -> bool {
+            let reach = 0.5 * (b.x - a.x);
+            libm::sin(0.5 * (a.x + b.x)) - self.level > reach
+                || self.level - libm::sin(0.5 * (a.x + b.x)) > reach
+        }
+
+        fn candidate(&self, at: &Sample) -> Candidate {
+            Candidate {
+                v: at.v,
+                ..Candidate::default()
+            }
+        }
+    }
+
+    const THOROUGH: Thoroughness = Thoroughness {
+        pieces: 1000,
+        attempts: 6,
+    };
+
+    fn search(level: f64, limit: u32) -> (Finding, Vec<f64>) {
+        let mut tried = Vec::new();
+        let mut refine = |candidate: &Candidate| {
+            tried.push(candidate.v[0]);
+            // only the second root is a solution
+            let certified =
+                (candidate.v[0] - (std::f64::consts::PI - libm::asin(level))).abs() < 1e-9;
+            Refined {
+                certified,
+                systems: 1,
+            }
+        };
+        let whole = Interval {
+            low: 0.0,
+            high: 6.0,
+        };
+        let mut certifier = Certifier::new(&mut refine, limit);
+        let finding = search_pieces(whole, THOROUGH, &mut Wave { level }, &mut certifier);
+        (finding, tried)
+    }
+
+    #[test]
+    fn second_root_is_found_where_the_first_is_no_solution() {
+        let (finding, tried) = search(0.5, 10_000);
+        assert_eq!(finding, Finding::Solved, "{tried:?}");
+    }
+
+    #[test]
+    fn condition_that_no_point_meets_is_excluded() {
+        assert_eq!(search(1.2, 10_000).0, Finding::Excluded);
+    }
+
+    #[test]
+    fn search_without_work_left_is_unclear() {
+        assert_eq!(search(0.5, 5).0, Finding::Unclear);
+    }
+}
