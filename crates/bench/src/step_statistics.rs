@@ -6,10 +6,9 @@ use stickslip_dynamics::{Outcome, Report, Route};
 const MOST_ITERATIONS: usize = 255;
 
 /// Routes in the order in which the solver tries them, with their names.
-const ROUTES: [(Route, &str); 4] = [
+const ROUTES: [(Route, &str); 3] = [
     (Route::Newton, "newton"),
-    (Route::SmoothedNewton, "continuation"),
-    (Route::Homotopy, "homotopy"),
+    (Route::SmoothedPath, "smoothed path"),
     (Route::ModeSearch, "modes"),
 ];
 
@@ -18,7 +17,7 @@ const ROUTES: [(Route, &str); 4] = [
 pub struct StepStatistics {
     steps: u64,
     unsolved: u64,
-    routes: [u64; 4],
+    routes: [u64; 3],
     by_iterations: Vec<u64>,
     worst_residual: f64,
 }
@@ -28,7 +27,7 @@ impl Default for StepStatistics {
         Self {
             steps: 0,
             unsolved: 0,
-            routes: [0; 4],
+            routes: [0; 3],
             by_iterations: vec![0; MOST_ITERATIONS + 1],
             worst_residual: 0.0,
         }
@@ -39,7 +38,7 @@ impl StepStatistics {
     /// Counts one particle-step.
     pub fn count(&mut self, report: &Report) {
         self.steps += 1;
-        self.by_iterations[(report.iterations as usize).min(MOST_ITERATIONS)] += 1;
+        self.by_iterations[(report.systems as usize).min(MOST_ITERATIONS)] += 1;
         for (count, (route, _)) in self.routes.iter_mut().zip(ROUTES) {
             *count += u64::from(route == report.route);
         }

@@ -43,7 +43,7 @@ impl<M: Model> ParticleFilter<M> {
             unnormalised: UnnormalisedWeights::zeros(settings.particles),
             resetting: vec![0.0; settings.particles],
             ancestors: vec![0; settings.particles],
-            scratch: PerThread::new(|| model.scratch()),
+            scratch: PerThread::new(blocks.len(), || model.scratch()),
             block_sums: blocks.map(|_| M::Sums::default()).collect(),
             sums: M::Sums::default(),
             particles,
@@ -108,6 +108,10 @@ impl<M: Model> ParticleFilter<M> {
     /// Draws the ancestors by the weights, which become equal.
     fn choose_ancestors(&mut self, purpose: Purpose) {
         let draw = self.draw(purpose);
+        let (model, particles) = (&self.model, &self.particles);
+        self.weights.keep_only(|particle| {
+            model.may_be_copied(&particles.block(particle / BLOCK), particle % BLOCK)
+        });
         self.settings
             .resampling
             .ancestors(self.weights.weights(), draw, &mut self.ancestors);

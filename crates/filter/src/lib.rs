@@ -12,14 +12,17 @@
 //!   [`WeightUpdate::Collapsed`];
 //! - after the first steps, a step on one thread allocates nothing.
 //!
-//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them, and
-//! inside [`keep_threads_awake`] where one filter has them to itself.
+//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them (more than
+//! [`useful_threads`] bring nothing), and inside [`keep_threads_awake`] where one filter has them to
+//! itself. They help where the system runs them; a filter does not wait for those that it does not.
 
 mod awake;
 mod filter;
+mod helpers;
 mod kalman;
 mod model;
 mod moments;
+mod pace;
 mod parallel;
 mod particles;
 mod report;
@@ -36,7 +39,7 @@ pub use kalman::imm::{ImmState, InteractingMultipleModel};
 pub use kalman::noise_fit::{Optimum, ProcessNoiseFit};
 pub use kalman::series::SeriesError;
 pub use model::{Model, WeightedSums};
-pub use particles::{BLOCK, Block, BlockMut, ParticleSet};
+pub use particles::{BLOCK, Block, BlockMut, ParticleSet, useful_threads};
 pub use report::{StepReport, WeightUpdate};
 pub use resample::Resampling;
 pub use settings::{Settings, SettingsError};

@@ -63,6 +63,12 @@ pub trait Model: Sync {
     /// Writes the weighted sums over one block.
     fn sum(&self, input: &Self::Input, block: &Block<'_>, weights: &[f64], sums: &mut Self::Sums);
 
+    /// Whether a resampling may copy particle `i` of a block, as by default any: not one whose last
+    /// move is unknown. Where none of positive weight may be copied, all may.
+    fn may_be_copied(&self, _block: &Block<'_>, _i: usize) -> bool {
+        true
+    }
+
     /// Whether no particle explains the observation, given the largest log-likelihood among
     /// particles of positive weight. A largest value of -inf is always a collapse.
     fn collapsed(&self, best_log_likelihood: f64) -> bool {

@@ -15,8 +15,9 @@ use stickslip_lanes::exponentials;
 use crate::parallel;
 use crate::particles::BLOCK;
 
-/// Particles whose weights one thread normalises at least.
-const GRAIN: usize = 16 * BLOCK;
+/// Particles whose weights one thread normalises at least: fewer take less time than a thread takes
+/// to come and help.
+const GRAIN: usize = 256 * BLOCK;
 
 /// Independent partial results: a single one would wait for every operation before it.
 const PARTIAL: usize = 8;
@@ -97,6 +98,26 @@ impl LogWeights {
         self.log.fill(-libm::log(n));
         self.linear.fill(1.0 / n);
         self.effective_sample_size = n;
+    }
+
+    /// Takes the weight of the other particles, unless nothing would be left; does nothing where all
+    /// are kept.
+    pub(crate) fn keep_only(&mut self, keep: impl Fn(usize) -> bool) {
+        if (0..self.linear.len()).all(&keep) {
+            return;
+        }
+        let weights = self.linear.iter().enumerate();
+        let kept: f64 = weights.filter(|(i, _)| keep(*i)).map(|(_, w)| w).sum();
+        if kept == 0.0 {
+            return;
+        }
+        for (i, (linear, log)) in self.linear.iter_mut().zip(&mut self.log).enumerate() {
+            (*linear, *log) = if keep(i) {
+                (*linear / kept, *log - libm::log(kept))
+            } else {
+                (0.0, f64::NEG_INFINITY)
+            };
+        }
     }
 
     /// Bayes' rule: `w_i <- w_i L_i / sum_j w_j L_j`. `log_likelihood` holds (N,) ln L.
