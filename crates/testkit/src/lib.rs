@@ -9,16 +9,20 @@
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.
+//! - [`hard_steps`]: steps that a solver once failed on, or took long for.
+//! - [`ClosedLoop`]: random scenes that the particle filter follows, every step judged.
 //! - [`pushed_scene`]: a scene with given shapes.
 //! - [`data_root`], [`recorded_cases`]: where recorded experiments lie, and how they are run.
 //! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
 //!   problems.
 
 mod block;
+mod closed_loop;
 mod cone;
 mod conic_program;
 mod corpus;
 mod data;
+mod hard_steps;
 mod harvest;
 mod impulses;
 mod jam;
@@ -35,9 +39,14 @@ mod survey;
 mod vector;
 
 pub use block::{Block, Stop};
+pub use closed_loop::{
+    ClosedLoop, Existence, LoopTally, NotedStep, NotedSteps, PusherPoses, SceneKind, SceneRun,
+    StepAddress,
+};
 pub use cone::{cone_program_step, cone_program_twist};
 pub use corpus::{Corpus, Family};
 pub use data::data_root;
+pub use hard_steps::{HardStep, hard_steps};
 pub use harvest::{Harvest, HarvestOptions, HarvestedStep, MOST_PARTICLES, harvest, survey_steps};
 pub use impulses::impulses_for_twist;
 pub use jam::{gap_margin, may_jam};

@@ -1,6 +1,7 @@
 //! SplitMix64 (Steele, Lea & Flood 2014): a generator that is a pure function of its seed, on every
 //! machine.
 
+#[derive(Clone, Debug)]
 pub(crate) struct SplitMix64(u64);
 
 /// The output function: a bijection of 64-bit words that spreads neighbours.

@@ -15,8 +15,8 @@ use crate::jam::{gap_margin, may_jam};
 pub struct Tally {
     /// Problems.
     pub problems: u64,
-    /// Solved by the fast solver, the smoothed steps, the homotopy, the search over modes.
-    pub solved: [u64; 4],
+    /// Solved by the Newton iteration, the smoothed path, the search over modes.
+    pub solved: [u64; 3],
     /// Proven to have no solution.
     pub infeasible: u64,
     /// Indices of problems with neither.
@@ -30,7 +30,7 @@ pub struct Tally {
 impl Tally {
     /// The columns of its [`Display`](fmt::Display).
     pub const TITLES: &'static str =
-        " problems    newton  smoothed  homotopy   modes  infeasible  failed     residual";
+        " problems    newton  smoothed   modes  infeasible  failed     residual";
 
     /// One step by its report; `index` names it should it have failed.
     #[must_use]
@@ -74,19 +74,18 @@ impl Tally {
 fn index_of(route: Route) -> usize {
     match route {
         Route::Newton => 0,
-        Route::SmoothedNewton => 1,
-        Route::Homotopy => 2,
-        Route::ModeSearch => 3,
+        Route::SmoothedPath => 1,
+        Route::ModeSearch => 2,
     }
 }
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [newton, smoothed, homotopy, modes] = self.solved;
+        let [newton, smoothed, modes] = self.solved;
         let (problems, infeasible, failed) = (self.problems, self.infeasible, self.failed.len());
         write!(
             f,
-            "{problems:>9} {newton:>9} {smoothed:>9} {homotopy:>9} {modes:>7} {infeasible:>11} {failed:>7} {:>12.1e}",
+            "{problems:>9} {newton:>9} {smoothed:>9} {modes:>7} {infeasible:>11} {failed:>7} {:>12.1e}",
             self.worst_residual
         )
     }

@@ -1,0 +1,84 @@
+//! Whether a step has a solution, by means that share nothing with the solver: [`Existence`].
+
+use stickslip_dynamics::{StepProblem, StepSolution};
+
+use crate::jam::{gap_margin, may_jam};
+use crate::modes::enumerate_modes;
+use crate::residual::residual_si;
+
+/// Largest residual of a solution (m/s).
+const TOLERANCE: f64 = 1e-9;
+
+/// Contacts whose modes are enumerated.
+const ENUMERATED: usize = 3;
+
+/// What is known of a step's solutions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existence {
+    /// There is one: no impulses within the friction cones cancel each other and the gaps can all
+    /// open, or one was found by enumeration.
+    Certain,
+    /// The gap rows exclude each other at every reasonable speed.
+    Excluded,
+    /// Neither is known.
+    Unknown,
+}
+
+impl Existence {
+    /// Of one step, from what its gaps and friction cones say alone: a fraction of a millisecond.
+    ///
+    /// # Panics
+    /// Where Clarabel fails on a bounded program.
+    #[must_use]
+    pub fn of(problem: &StepProblem) -> Self {
+        if gap_margin(problem, 1.0) < 0.0 {
+            Self::Excluded
+        } else if may_jam(problem) {
+            Self::Unknown
+        } else {
+            Self::Certain
+        }
+    }
+
+    /// Of one step, where that says nothing also from the modes of its three nearest contacts, the
+    /// others open: a third of a second.
+    ///
+    /// # Panics
+    /// Where Clarabel fails on a bounded program.
+    #[must_use]
+    pub fn enumerated(problem: &StepProblem) -> Self {
+        match Self::of(problem) {
+            Self::Unknown if has_solution(problem) => Self::Certain,
+            known => known,
+        }
+    }
+}
+
+/// Whether some mode of the nearest contacts gives a solution of the whole problem.
+fn has_solution(problem: &StepProblem) -> bool {
+    let gap = |i: &usize| problem.contacts[*i].gap;
+    let mut nearest: Vec<usize> = (0..problem.contacts.len()).collect();
+    nearest.sort_by(|a, b| gap(a).total_cmp(&gap(b)));
+    nearest.truncate(ENUMERATED);
+    let part = StepProblem {
+        contacts: nearest.iter().map(|i| problem.contacts[*i]).collect(),
+        ..problem.clone()
+    };
+    enumerate_modes(&part)
+        .iter()
+        .any(|found| residual_si(problem, &with_open(problem, &nearest, found)) <= TOLERANCE)
+}
+
+/// A solution of the contacts `closed`, with no impulse at the others.
+fn with_open(problem: &StepProblem, closed: &[usize], found: &StepSolution) -> StepSolution {
+    let mut whole = StepSolution {
+        normal: vec![0.0; problem.contacts.len()],
+        tangential: vec![0.0; problem.contacts.len()],
+        ..found.clone()
+    };
+    for (k, i) in closed.iter().enumerate() {
+        whole.normal[*i] = found.normal[k];
+        whole.tangential[*i] = found.tangential[k];
+    }
+    whole
+}

@@ -1,0 +1,42 @@
+//! The steps that a solver once failed on or took long for, from where it started and from afar:
+//! each is solved or proven to have no solution, and the two agree.
+
+use stickslip_dynamics::{Outcome, Route, solve, solve_from};
+use stickslip_testkit::{gap_margin, hard_steps, residual_si};
+
+/// Largest residual of a solved step (m/s).
+const TOLERANCE: f64 = 1e-9;
+
+#[test]
+fn hard_steps_are_solved_or_proven_infeasible() {
+    let steps = hard_steps();
+    let (mut infeasible, mut searched) = (0, 0);
+    for (k, step) in steps.iter().enumerate() {
+        let answers = [solve(&step.problem), solve_from(&step.problem, &step.start)];
+        for (solution, report) in &answers {
+            let residual = residual_si(&step.problem, solution);
+            match report.outcome {
+                // the two residuals may differ by rounding
+                Outcome::Solved => assert!(residual <= 1.1 * TOLERANCE, "{k}: {residual:e}"),
+                Outcome::Infeasible => infeasible += 1,
+                Outcome::Failed => panic!("{k}, {}: failed", step.class),
+            }
+            searched += usize::from(report.route == Route::ModeSearch);
+        }
+        assert_eq!(
+            answers[0].1.outcome, answers[1].1.outcome,
+            "{k}, {}",
+            step.class
+        );
+        // an independent proof, where there is one, says the same
+        if gap_margin(&step.problem, 1.0) < -1e-6 {
+            assert_eq!(answers[0].1.outcome, Outcome::Infeasible, "{k}");
+        }
+    }
+    // the file has not lost what makes it hard
+    assert!(steps.len() > 250, "{} steps", steps.len());
+    assert!(
+        infeasible > 150 && searched > 300,
+        "{infeasible}, {searched}"
+    );
+}
