@@ -1,13 +1,23 @@
 //! What several commands take: [`Rows`], [`ThreadArgs`] and checked numbers.
 
+use std::num::NonZero;
 use std::str::FromStr;
+use std::thread::available_parallelism;
 
 use clap::Args;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use stickslip::useful_threads;
+
+/// Threads that are started for one processor, at most: more than one is never faster, and shows that
+/// results do not depend on it.
+const PER_PROCESSOR: usize = 4;
 
 /// How many threads to work on.
 #[derive(Debug, Args)]
 pub struct ThreadArgs {
-    /// Threads [default: one per processor]; results do not depend on it
+    /// Threads [default: one per processor, but for a single filter no more than one per 128
+    /// particles]; results do not depend on it. No more are started than can help: four per
+    /// processor, and for a single filter one per 64 particles
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 }
@@ -43,13 +53,31 @@ impl FromStr for Rows {
 }
 
 impl ThreadArgs {
-    /// As many threads as asked for.
-    pub fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
-        let threads = self.threads.map_or(0, usize::from);
-        Ok(rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()?)
+    /// Threads for many runs, frames or files.
+    pub fn pool(&self) -> anyhow::Result<ThreadPool> {
+        start(self.count(processors(), usize::MAX))
     }
+
+    /// Threads for one particle filter. By default half as many as can help: with one block of
+    /// particles each, all wait for the slowest.
+    pub fn filter_pool(&self, particles: usize) -> anyhow::Result<ThreadPool> {
+        let useful = useful_threads(particles);
+        start(self.count(processors().min(useful.div_ceil(2)), useful))
+    }
+
+    /// As many as asked for or else `default`, of which `useful` can do something.
+    fn count(&self, default: usize, useful: usize) -> usize {
+        let asked = self.threads.map_or(default, usize::from);
+        asked.min(useful).min(PER_PROCESSOR * processors()).max(1)
+    }
+}
+
+fn processors() -> usize {
+    available_parallelism().map_or(1, NonZero::get)
+}
+
+fn start(threads: usize) -> anyhow::Result<ThreadPool> {
+    Ok(ThreadPoolBuilder::new().num_threads(threads).build()?)
 }
 
 /// A positive number.
@@ -73,6 +101,15 @@ pub fn particles(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn count_is_what_was_asked_for_up_to_what_can_help() {
+        let of = |threads| ThreadArgs { threads };
+        assert_eq!(of(Some(3)).count(1, 8), 3);
+        assert_eq!(of(Some(1000)).count(1, 3), 3);
+        assert!(of(Some(1000)).count(1, usize::MAX) <= PER_PROCESSOR * processors());
+        assert_eq!(of(None).count(0, 1), 1);
+    }
 
     #[test]
     fn rows_parse_from_and_to() {

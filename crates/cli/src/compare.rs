@@ -105,7 +105,8 @@ fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict)
     for (index, folder) in folders.iter().enumerate() {
         let all = jobs.iter().zip(&scores);
         let own = all.filter(|(job, _)| job.folder == index);
-        match FolderResult::gather(&folder.path, own.map(|(job, scores)| (job.variant, scores))) {
+        let own = own.map(|(job, scores)| (job.variant, scores));
+        match FolderResult::gather(&folder.path, &folder.experiment.setup, own) {
             Ok(result) => results.push(result),
             Err(error) => errors.push(LostFolder::new(&folder.path, error)),
         }

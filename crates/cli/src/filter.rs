@@ -7,6 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use clap::CommandFactory;
 use serde::Serialize;
+use stickslip::diagnosis::assumed_stall_force;
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Occlusion, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant, score};
@@ -38,6 +39,9 @@ struct Summary {
     unsolved: u64,
     collapses: u32,
     real_time_factor: f64,
+    /// In N; `None` is a rigid drive.
+    stall_force: Option<f64>,
+    stall_force_assumed: bool,
     friction: BTreeMap<&'static str, Parameter>,
 }
 
@@ -112,7 +116,7 @@ fn timed_run(
         "frames",
         if long { Work::Long } else { Work::Short },
     );
-    let pool = args.shared.threads.pool()?;
+    let pool = args.shared.threads.filter_pool(options.particles)?;
     let start = Instant::now();
     let Experiment { setup, log, .. } = experiment;
     let mut advance = |row: usize| progress.set_position(row as u64);
@@ -183,6 +187,8 @@ impl Summary {
             unsolved: run.unsolved,
             collapses: run.collapses,
             real_time_factor: experiment.log.duration() / seconds,
+            stall_force: experiment.setup.scene.pusher.stall_force,
+            stall_force_assumed: experiment.setup.stall_force_assumed,
             friction: Parameter::at_end(&run.estimate)
                 .into_iter()
                 .map(|parameter| (parameter.name, parameter))
@@ -209,7 +215,8 @@ fn tables(
     let parts = [title, score_table(summary).to_string()]
         .into_iter()
         .chain(friction)
-        .chain(final_pose_line(experiment, estimate));
+        .chain(final_pose_line(experiment, estimate))
+        .chain(assumed_stall_force(&experiment.setup).map(|finding| format!("note: {finding}\n")));
     parts.collect::<Vec<_>>().join("\n")
 }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use stickslip::Setup;
+use stickslip::diagnosis::assumed_stall_force;
 use stickslip_evaluation::paper::{PaperExperiment, PaperScene};
 use stickslip_evaluation::{REPEATS, Simulation, SimulationError, SimulationOptions};
 use stickslip_formats::{
@@ -57,13 +58,18 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
     Ok(Verdict::Done)
 }
 
-/// Names the scene, and says what to add where it has no start.
+/// Names the scene, and says what to change in it where that is known.
 fn refused(error: SimulationError, name: &str) -> anyhow::Error {
-    if error == SimulationError::NoStart {
-        let help = "add [start] with object = [x, y, theta], pusher = [x, y, theta], speed = ... in m/s and duration = ... in s";
-        return hinted(format!("{name}: {error}"), help);
-    }
-    anyhow::Error::new(error).context(name.to_owned())
+    let help = match error {
+        SimulationError::NoStart => {
+            "add [start] with object = [x, y, theta], pusher = [x, y, theta], speed = ... in m/s and duration = ... in s"
+        }
+        SimulationError::RigidDrive => {
+            "give the force in N at which the drive gives way, or take --physics model"
+        }
+        _ => return anyhow::Error::new(error).context(name.to_owned()),
+    };
+    hinted(format!("{name}: {error}"), help)
 }
 
 /// A log that is there may be a recorded one.
@@ -149,10 +155,12 @@ fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
         event(format!("fixel {} touches", j + 1), *row);
     }
     event("camera dark from".to_owned(), facts.occlude_from);
+    let assumed = assumed_stall_force(setup).map(|finding| format!("\nnote: {finding}\n"));
     format!(
-        "{name}: {} rows, {length:.1} s\n\n{events}\n{}",
+        "{name}: {} rows, {length:.1} s\n\n{events}\n{}{}",
         log.len(),
-        friction(setup, facts)
+        friction(setup, facts),
+        assumed.unwrap_or_default()
     )
 }
 

@@ -55,6 +55,22 @@ fn check_of_good_data_finds_nothing() {
 }
 
 #[test]
+fn check_names_a_missing_stall_force() {
+    let case = Experiment::copy(STOP, "no_stall_force");
+    case.forget_stall_force();
+    let (code, warnings) = check(&case, "warning");
+    assert_eq!((code, warnings.len()), (Some(0), 1), "{warnings:?}");
+    for words in [
+        "stall force: `pusher.stall_force` is missing",
+        "32.0 N",
+        "in N",
+        "inf",
+    ] {
+        assert!(warnings[0].contains(words), "{warnings:?}");
+    }
+}
+
+#[test]
 fn check_names_millimetres_in_the_log() {
     let case = Experiment::copy(STOP, "log_mm");
     case.edit_rows(|rows| {

@@ -109,6 +109,42 @@ fn filter_json_has_the_contract_s_keys() {
     );
 }
 
+/// `filter` with few particles.
+fn filter(case: &Experiment) -> Command {
+    let mut command = stickslip();
+    command
+        .args(["filter", &case.log(), "--scene", &case.scene()])
+        .args(FEW);
+    command
+}
+
+/// 20 times 0.28 × 0.582177 kg × 9.81 m/s².
+const ASSUMED: f64 = 31.9826;
+
+#[test]
+fn filter_says_which_stall_force_it_assumes_and_solves_the_jam() {
+    let case = Experiment::copy(STOP, "filter_no_stall_force");
+    let given = json(filter(&case).arg("--json"));
+    assert_eq!(given["stall_force"], 24.837);
+    assert_eq!(given["stall_force_assumed"], false);
+
+    case.forget_stall_force();
+    let assumed = json(filter(&case).arg("--json"));
+    let force = assumed["stall_force"].as_f64().unwrap();
+    assert!((force - ASSUMED).abs() < 1e-3, "{force}");
+    assert_eq!(assumed["stall_force_assumed"], true);
+    assert_eq!(assumed["unsolved"], 0);
+    let text = String::from_utf8(filter(&case).output().unwrap().stdout).unwrap();
+    assert!(
+        text.lines().any(
+            |line| line.starts_with("note: `pusher.stall_force` is missing")
+                && line.contains("32.0 N is assumed")
+                && line.contains("inf")
+        ),
+        "{text}"
+    );
+}
+
 #[test]
 fn filter_scores_against_the_log_where_there_is_no_truth() {
     let case = Experiment::copy(STOP, "filter_log_reference");

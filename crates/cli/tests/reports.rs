@@ -218,3 +218,23 @@ fn compare_writes_a_report_of_all_folders() {
         assert!(page.contains(text), "{text}");
     }
 }
+
+#[test]
+fn compare_says_which_stall_force_it_assumes() {
+    let case = Experiment::copy(STOP, "compare_no_stall_force");
+    case.forget_stall_force();
+    let page = case.folder.join("report.html");
+    let compare = |options: &[&str]| {
+        let mut command = stickslip();
+        command.arg("compare").arg(&case.folder).args(FEW);
+        String::from_utf8(command.args(options).output().unwrap().stdout).unwrap()
+    };
+    let text = compare(&["--report", page.to_str().unwrap()]);
+    for told in [text, fs::read_to_string(page).unwrap()] {
+        assert!(told.contains("32.0 N is assumed"), "{told}");
+    }
+    let report: serde_json::Value = serde_json::from_str(&compare(&["--json"])).unwrap();
+    let folder = &report["folders"][0];
+    assert_eq!(folder["stall_force_assumed"], true);
+    assert!((folder["stall_force"].as_f64().unwrap() - 31.9826).abs() < 1e-3);
+}

@@ -188,6 +188,18 @@ fn what_cannot_be_simulated_is_refused_with_the_next_step() {
         &["scene.toml", "no table [start]", "help: ", "duration"],
     );
     refused(
+        "simulate_rigid",
+        &SCENE.replace("stall_force = 20", "stall_force = inf"),
+        &[],
+        1,
+        &[
+            "scene.toml",
+            "stall_force is inf",
+            "help: ",
+            "--physics model",
+        ],
+    );
+    refused(
         "simulate_overlap",
         &SCENE.replace("-0.035", "-0.028"),
         &[],

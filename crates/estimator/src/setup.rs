@@ -97,11 +97,17 @@ impl Default for FilterSettings {
 /// Standard deviations of a logged pusher position within which the pusher stands.
 const PUSHER_SIGMAS: f64 = 3.0;
 
+/// Stall force of a drive that nothing is known of, as a multiple of the force μ_s m g that slides
+/// the object alone at its nominal friction (docs/method.md, "Jamming").
+pub const ASSUMED_STALL: f64 = 20.0;
+
 /// A scene with its sensors and filter settings.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// Bodies and nominal friction.
     pub scene: Scene,
+    /// Whether the pusher's stall force is [`ASSUMED_STALL`], because nobody gave one.
+    pub stall_force_assumed: bool,
     /// The camera; needed by the particle and Kalman methods only.
     pub camera: Option<Camera>,
     /// The tactile sensors' model (defaults where the scene file has no `[tactile]`).

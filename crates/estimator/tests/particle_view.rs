@@ -93,6 +93,7 @@ fn setup() -> Setup {
     };
     Setup {
         scene,
+        stall_force_assumed: false,
         camera: Some(camera),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),

@@ -60,6 +60,7 @@ fn setup(aside: f64) -> Setup {
     };
     Setup {
         scene,
+        stall_force_assumed: false,
         camera: Some(camera),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),

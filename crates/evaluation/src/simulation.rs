@@ -55,6 +55,9 @@ pub enum SimulationError {
     /// The scene does not say how the experiment begins.
     #[error("there is no table [start], so nobody knows where the experiment begins")]
     NoStart,
+    /// The scene has a rigid drive, and the testbed none.
+    #[error("pusher.stall_force is inf, and no drive of a rig is rigid")]
+    RigidDrive,
     /// The testbed refuses it.
     #[error(transparent)]
     Trial(#[from] TrialError),
@@ -77,7 +80,8 @@ impl Simulation {
     /// contact with a fixel.
     ///
     /// # Errors
-    /// The setup has no start, bodies overlap there, or a number is out of range.
+    /// The setup has no start, bodies overlap there, the testbed is to have a rigid drive, or a
+    /// number is out of range.
     pub fn run(
         setup: &Setup,
         known: &TruthFacts,
@@ -89,6 +93,9 @@ impl Simulation {
             rate: options.rate,
             seed: options.seed,
         };
+        if options.physics == Physics::Testbed && setup.scene.pusher.stall_force.is_none() {
+            return Err(SimulationError::RigidDrive);
+        }
         let friction = friction(setup, known);
         let touch = TouchSensors {
             threshold: setup.tactile.touch_force,

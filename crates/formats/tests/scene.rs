@@ -266,11 +266,7 @@ fn scene_of_the_guide_is_one() {
 fn least_scene_takes_the_defaults_of_the_contract() {
     let setup = read(LEAST);
     assert_eq!(setup.scene.feet, Feet::Tripod { angle: FRAC_PI_2 });
-    assert!(
-        setup.scene.fixels.is_empty()
-            && setup.scene.pusher.stall_force.is_none()
-            && setup.camera.is_none()
-    );
+    assert!(setup.scene.fixels.is_empty() && setup.camera.is_none());
     assert_eq!(
         setup.tactile,
         Tactile {
@@ -304,6 +300,28 @@ fn least_scene_takes_the_defaults_of_the_contract() {
         },
     };
     assert_eq!(setup.filter, filter);
+}
+
+#[test]
+fn stall_force_is_the_file_s_or_twenty_times_what_slides_the_object() {
+    let read = |line: &str| {
+        let setup = read(&replaced(LEAST, "[fixels]\n", &format!("{line}[fixels]\n")));
+        (setup.scene.pusher.stall_force, setup.stall_force_assumed)
+    };
+    assert_eq!(read("stall_force = 36\n"), (Some(36.0), false));
+    assert_eq!(read("stall_force = inf\n"), (None, false));
+    let (force, assumed) = read("");
+    let weight = 1.0 * 9.81;
+    assert!(assumed && force.is_some_and(|force| (force - 20.0 * 0.3 * weight).abs() < 1e-12));
+}
+
+#[test]
+fn stall_force_must_be_given_where_nothing_resists() {
+    let smooth = LEAST.replacen("friction = 0.3", "friction = 0", 1);
+    let missing = ["`pusher.stall_force` is missing", "gives way in N"];
+    refused_text(&smooth, "9:1", &missing);
+    let given = replaced(&smooth, "[fixels]\n", "stall_force = 2\n[fixels]\n");
+    assert_eq!(read(&given).scene.pusher.stall_force, Some(2.0));
 }
 
 #[test]

@@ -72,12 +72,22 @@ fn numbers_against_their_rule_are_refused() {
         "10:17",
         &["support.tripod_radius is 0 m", "positive"],
     );
-    refused(
-        "stall_force = 20",
-        "stall_force = 0",
-        "19:15",
-        &["pusher.stall_force is 0 N", "positive"],
-    );
+}
+
+#[test]
+fn stall_forces_that_are_none_are_refused() {
+    for value in ["0", "-5", "-inf", "nan"] {
+        refused(
+            "stall_force = 20",
+            &format!("stall_force = {value}"),
+            "19:15",
+            &[
+                &format!("pusher.stall_force is {value} N"),
+                "positive, or inf",
+                "at which the drive gives way in N",
+            ],
+        );
+    }
 }
 
 #[test]

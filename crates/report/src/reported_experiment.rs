@@ -1,6 +1,7 @@
 //! One experiment with the runs of several variants: [`ReportedExperiment`], its story, its scores
 //! and its section of a report.
 
+use stickslip::diagnosis::assumed_stall_force;
 use stickslip::dynamics::Pose;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_evaluation::{Reference, ScoredRun, Scores};
@@ -192,13 +193,15 @@ impl<'a> ReportedExperiment<'a> {
                 Fate::rule()
             )),
         ];
+        let assumed =
+            assumed_stall_force(self.setup).map(|finding| Block::Note(finding.to_string()));
         let figures = self
             .figures()
             .into_iter()
             .map(|figure| Block::Figure(figure.drawing, figure.caption));
         Section {
             title,
-            blocks: head.into_iter().chain(figures).collect(),
+            blocks: head.into_iter().chain(assumed).chain(figures).collect(),
         }
     }
 

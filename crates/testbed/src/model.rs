@@ -1,7 +1,7 @@
 //! The model in the rig's place: [`Model`] runs Γ itself, one step per frame.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Outcome, Particle, Pose, PusherMotion, StepInput, StepWork, Twist,
+    Body, Dynamics, Friction, Outcome, Particle, Pose, PusherMotion, StepInput, StepWork,
 };
 
 use crate::touch::TouchSensors;
@@ -57,15 +57,10 @@ impl Model {
                 &mut work,
             );
             unsolved += usize::from(report.outcome != Outcome::Solved);
-            let pusher_yield = work.solution(0).pusher_yield;
-            let moved = Twist {
-                vx: twist.vx - pusher_yield * direction[0],
-                vy: twist.vy - pusher_yield * direction[1],
-                ..twist
-            };
-            pusher = pusher.advance(moved, h);
             // the trace's pusher pose is exact: no lag is left to the particle
-            object.pusher_lag = 0.0;
+            let [x, y] = std::mem::take(&mut object.pusher_lag);
+            pusher = pusher.advance(twist, h);
+            (pusher.x, pusher.y) = (pusher.x - x, pusher.y - y);
             frames.push(frame(
                 trial,
                 k,

@@ -37,9 +37,11 @@ pub fn report(comparison: &Comparison) -> Report {
         ),
         Block::Note(note),
     ];
-    let each = folders
-        .iter()
-        .map(|folder| Block::Table(tables::entries(&folder.methods), folder.folder.clone()));
+    let each = folders.iter().flat_map(|folder| {
+        let table = Block::Table(tables::entries(&folder.methods), folder.folder.clone());
+        let note = folder.note.clone().map(Block::Note);
+        [table].into_iter().chain(note)
+    });
     let lost = errors.iter().map(|lost| Block::Text(lost.error.clone()));
     let sections = [
         ("All experiments", all.to_vec()),

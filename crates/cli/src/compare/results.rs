@@ -4,6 +4,8 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
+use stickslip::Setup;
+use stickslip::diagnosis::assumed_stall_force;
 use stickslip_evaluation::{ScoredRun, Variant, quantile};
 
 use crate::args::CompareArgs;
@@ -51,6 +53,13 @@ pub struct VariantScores {
 pub struct FolderResult {
     /// The folder.
     pub folder: String,
+    /// Force at which its pusher gives way (N); `None` is a rigid drive.
+    pub stall_force: Option<f64>,
+    /// Whether that force is not the scene's.
+    pub stall_force_assumed: bool,
+    /// What was assumed of its scene, in a line.
+    #[serde(skip)]
+    pub note: Option<String>,
     /// One entry per variant.
     pub methods: Vec<VariantScores>,
 }
@@ -162,6 +171,7 @@ impl FolderResult {
     /// Medians over the runs of each variant; the first failed run is the folder's error.
     pub fn gather<'a>(
         folder: &Path,
+        setup: &Setup,
         runs: impl Iterator<Item = (Variant, &'a Result<ShownScores>)>,
     ) -> Result<Self, &'a anyhow::Error> {
         let mut by_variant: Vec<(Variant, Vec<ShownScores>)> = Vec::new();
@@ -177,6 +187,9 @@ impl FolderResult {
         });
         Ok(Self {
             folder: folder.display().to_string(),
+            stall_force: setup.scene.pusher.stall_force,
+            stall_force_assumed: setup.stall_force_assumed,
+            note: assumed_stall_force(setup).map(|finding| finding.to_string()),
             methods: methods.collect(),
         })
     }

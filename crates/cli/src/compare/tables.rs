@@ -12,9 +12,11 @@ pub fn text(comparison: &Comparison) -> String {
         quantile,
         ..
     } = comparison;
-    let folder_tables = folders
-        .iter()
-        .map(|folder| format!("{}\n{}", folder.folder, entries(&folder.methods)));
+    let folder_tables = folders.iter().map(|folder| {
+        let note = folder.note.iter().map(|note| format!("note: {note}\n"));
+        let table = entries(&folder.methods);
+        format!("{}\n{table}{}", folder.folder, note.collect::<String>())
+    });
     let overall = (!folders.is_empty()).then(|| {
         format!(
             "median (90th percentile) over {} folders, each the median of {seeds} seeds\n{}\

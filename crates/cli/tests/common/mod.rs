@@ -76,6 +76,14 @@ impl Experiment {
         fs::write(path, text).unwrap();
     }
 
+    /// Takes the pusher's stall force out of the scene.
+    pub fn forget_stall_force(&self) {
+        self.edit("scene.toml", |text| {
+            let kept = text.lines().filter(|line| !line.starts_with("stall_force"));
+            kept.collect::<Vec<_>>().join("\n")
+        });
+    }
+
     /// Rewrites the log's cells as numbers, a row of them for each line after the header; NaN is an
     /// empty cell.
     pub fn edit_rows(&self, change: impl FnOnce(&mut Vec<Vec<f64>>)) {

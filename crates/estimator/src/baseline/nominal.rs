@@ -23,7 +23,7 @@ pub(crate) fn simulate(
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[prepared.first] = row(&particle, None, 0);
     for k in prepared.first..prepared.log.len() - 1 {
-        particle.pusher_lag = particle.pusher_lag.min(setup.most_pusher_lag());
+        particle.limit_pusher_lag(setup.most_pusher_lag());
         let unsolved = advance(&dynamics, prepared, k, &mut particle, &mut work);
         let touch = touch_flags(
             setup,

@@ -23,6 +23,8 @@ pub enum Subject {
     Angles,
     /// Nominal values within the filter's limits.
     Limits,
+    /// The pusher's stall force.
+    StallForce,
     /// Time steps.
     Timing,
     /// Missing object poses.
@@ -54,7 +56,7 @@ pub struct Finding {
     pub severity: Severity,
     /// What was found, with its number.
     pub found: String,
-    /// What to do; `None` where all is well.
+    /// What to do; `None` where there is nothing to do.
     pub advice: Option<String>,
 }
 
@@ -98,6 +100,17 @@ impl Finding {
     }
 }
 
+impl fmt::Display for Finding {
+    /// What was found and what to do, in one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.found)?;
+        match &self.advice {
+            Some(advice) => write!(f, "; {advice}"),
+            None => Ok(()),
+        }
+    }
+}
+
 impl fmt::Display for Severity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -114,6 +127,7 @@ impl fmt::Display for Subject {
             Self::Units => "units",
             Self::Angles => "angles",
             Self::Limits => "limits",
+            Self::StallForce => "stall force",
             Self::Timing => "timing",
             Self::ObjectPoses => "object poses",
             Self::PusherPoses => "pusher poses",

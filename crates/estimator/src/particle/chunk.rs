@@ -48,6 +48,12 @@ pub(crate) fn flag(block: &Block<'_>, which: Flag, chunk: usize) -> Mask<LANES> 
     set_in(&load_chunk(block.column(which.column), chunk, 0.0), which)
 }
 
+/// Whether a flag of one particle is set.
+#[inline(always)]
+pub(crate) fn is_set(block: &Block<'_>, Flag { column, bit }: Flag, i: usize) -> bool {
+    block.column(column)[i].to_bits() >> bit & 1 == 1
+}
+
 /// Where a flag is set in the numbers of its column.
 #[inline(always)]
 fn set_in(bits: &Column, Flag { bit, .. }: Flag) -> Mask<LANES> {

@@ -7,7 +7,7 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel.
-const SINGLE: usize = 3;
+const SINGLE: usize = 4;
 
 /// A condition of every particle: one bit of a column that holds nothing but such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,16 +32,18 @@ impl Columns {
     pub const TWIST: usize = 3;
     /// μ_s, μ_p, μ_f, d_tri.
     pub const FRICTION: usize = 6;
-    /// Distance by which the pusher stands behind its pose (m).
+    /// Way from where the pusher stands to its pose: x, y (m).
     pub const PUSHER_LAG: usize = 10;
     /// First column of the warm start.
-    pub const WARM_START: usize = 11;
+    pub const WARM_START: usize = 12;
     /// First column of the flags.
     const FLAGS: usize = Self::WARM_START + WARM;
     /// Whether the pusher touches.
     pub const CONTACT_PUSHER: Flag = Self::flag(0);
     /// Whether the last step of a particle had no certified solution.
     pub const UNSOLVED: Flag = Self::flag(1);
+    /// Whether it had neither a solution nor a proof that there is none.
+    pub const FAILED: Flag = Self::flag(3);
     /// Whether nothing drove the particle in its last step: the pusher stood, or the particle rested
     /// out of its way.
     pub const IDLE: Flag = Self::flag(2);
@@ -100,11 +102,16 @@ mod tests {
         let of_fixels =
             (0..50).flat_map(|j| [columns.contact_fixel(j), columns.driven_contact_fixel(j)]);
         let flags: Vec<Flag> = of_fixels
-            .chain([Columns::CONTACT_PUSHER, Columns::UNSOLVED, Columns::IDLE])
+            .chain([
+                Columns::CONTACT_PUSHER,
+                Columns::UNSOLVED,
+                Columns::IDLE,
+                Columns::FAILED,
+            ])
             .collect();
         let places: HashSet<(usize, u32)> =
             flags.iter().map(|flag| (flag.column, flag.bit)).collect();
-        assert_eq!((flags.len(), places.len()), (103, 103));
+        assert_eq!((flags.len(), places.len()), (104, 104));
         assert!(
             flags
                 .iter()

@@ -6,7 +6,7 @@ use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::wrapped;
 use crate::particle::camera_likelihood::{CameraLikelihood, shown};
-use crate::particle::chunk::{Column, LANES, store_chunk};
+use crate::particle::chunk::{Column, LANES, is_set, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
@@ -161,6 +161,11 @@ impl Model for ContactModel<'_> {
                     .log_likelihood(observation, block, chunk)
             },
         );
+    }
+
+    /// Not where the solver found neither a solution nor a proof that there is none.
+    fn may_be_copied(&self, block: &Block<'_>, i: usize) -> bool {
+        !is_set(block, Columns::FAILED, i)
     }
 
     fn collapsed(&self, best_log_likelihood: f64) -> bool {

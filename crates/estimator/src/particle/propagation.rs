@@ -56,6 +56,7 @@ struct Involved {
     fixel: Mask<LANES>,
     moved: Mask<LANES>,
     unsolved: Mask<LANES>,
+    failed: Mask<LANES>,
 }
 
 impl Involved {
@@ -66,6 +67,7 @@ impl Involved {
             fixel: no,
             moved: no,
             unsolved: no,
+            failed: no,
         }
     };
 
@@ -152,7 +154,7 @@ impl Propagation {
             self.draw_normals(draw, 0, block);
         }
         let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
-        let most_lag = Lanes::splat(transition.setup.most_pusher_lag());
+        let most_lag = transition.setup.most_pusher_lag();
         let settings = &transition.setup.filter;
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();
         let limits = settings.limits.fields();
@@ -170,9 +172,9 @@ impl Propagation {
                 block,
                 Columns::PUSHER_LAG,
                 chunk,
-                [&mut particles.pusher_lag],
+                particles.pusher_lag.each_mut(),
             );
-            particles.pusher_lag = particles.pusher_lag.min(most_lag);
+            particles.limit_pusher_lag(most_lag);
             load_columns(
                 block,
                 Columns::WARM_START,
@@ -275,6 +277,9 @@ impl Propagation {
                 if report.outcome != Outcome::Solved {
                     involved.unsolved.set(lane, true);
                 }
+                if report.outcome == Outcome::Failed {
+                    involved.failed.set(lane, true);
+                }
             }
         }
     }
@@ -291,7 +296,8 @@ impl Propagation {
             let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
             store_columns(block, Columns::POSE, chunk, particles.pose.fields());
             store_columns(block, Columns::TWIST, chunk, particles.twist.fields());
-            store_columns(block, Columns::PUSHER_LAG, chunk, [&particles.pusher_lag]);
+            let lag = particles.pusher_lag.each_ref();
+            store_columns(block, Columns::PUSHER_LAG, chunk, lag);
             store_columns(block, Columns::WARM_START, chunk, particles.warm.fields());
             let mut friction = Friction::default();
             load_columns(block, Columns::FRICTION, chunk, friction.fields_mut());
@@ -307,6 +313,7 @@ impl Propagation {
             store_columns(block, Columns::FRICTION, chunk, friction.fields());
             let mut flags = FlagsMut::new(block, chunk);
             flags.set(Columns::UNSOLVED, involved.unsolved);
+            flags.set(Columns::FAILED, involved.failed);
             let pusher = self
                 .work
                 .normal_impulses(chunk, Body::Pusher)

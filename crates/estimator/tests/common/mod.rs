@@ -43,6 +43,7 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
                 d_tri: 0.02,
             },
         },
+        stall_force_assumed: false,
         camera: Some(Camera {
             position_std: 3e-4,
             orientation_std: 5e-3,

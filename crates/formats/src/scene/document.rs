@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::{SceneError, SceneProblem};
 use super::keys::{keys_of, nearest_key};
-use super::quantity::{Quantity, Rule};
+use super::quantity::Quantity;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
@@ -243,13 +243,9 @@ impl<'a> Node<'a> {
         let value = self
             .float()
             .ok_or_else(|| self.wrong_type("a number", &quantity.order()))?;
-        if !value.is_finite() {
-            return Err(self.out_of_range(Rule::Finite.words(), quantity));
-        }
-        if quantity.rule.holds(value) {
-            Ok(value)
-        } else {
-            Err(self.out_of_range(quantity.rule.words(), quantity))
+        match quantity.rule.broken_by(value) {
+            None => Ok(value),
+            Some(rule) => Err(self.out_of_range(rule, quantity)),
         }
     }
 

@@ -13,7 +13,7 @@ mod start;
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip::Setup;
+use stickslip::{ASSUMED_STALL, Setup};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
@@ -76,9 +76,9 @@ const FOOT: Quantity = Quantity::new(
 );
 const STALL_FORCE: Quantity = Quantity::new(
     "stall_force",
-    "the force at which the pusher gives way",
+    "the force at which the drive gives way",
     "N",
-    Rule::Positive,
+    Rule::PositiveOrInfinite,
 );
 const POSITION: Quantity = Quantity::new(
     "position",
@@ -126,6 +126,7 @@ fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> SceneError {
 fn setup(root: &Table<'_>) -> Result<Setup> {
     Ok(Setup {
         scene: scene(root)?,
+        stall_force_assumed: root.section("pusher")?.optional(STALL_FORCE.key).is_none(),
         camera: root
             .section_if("camera")?
             .as_ref()
@@ -156,7 +157,8 @@ fn scene(root: &Table<'_>) -> Result<Scene> {
     let object = object(&root.section("object")?)?;
     let support = root.section("support")?;
     let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support)?);
-    let (mu_p, pusher) = pusher(&root.section("pusher")?)?;
+    let sliding = mu_s * object.mass * gravity;
+    let (mu_p, pusher) = pusher(&root.section("pusher")?, sliding)?;
     let mu_f = root.section("fixels")?.number(&MU_F)?;
     Ok(Scene {
         gravity,
@@ -181,13 +183,27 @@ fn object(table: &Table<'_>) -> Result<Object> {
     })
 }
 
-/// The pusher with its friction.
-fn pusher(table: &Table<'_>) -> Result<(f64, Pusher)> {
+/// The pusher with its friction; `sliding` is the force (N) that slides the object.
+fn pusher(table: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
     let pusher = Pusher {
         shape: shape(table)?,
-        stall_force: table.number_if(&STALL_FORCE)?,
+        stall_force: stall_force(table, sliding)?,
     };
     Ok((table.number(&MU_P)?, pusher))
+}
+
+/// The force (N) at which the drive gives way; `None` where the file says that it never does.
+///
+/// No drive is rigid, and a jam under a rigid one has no solution: where the file says nothing, it
+/// is a multiple of `sliding`. It must be given where that is no force, on a table without friction.
+fn stall_force(table: &Table<'_>, sliding: f64) -> Result<Option<f64>> {
+    let assumed = ASSUMED_STALL * sliding;
+    let force = if assumed > 0.0 && assumed.is_finite() {
+        table.number_or(&STALL_FORCE, assumed)?
+    } else {
+        table.number(&STALL_FORCE)?
+    };
+    Ok(force.is_finite().then_some(force))
 }
 
 /// The feet with the nominal d_tri.

@@ -5,6 +5,8 @@
 pub(super) enum Rule {
     Finite,
     Positive,
+    /// Positive, infinity included.
+    PositiveOrInfinite,
     NotNegative,
     /// In (0, 1).
     Probability,
@@ -22,20 +24,29 @@ pub(super) struct Quantity {
 }
 
 impl Rule {
-    pub(super) fn holds(self, value: f64) -> bool {
+    /// What `value` must be and is not, in words; `None` where it may be as it is.
+    pub(super) fn broken_by(self, value: f64) -> Option<&'static str> {
+        if !value.is_finite() && self != Self::PositiveOrInfinite {
+            return Some(Self::Finite.words());
+        }
+        (!self.holds(value)).then(|| self.words())
+    }
+
+    fn holds(self, value: f64) -> bool {
         match self {
             Self::Finite => true,
-            Self::Positive => value > 0.0,
+            Self::Positive | Self::PositiveOrInfinite => value > 0.0,
             Self::NotNegative => value >= 0.0,
             Self::Probability => value > 0.0 && value < 1.0,
             Self::Share => (0.0..=1.0).contains(&value),
         }
     }
 
-    pub(super) fn words(self) -> &'static str {
+    fn words(self) -> &'static str {
         match self {
             Self::Finite => "finite",
             Self::Positive => "positive",
+            Self::PositiveOrInfinite => "positive, or inf for a rigid drive",
             Self::NotNegative => "zero or positive",
             Self::Probability => "between 0 and 1, both excluded",
             Self::Share => "from 0 to 1",

@@ -53,6 +53,7 @@ pub fn setup() -> Setup {
     };
     Setup {
         scene,
+        stall_force_assumed: false,
         camera: None,
         tactile: Tactile::default(),
         filter: FilterSettings::default(),

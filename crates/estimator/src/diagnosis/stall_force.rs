@@ -1,0 +1,42 @@
+//! The pusher's stall force, where the scene gives none: it decides how a jam goes on.
+
+use super::evidence::Evidence;
+use super::finding::{Finding, Severity, Subject};
+use crate::setup::{ASSUMED_STALL, Setup};
+
+/// That the pusher's stall force is assumed, which one, and what to write instead; `None` where the
+/// scene gives it.
+///
+/// It is a warning where there are fixels, since without them nothing jams.
+pub fn assumed_stall_force(setup: &Setup) -> Option<Finding> {
+    let force = setup
+        .scene
+        .pusher
+        .stall_force
+        .filter(|_| setup.stall_force_assumed)?;
+    Some(Finding {
+        subject: Subject::StallForce,
+        severity: if setup.scene.fixels.is_empty() {
+            Severity::Ok
+        } else {
+            Severity::Warning
+        },
+        found: format!(
+            "`pusher.stall_force` is missing in the scene: {} N is assumed, {ASSUMED_STALL} times what slides the object",
+            three_digits(force)
+        ),
+        advice: Some(
+            "write the force in N at which the drive gives way, or inf for a rigid one".to_owned(),
+        ),
+    })
+}
+
+pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
+    assumed_stall_force(evidence.setup).into_iter().collect()
+}
+
+/// A positive number with at least three significant digits and no exponent.
+fn three_digits(value: f64) -> String {
+    let decimals = (2.0 - libm::floor(libm::log10(value))).clamp(0.0, 12.0) as usize;
+    format!("{value:.decimals$}")
+}
