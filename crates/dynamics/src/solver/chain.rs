@@ -114,7 +114,7 @@ pub struct Solver<const W: usize> {
 }
 
 impl<const W: usize> Default for Solver<W> {
-    /// For the steps of a block, each with [`STEP_LIMIT`].
+    /// For the steps of a block, each with a limit on work.
     fn default() -> Self {
         Self::with_limit(STEP_LIMIT)
     }
