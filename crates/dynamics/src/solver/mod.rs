@@ -10,6 +10,7 @@ mod fixed_mode_newton;
 mod generator;
 mod interval;
 mod lane_queue;
+mod limit_surface;
 mod linearised;
 mod mode_conditions;
 mod mode_curve;

@@ -44,7 +44,7 @@ const CHEAPEST_FIRST: [usize; 4] = [4, 1, 3, 2];
 /// in later ones: most solutions show at a first glance, though seldom in the first subset.
 const ROUNDS: [Thoroughness; 3] = [
     Thoroughness {
-        pieces: 30,
+        pieces: 128,
         attempts: 1,
     },
     Thoroughness {

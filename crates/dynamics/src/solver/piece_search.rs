@@ -9,6 +9,9 @@ use crate::solver::vector::Vector;
 /// object creeps, only the middle of a narrow piece is near the solution.
 const WIDTHS: [f64; 3] = [1e-5, 1e-8, 1e-11];
 
+/// The root of a piece is sought again once the piece is by so much narrower.
+const NARROWER: f64 = 1e-3;
+
 /// Width at which a piece is not halved any more.
 const NARROWEST: f64 = 1e-12;
 
@@ -113,7 +116,7 @@ pub fn search_pieces(
             if certifier.certifies(&path.candidate(&root)) {
                 return Finding::Solved;
             }
-            left.failed_root = root.x;
+            left.failed_root = (root.x, width);
         }
         // the middle of a narrow piece, or where the condition holds all along
         let middle = sample(path, 0.5 * (a.x + b.x), certifier);
@@ -137,7 +140,8 @@ struct Attempts {
     /// Middles of pieces of each width.
     middles: [u32; WIDTHS.len()],
     /// The last root that was none of the problem's solutions.
-    failed_root: f64,
+    /// and the width of its piece.
+    failed_root: (f64, f64),
 }
 
 impl Attempts {
@@ -145,13 +149,14 @@ impl Attempts {
         Self {
             roots: each,
             middles: [each; WIDTHS.len()],
-            failed_root: f64::NAN,
+            failed_root: (f64::NAN, 0.0),
         }
     }
 
     /// Whether to refine the root of a piece, and counts it: not where that is the one that failed.
     fn takes_root(&mut self, a: &Sample, b: &Sample, width: f64) -> bool {
-        let known = width > WIDTHS[0] && (a.x..=b.x).contains(&self.failed_root);
+        let (root, of_width) = self.failed_root;
+        let known = width > NARROWER * of_width && (a.x..=b.x).contains(&root);
         !known && take(&mut self.roots)
     }
 
