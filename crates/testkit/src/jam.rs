@@ -115,10 +115,14 @@ fn least_wrench(problem: &StepProblem) -> f64 {
     positive[wrench + 3] = 1.0;
     conic.at_least((positive, 0.0));
     conic.equal((normals, -1.0));
-    let optimum = conic
+    // every attempt's impulses are within the cones: the least of their wrenches is nearest to the
+    // optimum, where Clarabel stalled in some
+    conic
         .attempts()
-        .next()
-        .expect("a bounded quadratic program");
-    let size = |axis: usize| optimum.x[wrench + axis].abs();
-    size(0).max(size(1)).max(size(2)).max(size(3))
+        .map(|optimum| {
+            let wrench = &optimum.x[wrench..];
+            wrench.iter().fold(0.0f64, |size, x| size.max(x.abs()))
+        })
+        .reduce(f64::min)
+        .expect("a bounded quadratic program")
 }
