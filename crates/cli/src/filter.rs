@@ -37,6 +37,8 @@ struct Summary {
     final_error_deg: Option<f64>,
     frames: usize,
     unsolved: u64,
+    /// Of those, the ones whose solver gave up; the others have no solution.
+    failed: u64,
     collapses: u32,
     real_time_factor: f64,
     /// In N; `None` is a rigid drive.
@@ -185,6 +187,7 @@ impl Summary {
             final_error_deg: scores.final_error_deg,
             frames: experiment.log.len(),
             unsolved: run.unsolved,
+            failed: run.failed,
             collapses: run.collapses,
             real_time_factor: experiment.log.duration() / seconds,
             stall_force: experiment.setup.scene.pusher.stall_force,
@@ -244,6 +247,7 @@ fn score_table(summary: &Summary) -> Table {
     );
     row("frames", summary.frames.to_string(), "");
     row("unsolved particle steps", summary.unsolved.to_string(), "");
+    row("of them failed", summary.failed.to_string(), "");
     row("collapses", summary.collapses.to_string(), "");
     row(
         "real-time factor",

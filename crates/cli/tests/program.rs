@@ -82,6 +82,7 @@ fn filter_json_has_the_contract_s_keys() {
         "final_error_deg",
         "frames",
         "unsolved",
+        "failed",
         "real_time_factor",
     ] {
         assert!(report[key].is_number(), "{key}: {report}");

@@ -35,6 +35,8 @@ pub struct EstimateRow {
     pub visual: bool,
     /// Number of particles whose step has no certified solution.
     pub unsolved: Option<u32>,
+    /// Of those, the ones whose solver gave up; for the others it proved that there is no solution.
+    pub failed: Option<u32>,
 }
 
 /// A method's estimates, one row per log row.

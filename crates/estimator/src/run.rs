@@ -2,7 +2,7 @@
 
 use crate::baseline::{kalman, nominal};
 use crate::error::RunError;
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
 use crate::options::{Method, RunOptions, TactileUse};
 use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
@@ -20,6 +20,8 @@ pub struct Run {
     pub estimate: Estimate,
     /// Particle-steps without a certified solution, over all rows.
     pub unsolved: u64,
+    /// Of those, the ones whose solver gave up; for the others it proved that there is no solution.
+    pub failed: u64,
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
     pub collapses: u32,
 }
@@ -96,9 +98,13 @@ fn run_prepared(
         (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, 0),
         (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), 0),
     };
-    let unsolved = estimate.rows.iter().filter_map(|row| row.unsolved);
+    let all = |count: fn(&EstimateRow) -> Option<u32>| {
+        let counts = estimate.rows.iter().filter_map(count);
+        counts.map(u64::from).sum()
+    };
     Ok(Run {
-        unsolved: unsolved.map(u64::from).sum(),
+        unsolved: all(|row| row.unsolved),
+        failed: all(|row| row.failed),
         estimate,
         collapses,
     })

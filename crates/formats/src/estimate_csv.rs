@@ -2,7 +2,7 @@
 //! [`read_estimate`].
 //!
 //! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,
-//! std_d_tri,ess,resampled,visual,unsolved`, in this order. A cell is empty where the method has no
+//! std_d_tri,ess,resampled,visual,unsolved,failed`, in this order. A cell is empty where the method has no
 //! value; `d_tri` and `std_d_tri` are empty throughout where the feet are known.
 
 use std::io::{Read, Write};
@@ -28,7 +28,7 @@ const BEFORE_FIXELS: [&str; 12] = [
     "d_tri",
     "contact_pusher",
 ];
-const AFTER_FIXELS: [&str; 11] = [
+const AFTER_FIXELS: [&str; 12] = [
     "std_x",
     "std_y",
     "std_theta",
@@ -40,6 +40,7 @@ const AFTER_FIXELS: [&str; 11] = [
     "resampled",
     "visual",
     "unsolved",
+    "failed",
 ];
 
 /// Column numbers; those after the fixels' contacts count from the first one after them.
@@ -82,11 +83,13 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
         has_tripod: true,
         ..Estimate::default()
     };
+    let has_failed = table.columns().len() == header(estimate.fixels).len();
     let mut tripod = None;
     for row in table.rows()? {
         let reader = RowReader {
             row: &row?,
             fixels: estimate.fixels,
+            has_failed,
         };
         estimate
             .time
@@ -119,7 +122,8 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
         .filter(|name| is_contact(name))
         .count();
     let expected = header(fixels);
-    for name in &expected {
+    // files of earlier versions end before the last column
+    for name in &expected[..expected.len() - 1] {
         table.require(name)?;
     }
     for (index, name) in table.columns().iter().enumerate() {
@@ -177,10 +181,9 @@ fn cells(time: f64, row: &EstimateRow, estimate: &Estimate) -> Vec<String> {
             .map_or(String::new(), |resampled| u8::from(resampled).to_string()),
     );
     cells.push(u8::from(row.visual).to_string());
-    cells.push(
-        row.unsolved
-            .map_or(String::new(), |count| count.to_string()),
-    );
+    for count in [row.unsolved, row.failed] {
+        cells.push(count.map_or(String::new(), |count| count.to_string()));
+    }
     cells
 }
 
@@ -204,6 +207,7 @@ fn pose_numbers(pose: Pose) -> [f64; 3] {
 struct RowReader<'r, 't> {
     row: &'r Row<'t>,
     fixels: usize,
+    has_failed: bool,
 }
 
 impl RowReader<'_, '_> {
@@ -234,7 +238,17 @@ impl RowReader<'_, '_> {
                 .binary(self.after(9))?
                 .ok_or_else(|| row.error(self.after(9), CsvProblem::EmptyCell))?,
             unsolved: row.count(self.after(10))?,
+            failed: self.failed()?,
         })
+    }
+
+    /// The last column, which files of earlier versions do not have.
+    fn failed(&self) -> Result<Option<u32>, CsvError> {
+        if self.has_failed {
+            self.row.count(self.after(11))
+        } else {
+            Ok(None)
+        }
     }
 
     /// Index of a column of [`AFTER_FIXELS`].

@@ -6,7 +6,7 @@ use stickslip_dynamics::{Friction, Pose, Twist};
 use stickslip_formats::{read_estimate, write_estimate};
 
 const HEADER: &str = "time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,contact_2,\
-                      std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved";
+                      std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed";
 
 fn full_row() -> EstimateRow {
     EstimateRow {
@@ -37,6 +37,7 @@ fn full_row() -> EstimateRow {
         resampled: Some(true),
         visual: false,
         unsolved: Some(3),
+        failed: Some(1),
     }
 }
 
@@ -73,7 +74,7 @@ fn refused(text: &str, place: &str, words: &[&str]) {
 fn write_estimate_writes_the_contract() {
     let rows = vec![EstimateRow::default(), full_row()];
     let expected = format!(
-        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3\n"
+        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1\n"
     );
     assert_eq!(written(&estimate(rows, true)), expected);
 }
@@ -83,7 +84,7 @@ fn known_feet_leave_the_d_tri_columns_empty() {
     let text = written(&estimate(vec![full_row()], false));
     assert_eq!(
         text.lines().nth(1),
-        Some("0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3")
+        Some("0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3,1")
     );
     let back = read_estimate(text.as_bytes(), "estimate.csv").expect("an estimate");
     assert!(!back.has_tripod);
@@ -116,7 +117,7 @@ fn estimate_without_fixels_has_no_contact_columns() {
 
 #[test]
 fn header_of_another_order_or_kind_is_refused() {
-    let row = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3";
+    let row = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1";
     refused(
         &format!(
             "{}\n{row}\n",
@@ -132,8 +133,8 @@ fn header_of_another_order_or_kind_is_refused() {
     );
     refused(
         &format!("{HEADER},more\n{row},0\n"),
-        "1: column 26 (more)",
-        &["no such column", "`unsolved`"],
+        "1: column 27 (more)",
+        &["no such column", "`failed`"],
     );
     refused(
         &format!("{}\n{row}\n", HEADER.replace("contact_2", "contact_3")),
@@ -144,7 +145,7 @@ fn header_of_another_order_or_kind_is_refused() {
 
 #[test]
 fn bad_cells_are_refused() {
-    let good = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3";
+    let good = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1";
     let with = |from: &str, to: &str| format!("{HEADER}\n{}\n", good.replacen(from, to, 1));
     refused(&with("1,2,3", "1,,3"), "2: column 3 (y)", &["empty", "`x`"]);
     refused(
@@ -206,7 +207,7 @@ prop_compose! {
         contact_fixels in prop::option::of(prop::collection::vec(number(), 2)),
         spread in prop::option::of((any_pose(), any_friction())),
         ess in prop::option::of(number()),
-        (resampled, visual, unsolved) in any::<(Option<bool>, bool, Option<u32>)>(),
+        (resampled, visual, unsolved, failed) in any::<(Option<bool>, bool, Option<u32>, Option<u32>)>(),
     ) -> EstimateRow {
         EstimateRow {
             pose,
@@ -219,8 +220,22 @@ prop_compose! {
             resampled,
             visual,
             unsolved,
+            failed,
         }
     }
+}
+
+#[test]
+fn file_without_the_column_that_came_later_is_read() {
+    let estimate = estimate(vec![full_row()], true);
+    let text = written(&estimate);
+    let earlier: Vec<_> = text
+        .lines()
+        .map(|line| line.rsplit_once(',').expect("columns").0)
+        .collect();
+    let read = read_estimate(earlier.join("\n").as_bytes(), "estimate.csv").expect("sound");
+    assert_eq!(read.rows[0].unsolved, Some(3));
+    assert_eq!(read.rows[0].failed, None);
 }
 
 proptest! {

@@ -21,35 +21,38 @@ pub(crate) fn simulate(
     };
     let mut work = StepWork::<1>::default();
     let mut estimate = prepared.empty_estimate(setup);
-    estimate.rows[prepared.first] = row(&particle, None, 0);
+    estimate.rows[prepared.first] = row(&particle, None, Outcome::Solved);
     for k in prepared.first..prepared.log.len() - 1 {
         particle.limit_pusher_lag(setup.most_pusher_lag());
-        let unsolved = advance(&dynamics, prepared, k, &mut particle, &mut work);
+        let outcome = advance(&dynamics, prepared, k, &mut particle, &mut work);
         let touch = touch_flags(
             setup,
             &work,
             prepared.schedule.step(k).last().map_or(0.0, |s| s.h),
         );
-        estimate.rows[k + 1] = row(&particle, Some(touch), u32::from(unsolved));
+        estimate.rows[k + 1] = row(&particle, Some(touch), outcome);
         progress(k + 1);
     }
     estimate
 }
 
-/// Runs the substeps from row `k` to the next; true where one of them had no certified solution.
+/// Runs the substeps from row `k` to the next; how the worst of them ended.
 fn advance(
     dynamics: &Dynamics,
     prepared: &PreparedLog<'_>,
     k: usize,
     particle: &mut Particle,
     work: &mut StepWork<1>,
-) -> bool {
+) -> Outcome {
     let friction = [dynamics.scene().nominal];
-    let mut unsolved = false;
+    let mut worst = Outcome::Solved;
     for input in prepared.schedule.step(k) {
         let mut one = [*particle];
         let [report] = dynamics.step(input, &friction, &mut one, work);
-        unsolved |= report.outcome != Outcome::Solved;
+        worst = match (worst, report.outcome) {
+            (Outcome::Failed, _) | (_, Outcome::Solved) => worst,
+            (_, outcome) => outcome,
+        };
         [*particle] = one;
         if let Some(observer) = prepared.observer {
             observer.on_step(&SolvedStep {
@@ -59,7 +62,7 @@ fn advance(
             });
         }
     }
-    unsolved
+    worst
 }
 
 fn touch_flags(setup: &Setup, work: &StepWork<1>, h: f64) -> (f64, Vec<f64>) {
@@ -75,7 +78,7 @@ fn touch_flags(setup: &Setup, work: &StepWork<1>, h: f64) -> (f64, Vec<f64>) {
     )
 }
 
-fn row(particle: &Particle, touch: Option<(f64, Vec<f64>)>, unsolved: u32) -> EstimateRow {
+fn row(particle: &Particle, touch: Option<(f64, Vec<f64>)>, outcome: Outcome) -> EstimateRow {
     let (contact_pusher, contact_fixels) = touch.unzip();
     let pose: Pose = particle.pose;
     EstimateRow {
@@ -83,7 +86,8 @@ fn row(particle: &Particle, touch: Option<(f64, Vec<f64>)>, unsolved: u32) -> Es
         twist: Some(particle.twist),
         contact_pusher,
         contact_fixels,
-        unsolved: Some(unsolved),
+        unsolved: Some(u32::from(outcome != Outcome::Solved)),
+        failed: Some(u32::from(outcome == Outcome::Failed)),
         ..EstimateRow::default()
     }
 }

@@ -46,5 +46,6 @@ pub(crate) fn summarise(
         .get_or_insert_default()
         .clone_from(&sums.contact_fixels);
     row.unsolved = Some(sums.unsolved as u32);
+    row.failed = Some(sums.failed as u32);
     row.ess = Some(filter.weights().effective_sample_size());
 }

@@ -143,6 +143,8 @@ pub struct Sums {
     pub widest: f64,
     /// Number of particles whose last step was not solved.
     pub unsolved: f64,
+    /// Of those, the ones whose solver gave up.
+    pub failed: f64,
     /// Σ w c_p.
     pub contact_pusher: f64,
     /// Σ w c_j of every fixel.
@@ -164,7 +166,7 @@ impl Sums {
         let mut second = Linear::<Column>::default();
         let mut twist = Twist::<Column>::default();
         let mut angle = AngleSums::<Column>::default();
-        let (mut widest, mut unsolved) = (o, o);
+        let (mut widest, mut unsolved, mut failed) = (o, o, o);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_column = |column: usize| load_chunk(block.column(column), chunk, 0.0);
             let w = load_chunk(weights, chunk, 0.0);
@@ -193,6 +195,7 @@ impl Sums {
 
             // how the steps ended
             unsolved += flag(block, Columns::UNSOLVED, chunk).zero_unless(Lanes::splat(1.0));
+            failed += flag(block, Columns::FAILED, chunk).zero_unless(Lanes::splat(1.0));
         }
         self.first = first.map(total);
         self.second = second.map(total);
@@ -206,6 +209,7 @@ impl Sums {
         };
         self.widest = widest.0.into_iter().fold(0.0, f64::max);
         self.unsolved = total(unsolved);
+        self.failed = total(failed);
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
         self.contact_fixels.clear();
         for j in 0..columns.fixels() {
@@ -265,5 +269,6 @@ impl WeightedSums for Sums {
         fixels.for_each(|(to, from)| add(to, from));
         self.widest = self.widest.max(other.widest);
         self.unsolved += other.unsolved;
+        self.failed += other.failed;
     }
 }
