@@ -115,6 +115,9 @@ pub struct CompareArgs {
     /// Name of the scene file in each folder
     #[arg(long, value_name = "FILE", default_value = "scene.toml")]
     pub scene_name: String,
+    /// Topics of the MCAP logs
+    #[command(flatten)]
+    pub topics: TopicArgs,
     /// Write a report with all tables into this HTML file
     #[arg(long, value_name = "HTML")]
     pub report: Option<PathBuf>,

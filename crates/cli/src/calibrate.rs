@@ -1,7 +1,5 @@
 //! `stickslip calibrate`: a camera from frames of a tag board.
 
-use std::fs;
-
 use anyhow::{Context, Result};
 use serde::Serialize;
 use stickslip_vision::{Calibration, read_board, search_board, write_camera};
@@ -9,6 +7,7 @@ use stickslip_vision::{Calibration, read_board, search_board, write_camera};
 use crate::camera_args::CalibrateArgs;
 use crate::experiment::text_of;
 use crate::failure::hinted;
+use crate::files::{ready_file, write_file};
 use crate::frames::FrameFolder;
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
@@ -38,6 +37,7 @@ pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
         &text_of(&args.board, "board")?,
         &args.board.display().to_string(),
     )?;
+    ready_file(&args.out, &[&args.board])?;
     let folder = FrameFolder::list(&args.frames)?;
     let flat = match &args.flat {
         None => 0,
@@ -57,12 +57,7 @@ pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
     progress.finish_and_clear();
     let calibration = stickslip_vision::calibrate(&recording?, &board, flat)
         .with_context(|| args.frames.display().to_string())?;
-    fs::write(&args.out, write_camera(&calibration.camera)).map_err(|error| {
-        hinted(
-            format!("{}: cannot be written: {error}", args.out.display()),
-            "give a file that can be written with --out",
-        )
-    })?;
+    write_file(&args.out, write_camera(&calibration.camera).as_bytes())?;
     let summary = Summary::new(&calibration);
     show_result(args.json, &summary, || summary.text())?;
     talk(format_args!("wrote {}", args.out.display()));

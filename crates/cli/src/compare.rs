@@ -7,17 +7,18 @@ mod results;
 mod tables;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
+use clap::CommandFactory;
 use rayon::prelude::*;
 use stickslip::Occlusion;
 use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
-use stickslip_formats::Experiment;
+use stickslip_formats::{Experiment, Topics};
 
-use crate::args::CompareArgs;
-use crate::experiment::read_folder;
-use crate::files::write_report;
+use crate::args::{CompareArgs, Program};
+use crate::experiment::{check_occlusion, log_path, read_folder};
+use crate::files::{ready_file, write_report};
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
@@ -47,8 +48,14 @@ struct Job {
 /// Runs the command.
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let folders = folders::expand(&args.folders, &args.scene_name)?;
+    if let Some(path) = &args.report {
+        let logs: Vec<PathBuf> = folders.iter().map(|folder| log_path(folder)).collect();
+        let inputs: Vec<&Path> = logs.iter().map(PathBuf::as_path).collect();
+        ready_file(path, &inputs)?;
+    }
     let pool = args.shared.threads.pool()?;
-    let (comparison, verdict) = pool.install(|| compare_all(args, folders));
+    let topics = args.topics.topics(Program::command())?;
+    let (comparison, verdict) = pool.install(|| compare_all(args, &topics, folders));
     let text = if args.shared.json {
         serde_json::to_string_pretty(&comparison)?
     } else {
@@ -74,10 +81,12 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
 }
 
 /// The comparison, and whether all of the logs in it could be read.
-fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict) {
+fn compare_all(args: &CompareArgs, topics: &Topics, paths: Vec<PathBuf>) -> (Comparison, Verdict) {
     // read all folders; those that cannot be read are reported and left out
-    let read: Vec<Result<Folder, LostFolder>> =
-        paths.into_par_iter().map(|path| read(args, path)).collect();
+    let read: Vec<Result<Folder, LostFolder>> = paths
+        .into_par_iter()
+        .map(|path| read(args, topics, path))
+        .collect();
     let mut errors = Vec::new();
     let folders: Vec<Folder> = read
         .into_iter()
@@ -106,7 +115,7 @@ fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict)
         let all = jobs.iter().zip(&scores);
         let own = all.filter(|(job, _)| job.folder == index);
         let own = own.map(|(job, scores)| (job.variant, scores));
-        match FolderResult::gather(&folder.path, &folder.experiment.setup, own) {
+        match FolderResult::gather(&folder.path, &folder.experiment, own) {
             Ok(result) => results.push(result),
             Err(error) => errors.push(LostFolder::new(&folder.path, error)),
         }
@@ -120,13 +129,14 @@ fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict)
 }
 
 /// Reads a folder; hidden is what truth.json says, else what the options say.
-fn read(args: &CompareArgs, path: PathBuf) -> Result<Folder, LostFolder> {
-    let (experiment, verdict) =
-        read_folder(&path, &args.scene_name).map_err(|error| LostFolder::new(&path, &error))?;
+fn read(args: &CompareArgs, topics: &Topics, path: PathBuf) -> Result<Folder, LostFolder> {
+    let (experiment, verdict) = read_folder(&path, &args.scene_name, topics)
+        .map_err(|error| LostFolder::new(&path, &error))?;
     let occlusion = match experiment.facts.occlusion() {
         Occlusion::None => args.shared.occlusion(),
         known => known,
     };
+    check_occlusion(occlusion, &experiment).map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {
         path,
         experiment,

@@ -9,7 +9,7 @@ use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Table};
 
 use crate::args::DemoArgs;
 use crate::experiment::Texts;
-use crate::files::{write_figures, write_report};
+use crate::files::{ready_folder, write_figures, write_report};
 use crate::output::show;
 use crate::parameters::Parameter;
 use crate::reported_run::reported_run;
@@ -45,6 +45,7 @@ const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
 
 /// Runs the command.
 pub fn demo(args: &DemoArgs) -> Result<Verdict> {
+    ready_folder(&args.out)?;
     let pool = args.threads.pool()?;
     let mut summary = vec![Block::Text(SUMMARY.to_owned())];
     let mut sections = Vec::new();

@@ -1,11 +1,12 @@
 //! Experiments from files: [`read_experiment`], [`read_folder`], and from [`Texts`] inside the
 //! program.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, BufReader, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use stickslip::{Log, Setup};
+use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
     Experiment, McapError, McapProblem, Topics, Truth, TruthFacts, read_log, read_log_mcap,
     read_scene, read_truth_csv, read_truth_json,
@@ -69,13 +70,12 @@ pub fn read_experiment(
 }
 
 /// Reads an experiment folder.
-pub fn read_folder(folder: &Path, scene_name: &str) -> Result<(Experiment, Verdict)> {
-    read_experiment(
-        &folder.join(scene_name),
-        &log_path(folder),
-        &Topics::default(),
-        None,
-    )
+pub fn read_folder(
+    folder: &Path,
+    scene_name: &str,
+    topics: &Topics,
+) -> Result<(Experiment, Verdict)> {
+    read_experiment(&folder.join(scene_name), &log_path(folder), topics, None)
 }
 
 /// The log of a folder: log.csv, else log.mcap.
@@ -86,6 +86,23 @@ pub fn log_path(folder: &Path) -> PathBuf {
     } else {
         csv
     }
+}
+
+/// An occlusion that hides no pose is a slip of the pen.
+pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
+    let hides = occlusion
+        .hidden(&experiment.log)
+        .iter()
+        .zip(&experiment.log.object)
+        .any(|(hidden, pose)| *hidden && pose.is_some());
+    if occlusion == Occlusion::None || hides {
+        return Ok(());
+    }
+    let rows = experiment.log.len();
+    Err(hinted(
+        format!("the occlusion hides no object pose of the log's {rows} rows"),
+        format!("rows go from 0 to {}; choose a range among them", rows - 1),
+    ))
 }
 
 /// What an experiment's reference is, in words.
@@ -108,19 +125,45 @@ pub fn read_scene_file(path: &Path) -> Result<Setup> {
 /// Reads a log, CSV or MCAP by the file's ending; its warnings go to standard error. The verdict
 /// says whether all of it could be read.
 pub fn read_log_file(path: &Path, topics: &Topics) -> Result<(Log, Verdict)> {
-    let (bytes, name) = (bytes_of(path, "log")?, path.display().to_string());
-    let (log, warnings) = if path
+    let name = path.display().to_string();
+    let mut file = open(path, "log")?;
+    let kind = kind_of(&mut file).map_err(|error| unreadable(path, "log", &error))?;
+    let ends_as_mcap = path
         .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
-    {
-        read_log_mcap(&bytes, &name, topics).map_err(topic_hint)?
-    } else if topics.is_default() {
-        read_log(bytes.as_slice(), &name)?
-    } else {
-        return Err(hinted(
-            format!("{name}: --topic is for MCAP logs, whose names end in .mcap"),
-            "leave --topic out",
-        ));
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
+    let (log, warnings) = match kind {
+        Kind::Sqlite => {
+            let help =
+                "record with `ros2 bag record -s mcap`, or rewrite the bag with `ros2 bag convert`";
+            return Err(hinted(
+                format!("{name}: this is a bag in SQLite; logs are CSV or MCAP"),
+                help,
+            ));
+        }
+        Kind::Zstd => {
+            let help = format!("unpack it with `zstd -d {name}`");
+            return Err(hinted(
+                format!("{name}: the whole file is packed with zstd"),
+                help,
+            ));
+        }
+        Kind::Mcap | Kind::Other if ends_as_mcap => {
+            read_log_mcap(BufReader::new(file), &name, topics).map_err(topic_hint)?
+        }
+        Kind::Mcap => {
+            let help = "let its name end in .mcap";
+            return Err(hinted(
+                format!("{name}: this is an MCAP recording by another name"),
+                help,
+            ));
+        }
+        Kind::Other if topics.is_default() => read_log(file, &name)?,
+        Kind::Other => {
+            return Err(hinted(
+                format!("{name}: --topic is for MCAP logs, whose names end in .mcap"),
+                "leave --topic out",
+            ));
+        }
     };
     for warning in &warnings {
         talk(format_args!("warning: {warning}"));
@@ -134,6 +177,27 @@ pub fn read_log_file(path: &Path, topics: &Topics) -> Result<(Log, Verdict)> {
             Verdict::Done
         },
     ))
+}
+
+/// What a file is by its first bytes.
+enum Kind {
+    Mcap,
+    /// A bag of ROS 2 as it was recorded before MCAP.
+    Sqlite,
+    Zstd,
+    Other,
+}
+
+fn kind_of(file: &mut File) -> io::Result<Kind> {
+    let mut start = Vec::new();
+    file.take(16).read_to_end(&mut start)?;
+    file.rewind()?;
+    Ok(match start.as_slice() {
+        [0x89, b'M', b'C', b'A', b'P', ..] => Kind::Mcap,
+        [b'S', b'Q', b'L', b'i', b't', b'e', b' ', ..] => Kind::Sqlite,
+        [0x28, 0xb5, 0x2f, 0xfd, ..] => Kind::Zstd,
+        _ => Kind::Other,
+    })
 }
 
 /// How to say on the command line which topic is meant.
@@ -156,7 +220,7 @@ fn topic_hint(error: McapError) -> anyhow::Error {
 
 fn read_truth_file(path: &Path) -> Result<Truth> {
     Ok(read_truth_csv(
-        bytes_of(path, "truth")?.as_slice(),
+        open(path, "truth")?,
         &path.display().to_string(),
     )?)
 }
@@ -174,12 +238,17 @@ pub fn text_of(path: &Path, what: &str) -> Result<String> {
     fs::read_to_string(path).map_err(|error| unreadable(path, what, &error))
 }
 
-fn bytes_of(path: &Path, what: &str) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|error| unreadable(path, what, &error))
+fn open(path: &Path, what: &str) -> Result<File> {
+    match File::open(path) {
+        Ok(_) if path.is_dir() => Err(unreadable(path, what, &ErrorKind::IsADirectory.into())),
+        opened => opened.map_err(|error| unreadable(path, what, &error)),
+    }
 }
 
-fn unreadable(path: &Path, what: &str, error: &std::io::Error) -> anyhow::Error {
-    let help = if path.is_dir() {
+fn unreadable(path: &Path, what: &str, error: &io::Error) -> anyhow::Error {
+    let help = if path.join("metadata.yaml").is_file() {
+        "this is the folder of a bag: give the .mcap file in it".to_owned()
+    } else if path.is_dir() {
         format!("give the {what} file itself; whole folders are for `stickslip compare`")
     } else {
         format!("give the path of the {what} file")

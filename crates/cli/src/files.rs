@@ -1,7 +1,8 @@
 //! Writing files and folders: what went wrong, and what to do about it.
 
+use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -11,6 +12,9 @@ use crate::failure::hinted;
 
 /// What to do where the folder of `--out` cannot be written to.
 const OTHER_OUT: &str = "give a folder that can be written to with --out";
+
+/// What to do where a file cannot be written.
+const OTHER_FILE: &str = "give a place that can be written to";
 
 /// Makes a folder named by `--out`.
 pub fn make_folder(folder: &Path) -> Result<()> {
@@ -22,25 +26,94 @@ pub fn make_folder(folder: &Path) -> Result<()> {
     })
 }
 
+/// Refuses a folder named by `--out` that cannot be written to, before the work whose results go there.
+pub fn ready_folder(folder: &Path) -> Result<()> {
+    make_folder(folder)?;
+    let tried = try_place(&folder.join("stickslip"));
+    tried.map_err(|error| unwritable(folder, &error, OTHER_OUT))
+}
+
+/// Refuses a file named on the command line that cannot be written or would take the place of one of
+/// `inputs`, before the work whose results go there.
+pub fn ready_file(path: &Path, inputs: &[&Path]) -> Result<()> {
+    let is_input = |input: &&Path| match (fs::canonicalize(path), fs::canonicalize(input)) {
+        (Ok(path), Ok(input)) => path == input,
+        _ => false,
+    };
+    if inputs.iter().any(|input| is_input(input)) {
+        let message = format!(
+            "{}: writing there would destroy what is read",
+            path.display()
+        );
+        return Err(hinted(message, "give another place"));
+    }
+    let tried = make_parent(path).and_then(|()| match path.is_dir() {
+        true => Err(ErrorKind::IsADirectory.into()),
+        false => try_place(path),
+    });
+    tried.map_err(|error| unwritable(path, &error, OTHER_FILE))
+}
+
 /// Writes a file into a folder named by `--out`, which is made where it is missing; other files
 /// there stay as they are.
 pub fn write_out(
     path: &Path,
     content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<()> {
-    let write = || {
-        make_parent(path)?;
-        let mut file = BufWriter::new(File::create(path)?);
-        content(&mut file)?;
-        file.flush()
-    };
-    write().map_err(|error| unwritable(path, &error, OTHER_OUT))
+    write_whole(path, content).map_err(|error| unwritable(path, &error, OTHER_OUT))
 }
 
 /// Writes a file; its folder is made where it is missing.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    let written = make_parent(path).and_then(|()| fs::write(path, bytes));
-    written.map_err(|error| unwritable(path, &error, "give a place that can be written to"))
+    let written = write_whole(path, |file| file.write_all(bytes));
+    written.map_err(|error| unwritable(path, &error, OTHER_FILE))
+}
+
+/// Writes a file whole or not at all: beside its place first, then in one move over what was there. Two
+/// programs that write one file leave the one or the other, and a full disk leaves what was there.
+fn write_whole(
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    make_parent(path)?;
+    if is_stream(path) {
+        let mut stream = BufWriter::new(File::create(path)?);
+        content(&mut stream)?;
+        return stream.flush();
+    }
+    // a link stays, and what it leads to is written
+    let path = fs::canonicalize(path).unwrap_or(path.to_owned());
+    let beside = beside(&path);
+    let write = || {
+        let mut file = BufWriter::new(File::create(&beside)?);
+        content(&mut file)?;
+        file.into_inner()?.sync_all()?;
+        fs::rename(&beside, &path)
+    };
+    write().inspect_err(|_| drop(fs::remove_file(&beside)))
+}
+
+/// Whether a file can be written at `path`, without touching what is there.
+fn try_place(path: &Path) -> io::Result<()> {
+    if is_stream(path) {
+        return File::options().write(true).open(path).map(drop);
+    }
+    let beside = beside(&fs::canonicalize(path).unwrap_or(path.to_owned()));
+    File::create(&beside)?;
+    fs::remove_file(&beside)
+}
+
+/// Whether something is there that no file can take the place of, as `/dev/stdout`.
+fn is_stream(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
+}
+
+/// Where the file for `path` is written first.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(format!(".{}.part", std::process::id()));
+    path.with_file_name(name)
 }
 
 /// Writes the figures of an experiment into a folder as SVG and PNG, their names after the

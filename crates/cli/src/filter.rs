@@ -7,29 +7,33 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use clap::CommandFactory;
 use serde::Serialize;
-use stickslip::diagnosis::assumed_stall_force;
+use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Occlusion, Run, TactileUse, keep_threads_awake, run, run_observed};
+use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant, score};
 use stickslip_formats::{Experiment, write_estimate};
-use stickslip_report::{CloudSample, Report, ReportedExperiment, ReportedRun, Table, number};
+use stickslip_report::{
+    Block, CloudSample, Report, ReportedExperiment, ReportedRun, Table, number,
+};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
-use crate::experiment::{read_experiment, reference_name};
-use crate::failure::hinted;
-use crate::files::{write_out, write_report};
+use crate::experiment::{check_occlusion, read_experiment, reference_name};
+use crate::files::{ready_file, ready_folder, write_out, write_report};
 use crate::output::{show_result, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
 use crate::reported_run::DRAWN;
 use crate::verdict::Verdict;
 
+/// Name of the file of estimates.
+const ESTIMATE: &str = "estimate.csv";
+
 /// Particle steps above which a person would wait.
 const LONG: usize = 200_000;
 
 /// What is printed of a run.
 #[derive(Debug, Serialize)]
-struct Summary {
+struct Summary<'a> {
     wmse_mm: Option<f64>,
     wmse_occluded_mm: Option<f64>,
     wmse_moving_mm: Option<f64>,
@@ -40,6 +44,8 @@ struct Summary {
     /// Of those, the ones whose solver gave up; the others have no solution.
     failed: u64,
     collapses: u32,
+    /// What makes the scores doubtful.
+    warnings: &'a [String],
     real_time_factor: f64,
     /// In N; `None` is a rigid drive.
     stall_force: Option<f64>,
@@ -62,45 +68,48 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
+    check_places(args)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
     let scores = scores(args, &experiment, &run.estimate);
+    let seen = run.estimate.rows.iter().filter(|row| row.visual).count();
+    let warnings: Vec<String> = misread(&experiment.setup, &experiment.log)
+        .into_iter()
+        .chain(collapsed(run.collapses, seen))
+        .map(|finding| finding.to_string())
+        .collect();
+    let summary = Summary::new(&experiment, &run, &scores, seconds, &warnings);
+    show_result(args.shared.json, &summary, || {
+        tables(args, &experiment, &run.estimate, &summary)
+    })?;
     let written = args
         .out
         .as_deref()
-        .map(|folder| write(folder.join("estimate.csv"), &run.estimate))
+        .map(|folder| write(folder.join(ESTIMATE), &run.estimate))
         .transpose()?;
     let reported = args
         .report
         .as_deref()
-        .map(|path| report(args, &experiment, &run, &scores, sample, path))
+        .map(|path| report(args, &experiment, &run, &warnings, &scores, sample, path))
         .transpose()?;
-    let summary = Summary::new(&experiment, &run, &scores, seconds);
-    show_result(args.shared.json, &summary, || {
-        tables(args, &experiment, &run.estimate, &summary)
-    })?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
     }
     Ok(verdict)
 }
 
-/// An occlusion that hides no pose is a slip of the pen.
-fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
-    let hides = occlusion
-        .hidden(&experiment.log)
-        .iter()
-        .zip(&experiment.log.object)
-        .any(|(hidden, pose)| *hidden && pose.is_some());
-    if occlusion == Occlusion::None || hides {
-        return Ok(());
+/// Refuses places for results that cannot be written, before the run.
+fn check_places(args: &FilterArgs) -> Result<()> {
+    let inputs = [Some(&args.log), Some(&args.scene), args.truth.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    if let Some(folder) = &args.out {
+        ready_folder(folder)?;
+        ready_file(&folder.join(ESTIMATE), &inputs)?;
     }
-    let rows = experiment.log.len();
-    Err(hinted(
-        format!("the occlusion hides no object pose of the log's {rows} rows"),
-        format!("rows go from 0 to {}; choose a range among them", rows - 1),
-    ))
+    args.report
+        .iter()
+        .try_for_each(|path| ready_file(path, &inputs))
 }
 
 /// The run and the wall time of its loop (s); `sample` is shown the particles where a report wants
@@ -137,6 +146,7 @@ fn report(
     args: &FilterArgs,
     experiment: &Experiment,
     run: &Run,
+    warnings: &[String],
     scores: &Scores,
     sample: CloudSample,
     path: &Path,
@@ -147,6 +157,7 @@ fn report(
             estimate: run.estimate.clone(),
             scores: *scores,
             unsolved: run.unsolved,
+            collapses: run.collapses,
         },
         cloud: sample.into_rows(experiment.log.len()),
     };
@@ -155,7 +166,11 @@ fn report(
     let reported = ReportedExperiment::new(&name, "", experiment, occlusion, vec![run]);
     let report = Report {
         title: format!("{title}: {name}"),
-        summary: reported.summary().to_vec(),
+        summary: warnings
+            .iter()
+            .map(|text| Block::Note(format!("Warning: {text}")))
+            .chain(reported.summary().iter().cloned())
+            .collect(),
         sections: vec![reported.section()],
     };
     write_report(path.to_owned(), &report)
@@ -177,8 +192,14 @@ fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Sc
     )
 }
 
-impl Summary {
-    fn new(experiment: &Experiment, run: &Run, scores: &Scores, seconds: f64) -> Self {
+impl<'a> Summary<'a> {
+    fn new(
+        experiment: &Experiment,
+        run: &Run,
+        scores: &Scores,
+        seconds: f64,
+        warnings: &'a [String],
+    ) -> Self {
         Self {
             wmse_mm: scores.wmse_mm,
             wmse_occluded_mm: scores.wmse_occluded_mm,
@@ -189,6 +210,7 @@ impl Summary {
             unsolved: run.unsolved,
             failed: run.failed,
             collapses: run.collapses,
+            warnings,
             real_time_factor: experiment.log.duration() / seconds,
             stall_force: experiment.setup.scene.pusher.stall_force,
             stall_force_assumed: experiment.setup.stall_force_assumed,
@@ -204,7 +226,7 @@ fn tables(
     args: &FilterArgs,
     experiment: &Experiment,
     estimate: &Estimate,
-    summary: &Summary,
+    summary: &Summary<'_>,
 ) -> String {
     let title = format!(
         "{}, {} against {}\n",
@@ -219,11 +241,17 @@ fn tables(
         .into_iter()
         .chain(friction)
         .chain(final_pose_line(experiment, estimate))
-        .chain(assumed_stall_force(&experiment.setup).map(|finding| format!("note: {finding}\n")));
+        .chain(assumed_stall_force(&experiment.setup).map(|finding| format!("note: {finding}\n")))
+        .chain(
+            summary
+                .warnings
+                .iter()
+                .map(|text| format!("warning: {text}\n")),
+        );
     parts.collect::<Vec<_>>().join("\n")
 }
 
-fn score_table(summary: &Summary) -> Table {
+fn score_table(summary: &Summary<'_>) -> Table {
     let mut table = Table::new(["score", "value", "unit"]);
     let mut row = |name: &str, value: String, unit: &str| {
         table.push([name.to_owned(), value, unit.to_owned()])

@@ -38,10 +38,36 @@ pub fn show_result(
     })
 }
 
-/// Writes a line to standard error; lost where nobody can read it, since there is no other place to
+/// Most characters of a line on standard error; what a damaged file says of itself may be longer.
+const LONGEST_LINE: usize = 2000;
+
+/// Writes a line to standard error, without what a terminal would obey; lost where nobody can read it, since there is no other place to
 /// say so.
 pub fn talk(text: impl Display) {
-    let _ = write(&mut io::stderr().lock(), text);
+    let _ = write(&mut io::stderr().lock(), printable(&text.to_string()));
+}
+
+/// A text whose control characters are written out, its middle left out where it is long.
+fn printable(text: &str) -> String {
+    let characters: Vec<char> = text.chars().collect();
+    let half = LONGEST_LINE / 2;
+    let shown = |part: &[char]| {
+        let plain = |c: &char| match c {
+            '\n' | '\t' => c.to_string(),
+            c if c.is_control() => c.escape_default().to_string(),
+            c => c.to_string(),
+        };
+        part.iter().map(plain).collect::<String>()
+    };
+    match characters.len() {
+        all if all <= LONGEST_LINE => shown(&characters),
+        all => format!(
+            "{} [{} characters left out] {}",
+            shown(&characters[..half]),
+            all - 2 * half,
+            shown(&characters[all - half..])
+        ),
+    }
 }
 
 /// Tells standard error what failed, and ends with that error's exit code.
@@ -61,4 +87,17 @@ pub fn tell(error: &anyhow::Error) -> Verdict {
 fn write(stream: &mut impl Write, text: impl Display) -> io::Result<()> {
     writeln!(stream, "{}", text.to_string().trim_end())?;
     stream.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_printable_and_of_a_length_to_read() {
+        assert_eq!(printable("a\u{1b}[2Jb\n"), "a\\u{1b}[2Jb\n");
+        let long = printable(&format!("file: {}end", "x".repeat(1_000_000)));
+        assert!(long.len() < 2100 && long.starts_with("file: x") && long.ends_with("xend"));
+        assert!(long.contains("[998009 characters left out]"), "{long}");
+    }
 }

@@ -1,14 +1,14 @@
 //! `stickslip render`: camera frames of an experiment, with all that tracking needs.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rayon::prelude::*;
 use stickslip_evaluation::Reference;
-use stickslip_formats::{Experiment, FrameList, write_frames};
+use stickslip_formats::{Experiment, FrameList, Topics, write_frames};
 use stickslip_rendering::{
     CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video, encode_png,
 };
@@ -26,7 +26,7 @@ use crate::verdict::Verdict;
 
 /// Runs the command.
 pub fn render(args: &RenderArgs) -> Result<Verdict> {
-    let (experiment, verdict) = read_folder(&args.folder, "scene.toml")?;
+    let (experiment, verdict) = read_folder(&args.folder, "scene.toml", &Topics::default())?;
     let recorded = recorded(args, &experiment)?;
     let scene = &experiment.setup.scene;
     let optics = Optics {
@@ -124,16 +124,11 @@ impl Out<'_> {
             written
         })?;
         progress.finish_and_clear();
-        let list = folder.join("frames.csv");
-        let created = File::create(&list).with_context(|| list.display().to_string())?;
-        write_frames(
-            created,
-            &FrameList {
-                time: time.clone(),
-                file,
-            },
-        )
-        .with_context(|| list.display().to_string())?;
+        let list = FrameList {
+            time: time.clone(),
+            file,
+        };
+        write_out(&folder.join("frames.csv"), |file| write_frames(file, &list))?;
         Ok(time.len())
     }
 

@@ -17,7 +17,7 @@ use stickslip_evaluation::paper::{
 use stickslip_evaluation::{ScoredRun, Variant};
 use stickslip_rendering::Optics;
 
-use crate::files::{make_folder, write_figure, write_file, write_report};
+use crate::files::{ready_folder, write_figure, write_file, write_report};
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::simulation_args::ReproduceArgs;
@@ -55,7 +55,7 @@ struct Equal {
 pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
     if let Some(folder) = &args.out {
         // before minutes are spent on what is to be in it
-        make_folder(folder)?;
+        ready_folder(folder)?;
     }
     let report = args.threads.pool()?.install(|| report(args))?;
     show_result(args.json, &report, || report.text())?;

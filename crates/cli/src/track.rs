@@ -1,13 +1,12 @@
 //! `stickslip track`: object and pusher through camera frames, into a log.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Cursor, Write};
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
 use stickslip::{Log, quantile};
-use stickslip_formats::{McapWriteError, Topics, write_log, write_log_mcap};
+use stickslip_formats::{Topics, write_log, write_log_mcap};
 use stickslip_report::{Table, number};
 use stickslip_vision::{
     BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera,
@@ -17,6 +16,7 @@ use stickslip_vision::{
 use crate::camera_args::TrackArgs;
 use crate::experiment::{read_log_file, text_of};
 use crate::failure::hinted;
+use crate::files::{ready_folder, write_out};
 use crate::frames::FrameFolder;
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
@@ -58,6 +58,7 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
         &text_of(&args.tags, "tags file")?,
         &args.tags.display().to_string(),
     )?;
+    ready_folder(&args.out)?;
     let folder = FrameFolder::list(&args.frames)?;
     let time = times(args, &folder)?;
     let found = found(args, &folder, &camera, &tags)?;
@@ -169,28 +170,19 @@ fn differs(a: Option<&f64>, b: Option<&f64>) -> bool {
 
 /// Writes log.csv, poses.csv and log.mcap into `folder`; other files there stay as they are.
 fn write(folder: &Path, log: &Log, track: &Track) -> Result<()> {
-    let write = || -> Result<(), McapWriteError> {
-        fs::create_dir_all(folder)?;
-        let mut file = BufWriter::new(File::create(folder.join("log.csv"))?);
-        write_log(&mut file, log)?;
-        file.flush()?;
-        let mut file = BufWriter::new(File::create(folder.join("poses.csv"))?);
-        write_poses(&mut file, &log.time, track)?;
-        file.flush()?;
-        let mut bytes = Cursor::new(Vec::new());
-        write_log_mcap(&mut bytes, log, &Topics::default())?;
-        Ok(fs::write(folder.join("log.mcap"), bytes.into_inner())?)
-    };
-    write().map_err(|error| match error {
-        McapWriteError::Output(error) => hinted(
-            format!("{}: cannot be written: {error}", folder.display()),
-            "give a folder that can be written to with --out",
-        ),
-        error => hinted(
-            format!("{}: {error}", folder.join("log.mcap").display()),
+    write_out(&folder.join("log.csv"), |file| write_log(file, log))?;
+    write_out(&folder.join("poses.csv"), |file| {
+        write_poses(file, &log.time, track)
+    })?;
+    let path = folder.join("log.mcap");
+    let mut bytes = Cursor::new(Vec::new());
+    write_log_mcap(&mut bytes, log, &Topics::default()).map_err(|error| {
+        hinted(
+            format!("{}: {error}", path.display()),
             "log.csv and poses.csv are written; log.mcap needs other times in frames.csv",
-        ),
-    })
+        )
+    })?;
+    write_out(&path, |file| file.write_all(&bytes.into_inner()))
 }
 
 fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {

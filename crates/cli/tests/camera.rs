@@ -136,7 +136,7 @@ fn track_finds_what_was_rendered() {
     assert_eq!(log[0].last().unwrap(), "tactile_3");
     assert_eq!([log.len(), poses.len()], [1 + ROWS.len(); 2]);
     let (recording, warnings) = read_log_mcap(
-        &fs::read(out.join("log.mcap")).unwrap(),
+        &fs::read(out.join("log.mcap")).unwrap()[..],
         "log.mcap",
         &Topics::default(),
     )

@@ -221,6 +221,13 @@ fn what_cannot_be_simulated_is_refused_with_the_next_step() {
         &["camera rate", "1000 Hz"],
     );
     refused(
+        "simulate_long",
+        &SCENE.replace("duration = 4", "duration = 1e300"),
+        &[],
+        1,
+        &["start.duration is 1e300 s", "at most 1e4 s"],
+    );
+    refused(
         "simulate_share",
         SCENE,
         &["--friction-error", "40"],

@@ -2,6 +2,7 @@
 
 use stickslip_filter::{SeriesError, SettingsError};
 
+use crate::range::SetupError;
 use crate::row::{LONGEST_PAUSE, RowError};
 
 /// Why a method could not be run on a log.
@@ -18,7 +19,8 @@ pub enum RunError {
     },
     /// Two rows are so far apart that nothing can be said of what happened between them.
     #[error(
-        "row {row} is at {to} s and the row before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or cut the log in the pause",
+        "row {row} is at {to} s and the row before it at {from} s; rows must be at most {longest} s apart{}. Give all times in seconds and by one clock, or cut the log in the pause",
+        .unit.map_or(String::new(), |unit| format!("; times seem to be in {unit}")),
         longest = LONGEST_PAUSE
     )]
     Pause {
@@ -28,6 +30,69 @@ pub enum RunError {
         from: f64,
         /// Its time (s).
         to: f64,
+        /// The unit that the log's times seem to be in, where it is not the second.
+        unit: Option<&'static str>,
+    },
+    /// Columns of a log differ in length.
+    #[error(
+        "the log's column `{column}` has {entries} entries and `time` {rows}; give every row an entry, None where nothing was measured"
+    )]
+    Columns {
+        /// The column.
+        column: String,
+        /// Its entries.
+        entries: usize,
+        /// Rows of the log.
+        rows: usize,
+    },
+    /// Times do not rise.
+    #[error(
+        "row {row} is at {to} s and the row before it at {from} s; time must rise strictly from row to row. Sort the rows and remove repeated ones"
+    )]
+    Order {
+        /// The later row, from 0.
+        row: usize,
+        /// Time of the row before it (s).
+        from: f64,
+        /// Its time (s).
+        to: f64,
+    },
+    /// A row of a log that cannot be used.
+    #[error("row {row}: {problem}")]
+    LogRow {
+        /// The row, from 0.
+        row: usize,
+        /// Why.
+        problem: RowError,
+    },
+    /// A number of the setup cannot be.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A forced number of substeps that cannot be.
+    #[error(
+        "{substeps} substeps are asked for from row to row; it must be 1 to {most}, or None to choose by the length of the step"
+    )]
+    Substeps {
+        /// The number asked for.
+        substeps: u32,
+        /// The largest one.
+        most: u32,
+    },
+    /// The time that late rows may take cannot be.
+    #[error("late rows are to count for {late} s; it must be from 0 to {LONGEST_PAUSE} s")]
+    Late {
+        /// The time asked for (s).
+        late: f64,
+    },
+    /// The system does not give the memory.
+    #[error(
+        "{particles} particles take about {megabytes} MB, which the system does not give; ask for fewer particles"
+    )]
+    Memory {
+        /// Particles asked for.
+        particles: usize,
+        /// What they take (MB).
+        megabytes: usize,
     },
     /// The method weighs camera poses but the scene has no `[camera]`.
     #[error(

@@ -2,7 +2,9 @@
 
 use stickslip_dynamics::Pose;
 
-use crate::row::Row;
+use crate::error::RunError;
+use crate::quantile::quantile;
+use crate::row::{LONGEST_PAUSE, Row, unit_of_times};
 
 /// A recorded experiment; every column has one entry per row, `None` where nothing was measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,6 +44,63 @@ impl Log {
             pusher: self.pusher[row],
             tactile: self.tactile.iter().map(|sensor| sensor[row]).collect(),
             force: self.force.get(row).copied().flatten(),
+        }
+    }
+
+    /// Refuses what no method can use: columns of unequal length, more sensors than `fixels`, times that
+    /// do not rise or pause too long, numbers that cannot be.
+    pub(crate) fn check(&self, fixels: usize) -> Result<(), RunError> {
+        self.check_columns()?;
+        let sensors = self.tactile.len();
+        if sensors > fixels {
+            return Err(RunError::Sensors { sensors, fixels });
+        }
+        for row in 0..self.len() {
+            let problem = |problem| RunError::LogRow { row, problem };
+            self.row(row).check(fixels).map_err(problem)?;
+            let Some(before) = row.checked_sub(1) else {
+                continue;
+            };
+            let (from, to) = (self.time[before], self.time[row]);
+            if to <= from {
+                return Err(RunError::Order { row, from, to });
+            }
+            if to - from > LONGEST_PAUSE {
+                let unit = self.unit_of_times();
+                return Err(RunError::Pause {
+                    row,
+                    from,
+                    to,
+                    unit,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The unit that its times seem to be in, if that is not the second.
+    fn unit_of_times(&self) -> Option<&'static str> {
+        let steps: Vec<f64> = self.time.array_windows().map(|[a, b]| b - a).collect();
+        unit_of_times(quantile(&steps, 0.5)?)
+    }
+
+    fn check_columns(&self) -> Result<(), RunError> {
+        let rows = self.len();
+        let mut columns = vec![
+            ("object".to_owned(), self.object.len()),
+            ("pusher".to_owned(), self.pusher.len()),
+        ];
+        let tactile = self.tactile.iter().zip(1..);
+        columns.extend(tactile.map(|(column, k)| (format!("tactile {k}"), column.len())));
+        let force = Some(("force".to_owned(), self.force.len()));
+        columns.extend(force.filter(|(_, entries)| *entries > 0));
+        match columns.into_iter().find(|(_, entries)| *entries != rows) {
+            None => Ok(()),
+            Some((column, entries)) => Err(RunError::Columns {
+                column,
+                entries,
+                rows,
+            }),
         }
     }
 

@@ -9,23 +9,8 @@ use crate::options::RunOptions;
 use crate::particle::observer::Observer;
 use crate::pusher::schedule::Schedule;
 use crate::pusher::track::PusherTrack;
-use crate::row::LONGEST_PAUSE;
 use crate::setup::Setup;
-
-/// Refuses a log whose steps no substeps can follow.
-fn check_pauses(time: &[f64]) -> Result<(), RunError> {
-    match time
-        .array_windows()
-        .position(|[from, to]| to - from > LONGEST_PAUSE)
-    {
-        Some(row) => Err(RunError::Pause {
-            row: row + 1,
-            from: time[row],
-            to: time[row + 1],
-        }),
-        None => Ok(()),
-    }
-}
+use crate::tracker::TrackerOptions;
 
 /// A log with its occlusion mask, start pose and step schedule.
 pub(crate) struct PreparedLog<'a> {
@@ -45,14 +30,9 @@ pub(crate) struct PreparedLog<'a> {
 
 impl<'a> PreparedLog<'a> {
     pub fn new(setup: &Setup, log: &'a Log, options: &RunOptions) -> Result<Self, RunError> {
-        let fixels = setup.scene.fixels.len();
-        if log.tactile.len() > fixels {
-            return Err(RunError::Sensors {
-                sensors: log.tactile.len(),
-                fixels,
-            });
-        }
-        check_pauses(&log.time)?;
+        setup.check()?;
+        TrackerOptions::of(options).check()?;
+        log.check(setup.scene.fixels.len())?;
         let hidden = options.occlusion.hidden(log);
         let seen = (0..log.len()).find_map(|row| {
             log.object[row]

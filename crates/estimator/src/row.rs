@@ -2,9 +2,24 @@
 
 use stickslip_dynamics::Pose;
 
-/// Longest time between two rows (s): a log that pauses longer mixes two clocks or two recordings,
-/// and its substeps would fill the memory.
-pub(crate) const LONGEST_PAUSE: f64 = 600.0;
+use crate::range::Unit;
+
+/// Longest time between two rows (s): a log that pauses longer is in milliseconds, or mixes two clocks
+/// or two recordings, and its substeps would fill the memory.
+pub(crate) const LONGEST_PAUSE: f64 = 5.0;
+
+/// Latest time (s): that of our day in nanoseconds is earlier, which is told better by other rules.
+const LATEST: f64 = 1e19;
+
+/// The unit that times seem to be in whose typical step from row to row is this; `None` for seconds.
+pub(crate) fn unit_of_times(step: f64) -> Option<&'static str> {
+    match step {
+        step if step > 5e5 => Some("nanoseconds"),
+        step if step > 500.0 => Some("microseconds"),
+        step if step > LONGEST_PAUSE => Some("milliseconds"),
+        _ => None,
+    }
+}
 
 /// The measurements of one instant, `None` where there is none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,8 +41,8 @@ pub struct Row {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RowError {
-    /// The time is NaN or infinite.
-    #[error("the row's time is {time} s; it must be finite")]
+    /// The time is none.
+    #[error("the row's time is {time:?} s; it must be finite, and at most 1e19")]
     Time {
         /// The time found (s).
         time: f64,
@@ -38,6 +53,19 @@ pub enum RowError {
         x = pose.x, y = pose.y, theta = pose.theta
     )]
     Pose {
+        /// `object` or `pusher`.
+        body: &'static str,
+        /// Time of the row (s).
+        time: f64,
+        /// The pose found.
+        pose: Pose,
+    },
+    /// A pose is where none can be.
+    #[error(
+        "the {body}'s pose at {time} s is ({x:?}, {y:?}, {theta:?}); no coordinate may be beyond 1e6 m or 1e6 rad; give None where nothing was measured",
+        x = pose.x, y = pose.y, theta = pose.theta
+    )]
+    Far {
         /// `object` or `pusher`.
         body: &'static str,
         /// Time of the row (s).
@@ -59,7 +87,7 @@ pub enum RowError {
     },
     /// Nothing can be said of what happened since the row before.
     #[error(
-        "the row is at {to} s and the latest before it at {from} s; rows must be at most {longest} s apart. Give all times by one clock, or start a new tracker",
+        "the row is at {to} s and the latest before it at {from} s; rows must be at most {longest} s apart. Give all times in seconds and by one clock, or start a new tracker",
         longest = LONGEST_PAUSE
     )]
     Pause {
@@ -86,12 +114,17 @@ impl Row {
     /// Refuses what no tracker can use.
     pub(crate) fn check(&self, fixels: usize) -> Result<(), RowError> {
         let time = self.time;
-        if !time.is_finite() {
+        if time.is_nan() || time.abs() > LATEST {
             return Err(RowError::Time { time });
         }
         for (body, pose) in [("object", self.object), ("pusher", self.pusher)] {
-            if let Some(pose) = pose.filter(|pose| !pose.is_finite()) {
+            let Some(pose) = pose else { continue };
+            if !pose.is_finite() {
                 return Err(RowError::Pose { body, time, pose });
+            }
+            let places = [pose.x, pose.y].iter().all(|x| Unit::Metre.holds(*x));
+            if !(places && Unit::Radian.holds(pose.theta)) {
+                return Err(RowError::Far { body, time, pose });
             }
         }
         let sensors = self.tactile.len();

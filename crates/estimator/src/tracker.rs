@@ -17,6 +17,12 @@ use crate::setup::{Camera, Setup};
 /// Direction in which a pusher that has not moved yet may give way.
 const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
 
+/// Most substeps from row to row.
+const MOST_SUBSTEPS: u32 = 10_000;
+
+/// Memory that a particle takes, its past poses not counted.
+const PARTICLE_BYTES: usize = 600;
+
 /// How a tracker works; the defaults are those of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerOptions {
@@ -52,6 +58,26 @@ impl TrackerOptions {
             substeps: options.substeps,
             late: 0.0,
         }
+    }
+
+    /// Refuses what cannot be.
+    pub(crate) fn check(&self) -> Result<(), RunError> {
+        let (particles, late) = (self.particles, self.late);
+        if let Some(substeps) = self.substeps.filter(|n| !(1..=MOST_SUBSTEPS).contains(n)) {
+            return Err(RunError::Substeps {
+                substeps,
+                most: MOST_SUBSTEPS,
+            });
+        }
+        if !(0.0..=LONGEST_PAUSE).contains(&late) {
+            return Err(RunError::Late { late });
+        }
+        let bytes = particles.saturating_mul(PARTICLE_BYTES);
+        let given = Vec::<u8>::new().try_reserve_exact(bytes);
+        given.map_err(|_| RunError::Memory {
+            particles,
+            megabytes: bytes / 1_000_000,
+        })
     }
 }
 
@@ -124,6 +150,8 @@ impl<'o> Tracker<'o> {
         options: &TrackerOptions,
         observer: Option<&'o dyn Observer>,
     ) -> Result<Self, RunError> {
+        setup.check()?;
+        options.check()?;
         let camera = setup.camera.ok_or(RunError::NoCamera)?;
         let tracker = Self {
             setup: setup.clone(),

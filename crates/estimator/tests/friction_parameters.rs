@@ -197,3 +197,27 @@ fn no_parameter_changes_while_the_camera_is_dark() {
     }
     assert!(moved(&rows, 9).mu_p && moved(&rows, 20).mu_p);
 }
+
+/// The pusher's rows come ten times as often as the camera's: between two frames nothing is dark.
+#[test]
+fn parameters_change_between_frames_of_a_camera_that_is_slower_than_the_rows() {
+    let last = 150;
+    let time: Vec<f64> = (0..200).map(|row| f64::from(row) / 300.0).collect();
+    let pose = |row: usize| (row.is_multiple_of(10) && row <= last).then(Pose::default);
+    let log = Log {
+        object: (0..200).map(pose).collect(),
+        pusher: time
+            .iter()
+            .map(|t| Some(Pose::new(-0.036 + 0.03 * t, 0.002, 0.0)))
+            .collect(),
+        time,
+        ..Log::default()
+    };
+    let rows = friction_rows(&setup(&[]), &log, Occlusion::None);
+    for row in [141, 145, 149, 150, 151, last + 24] {
+        assert!(moved(&rows, row).mu_p, "row {row}");
+    }
+    for row in last + 27..200 {
+        assert_eq!(rows[row], rows[last + 26], "row {row}");
+    }
+}

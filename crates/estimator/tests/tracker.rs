@@ -215,7 +215,7 @@ fn rows_that_cannot_be_used_are_refused_and_change_nothing() {
             },
             "1 tactile readings but the scene has 0 fixels",
         ),
-        (at(1000.0), "at most 600 s apart"),
+        (at(1000.0), "at most 5 s apart"),
         (at(0.05), "the tracker is at 0.3 s and remembers 0.2 s"),
     ];
     for (row, message) in cases {

@@ -32,6 +32,8 @@ pub struct ScoredRun {
     pub scores: Scores,
     /// Particle-steps without a certified solution.
     pub unsolved: u64,
+    /// Rows at which no particle explained the camera.
+    pub collapses: u32,
 }
 
 impl ScoredRun {
@@ -48,7 +50,9 @@ impl ScoredRun {
         let Experiment { setup, log, .. } = experiment;
         let options = conditions.options(variant);
         let Run {
-            estimate, unsolved, ..
+            estimate,
+            unsolved,
+            collapses,
         } = match observer {
             Some(observer) => run_observed(setup, log, &options, observer, &mut |_| ())?,
             None => run(setup, log, &options, &mut |_| ())?,
@@ -64,7 +68,13 @@ impl ScoredRun {
             estimate,
             scores,
             unsolved,
+            collapses,
         })
+    }
+
+    /// Rows with a camera pose that was used.
+    pub fn seen(&self) -> usize {
+        self.estimate.rows.iter().filter(|row| row.visual).count()
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::number;
+
 /// A column of a CSV file, as a person finds it: counted from 1, and its name in the header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CsvColumn {
@@ -115,6 +117,14 @@ pub enum CsvProblem {
         /// The cell.
         found: String,
     },
+    /// A number that cannot be.
+    #[error("{found} cannot be; a pose must be {rule}. Leave the cells of a lost pose empty")]
+    OutOfRange {
+        /// The number with its unit.
+        found: String,
+        /// The rule.
+        rule: String,
+    },
     /// A cell that must be filled.
     #[error("the cell is empty; every row needs a value here")]
     EmptyCell,
@@ -134,7 +144,8 @@ pub enum CsvProblem {
     },
     /// Time does not rise.
     #[error(
-        "time {found} s comes after {before} s; it must rise strictly from row to row. Sort the rows and remove repeated ones"
+        "time {} s comes after {} s; it must rise strictly from row to row. Sort the rows and remove repeated ones",
+        number::text(*.found), number::text(*.before)
     )]
     TimeNotRising {
         /// Time of this row \[s\].

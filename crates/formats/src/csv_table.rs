@@ -4,6 +4,7 @@
 //! stand in double quotes and be padded with blanks, blank lines only at the end. Lines and columns
 //! are counted from 1 in errors, columns from 0 in code.
 
+use std::collections::HashMap;
 use std::io::Read;
 
 use crate::csv_error::{CsvColumn, CsvError, CsvProblem};
@@ -14,6 +15,8 @@ pub(crate) struct CsvTable {
     file: String,
     text: String,
     columns: Vec<String>,
+    /// Index of the first column of each name.
+    places: HashMap<String, usize>,
 }
 
 /// One line below the header, with as many cells as the header.
@@ -39,9 +42,13 @@ impl CsvTable {
             file: file.to_owned(),
             text,
             columns: Vec::new(),
+            places: HashMap::new(),
         };
         let header = table.lines().next().map(|(_, header)| split(header));
         table.columns = header.ok_or_else(|| table.error(1, None, CsvProblem::Empty))?;
+        for (index, name) in table.columns.iter().enumerate() {
+            table.places.entry(name.clone()).or_insert(index);
+        }
         table.check_unique()?;
         Ok(table)
     }
@@ -72,7 +79,7 @@ impl CsvTable {
 
     /// Index of a column.
     pub(crate) fn find(&self, column: &str) -> Option<usize> {
-        self.columns.iter().position(|name| name == column)
+        self.places.get(column).copied()
     }
 
     /// Index of a column that must be there.

@@ -4,9 +4,10 @@
 //! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y]`,
 //! the columns found by name, in any order. An empty cell is a missing measurement.
 
+use std::collections::BTreeSet;
 use std::io::{Read, Write};
 
-use stickslip::{Log, Setup};
+use stickslip::{Log, Rule, Setup, Unit};
 use stickslip_dynamics::Pose;
 
 use crate::csv_error::{CsvProblem, LogError};
@@ -138,7 +139,7 @@ impl Columns {
 
     fn warnings(&self, table: &CsvTable) -> Vec<LogWarning> {
         let force = self.force.iter().flatten();
-        let used: Vec<usize> = self
+        let used: BTreeSet<usize> = self
             .object
             .iter()
             .chain(&self.pusher)
@@ -178,9 +179,10 @@ fn tactile_columns(table: &CsvTable) -> Result<Vec<usize>, LogError> {
     let names: Vec<String> = (1..=sensors.len())
         .map(|k| format!("{TACTILE}{k}"))
         .collect();
+    let known: BTreeSet<&String> = names.iter().collect();
     let wrong = sensors
         .iter()
-        .find(|index| !names.contains(&table.columns()[**index]));
+        .find(|index| !known.contains(&table.columns()[**index]));
     let in_order = names.iter().map(|name| {
         table.find(name).ok_or_else(|| {
             table.error(
@@ -205,7 +207,17 @@ fn force_columns(table: &CsvTable) -> Result<Option<[usize; 2]>, LogError> {
 }
 
 fn pose(row: &Row<'_>, columns: [usize; 3]) -> Result<Option<Pose>, LogError> {
-    Ok(row.group(&columns)?.map(|v| Pose::new(v[0], v[1], v[2])))
+    let Some(numbers) = row.group(&columns)? else {
+        return Ok(None);
+    };
+    let units = [Unit::Metre, Unit::Metre, Unit::Radian];
+    for ((column, value), unit) in columns.iter().zip(&numbers).zip(units) {
+        if let Some(rule) = Rule::Finite.broken_by(*value, unit) {
+            let found = format!("{} {}", number::text(*value), unit.symbol());
+            return Err(row.error(*column, CsvProblem::OutOfRange { found, rule }));
+        }
+    }
+    Ok(Some(Pose::new(numbers[0], numbers[1], numbers[2])))
 }
 
 fn header(log: &Log) -> Vec<String> {

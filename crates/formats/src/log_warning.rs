@@ -20,7 +20,7 @@ pub enum LogWarning {
         /// Bytes that were read.
         at: u64,
         /// Bytes of the file.
-        size: usize,
+        size: u64,
         /// What is wrong there.
         why: String,
     },

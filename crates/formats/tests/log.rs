@@ -397,10 +397,14 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// A coordinate that can be, with any last bits.
+fn coordinate() -> impl Strategy<Value = f64> {
+    number().prop_map(|value| value % 1e6)
+}
+
 fn any_pose() -> impl Strategy<Value = Option<Pose>> {
-    prop::option::of(
-        (number(), number(), number()).prop_map(|(x, y, theta)| Pose::new(x, y, theta)),
-    )
+    let numbers = (coordinate(), coordinate(), coordinate());
+    prop::option::of(numbers.prop_map(|(x, y, theta)| Pose::new(x, y, theta)))
 }
 
 fn any_log() -> impl Strategy<Value = Log> {

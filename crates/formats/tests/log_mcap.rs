@@ -207,7 +207,7 @@ fn topics_are_mapped_and_others_left() {
         "fixel_2=/fixel_1/contact",
         "wrench=",
     ]);
-    let (log, warnings) = read_log_mcap(&file(&lines), "bag.mcap", &swapped).unwrap();
+    let (log, warnings) = read_log_mcap(&file(&lines)[..], "bag.mcap", &swapped).unwrap();
     assert_eq!(
         (xs(&log.object), log.tactile, warnings.len()),
         (

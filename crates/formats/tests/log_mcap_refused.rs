@@ -18,7 +18,7 @@ use stickslip_formats::{Topics, read_log_mcap, write_log_mcap};
 
 #[track_caller]
 fn refused(lines: &[Line], topics: &Topics, words: &str) {
-    let message = read_log_mcap(&file(lines), "bag.mcap", topics)
+    let message = read_log_mcap(&file(lines)[..], "bag.mcap", topics)
         .expect_err(words)
         .to_string();
     assert!(
@@ -244,7 +244,7 @@ fn write_log_mcap_gives_the_same_bytes_and_reads_back() {
     assert!(ends.clone().all(|(back, log)| (back - log).abs() < 1e-12));
 
     let mapped = topics(&["object=/box", "wrench="]);
-    let (back, _) = read_log_mcap(&written(&log, &mapped), "bag.mcap", &mapped).unwrap();
+    let (back, _) = read_log_mcap(&written(&log, &mapped)[..], "bag.mcap", &mapped).unwrap();
     assert!(back.force.is_empty() && back.object == read(&bytes).0.object);
 }
 
@@ -326,7 +326,7 @@ proptest! {
         let start = at.index(bytes.len());
         let end = (start + cut).min(bytes.len());
         let damaged = [&bytes[..start], &insert, &bytes[end..]].concat();
-        if let Err(error) = read_log_mcap(&damaged, "f", &Topics::default()) {
+        if let Err(error) = read_log_mcap(&damaged[..], "f", &Topics::default()) {
             prop_assert!(error.to_string().starts_with("f: ") && error.to_string().len() > 10);
         }
     }
@@ -343,6 +343,6 @@ proptest! {
         for (byte, over) in bytes[start..].iter_mut().zip(over) {
             *byte = over;
         }
-        let _ = read_log_mcap(&bytes, "f", &Topics::default());
+        let _ = read_log_mcap(&bytes[..], "f", &Topics::default());
     }
 }

@@ -210,7 +210,7 @@ fn what_others_write_is_read() {
                 .any(|window| window == [0x28, 0xb5, 0x2f, 0xfd]),
             "not packed with zstd"
         );
-        let (read, warnings) = read_log_mcap(&bytes, "bag.mcap", &Topics::default()).unwrap();
+        let (read, warnings) = read_log_mcap(&bytes[..], "bag.mcap", &Topics::default()).unwrap();
         assert_eq!(warnings, []);
         assert_eq!(
             (read.len(), &read.tactile, &read.force),

@@ -2,6 +2,8 @@
 
 mod scene_text;
 
+use stickslip_formats::read_scene;
+
 use scene_text::{FULL, LEAST, read, refused, refused_text, replaced};
 
 #[test]
@@ -306,4 +308,66 @@ fn shape_that_is_none_is_refused_at_its_part() {
         "5:11",
         &["object.shape[1]"],
     );
+}
+
+#[test]
+fn numbers_that_cannot_be_on_a_table_top_are_refused() {
+    for (from, to, words) in [
+        ("mass = 0.50", "mass = 1e30", "at most 1e6 kg"),
+        ("mass = 0.50", "mass = 5e-324", "at least 1e-6 kg"),
+        ("inertia = 2.1e-4", "inertia = 1e308", "at most 1e9 kg m^2"),
+        (
+            "inertia = 2.1e-4",
+            "inertia = 1e-30",
+            "at least 1e-12 kg m^2",
+        ),
+        ("gravity = 9.81", "gravity = 1e300", "at most 1e5 m/s^2"),
+        (
+            "\nposition_std = 3.0e-4",
+            "\nposition_std = 1.7e308",
+            "at most 1e6 m",
+        ),
+        ("latency = 0.125", "latency = 1e300", "at most 1e4 s"),
+        ("stall_force = 20", "stall_force = 1e300", "at most 1e9 N"),
+    ] {
+        let message = read_scene(&replaced(FULL, from, to), "scene.toml")
+            .expect_err("must be refused")
+            .to_string();
+        assert!(
+            message.contains(words) && message.contains("as on any table top"),
+            "{message}"
+        );
+    }
+    let ellipse = LEAST.replace(
+        "disc = { radius = 0.03 }",
+        "ellipse = { semi_axes = [1e-300, 0.03] }",
+    );
+    refused_text(
+        &ellipse,
+        "5:38",
+        &["semi_axes[1] is 1e-300 m", "at least 1e-9 m"],
+    );
+}
+
+#[test]
+fn outlines_that_are_too_fine_are_refused() {
+    let vertex = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / 3001.0;
+        format!(
+            "[{:.9}, {:.9}]",
+            0.03 * libm::cos(angle),
+            0.03 * libm::sin(angle)
+        )
+    };
+    let vertices: Vec<String> = (0..3001).map(vertex).collect();
+    let polygon = format!("polygon = [{}]", vertices.join(", "));
+    let text = replaced(LEAST, "disc = { radius = 0.03 }", &polygon);
+    refused_text(
+        &text,
+        "5:23",
+        &["has 3001 vertices; at most 3000 are read. Simplify the outline"],
+    );
+    let discs = vec!["{ disc = { radius = 0.03 } }"; 201].join(", ");
+    let text = replaced(LEAST, "{ disc = { radius = 0.03 } }", &discs);
+    refused_text(&text, "5:9", &["object.shape has 201 parts; at most 200"]);
 }

@@ -20,6 +20,8 @@ use crate::motion::Motion;
 const ROUNDS: usize = 2;
 /// A tag with a corner this many times the mean misfit off is left out.
 const OUTLIER: f64 = 6.0;
+/// Views whose corners are nearer than this on the mean are one view (px).
+const SAME_VIEW: f64 = 3.0;
 /// Largest relative standard deviation of the focal length.
 const FOCAL_STD: f64 = 0.005;
 
@@ -81,6 +83,7 @@ pub fn calibrate(
         adjusted = refitted(&adjusted, &views, board).adjust().ok_or(NO_TILT)?;
     }
     check(&adjusted)?;
+    check_distinct(&views)?;
 
     let bundle = &adjusted.bundle;
     let tags = bundle.views.iter().map(|view| view.matches.len() / 4).sum();
@@ -164,6 +167,42 @@ fn check(adjusted: &Adjusted) -> Result<(), CalibrationError> {
         return Err(CalibrationError::NoTilt { relative_std });
     }
     Ok(())
+}
+
+/// Refuses copies of few views: each makes the numbers look better known, and none tells anything new.
+fn check_distinct(views: &[BoardView<'_>]) -> Result<(), CalibrationError> {
+    let mut distinct: Vec<&BoardView<'_>> = Vec::new();
+    for view in views {
+        if !distinct.iter().any(|other| moved(view, other) < SAME_VIEW) {
+            distinct.push(view);
+        }
+    }
+    if distinct.len() < FEWEST_FRAMES {
+        return Err(CalibrationError::SameViews {
+            distinct: distinct.len(),
+            frames: views.len(),
+        });
+    }
+    Ok(())
+}
+
+/// Mean distance (px) of the corners that two views share; infinite where they share none.
+fn moved(a: &BoardView<'_>, b: &BoardView<'_>) -> f64 {
+    let shared = a.tags.iter().filter_map(|tag| {
+        let other = b.tags.iter().find(|other| other.id == tag.id)?;
+        let corners = tag.corners().into_iter().zip(other.corners());
+        Some(
+            corners
+                .map(|([x, y], [u, v])| libm::hypot(x - u, y - v))
+                .sum::<f64>()
+                / 4.0,
+        )
+    });
+    let shared: Vec<f64> = shared.collect();
+    match shared.len() {
+        0 => f64::INFINITY,
+        count => shared.iter().sum::<f64>() / count as f64,
+    }
 }
 
 /// The board's tags in each frame, but for those that are there twice.

@@ -71,6 +71,16 @@ pub enum CalibrationError {
         /// Its relative standard deviation, where there is one.
         relative_std: Option<f64>,
     },
+    /// Copies of a few views.
+    #[error(
+        "the {frames} usable frames show the board in only {distinct} different places; at least {FEWEST_FRAMES} are needed, better 20. Move and tilt the board between frames"
+    )]
+    SameViews {
+        /// Views that differ.
+        distinct: usize,
+        /// Usable frames.
+        frames: usize,
+    },
     /// The board does not fit the frames.
     #[error(
         "the board fits the frames to {rms:.2} px only; at most {WORST_MISFIT} px is good. Measure tag_size and gap on the print, and make the board flat"

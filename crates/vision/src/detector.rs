@@ -1,26 +1,43 @@
-//! Where tags are in an image, roughly: [`Detector`], around the library's detector.
+//! Where tags are in an image, roughly: [`Detector`], of the library's parts.
+//!
+//! The library's own loop over them goes through a hash map and lets one candidate's grey levels into
+//! the next one's, so that its last digits differ from call to call; here every candidate is for itself.
 
-use std::sync::mpsc::sync_channel;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::cmp::Ordering::Equal;
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
 
 use image::GrayImage;
-use kornia_apriltag::decoder::Detection;
+use kornia_apriltag::DecodeTagsConfig;
+use kornia_apriltag::decoder::{Detection, GrayModelPair, decode_tags};
 use kornia_apriltag::family::TagFamilyKind;
-use kornia_apriltag::{AprilTagDecoder, DecodeTagsConfig};
+use kornia_apriltag::quad::{Quad, fit_quads};
+use kornia_apriltag::segmentation::{find_connected_components, find_gradient_clusters};
+use kornia_apriltag::threshold::{TileMinMax, adaptive_threshold};
+use kornia_apriltag::union_find::UnionFind;
+use kornia_apriltag::utils::Pixel;
+use kornia_image::allocator::CpuAllocator;
 use kornia_image::{Image, ImageSize};
 
 use crate::outline::Outline;
 
-/// No tag is found in images smaller than this, and the library takes none (px).
-const SMALLEST: usize = 32;
+/// No tag is found in images smaller than this (px).
+const SMALLEST: u32 = 32;
+
+/// Candidates are looked for in every so many-th pixel; at full resolution the library misses tags.
+const EVERY: u32 = 2;
+
+/// Side of the tiles of which each has a threshold of its own (px of the smaller image).
+const TILE: usize = 4;
+
+type Plane<T> = Image<T, 1, CpuAllocator>;
 
 /// Finds tags of the family 36h11 in images of one size.
 pub struct Detector {
-    decoder: Arc<Mutex<AprilTagDecoder>>,
-    size: ImageSize,
-    /// The library divides an image among the threads that it finds, and its last digits depend on
-    /// their number: it gets one.
-    one_thread: rayon::ThreadPool,
+    config: DecodeTagsConfig,
+    size: [u32; 2],
+    /// Copies of the configuration that are not at work: the library writes into one, and it is large.
+    spare: Mutex<Vec<DecodeTagsConfig>>,
 }
 
 /// A tag in an image.
@@ -34,27 +51,13 @@ pub struct FoundTag {
 
 impl Detector {
     /// A detector for images of `size`, columns and rows.
-    ///
-    /// # Panics
-    /// If a side is 0 or above 65535, or the system gives no thread.
     pub fn new(size: [u32; 2]) -> Self {
-        // the library looks at every second pixel by default; at full resolution it misses tags
-        let config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11])
-            .expect("the library has this family");
-        let size = ImageSize {
-            width: size[0] as usize,
-            height: size[1] as usize,
-        };
-        let decoder = AprilTagDecoder::new(config, size).expect("an image of usual size");
-        let one_thread = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .panic_handler(|_| ())
-            .build()
-            .expect("the system gives a thread");
+        let mut config = DecodeTagsConfig::new(vec![TagFamilyKind::Tag36H11]);
+        config.downscale_factor = EVERY as usize;
         Self {
-            decoder: Arc::new(Mutex::new(decoder)),
+            config,
             size,
-            one_thread,
+            spare: Mutex::default(),
         }
     }
 
@@ -63,10 +66,12 @@ impl Detector {
     /// # Panics
     /// If the image has another size.
     pub fn find(&self, image: &GrayImage) -> Vec<FoundTag> {
-        if self.size.width.min(self.size.height) < SMALLEST {
+        assert_eq!(image.dimensions(), self.size.into(), "the detector's size");
+        if self.size[0].min(self.size[1]) < SMALLEST {
             return Vec::new();
         }
-        let detections = self.decode(image);
+        let quads = self.candidates(&every_second(image));
+        let detections = self.decode(image, quads);
         let mut tags: Vec<FoundTag> = detections
             .iter()
             .map(|detection| {
@@ -89,23 +94,52 @@ impl Detector {
         tags
     }
 
-    /// Runs the library on its own thread and blocks on a channel. Inside rayon (`install`), a waiting
-    /// thread would steal the next frame, which waits in turn, nested until the stack overflows.
-    fn decode(&self, image: &GrayImage) -> Vec<Detection> {
-        let view =
-            Image::new(self.size, image.as_raw().clone()).expect("an image of the detector's size");
-        let (found, wait) = sync_channel(1);
-        let decoder = Arc::clone(&self.decoder);
-        self.one_thread.spawn(move || {
-            let mut decoder = decoder.lock().unwrap_or_else(PoisonError::into_inner);
-            let detections = decoder
-                .decode(&view)
-                .expect("an image of the detector's size");
-            decoder.clear();
-            // the one who asked is gone only if it panicked
-            let _ = found.send(detections);
+    /// Everything with four corners, in an order that depends on the image alone.
+    fn candidates(&self, small: &Plane<u8>) -> Vec<Quad> {
+        let fits = "images of one size";
+        let mut black_or_white = plane(small.size(), vec![Pixel::Skip; small.as_slice().len()]);
+        let mut tiles = TileMinMax::new(small.size(), TILE);
+        let contrast = self.config.min_white_black_difference;
+        adaptive_threshold(small, &mut black_or_white, &mut tiles, contrast).expect(fits);
+
+        let mut components = UnionFind::new(small.as_slice().len());
+        find_connected_components(&black_or_white, &mut components).expect(fits);
+        let mut borders = HashMap::new();
+        find_gradient_clusters(&black_or_white, &mut components, &mut borders);
+
+        let mut quads = fit_quads(&black_or_white, &mut borders, &self.config);
+        let place = |quad: &Quad| quad.corners.map(|corner| [corner.x, corner.y]);
+        quads.sort_by(|a, b| {
+            let pairs = place(a).into_iter().zip(place(b));
+            let mut orders = pairs.map(|(a, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            orders.find(|order| order.is_ne()).unwrap_or(Equal)
         });
-        wait.recv().expect("the library looks through any image")
+        quads
+    }
+
+    /// The candidates that are tags, each once.
+    fn decode(&self, image: &GrayImage, quads: Vec<Quad>) -> Vec<Detection> {
+        let size = ImageSize {
+            width: image.width() as usize,
+            height: image.height() as usize,
+        };
+        let image = plane(size, image.as_raw().clone());
+        let spare = || self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let taken = spare().pop();
+        let mut config = taken.unwrap_or_else(|| self.config.clone());
+        let mut found: Vec<Detection> = Vec::new();
+        for mut quad in quads {
+            let quad = std::slice::from_mut(&mut quad);
+            for tag in decode_tags(&image, quad, &mut config, &mut GrayModelPair::new()) {
+                match found.iter_mut().find(|other| is_same(other, &tag)) {
+                    Some(other) if is_surer(&tag, other) => *other = tag,
+                    Some(_) => {}
+                    None => found.push(tag),
+                }
+            }
+        }
+        spare().push(config);
+        found
     }
 }
 
@@ -115,4 +149,30 @@ impl FoundTag {
     pub fn corners(&self) -> [[f64; 2]; 4] {
         self.outline.corners
     }
+}
+
+fn every_second(image: &GrayImage) -> Plane<u8> {
+    let size = [image.width(), image.height()].map(|side| side.div_ceil(EVERY));
+    let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [EVERY * x, EVERY * y]));
+    let pixels = pixels.map(|[x, y]| image.get_pixel(x, y).0[0]).collect();
+    let [width, height] = size.map(|side| side as usize);
+    plane(ImageSize { width, height }, pixels)
+}
+
+fn plane<T: Clone>(size: ImageSize, pixels: Vec<T>) -> Plane<T> {
+    Image::new(size, pixels, CpuAllocator).expect("as many pixels as the size says")
+}
+
+/// Whether two candidates are one tag: of one number, and nearer than half a diagonal.
+fn is_same(a: &Detection, b: &Detection) -> bool {
+    let distance = |a: [f32; 2], b: [f32; 2]| libm::hypotf(a[0] - b[0], a[1] - b[1]);
+    let corner = |tag: &Detection, k: usize| [tag.quad.corners[k].x, tag.quad.corners[k].y];
+    let diagonal = |tag: &Detection| distance(corner(tag, 0), corner(tag, 2));
+    let apart = distance([a.center.x, a.center.y], [b.center.x, b.center.y]);
+    a.id == b.id && apart < 0.25 * (diagonal(a) + diagonal(b))
+}
+
+fn is_surer(a: &Detection, b: &Detection) -> bool {
+    let errors = a.hamming.cmp(&b.hamming);
+    errors.is_lt() || errors.is_eq() && a.decision_margin > b.decision_margin
 }

@@ -8,7 +8,7 @@ pub const TAG_COUNT: u16 = 587;
 /// Cells of a tag with its black border, [row][column] from the top left as printed; true is white.
 /// `None` past [`TAG_COUNT`].
 pub fn tag_cells(id: u16) -> Option<[[bool; 8]; 8]> {
-    let family = TagFamily::tag36_h11().expect("the library has this family");
+    let family = TagFamily::tag36_h11();
     let code = family.code_data.get(usize::from(id))?;
     let mut cells = [[false; 8]; 8];
     // the code's bits, highest first, in the family's own order of cells

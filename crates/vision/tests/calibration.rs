@@ -108,6 +108,14 @@ fn calibrate_says_what_the_frames_lack() {
     let flat_only = refusal(&vec![frames[0].clone(); 6], board);
     let no_tilt = matches!(flat_only, CalibrationError::NoTilt { .. });
     assert!(no_tilt, "{flat_only}");
+
+    // copies of tilted frames look like many measurements
+    let few = [0, 5, 7].map(|k| vec![frames[k].clone(); 4]).concat();
+    let same_views = CalibrationError::SameViews {
+        distinct: 3,
+        frames: 12,
+    };
+    assert_eq!(refusal(&few, board), same_views);
 }
 
 #[test]

@@ -39,8 +39,8 @@ pub fn report(comparison: &Comparison) -> Report {
     ];
     let each = folders.iter().flat_map(|folder| {
         let table = Block::Table(tables::entries(&folder.methods), folder.folder.clone());
-        let note = folder.note.clone().map(Block::Note);
-        [table].into_iter().chain(note)
+        let notes = folder.note.iter().chain(&folder.warnings);
+        [table].into_iter().chain(notes.cloned().map(Block::Note))
     });
     let lost = errors.iter().map(|lost| Block::Text(lost.error.clone()));
     let sections = [

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use serde::Serialize;
-use stickslip::Setup;
-use stickslip::diagnosis::assumed_stall_force;
+use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip_evaluation::{ScoredRun, Variant, quantile};
+use stickslip_formats::Experiment;
 
 use crate::args::CompareArgs;
 use crate::failure::one_line;
@@ -24,6 +24,11 @@ pub struct ShownScores {
     pub final_error_deg: Option<f64>,
     /// Unsolved particle steps, summed over seeds.
     pub unsolved: u64,
+    /// Rows at which no particle explained the camera, summed over seeds.
+    pub collapses: u32,
+    /// Rows with a camera pose that was used.
+    #[serde(skip)]
+    pub seen: usize,
 }
 
 /// One of the scores that are shown.
@@ -60,6 +65,8 @@ pub struct FolderResult {
     /// What was assumed of its scene, in a line.
     #[serde(skip)]
     pub note: Option<String>,
+    /// What makes its scores doubtful.
+    pub warnings: Vec<String>,
     /// One entry per variant.
     pub methods: Vec<VariantScores>,
 }
@@ -138,10 +145,12 @@ impl ShownScores {
             final_error_mm: scores.final_error_mm,
             final_error_deg: scores.final_error_deg,
             unsolved: run.unsolved,
+            collapses: run.collapses,
+            seen: run.seen(),
         }
     }
 
-    /// The `q`-quantile of each score, and all unsolved steps.
+    /// The `q`-quantile of each score, and all unsolved steps and collapses.
     fn quantile(of: &[Self], q: f64) -> Self {
         let each = |score: fn(&Self) -> Option<f64>| {
             quantile(&of.iter().filter_map(score).collect::<Vec<_>>(), q)
@@ -152,6 +161,8 @@ impl ShownScores {
             final_error_mm: each(|m| m.final_error_mm),
             final_error_deg: each(|m| m.final_error_deg),
             unsolved: of.iter().map(|m| m.unsolved).sum(),
+            collapses: of.iter().map(|m| m.collapses).sum(),
+            seen: of.iter().map(|m| m.seen).sum(),
         }
     }
 }
@@ -171,7 +182,7 @@ impl FolderResult {
     /// Medians over the runs of each variant; the first failed run is the folder's error.
     pub fn gather<'a>(
         folder: &Path,
-        setup: &Setup,
+        experiment: &Experiment,
         runs: impl Iterator<Item = (Variant, &'a Result<ShownScores>)>,
     ) -> Result<Self, &'a anyhow::Error> {
         let mut by_variant: Vec<(Variant, Vec<ShownScores>)> = Vec::new();
@@ -182,10 +193,22 @@ impl FolderResult {
                 _ => by_variant.push((variant, vec![scores])),
             }
         }
+        let Experiment { setup, log, .. } = experiment;
+        let unexplained = by_variant.iter().flat_map(|(variant, scores)| {
+            let worst = scores.iter().max_by_key(|scores| scores.collapses)?;
+            let finding = collapsed(worst.collapses, worst.seen)?;
+            Some(format!("{}: {finding}", variant.name()))
+        });
+        let misread = misread(setup, log).into_iter();
+        let warnings = misread
+            .map(|finding| finding.to_string())
+            .chain(unexplained);
+        let warnings = warnings.collect();
         let methods = by_variant.into_iter().map(|(variant, scores)| {
             VariantScores::new(variant, ShownScores::quantile(&scores, 0.5))
         });
         Ok(Self {
+            warnings,
             folder: folder.display().to_string(),
             stall_force: setup.scene.pusher.stall_force,
             stall_force_assumed: setup.stall_force_assumed,

@@ -14,8 +14,10 @@ pub fn text(comparison: &Comparison) -> String {
     } = comparison;
     let folder_tables = folders.iter().map(|folder| {
         let note = folder.note.iter().map(|note| format!("note: {note}\n"));
+        let warnings = folder.warnings.iter();
+        let notes = note.chain(warnings.map(|warning| format!("warning: {warning}\n")));
         let table = entries(&folder.methods);
-        format!("{}\n{table}{}", folder.folder, note.collect::<String>())
+        format!("{}\n{table}{}", folder.folder, notes.collect::<String>())
     });
     let overall = (!folders.is_empty()).then(|| {
         format!(
@@ -30,7 +32,7 @@ pub fn text(comparison: &Comparison) -> String {
 
 /// The scores of each variant on one experiment.
 pub fn entries(entries: &[VariantScores]) -> Table {
-    let mut table = Table::new(titles(["method"], ["unsolved"]));
+    let mut table = Table::new(titles(["method"], ["unsolved", "collapses"]));
     for entry in entries {
         let scores = COLUMNS
             .iter()
@@ -40,7 +42,10 @@ pub fn entries(entries: &[VariantScores]) -> Table {
             [entry.variant.name().to_owned()]
                 .into_iter()
                 .chain(scores)
-                .chain([entry.scores.unsolved.to_string()]),
+                .chain([
+                    entry.scores.unsolved.to_string(),
+                    entry.scores.collapses.to_string(),
+                ]),
         );
     }
     table
@@ -48,7 +53,7 @@ pub fn entries(entries: &[VariantScores]) -> Table {
 
 /// Each variant over all folders: median (90th percentile).
 pub fn overall(rows: &[Overall]) -> Table {
-    let mut table = Table::new(titles(["method"], ["unsolved", "folders"]));
+    let mut table = Table::new(titles(["method"], ["unsolved", "collapses", "folders"]));
     for row in rows {
         let both = |column: &Column| {
             format!(
@@ -57,7 +62,11 @@ pub fn overall(rows: &[Overall]) -> Table {
                 number((column.of)(&row.p90), 2)
             )
         };
-        let counts = [row.unsolved.to_string(), row.folders.to_string()];
+        let counts = [
+            row.unsolved.to_string(),
+            row.median.collapses.to_string(),
+            row.folders.to_string(),
+        ];
         table.push_coloured(
             Colour::of(row.variant),
             [row.variant.name().to_owned()]

@@ -27,35 +27,48 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         .collect();
     found.extend(noise_in_degrees(evidence).filter(|_| found.is_empty()));
     if found.is_empty() {
-        let (low, high) = range(&evidence.log.object);
-        found.push(Finding::ok(
-            Subject::Angles,
-            format!("object_theta goes from {low:.2} to {high:.2} rad"),
-        ));
+        let words = match range(&evidence.log.object) {
+            Some((low, high)) => format!("object_theta goes from {low:.2} to {high:.2} rad"),
+            None => "there is no object_theta".to_owned(),
+        };
+        found.push(Finding::ok(Subject::Angles, words));
     }
     found
 }
 
 fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
-    let (low, high) = range(poses);
+    let (low, high) = range(poses)?;
     let found = || format!("{name} goes from {low:.1} to {high:.1}: these seem to be degrees");
     (low.abs().max(high.abs()) > LARGEST)
         .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
-/// A jump by about a full turn from one row to the next; after a gap an angle may start anew.
+/// A jump by about a full turn from one row to the next, or by about half of one; after a gap an angle
+/// may start anew.
 fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
-    let steps = poses
-        .windows(2)
-        .filter_map(|pair| Some(pair[1]?.theta - pair[0]?.theta));
-    let jumps = steps.filter(|step| step.abs() > PI).count();
-    let found = format!("{name} jumps by a full turn at {jumps} rows: it is wrapped to one turn");
-    (jumps > 0).then(|| {
-        Finding::problem(
-            Subject::Angles,
-            found,
-            "write angles unwrapped, so that they go on smoothly",
-        )
+    let about = |turn: f64| {
+        let jumps = |row: &usize| {
+            let step = || Some(poses[*row]?.theta - poses[row - 1]?.theta);
+            step().is_some_and(|step| (step.abs() - turn).abs() < 0.25 * PI)
+        };
+        (1..poses.len()).filter(jumps).collect::<Vec<usize>>()
+    };
+    let (full, half) = (about(TAU), about(PI));
+    if let Some(first) = full.first() {
+        let found = format!(
+            "{name} jumps by a full turn at {} rows, first at row {first}: it is wrapped to one turn",
+            full.len()
+        );
+        let advice = "write angles unwrapped, so that they go on smoothly";
+        return Some(Finding::problem(Subject::Angles, found, advice));
+    }
+    half.first().map(|first| {
+        let found = format!(
+            "{name} jumps by half a turn at {} rows, first at row {first}: the body is seen the wrong way round",
+            half.len()
+        );
+        let advice = "leave the cells of such rows empty, or turn them back";
+        Finding::warning(Subject::Angles, found, advice)
     })
 }
 
@@ -78,10 +91,9 @@ fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
         .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
-fn range(poses: &[Option<Pose>]) -> (f64, f64) {
+/// Smallest and largest angle; `None` without a pose.
+fn range(poses: &[Option<Pose>]) -> Option<(f64, f64)> {
     let angles = || poses.iter().flatten().map(|pose| pose.theta);
-    (
-        angles().fold(f64::INFINITY, f64::min),
-        angles().fold(f64::NEG_INFINITY, f64::max),
-    )
+    let low = angles().reduce(f64::min)?;
+    Some((low, angles().reduce(f64::max)?))
 }

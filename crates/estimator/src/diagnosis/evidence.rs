@@ -18,6 +18,8 @@ pub(super) struct Evidence<'a> {
     pub log: &'a Log,
     /// Noise of one object pose, estimated; `None` with too few poses.
     pub noise: Option<PoseNoise>,
+    /// Rows with an object pose; between them may be rows that other sensors brought.
+    pub seen: Vec<usize>,
     /// Rows in which the object moves.
     pub moving: Vec<bool>,
 }
@@ -38,6 +40,9 @@ impl<'a> Evidence<'a> {
             setup,
             log,
             noise,
+            seen: (0..log.len())
+                .filter(|&row| log.object[row].is_some())
+                .collect(),
             moving: Vec::new(),
         };
         evidence.moving = (0..log.len()).map(|row| evidence.moves_at(row)).collect();
@@ -65,16 +70,22 @@ impl<'a> Evidence<'a> {
         (4.0 * self.position_std()).max(0.03 * self.size())
     }
 
-    /// The measured pusher at `time`, linear between rows that are near enough.
+    /// The measured pusher at `time`, linear between poses that are near enough.
     pub fn pusher_at(&self, time: f64) -> Option<Pose> {
-        let later = self.log.time.partition_point(|t| *t < time);
-        let (after, t1) = (self.log.pusher.get(later)?.as_ref()?, self.log.time[later]);
+        let Log {
+            time: times,
+            pusher,
+            ..
+        } = self.log;
+        let split = times.partition_point(|t| *t < time);
+        let pose_at = |row: usize| Some((times[row], pusher[row]?));
+        let near = |row: &usize| (times[*row] - time).abs() <= LONGEST_BRIDGE;
+        let (t1, after) = (split..times.len()).take_while(near).find_map(pose_at)?;
         if t1 - time < 1e-9 {
-            return Some(*after);
+            return Some(after);
         }
-        let earlier = later.checked_sub(1)?;
-        let (before, t0) = (self.log.pusher[earlier]?, self.log.time[earlier]);
-        (t1 - t0 <= LONGEST_BRIDGE).then(|| before.interpolate(*after, (time - t0) / (t1 - t0)))
+        let (t0, before) = (0..split).rev().take_while(near).find_map(pose_at)?;
+        (t1 - t0 <= LONGEST_BRIDGE).then(|| before.interpolate(after, (time - t0) / (t1 - t0)))
     }
 
     /// Gap of object and pusher at `row` if its object pose is `delay` late (m).
@@ -100,31 +111,26 @@ impl<'a> Evidence<'a> {
         gaps.iter().map(|gap| gap.gap).min_by(f64::total_cmp)
     }
 
-    /// How far the object moves about `row`, with its turn at the radius of gyration (m), and
-    /// within what time (s).
-    fn displacement(&self, row: usize) -> Option<(f64, f64)> {
+    /// How far the object moves about `row`, with its turn at the radius of gyration (m).
+    fn displacement(&self, row: usize) -> Option<f64> {
         let time = self.log.time[row];
-        let before = self.mean_pose(self.log.time.partition_point(|t| *t < time - HALF_WINDOW))?;
-        let after = self.mean_pose(
-            self.log
-                .time
-                .partition_point(|t| *t <= time + HALF_WINDOW)
-                .saturating_sub(1),
-        )?;
-        let turn = self.setup.scene.object.gyration_radius() * (after.1.theta - before.1.theta);
-        Some((
-            (after.1.x - before.1.x)
-                .hypot(after.1.y - before.1.y)
-                .hypot(turn),
-            after.0 - before.0,
-        ))
+        let first_from = |from: f64| self.seen.partition_point(|row| self.log.time[*row] < from);
+        let before = self.mean_pose(first_from(time - HALF_WINDOW));
+        let after = self.mean_pose(first_from(time + HALF_WINDOW + 1e-9).saturating_sub(1));
+        // a pose from the other side of a gap tells nothing of this row
+        let (t0, before) = before.filter(|(t, _)| (t - time).abs() < 2.0 * HALF_WINDOW)?;
+        let (t1, after) = after.filter(|(t, _)| (t - time).abs() < 2.0 * HALF_WINDOW)?;
+        let turn = self.setup.scene.object.gyration_radius() * (after.theta - before.theta);
+        (t1 >= t0).then(|| (after.x - before.x).hypot(after.y - before.y).hypot(turn))
     }
 
-    /// Mean time and pose of up to three rows about `row`.
-    fn mean_pose(&self, row: usize) -> Option<(f64, Pose)> {
-        let rows = row.saturating_sub(1)..(row + 2).min(self.log.len());
+    /// Mean time and pose of up to three poses about the `index`-th.
+    fn mean_pose(&self, index: usize) -> Option<(f64, Pose)> {
+        let rows = index.saturating_sub(1)..(index + 2).min(self.seen.len());
+        let rows = self.seen.get(rows)?;
         let poses: Vec<(f64, Pose)> = rows
-            .filter_map(|row| self.log.object[row].map(|pose| (self.log.time[row], pose)))
+            .iter()
+            .filter_map(|&row| self.log.object[row].map(|pose| (self.log.time[row], pose)))
             .collect();
         let mean = |pick: &dyn Fn(&(f64, Pose)) -> f64| {
             poses.iter().map(pick).sum::<f64>() / poses.len() as f64
@@ -141,17 +147,17 @@ impl<'a> Evidence<'a> {
         // the difference of two means of three poses
         let std = (2.0 / 3.0 * (2.0 * noise.position * noise.position + turn * turn)).sqrt();
         self.displacement(row)
-            .is_some_and(|(way, _)| way > MOTION * std && way > 1e-5)
+            .is_some_and(|way| way > MOTION * std && way > 1e-5)
     }
 }
 
-/// Noise from second differences, which a steady motion does not change; robust to jumps and stops.
+/// Noise from second differences, which a steady motion does not change; robust to jumps and stops. Rows
+/// without a pose are passed over: other sensors may bring many of them.
 pub(super) fn pose_noise(poses: &[Option<Pose>]) -> Option<PoseNoise> {
+    let seen: Vec<Pose> = poses.iter().flatten().copied().collect();
     let triples = || {
-        poses
-            .windows(3)
-            .filter_map(|w| Some((w[0]?, w[1]?, w[2]?)))
-            .filter(|(a, b, c)| a != b && b != c)
+        let triples = seen.array_windows().map(|[a, b, c]| (*a, *b, *c));
+        triples.filter(|(a, b, c)| a != b && b != c)
     };
     let std = |pick: fn(&Pose) -> f64| {
         let bends: Vec<f64> = triples()

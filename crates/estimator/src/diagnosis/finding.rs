@@ -43,6 +43,8 @@ pub enum Subject {
     Latency,
     /// The gap between object and pusher while it pushes.
     PushingGap,
+    /// Rows at which the particle filter explained nothing.
+    Collapses,
     /// One tactile sensor, counted from 1.
     Sensor(usize),
 }
@@ -137,6 +139,7 @@ impl fmt::Display for Subject {
             Self::Overlap => "overlap",
             Self::Latency => "latency",
             Self::PushingGap => "pushing gap",
+            Self::Collapses => "collapses",
             Self::Sensor(k) => return write!(f, "sensor {k}"),
         })
     }

@@ -56,11 +56,20 @@ fn pusher(evidence: &Evidence<'_>) -> Finding {
             "give the pusher's poses: it is what moves the object",
         );
     }
-    let lifted: Vec<String> = losses
-        .iter()
-        .filter(|loss| loss.seconds > LONGEST_BRIDGE)
-        .map(Loss::shown)
-        .collect();
+    let lifted = losses.iter().filter(|loss| loss.seconds > LONGEST_BRIDGE);
+    let moving = |loss: &&Loss| {
+        let rows = &evidence.moving[loss.first..loss.first + loss.rows];
+        rows.iter().filter(|moves| **moves).count() > loss.rows / 2
+    };
+    if let Some(loss) = lifted.clone().find(moving) {
+        let found = format!(
+            "the pusher has no pose in {} while the object moves",
+            loss.shown()
+        );
+        let advice = "without the pusher nothing moves the object: see why its poses are missing";
+        return Finding::warning(Subject::PusherPoses, found, advice);
+    }
+    let lifted: Vec<String> = lifted.map(Loss::shown).collect();
     match (missing, lifted.len()) {
         (0, _) => Finding::ok(Subject::PusherPoses, "every row has a pusher pose"),
         (_, 0) => Finding::ok(

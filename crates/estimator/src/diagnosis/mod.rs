@@ -6,9 +6,11 @@
 //! repeat it.
 
 mod angles;
+mod collapses;
 mod evidence;
 mod finding;
 mod frame;
+mod jumps;
 mod latency;
 mod limits;
 mod lost_poses;
@@ -21,6 +23,7 @@ mod stall_force;
 mod timing;
 mod units;
 
+pub use collapses::collapsed;
 pub use finding::{Finding, Severity, Subject};
 pub use stall_force::assumed_stall_force;
 
@@ -56,16 +59,7 @@ use crate::setup::Setup;
 /// ```
 pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
-    let plain = [
-        units::check,
-        angles::check,
-        limits::check,
-        stall_force::check,
-        timing::check,
-        lost_poses::check,
-        repeats::check,
-        noise::check,
-    ];
+    let mut findings = plain(&evidence);
     let geometric = [
         frame::check,
         overlap::check,
@@ -73,13 +67,38 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
         pushing::check,
         sensors::check,
     ];
-    let mut findings: Vec<Finding> = plain.iter().flat_map(|check| check(&evidence)).collect();
-    let misread = |finding: &Finding| {
-        finding.severity == Severity::Problem
-            && matches!(finding.subject, Subject::Units | Subject::Angles)
-    };
-    if !findings.iter().any(misread) {
+    if !findings.iter().any(is_misread) {
         findings.extend(geometric.iter().flat_map(|check| check(&evidence)));
     }
     findings
+}
+
+/// The problems that show without the geometry, in a time that no filter notices: numbers in other units
+/// or by other clocks. With them, an estimate and its scores mean nothing.
+pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
+    let mut findings = plain(&Evidence::new(setup, log));
+    findings.retain(|finding| finding.severity == Severity::Problem);
+    findings
+}
+
+/// What needs no geometry.
+fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let checks = [
+        units::check,
+        angles::check,
+        limits::check,
+        stall_force::check,
+        timing::check,
+        lost_poses::check,
+        jumps::check,
+        repeats::check,
+        noise::check,
+    ];
+    checks.iter().flat_map(|check| check(evidence)).collect()
+}
+
+/// Units or angles are wrong: what needs the geometry would only repeat it.
+fn is_misread(finding: &Finding) -> bool {
+    finding.severity == Severity::Problem
+        && matches!(finding.subject, Subject::Units | Subject::Angles)
 }

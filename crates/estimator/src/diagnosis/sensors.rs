@@ -84,25 +84,27 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
 /// A sensor that hardly ever reads 1.
 fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
     let subject = Subject::Sensor(sensor + 1);
-    let touching = |row: &&usize| {
-        evidence
-            .fixel_gap(**row, sensor)
-            .is_some_and(|gap| gap < -evidence.tolerance())
+    let gaps = || {
+        clear
+            .iter()
+            .filter_map(|row| evidence.fixel_gap(*row, sensor))
     };
-    let overlapping = clear.iter().filter(touching).count();
     let found = format!("it reads 1 in fewer than {FEWEST} rows");
-    if overlapping > clear.len() / 10 {
+    let Some(nearest) = gaps().reduce(f64::min) else {
+        let found = format!("{found}, and no row has both a reading and an object pose");
+        return Finding::ok(subject, found);
+    };
+    // half of the rows of an object that leans on the fixel are nearer than this
+    let leaning = gaps().filter(|gap| *gap < evidence.position_std()).count();
+    if leaning > clear.len() / 10 {
         let found = format!(
-            "{found}, though the object overlaps fixel {} in {overlapping} rows by more than {}",
+            "{found}, though fixel {} is within {} of the object in {leaning} rows",
             sensor + 1,
-            mm(evidence.tolerance())
+            mm(evidence.position_std())
         );
-        return Finding::warning(subject, found, "check the fixel's position and the sensor");
+        let advice = "check the fixel's position and whether the sensor works";
+        return Finding::warning(subject, found, advice);
     }
-    let nearest = clear
-        .iter()
-        .filter_map(|row| evidence.fixel_gap(*row, sensor))
-        .fold(f64::INFINITY, f64::min);
     Finding::ok(
         subject,
         format!(

@@ -2,7 +2,7 @@
 
 use super::evidence::{Evidence, median};
 use super::finding::{Finding, Subject};
-use crate::row::LONGEST_PAUSE;
+use crate::row::{LONGEST_PAUSE, unit_of_times};
 
 /// Slowest camera that follows a push (s).
 const SLOWEST: f64 = 0.2;
@@ -42,6 +42,14 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         1e3 * shortest,
         1e3 * longest
     );
+    if let Some(unit) = unit_of_times(typical) {
+        let found = format!("{rate}: time seems to be in {unit}");
+        return vec![Finding::problem(
+            Subject::Timing,
+            found,
+            "give time in seconds",
+        )];
+    }
     if longest > LONGEST_PAUSE {
         let found = format!("{rate}: rows are more than {LONGEST_PAUSE} s apart");
         return vec![Finding::problem(
@@ -51,11 +59,6 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         )];
     }
     vec![match (typical > SLOWEST, holes) {
-        (true, _) if typical > 5.0 => Finding::problem(
-            Subject::Timing,
-            format!("{rate}: time seems to be in milliseconds"),
-            "give time in seconds",
-        ),
         (true, _) => Finding::warning(
             Subject::Timing,
             format!("{rate}: slow for a push"),

@@ -6,6 +6,7 @@ use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
 
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
+use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
 use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
@@ -41,6 +42,7 @@ pub(crate) struct ContactFilter<'o> {
     filter: ParticleFilter<ContactModel<'o>>,
     history: PoseHistory,
     latency: f64,
+    camera: CameraClock,
     plan: StepPlan,
     observation: Observation,
     latest: EstimateRow,
@@ -91,6 +93,7 @@ impl<'o> ContactFilter<'o> {
             filter: ParticleFilter::new(model, options.settings(setup))?,
             history,
             latency: camera.latency,
+            camera: CameraClock::new(time),
             plan: StepPlan::none(reference),
             observation: Observation::default(),
             latest: EstimateRow::default(),
@@ -124,9 +127,12 @@ impl<'o> ContactFilter<'o> {
         plan.substeps.clear();
         plan.substeps.extend_from_slice(drive.substeps);
         plan.driven = drive.moves;
-        plan.parameter_noise = match measured.object {
-            Some(_) => ParameterNoise::Drawn,
-            None => ParameterNoise::Frozen,
+        plan.parameter_noise = match self
+            .camera
+            .is_dark(measured.time, measured.object.is_some())
+        {
+            false => ParameterNoise::Drawn,
+            true => ParameterNoise::Frozen,
         };
         if let Some(reference) = Reference::of(&self.latest) {
             plan.reference = reference;

@@ -1,5 +1,6 @@
 //! The particle filter over contact dynamics: the model, its columns, and what they amount to.
 
+mod camera_clock;
 mod camera_likelihood;
 mod chunk;
 mod columns;

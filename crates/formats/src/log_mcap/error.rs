@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::log_mcap::topics::Topic;
+use crate::number;
 
 /// A message of a recording, as a person finds it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -122,6 +123,18 @@ pub enum McapProblem {
         /// The first two bytes.
         found: [u8; 2],
     },
+    /// A message that is far too large for its type.
+    #[error(
+        "a message on `{topic}` has {size} bytes, more than the {limit} that a pose, a force or a touch can have. Map another topic"
+    )]
+    LargeMessage {
+        /// The topic.
+        topic: String,
+        /// Its bytes.
+        size: usize,
+        /// The most that are read.
+        limit: usize,
+    },
     /// A message that its type does not fit.
     #[error("the message is no {expected}: {why}. Record the topic again, or map another one")]
     Message {
@@ -157,6 +170,16 @@ pub enum McapProblem {
         field: &'static str,
         /// The number.
         found: f64,
+    },
+    /// A number that cannot be.
+    #[error("{field} is {} m; it must be {rule}. Publish no message where nothing was measured", number::text(*.found))]
+    OutOfRange {
+        /// The field.
+        field: &'static str,
+        /// The number.
+        found: f64,
+        /// What it must be.
+        rule: String,
     },
     /// A quaternion that is no rotation.
     #[error(

@@ -1,6 +1,7 @@
 //! From a recording to a log: [`read_log_mcap`].
 
 use std::collections::BTreeSet;
+use std::io::Read;
 
 use stickslip::Log;
 use stickslip_dynamics::Pose;
@@ -24,16 +25,19 @@ use crate::nearest::nearest;
 /// any the last one if it is at most 0.5 s old; a force cell is the interval's mean. The first
 /// row's interval is as long as the second's. θ = 2 atan2(q_z, q_w), unwrapped.
 ///
+/// The file is read piece by piece; memory is taken for one chunk of at most 256 MiB, and for the
+/// messages of the needed topics.
+///
 /// A recording that is cut off or damaged is read up to there, with a warning for which
 /// [`LogWarning::is_loss`] holds.
 ///
 /// # Errors
-/// The bytes are no MCAP file; the topic of object or pusher, or one that is mapped, is missing;
+/// The bytes are no MCAP file or cannot be read; the topic of object or pusher, or one that is mapped, is missing;
 /// sensors are not numbered without gaps; a topic has messages of another type or encoding; a
 /// number is not finite, an orientation no rotation; two messages of a topic have one stamp; frames
 /// differ; there is no pose at all.
 pub fn read_log_mcap(
-    bytes: &[u8],
+    file: impl Read,
     name: &str,
     topics: &Topics,
 ) -> Result<(Log, Vec<LogWarning>), McapError> {
@@ -44,13 +48,13 @@ pub fn read_log_mcap(
     };
 
     // the messages, up to where the recording is damaged, and whether all topics are there
-    let recording = Recording::read(bytes, topics).map_err(whole)?;
+    let recording = Recording::read(file, topics).map_err(whole)?;
     let reader = Reader {
         file: name,
         topics,
         recording: &recording,
     };
-    let mut warnings = reader.damage(bytes.len());
+    let mut warnings = reader.damage();
     let sensors = reader.check_topics().map_err(whole)?;
 
     // poses make the rows
@@ -98,13 +102,13 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// The warning about where the recording ends too early.
-    fn damage(&self, size: usize) -> Vec<LogWarning> {
+    fn damage(&self) -> Vec<LogWarning> {
         let damage = self.recording.damage.iter();
         damage
             .map(|damage| LogWarning::CutOff {
                 file: self.file.to_owned(),
                 at: damage.at,
-                size,
+                size: damage.size,
                 why: damage.why.clone(),
             })
             .collect()

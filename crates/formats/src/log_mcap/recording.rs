@@ -1,10 +1,11 @@
 //! An MCAP file as messages by topic, as far as it can be read: [`Recording`].
 //!
-//! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in
-//! them. An attachment is never looked at.
+//! A file is read record by record, and only messages of the needed topics are kept. Whole chunks are
+//! unpacked here and not by the library's reader: that one trusts the lengths in them. An attachment is
+//! never looked at.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Read;
+use std::io::{self, Read, copy, sink};
 
 use mcap::read::{ChannelAccumulator, parse_record};
 use mcap::records::{ChunkHeader, Record, op};
@@ -13,8 +14,15 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::topics::{Topic, Topics};
 
-/// Largest size of an unpacked chunk (bytes); recorders write a few MB.
-const CHUNK_LIMIT: u64 = 1 << 30;
+/// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large image
+/// takes 50. No more than this of a file is in memory at a time.
+const CHUNK_LIMIT: u64 = 1 << 28;
+
+/// Largest size of a message of a needed topic (bytes); poses, forces and touches take 200.
+const MESSAGE_LIMIT: usize = 1 << 16;
+
+/// Most bytes that are taken from a file at once: a record may claim more than there is.
+const LARGEST_READ: usize = 1 << 20;
 
 /// A message as it is recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +38,8 @@ pub(crate) struct RawMessage {
 pub(crate) struct Damage {
     /// Bytes that were read.
     pub at: u64,
+    /// Bytes of the file.
+    pub size: u64,
     /// What follows them.
     pub why: String,
 }
@@ -84,14 +94,16 @@ struct Progress<'t> {
 
 impl Recording {
     /// Reads the topics that `wanted` names, up to the first damage.
-    pub(crate) fn read(bytes: &[u8], wanted: &Topics) -> Result<Self, McapProblem> {
-        if !bytes.starts_with(mcap::MAGIC) {
-            let found = bytes
-                .iter()
-                .take(8)
-                .map(|byte| format!("{byte:02X}"))
-                .collect::<Vec<_>>()
-                .join(" ");
+    pub(crate) fn read(file: impl Read, wanted: &Topics) -> Result<Self, McapProblem> {
+        let mut file = Counted { file, bytes: 0 };
+        let mut magic = Vec::new();
+        let start = (&mut file)
+            .take(mcap::MAGIC.len() as u64)
+            .read_to_end(&mut magic);
+        start.map_err(|error| unreadable(&error))?;
+        if magic != mcap::MAGIC {
+            let hex = magic.iter().map(|byte| format!("{byte:02X}"));
+            let found = hex.collect::<Vec<_>>().join(" ");
             return Err(McapProblem::NotMcap { found });
         }
         let mut progress = Progress {
@@ -101,7 +113,7 @@ impl Recording {
         };
         let mut at = mcap::MAGIC.len() as u64;
         let mut in_summary = false;
-        let read = records(bytes, Part::Whole, &mut |opcode, body| {
+        let read = records(&mut file, &mut |opcode, body| {
             // the summary repeats what came before it
             in_summary |= opcode == op::DATA_END;
             match opcode {
@@ -112,14 +124,37 @@ impl Recording {
             at += 9 + body.len() as u64;
             Ok(())
         });
+        let mut recording = progress.recording;
         match read {
-            Ok(()) => Ok(progress.recording),
-            Err(Stop::Damage(why)) => Ok(Self {
-                damage: Some(Damage { at, why }),
-                ..progress.recording
-            }),
-            Err(Stop::Refused(problem)) => Err(problem),
+            Ok(()) => {}
+            Err(Stop::Damage(why)) => {
+                copy(&mut file, &mut sink()).map_err(|error| unreadable(&error))?;
+                let size = file.bytes;
+                recording.damage = Some(Damage { at, size, why });
+            }
+            Err(Stop::Refused(problem)) => return Err(problem),
         }
+        Ok(recording)
+    }
+}
+
+/// A file and how much of it was read.
+struct Counted<R> {
+    file: R,
+    bytes: u64,
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.file.read(buffer)?;
+        self.bytes += read as u64;
+        Ok(read)
+    }
+}
+
+fn unreadable(error: &io::Error) -> McapProblem {
+    McapProblem::Unreadable {
+        why: error.to_string(),
     }
 }
 
@@ -130,9 +165,14 @@ impl Progress<'_> {
             _ => return Err(damage("a chunk is none")),
         };
         let content = unpacked(&header, &packed)?;
-        records(&content, Part::Chunk, &mut |opcode, body| {
-            self.take(opcode, body)
-        })
+        let mut rest = content.as_slice();
+        while !rest.is_empty() {
+            let (opcode, body, after) =
+                split_record(rest).ok_or_else(|| damage("a record is longer than its chunk"))?;
+            self.take(opcode, body)?;
+            rest = after;
+        }
+        Ok(())
     }
 
     fn take(&mut self, opcode: u8, body: &[u8]) -> Result<(), Stop> {
@@ -156,6 +196,13 @@ impl Progress<'_> {
                     .carries(&channel.topic)
                     .and_then(|topic| self.recording.topics.get_mut(&topic))
                 {
+                    if data.len() > MESSAGE_LIMIT {
+                        return Err(Stop::Refused(McapProblem::LargeMessage {
+                            topic: channel.topic.clone(),
+                            size: data.len(),
+                            limit: MESSAGE_LIMIT,
+                        }));
+                    }
                     content.messages.push(RawMessage {
                         log_time: header.log_time,
                         data: data.into_owned(),
@@ -197,39 +244,35 @@ fn damage(why: &str) -> Stop {
     Stop::Damage(why.to_owned())
 }
 
-/// What bytes are.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
-    /// A whole file, with the bytes that open and close one.
-    Whole,
-    /// What is in a chunk.
-    Chunk,
-}
-
 /// Takes a record: opcode and body.
 type Take<'t> = dyn FnMut(u8, &[u8]) -> Result<(), Stop> + 't;
 
-/// Shows all records to `take`.
-fn records(bytes: &[u8], part: Part, take: &mut Take<'_>) -> Result<(), Stop> {
+/// Shows all records of a file behind its first bytes to `take`, one at a time.
+fn records(file: &mut dyn Read, take: &mut Take<'_>) -> Result<(), Stop> {
     let options = LinearReaderOptions::default()
         .with_emit_chunks(true)
-        .with_skip_start_magic(part == Part::Chunk)
-        .with_skip_end_magic(part == Part::Chunk)
-        .with_record_length_limit(bytes.len());
+        .with_skip_start_magic(true)
+        .with_record_length_limit(CHUNK_LIMIT as usize);
     let mut reader = LinearReader::new_with_options(options);
-    let mut rest = bytes;
     while let Some(event) = reader.next_event() {
         match event? {
             LinearReadEvent::ReadRequest(need) => {
-                let (next, after) = rest.split_at(need.min(rest.len()));
-                reader.insert(next.len()).copy_from_slice(next);
-                reader.notify_read(next.len());
-                rest = after;
+                let read = file.read(reader.insert(need.min(LARGEST_READ)));
+                let read = read.map_err(|error| Stop::Refused(unreadable(&error)))?;
+                reader.notify_read(read);
             }
             LinearReadEvent::Record { opcode, data } => take(opcode, data)?,
         }
     }
     Ok(())
+}
+
+/// The first record of a chunk's content: its opcode, its body and what follows.
+fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+    let (opcode, rest) = bytes.split_first()?;
+    let (length, rest) = rest.split_first_chunk()?;
+    let (body, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+    Some((*opcode, body, rest))
 }
 
 /// A record whose texts lie within it; the library reserves memory by their lengths before it

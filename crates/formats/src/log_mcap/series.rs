@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use stickslip::{Rule, Unit};
 use stickslip_dynamics::Pose;
 
 use crate::log_mcap::error::{McapError, McapPlace, McapProblem};
@@ -247,6 +248,11 @@ fn planar(message: &PoseStamped) -> Result<(Pose, f64), McapProblem> {
         ("position.y", at.y),
         ("position.z", at.z),
     ])?;
+    for (field, found) in [("position.x", at.x), ("position.y", at.y)] {
+        if let Some(rule) = Rule::Finite.broken_by(found, Unit::Metre) {
+            return Err(McapProblem::OutOfRange { field, found, rule });
+        }
+    }
     finite([
         ("orientation.x", q.x),
         ("orientation.y", q.y),

@@ -243,21 +243,21 @@ impl<'a> Node<'a> {
         let value = self
             .float()
             .ok_or_else(|| self.wrong_type("a number", &quantity.order()))?;
-        match quantity.rule.broken_by(value) {
+        match quantity.rule.broken_by(value, quantity.unit) {
             None => Ok(value),
-            Some(rule) => Err(self.out_of_range(rule, quantity)),
+            Some(rule) => Err(self.out_of_range(&rule, quantity)),
         }
     }
 
     /// The value is against a rule, put in words.
-    pub(super) fn out_of_range(&self, rule: &'static str, quantity: &Quantity) -> SceneError {
-        let found = format!("{} {}", self.text(), quantity.unit)
+    pub(super) fn out_of_range(&self, rule: &str, quantity: &Quantity) -> SceneError {
+        let found = format!("{} {}", self.text(), quantity.unit.symbol())
             .trim_end()
             .to_owned();
         self.error(SceneProblem::OutOfRange {
             key: self.path.clone(),
             found,
-            rule,
+            rule: rule.to_owned(),
             what: quantity.order(),
         })
     }

@@ -68,7 +68,7 @@ pub enum SceneProblem {
         /// The value found, with its unit.
         found: String,
         /// The rule.
-        rule: &'static str,
+        rule: String,
         /// What to give.
         what: String,
     },
@@ -81,6 +81,20 @@ pub enum SceneProblem {
         key: String,
         /// How many of the three it has.
         found: usize,
+    },
+    /// An outline that is too fine.
+    #[error(
+        "{key} has {found} {of}; at most {most} are read. Simplify the outline, or give discs and ellipses as such"
+    )]
+    TooMany {
+        /// The list.
+        key: String,
+        /// Its length.
+        found: usize,
+        /// What it lists.
+        of: &'static str,
+        /// The most that are read.
+        most: usize,
     },
     /// A part or a whole shape that is no shape.
     #[error("{key}: {source}")]

@@ -13,14 +13,14 @@ mod start;
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip::{ASSUMED_STALL, Setup};
+use stickslip::{ASSUMED_STALL, Rule, Setup, Unit};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
 use document::{Node, Source, Table};
 pub use error::{SceneError, SceneProblem};
 use keys::keys_of;
-use quantity::{Quantity, Rule};
+use quantity::Quantity;
 use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;
@@ -28,65 +28,65 @@ type Result<T> = std::result::Result<T, SceneError>;
 const GRAVITY: Quantity = Quantity::new(
     "gravity",
     "the gravity that presses the object on the support",
-    "m/s^2",
+    Unit::MetrePerSecond2,
     Rule::Positive,
 );
-const MASS: Quantity = Quantity::new("mass", "the object's mass", "kg", Rule::Positive);
+const MASS: Quantity = Quantity::new("mass", "the object's mass", Unit::Kilogram, Rule::Positive);
 const INERTIA: Quantity = Quantity::new(
     "inertia",
     "the object's moment of inertia about its centre of mass",
-    "kg m^2",
+    Unit::KilogramMetre2,
     Rule::Positive,
 );
 const MU_S: Quantity = Quantity::new(
     "friction",
     "the nominal friction coefficient between object and support",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const MU_P: Quantity = Quantity::new(
     "friction",
     "the nominal friction coefficient between object and pusher",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const MU_F: Quantity = Quantity::new(
     "friction",
     "the nominal friction coefficient between object and fixels",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const TRIPOD_RADIUS: Quantity = Quantity::new(
     "tripod_radius",
     "the nominal radius of the support tripod",
-    "m",
+    Unit::Metre,
     Rule::Positive,
 );
 const TRIPOD_ANGLE: Quantity = Quantity::new(
     "tripod_angle",
     "the direction of the first foot in the object frame",
-    "rad",
+    Unit::Radian,
     Rule::Finite,
 );
 const FOOT: Quantity = Quantity::new(
     "feet",
     "three feet as [[x, y], [x, y], [x, y]] in the object frame",
-    "m",
+    Unit::Metre,
     Rule::Finite,
 );
 const STALL_FORCE: Quantity = Quantity::new(
     "stall_force",
     "the force at which the drive gives way",
-    "N",
+    Unit::Newton,
     Rule::PositiveOrInfinite,
 );
 const POSITION: Quantity = Quantity::new(
     "position",
     "the fixel's position in the world as [x, y]",
-    "m",
+    Unit::Metre,
     Rule::Finite,
 );
-const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", "rad", Rule::Finite);
+const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", Unit::Radian, Rule::Finite);
 
 /// Reads a scene file; `name` is shown in errors.
 ///
@@ -224,7 +224,7 @@ fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
             return Err(tripod.error(SceneProblem::FeetAndTripod { key }));
         }
     }
-    let [a, b, c] = node.exactly::<3>(&format!("{} in {}", FOOT.what, FOOT.unit))?;
+    let [a, b, c] = node.exactly::<3>(&format!("{} in {}", FOOT.what, FOOT.unit.symbol()))?;
     let positions = [a.pair(&FOOT)?, b.pair(&FOOT)?, c.pair(&FOOT)?];
     let loads = feet::loads(positions).map_err(|problem| node.error(problem))?;
     let [a, b, c] = positions.map(|[x, y]| (x * x + y * y).sqrt());
@@ -241,7 +241,7 @@ fn fixels(root: &Table<'_>) -> Result<Vec<Fixel>> {
         let [x, y] = table
             .required(
                 POSITION.key,
-                &format!("{} in {}", POSITION.what, POSITION.unit),
+                &format!("{} in {}", POSITION.what, POSITION.unit.symbol()),
             )?
             .pair(&POSITION)?;
         Ok(Fixel {

@@ -1,110 +1,110 @@
 //! `[camera]`, `[tactile]` and `[filter]`.
 
 use stickslip::dynamics::Friction;
-use stickslip::{Camera, FilterSettings, Limits, Tactile};
+use stickslip::{Camera, FilterSettings, Limits, Rule, Tactile, Unit};
 
 use super::document::Table;
 use super::error::SceneError;
-use super::quantity::{Quantity, Rule};
+use super::quantity::Quantity;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
 const POSITION_STD: Quantity = Quantity::new(
     "position_std",
     "the standard deviation of one object position",
-    "m",
+    Unit::Metre,
     Rule::Positive,
 );
 const ORIENTATION_STD: Quantity = Quantity::new(
     "orientation_std",
     "the standard deviation of one object orientation",
-    "rad",
+    Unit::Radian,
     Rule::Positive,
 );
 const LATENCY: Quantity = Quantity::new(
     "latency",
     "the time by which object poses lag the pusher's",
-    "s",
+    Unit::Second,
     Rule::NotNegative,
 );
 const PUSHER_POSITION_STD: Quantity = Quantity::new(
     "pusher_position_std",
     "the standard deviation of one pusher position, 0 for exact ones,",
-    "m",
+    Unit::Metre,
     Rule::NotNegative,
 );
 const PUSHER_ORIENTATION_STD: Quantity = Quantity::new(
     "pusher_orientation_std",
     "the standard deviation of one pusher orientation, 0 for exact ones,",
-    "rad",
+    Unit::Radian,
     Rule::NotNegative,
 );
 
 const FALSE_POSITIVE: Quantity = Quantity::new(
     "false_positive",
     "the probability that an untouched sensor reads 1",
-    "",
+    Unit::None,
     Rule::Probability,
 );
 const FALSE_NEGATIVE: Quantity = Quantity::new(
     "false_negative",
     "the probability that a touched sensor reads 0",
-    "",
+    Unit::None,
     Rule::Probability,
 );
 const TOUCH_FORCE: Quantity = Quantity::new(
     "touch_force",
     "the force at which the sensor switches",
-    "N",
+    Unit::Newton,
     Rule::NotNegative,
 );
 
 const FORCE_STD: Quantity = Quantity::new(
     "force_std",
     "the disturbance per step of 1/30 s as a share of the friction impulse",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const PARAMETER_STD: Quantity = Quantity::new(
     "parameter_std",
     "the relative change of the friction parameters per step of 1/30 s",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const RESAMPLE_BELOW: Quantity = Quantity::new(
     "resample_below",
     "the share of effective particles below which the set is resampled",
-    "",
+    Unit::None,
     Rule::Share,
 );
 const LIKELIHOOD_SCALE: Quantity = Quantity::new(
     "likelihood_scale",
     "the factor that widens the camera's standard deviations",
-    "",
+    Unit::None,
     Rule::Positive,
 );
 const MU_S: Quantity = Quantity::new(
     "mu_s",
     "the limits of mu_s as [smallest, largest]",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const MU_P: Quantity = Quantity::new(
     "mu_p",
     "the limits of mu_p as [smallest, largest]",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const MU_F: Quantity = Quantity::new(
     "mu_f",
     "the limits of mu_f as [smallest, largest]",
-    "",
+    Unit::None,
     Rule::NotNegative,
 );
 const D_TRI: Quantity = Quantity::new(
     "d_tri",
     "the limits of the tripod radius as [smallest, largest]",
-    "m",
+    Unit::Metre,
     Rule::Positive,
 );
 

@@ -1,32 +1,43 @@
 //! `shape = [ { polygon = ... }, { disc = ... }, { ellipse = ... } ]`.
 
+use stickslip::{Rule, Unit};
 use stickslip_dynamics::{Part, Shape};
 
 use super::document::{Node, Table};
 use super::error::{SceneError, SceneProblem};
-use super::quantity::{Quantity, Rule};
+use super::quantity::Quantity;
 
 const KINDS: [&str; 3] = ["polygon", "disc", "ellipse"];
 const SHAPE: &str =
     "the outline as a list of parts, each { polygon = ... }, { disc = ... } or { ellipse = ... }";
+/// Most parts of a shape.
+const MOST_PARTS: usize = 200;
+/// Most vertices of a polygon: a disc of 1 m is told to 1 µm by them.
+const MOST_VERTICES: usize = 3000;
 const POLYGON: &str = "the vertices as [[x, y], ...] in m, counter-clockwise";
 const DISC: &str = "{ radius = ... } in m";
 const ELLIPSE: &str = "{ semi_axes = [..., ...] } in m";
-const VERTEX: Quantity = Quantity::new("polygon", "a vertex as [x, y]", "m", Rule::Finite);
-const RADIUS: Quantity = Quantity::new("radius", "the disc's radius", "m", Rule::Positive);
+const VERTEX: Quantity = Quantity::new("polygon", "a vertex as [x, y]", Unit::Metre, Rule::Finite);
+const RADIUS: Quantity = Quantity::new("radius", "the disc's radius", Unit::Metre, Rule::Positive);
 const SEMI_AXES: Quantity = Quantity::new(
     "semi_axes",
     "the half lengths of the two axes as [a, b]",
-    "m",
+    Unit::Metre,
     Rule::Positive,
 );
-const CENTRE: Quantity = Quantity::new("centre", "the centre as [x, y]", "m", Rule::Finite);
-const ANGLE: Quantity = Quantity::new("angle", "the angle of the first axis", "rad", Rule::Finite);
+const CENTRE: Quantity = Quantity::new("centre", "the centre as [x, y]", Unit::Metre, Rule::Finite);
+const ANGLE: Quantity = Quantity::new(
+    "angle",
+    "the angle of the first axis",
+    Unit::Radian,
+    Rule::Finite,
+);
 
 /// The shape under the key `shape` of a body's table.
 pub(super) fn shape(body: &Table<'_>) -> Result<Shape, SceneError> {
     let node = body.required("shape", SHAPE)?;
     let items = node.items(SHAPE)?;
+    at_most(MOST_PARTS, "parts", &node, items.len())?;
     let parts = items.iter().map(part).collect::<Result<Vec<Part>, _>>()?;
     Shape::new(parts.clone()).map_err(|source| {
         // the place is that of the first part that is refused by itself, else of the whole
@@ -59,12 +70,27 @@ fn part(node: &Node<'_>) -> Result<Part, SceneError> {
 }
 
 fn polygon(node: &Node<'_>) -> Result<Part, SceneError> {
-    let vertices = node
-        .items(POLYGON)?
+    let vertices = node.items(POLYGON)?;
+    at_most(MOST_VERTICES, "vertices", node, vertices.len())?;
+    let vertices = vertices
         .iter()
         .map(|vertex| vertex.pair(&VERTEX))
         .collect::<Result<_, _>>()?;
     Ok(Part::Polygon { vertices })
+}
+
+/// Refuses outlines so fine that looking for contacts takes longer than anything else.
+fn at_most(most: usize, of: &'static str, node: &Node<'_>, found: usize) -> Result<(), SceneError> {
+    if found <= most {
+        return Ok(());
+    }
+    let key = node.path().to_owned();
+    Err(node.error(SceneProblem::TooMany {
+        key,
+        found,
+        of,
+        most,
+    }))
 }
 
 fn disc(node: &Node<'_>) -> Result<Part, SceneError> {

@@ -1,34 +1,50 @@
 //! `[start]`.
 
+use stickslip::{Rule, Unit};
 use stickslip_dynamics::{Pose, SpeedProfile, Start};
 
 use super::document::{Node, Table};
 use super::error::SceneError;
-use super::quantity::{Quantity, Rule};
+use super::quantity::Quantity;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
 const OBJECT: &str = "the object's pose as [x, y, theta] in m and rad";
 const PUSHER: &str = "the pusher's pose as [x, y, theta] in m and rad";
-const PLACE: Quantity = Quantity::new("object", "a coordinate of the pose", "m", Rule::Finite);
-const ANGLE: Quantity = Quantity::new("object", "the angle of the pose", "rad", Rule::Finite);
+const PLACE: Quantity = Quantity::new(
+    "object",
+    "a coordinate of the pose",
+    Unit::Metre,
+    Rule::Finite,
+);
+const ANGLE: Quantity = Quantity::new(
+    "object",
+    "the angle of the pose",
+    Unit::Radian,
+    Rule::Finite,
+);
 const DIRECTION: Quantity = Quantity::new(
     "direction",
     "the direction of the pusher's motion in the world",
-    "rad",
+    Unit::Radian,
     Rule::Finite,
 );
-const SPEED: Quantity = Quantity::new("speed", "the pusher's speed", "m/s", Rule::Finite);
+const SPEED: Quantity = Quantity::new(
+    "speed",
+    "the pusher's speed",
+    Unit::MetrePerSecond,
+    Rule::Finite,
+);
 const TIME: Quantity = Quantity::new(
     "speed",
     "a time that does not come before the one above it",
-    "s",
+    Unit::Second,
     Rule::NotNegative,
 );
 const DURATION: Quantity = Quantity::new(
     "duration",
     "how long the experiment lasts",
-    "s",
+    Unit::Second,
     Rule::Positive,
 );
 const PROFILE: &str =

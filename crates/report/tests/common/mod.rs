@@ -152,6 +152,7 @@ pub fn experiment<'a>(
                     ..Scores::default()
                 },
                 unsolved: 0,
+                collapses: 0,
             },
             cloud: if particles > 0 {
                 (0..rows).map(cloud).collect()

@@ -1,0 +1,101 @@
+//! What the program says to files that are no logs of its own, and to times in other units.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use std::fs;
+
+use common::{Experiment, SLIDE, stickslip};
+
+/// What `filter` says to a log under another name or with other content.
+fn refusal(case: &Experiment, log: &str) -> String {
+    let run = stickslip()
+        .args(["filter", log, "--scene", &case.scene()])
+        .output()
+        .unwrap();
+    let talk = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{talk}");
+    talk
+}
+
+#[test]
+fn other_kinds_of_recordings_are_named() {
+    let case = Experiment::copy(SLIDE, "inputs/kinds");
+    let write = |name: &str, bytes: &[u8]| {
+        let path = case.folder.join(name);
+        fs::write(&path, bytes).unwrap();
+        path.display().to_string()
+    };
+    let bag = write("bag_0.db3", b"SQLite format 3\0 and more");
+    assert!(refusal(&case, &bag).contains("ros2 bag convert"));
+    let packed = write("bag.mcap.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);
+    assert!(refusal(&case, &packed).contains("zstd -d"));
+    let misnamed = write("bag.bin", b"\x89MCAP0\r\n");
+    assert!(refusal(&case, &misnamed).contains("let its name end in .mcap"));
+    let folder = case.folder.join("bag");
+    fs::create_dir(&folder).unwrap();
+    fs::write(
+        folder.join("metadata.yaml"),
+        "rosbag2_bagfile_information:\n",
+    )
+    .unwrap();
+    assert!(refusal(&case, &folder.display().to_string()).contains("give the .mcap file in it"));
+}
+
+#[test]
+fn times_in_other_units_are_named() {
+    for (name, factor, offset) in [
+        ("milliseconds", 1e3, 0.0),
+        ("microseconds", 1e6, 0.0),
+        ("nanoseconds", 1e9, 1.7e18),
+    ] {
+        let case = Experiment::copy(SLIDE, &format!("inputs/{name}"));
+        case.edit_rows(|rows| {
+            for row in rows {
+                row[0] = offset + factor * row[0];
+            }
+        });
+        let talk = refusal(&case, &case.log());
+        assert!(
+            talk.contains("row 1 is at") && talk.contains(name),
+            "{talk}"
+        );
+        assert!(talk.contains("Give all times in seconds"), "{talk}");
+    }
+}
+
+#[test]
+fn a_message_is_printable_and_of_a_length_to_read() {
+    let case = Experiment::copy(SLIDE, "inputs/long");
+    case.edit("scene.toml", |text| {
+        format!("\"\\u001b[31mred\" = 1\n{text}")
+    });
+    let talk = refusal(&case, &case.log());
+    assert!(
+        talk.contains("u{1b}[31mred") && !talk.contains('\u{1b}'),
+        "{talk:?}"
+    );
+    case.edit("scene.toml", |text| {
+        format!("{}\n{text}", "x".repeat(1_000_000))
+    });
+    assert!(refusal(&case, &case.log()).len() < 5000);
+}
+
+#[test]
+fn compare_takes_topics() {
+    let case = Experiment::copy(SLIDE, "inputs/topics");
+    let bag = |topic: &str| {
+        let mut command = stickslip();
+        command.args([
+            "compare",
+            &case.folder.display().to_string(),
+            "--topic",
+            topic,
+        ]);
+        let run = command.output().unwrap();
+        String::from_utf8(run.stderr).unwrap()
+    };
+    assert!(bag("object=/box").contains("--topic is for MCAP logs"));
+    assert!(bag("nobody=/box").contains("none of the keys"));
+}

@@ -1,0 +1,48 @@
+//! Collapses of the particle filter: rows at which no particle explained the camera.
+
+use super::finding::{Finding, Subject};
+
+/// Share of the camera's poses from which on collapses are no accidents.
+const MANY: f64 = 0.02;
+
+/// Share from which on nothing was explained.
+const MOST: f64 = 0.2;
+
+/// What `collapses` among `seen` rows with a camera pose mean; `None` where they are too few to mean
+/// anything.
+///
+/// At a collapse all particles are drawn anew around the camera's pose: where there are many, an estimate
+/// is near the camera because it was put there.
+pub fn collapsed(collapses: u32, seen: usize) -> Option<Finding> {
+    let share = f64::from(collapses) / seen.max(1) as f64;
+    let found = format!(
+        "at {collapses} of {seen} rows with a camera pose no particle explained it, and all were drawn anew around it"
+    );
+    if collapses < 2 || share < MANY {
+        return None;
+    }
+    Some(if share < MOST {
+        let advice = "errors on these rows are the camera's own; see what `stickslip check` says";
+        Finding::warning(Subject::Collapses, found, advice)
+    } else {
+        let found = format!("{found}: nothing was explained, and small errors mean nothing");
+        let advice = "see what `stickslip check` says of units, frames and noise";
+        Finding::problem(Subject::Collapses, found, advice)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::finding::Severity;
+    use super::*;
+
+    #[test]
+    fn collapses_are_told_by_their_share() {
+        let severity = |collapses, seen| collapsed(collapses, seen).map(|finding| finding.severity);
+        assert_eq!(severity(0, 0), None);
+        assert_eq!(severity(1, 3), None);
+        assert_eq!(severity(2, 600), None);
+        assert_eq!(severity(20, 600), Some(Severity::Warning));
+        assert_eq!(severity(180, 181), Some(Severity::Problem));
+    }
+}

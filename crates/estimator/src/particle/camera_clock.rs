@@ -1,0 +1,89 @@
+//! When the camera is dark: [`CameraClock`], which knows how often poses come.
+
+/// Past intervals from pose to pose that are remembered.
+const REMEMBERED: usize = 15;
+
+/// Typical intervals after which a camera that is silent is dark.
+const DARK_AFTER: f64 = 2.5;
+
+/// How often the camera gives a pose, from the rows so far.
+///
+/// Where every row has a pose, a row without one is dark. Where other sensors bring rows between the
+/// camera's, as a pusher does that is tracked faster, a row without a pose is none until one is clearly
+/// overdue.
+#[derive(Clone, Debug)]
+pub(crate) struct CameraClock {
+    /// Time of the latest pose (s).
+    latest: f64,
+    /// Rows since then.
+    rows: u32,
+    /// From pose to pose: time (s) and rows, a ring of which `known` are written.
+    intervals: [(f64, u32); REMEMBERED],
+    known: usize,
+}
+
+impl CameraClock {
+    /// The first pose comes at `time` (s).
+    pub fn new(time: f64) -> Self {
+        Self {
+            latest: time,
+            rows: 0,
+            intervals: [(0.0, 0); REMEMBERED],
+            known: 0,
+        }
+    }
+
+    /// A row at `time` (s), with a pose or without; whether the camera is dark there.
+    pub fn is_dark(&mut self, time: f64, has_pose: bool) -> bool {
+        self.rows += 1;
+        let silence = time - self.latest;
+        if has_pose {
+            self.intervals[self.known % REMEMBERED] = (silence, self.rows);
+            (self.latest, self.rows, self.known) = (time, 0, self.known + 1);
+            return false;
+        }
+        match self.typical() {
+            Some((interval, rows)) if rows > 1 => silence > DARK_AFTER * interval,
+            _ => true,
+        }
+    }
+
+    /// Medians of the past intervals and of their rows.
+    fn typical(&self) -> Option<(f64, u32)> {
+        let mut intervals = self.intervals;
+        let intervals = &mut intervals[..self.known.min(REMEMBERED)];
+        let middle = intervals.len() / 2;
+        intervals.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let interval = intervals.get(middle)?.0;
+        intervals.sort_unstable_by_key(|(_, rows)| *rows);
+        Some((interval, intervals[middle].1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows that are dark among rows at 1 kHz; those with a pose are told by `has_pose`.
+    fn dark(rows: usize, has_pose: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut clock = CameraClock::new(0.0);
+        let mut dark = |row: &usize| clock.is_dark(1e-3 * *row as f64, has_pose(*row));
+        (1..rows).filter(|row| dark(row)).collect()
+    }
+
+    #[test]
+    fn a_row_without_a_pose_is_dark_where_all_others_have_one() {
+        assert_eq!(
+            dark(100, |row| !(40..43).contains(&row) && row != 70),
+            [40, 41, 42, 70]
+        );
+    }
+
+    #[test]
+    fn rows_between_camera_frames_are_not_dark_until_one_is_overdue() {
+        // a frame every 9 rows; the first interval is not known before it ends
+        let frames = |row: usize| row.is_multiple_of(9) && !(496..700).contains(&row);
+        let expected: Vec<usize> = (1..9).chain(518..702).collect();
+        assert_eq!(dark(1000, frames), expected);
+    }
+}

@@ -1,0 +1,232 @@
+//! Whether the numbers of a [`Setup`] can be: [`Setup::check`].
+//!
+//! A scene file's numbers are checked at their place when it is read; a program may put any numbers
+//! into a setup.
+
+use stickslip_dynamics::{Feet, Friction, Scene};
+
+use crate::range::{Rule, SetupError, Unit};
+use crate::setup::{Camera, FilterSettings, Limits, Setup, Tactile};
+
+/// A number with its name, what it must be and its unit.
+type Number = (&'static str, f64, Rule, Unit);
+
+impl Setup {
+    /// Refuses numbers that cannot be.
+    ///
+    /// # Errors
+    /// The first such number, with its name and what it must be.
+    pub fn check(&self) -> Result<(), SetupError> {
+        let camera = self.camera.iter().flat_map(camera);
+        let parts = scene(&self.scene).into_iter().chain(camera);
+        let parts = parts
+            .chain(tactile(&self.tactile))
+            .chain(filter(&self.filter));
+        for (name, value, rule, unit) in parts {
+            check(name, value, rule, unit)?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a number that cannot be.
+pub(crate) fn check(name: &str, value: f64, rule: Rule, unit: Unit) -> Result<(), SetupError> {
+    match rule.broken_by(value, unit) {
+        None => Ok(()),
+        Some(rule) => Err(SetupError {
+            name: name.to_owned(),
+            value,
+            unit,
+            rule,
+        }),
+    }
+}
+
+fn scene(scene: &Scene) -> Vec<Number> {
+    use Rule::{Finite, Positive, PositiveOrInfinite};
+    let stall = scene.pusher.stall_force.unwrap_or(f64::INFINITY);
+    let size = scene.object.shape.bounding_radius();
+    let pusher = scene.pusher.shape.bounding_radius();
+    let mut numbers = vec![
+        (
+            "scene.gravity",
+            scene.gravity,
+            Positive,
+            Unit::MetrePerSecond2,
+        ),
+        (
+            "scene.object.mass",
+            scene.object.mass,
+            Positive,
+            Unit::Kilogram,
+        ),
+        (
+            "scene.object.inertia",
+            scene.object.inertia,
+            Positive,
+            Unit::KilogramMetre2,
+        ),
+        (
+            "the radius of scene.object.shape",
+            size,
+            Positive,
+            Unit::Metre,
+        ),
+        (
+            "the radius of scene.pusher.shape",
+            pusher,
+            Positive,
+            Unit::Metre,
+        ),
+        (
+            "scene.pusher.stall_force",
+            stall,
+            PositiveOrInfinite,
+            Unit::Newton,
+        ),
+    ];
+    numbers.extend(friction(&scene.nominal));
+    if let Feet::Known { positions, loads } = &scene.feet {
+        let positions = positions.iter().flatten();
+        numbers.extend(positions.map(|x| ("scene.feet.positions", *x, Finite, Unit::Metre)));
+        numbers.extend(loads.map(|load| ("scene.feet.loads", load, Rule::Share, Unit::None)));
+    }
+    for fixel in &scene.fixels {
+        numbers.extend([
+            ("the x of a fixel", fixel.pose.x, Finite, Unit::Metre),
+            ("the y of a fixel", fixel.pose.y, Finite, Unit::Metre),
+            (
+                "the angle of a fixel",
+                fixel.pose.theta,
+                Finite,
+                Unit::Radian,
+            ),
+        ]);
+    }
+    numbers
+}
+
+fn friction(nominal: &Friction<f64>) -> [Number; 4] {
+    use Rule::{NotNegative, Positive};
+    [
+        ("scene.nominal.mu_s", nominal.mu_s, NotNegative, Unit::None),
+        ("scene.nominal.mu_p", nominal.mu_p, NotNegative, Unit::None),
+        ("scene.nominal.mu_f", nominal.mu_f, NotNegative, Unit::None),
+        ("scene.nominal.d_tri", nominal.d_tri, Positive, Unit::Metre),
+    ]
+}
+
+fn camera(camera: &Camera) -> [Number; 5] {
+    use Rule::{NotNegative, Positive};
+    [
+        (
+            "camera.position_std",
+            camera.position_std,
+            Positive,
+            Unit::Metre,
+        ),
+        (
+            "camera.orientation_std",
+            camera.orientation_std,
+            Positive,
+            Unit::Radian,
+        ),
+        ("camera.latency", camera.latency, NotNegative, Unit::Second),
+        (
+            "camera.pusher_position_std",
+            camera.pusher_position_std,
+            NotNegative,
+            Unit::Metre,
+        ),
+        (
+            "camera.pusher_orientation_std",
+            camera.pusher_orientation_std,
+            NotNegative,
+            Unit::Radian,
+        ),
+    ]
+}
+
+fn tactile(tactile: &Tactile) -> [Number; 3] {
+    use Rule::{NotNegative, Probability};
+    [
+        (
+            "tactile.false_positive",
+            tactile.false_positive,
+            Probability,
+            Unit::None,
+        ),
+        (
+            "tactile.false_negative",
+            tactile.false_negative,
+            Probability,
+            Unit::None,
+        ),
+        (
+            "tactile.touch_force",
+            tactile.touch_force,
+            NotNegative,
+            Unit::Newton,
+        ),
+    ]
+}
+
+fn filter(filter: &FilterSettings) -> Vec<Number> {
+    use Rule::{NotNegative, Positive, Share};
+    let Friction {
+        mu_s,
+        mu_p,
+        mu_f,
+        d_tri,
+    } = filter.limits;
+    let mut numbers = vec![
+        (
+            "filter.force_std",
+            filter.force_std,
+            NotNegative,
+            Unit::None,
+        ),
+        (
+            "filter.parameter_std",
+            filter.parameter_std,
+            NotNegative,
+            Unit::None,
+        ),
+        (
+            "filter.resample_below",
+            filter.resample_below,
+            Share,
+            Unit::None,
+        ),
+        (
+            "filter.likelihood_scale",
+            filter.likelihood_scale,
+            Positive,
+            Unit::None,
+        ),
+    ];
+    let limits = [
+        ("filter.limits.mu_s", mu_s, NotNegative, Unit::None),
+        ("filter.limits.mu_p", mu_p, NotNegative, Unit::None),
+        ("filter.limits.mu_f", mu_f, NotNegative, Unit::None),
+        ("filter.limits.d_tri", d_tri, Positive, Unit::Metre),
+    ];
+    for (name, Limits { min, max }, rule, unit) in limits {
+        numbers.extend([(name, min, rule, unit), (name, max, rule, unit)]);
+    }
+    let widths = [
+        ("the width of filter.limits.mu_s", mu_s),
+        ("the width of filter.limits.mu_p", mu_p),
+        ("the width of filter.limits.mu_f", mu_f),
+        ("the width of filter.limits.d_tri", d_tri),
+    ];
+    numbers.extend(widths.map(|(name, limits)| {
+        (
+            name,
+            (limits.max - limits.min).min(0.0),
+            NotNegative,
+            Unit::None,
+        )
+    }));
+    numbers
+}
