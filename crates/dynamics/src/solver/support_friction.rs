@@ -13,7 +13,7 @@ const STEPS: u32 = 60;
 const HALVINGS: u32 = 40;
 
 /// Imbalance of a solution (m/s, relative where above 1).
-const BALANCED: f64 = 1e-15;
+const BALANCED: f64 = 1e-14;
 
 /// Relative rounding of costs, below which only the imbalance shows progress.
 const ROUNDING: f64 = 1e-14;
