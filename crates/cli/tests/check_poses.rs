@@ -88,7 +88,7 @@ fn check_names_a_camera_that_stood_still() {
         SLIDE,
         "frozen",
         freeze,
-        "warning repeated frames: rows 200 to 229 have one and the same object pose",
+        "warning repeated frames: rows 199 to 229 have one and the same object pose",
     );
 }
 
