@@ -15,8 +15,8 @@ mujoco=$("$out/venv/bin/python" -c 'import mujoco, os; print(os.path.dirname(muj
 gcc -O2 -I"$mujoco/include" mujoco/peer.c -o "$out/mujoco-peer" "$mujoco/libmujoco.so.4.0.0" -Wl,-rpath,"$mujoco" -lm
 
 CARGO_TARGET_DIR="$out/rapier" cargo build -q --release --manifest-path rapier/Cargo.toml
-cargo build -q --release -p stickslip-bench --manifest-path "$root/Cargo.toml"
-own=${CARGO_TARGET_DIR:-$root/target}/release/timing-scene
+cargo build -q --profile dist -p stickslip-bench --manifest-path "$root/Cargo.toml"
+own=${CARGO_TARGET_DIR:-$root/target}/dist/timing-scene
 
 siconos=()
 # the headers are unpacked only: the -dev package pulls in more than a solver needs

@@ -28,30 +28,41 @@ pub fn make_folder(folder: &Path) -> Result<()> {
 
 /// Refuses a folder named by `--out` that cannot be written to, before the work whose results go there.
 pub fn ready_folder(folder: &Path) -> Result<()> {
+    let is_new = !folder.exists();
     make_folder(folder)?;
     let tried = try_place(&folder.join("stickslip"));
+    if is_new {
+        // left empty for the time being, it would speak of results that may never come
+        let _ = fs::remove_dir(folder);
+    }
     tried.map_err(|error| unwritable(folder, &error, OTHER_OUT))
 }
 
 /// Refuses a file named on the command line that cannot be written or would take the place of one of
 /// `inputs`, before the work whose results go there.
 pub fn ready_file(path: &Path, inputs: &[&Path]) -> Result<()> {
-    let is_input = |input: &&Path| match (fs::canonicalize(path), fs::canonicalize(input)) {
-        (Ok(path), Ok(input)) => path == input,
-        _ => false,
-    };
-    if inputs.iter().any(|input| is_input(input)) {
-        let message = format!(
-            "{}: writing there would destroy what is read",
-            path.display()
-        );
-        return Err(hinted(message, "give another place"));
-    }
+    refuse_inputs(path, inputs)?;
     let tried = make_parent(path).and_then(|()| match path.is_dir() {
         true => Err(ErrorKind::IsADirectory.into()),
         false => try_place(path),
     });
     tried.map_err(|error| unwritable(path, &error, OTHER_FILE))
+}
+
+/// Refuses a place where one of `inputs` is.
+pub fn refuse_inputs(path: &Path, inputs: &[&Path]) -> Result<()> {
+    let is_input = |input: &&Path| match (fs::canonicalize(path), fs::canonicalize(input)) {
+        (Ok(path), Ok(input)) => path == input,
+        _ => false,
+    };
+    if !inputs.iter().any(is_input) {
+        return Ok(());
+    }
+    let message = format!(
+        "{}: writing there would destroy what is read",
+        path.display()
+    );
+    Err(hinted(message, "give another place"))
 }
 
 /// Writes a file into a folder named by `--out`, which is made where it is missing; other files

@@ -18,7 +18,7 @@ use stickslip_report::{
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
 use crate::experiment::{check_occlusion, read_experiment, reference_name};
-use crate::files::{ready_file, ready_folder, write_out, write_report};
+use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
 use crate::output::{show_result, talk};
 use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
@@ -72,26 +72,31 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
-    let scores = scores(args, &experiment, &run.estimate);
-    let seen = run.estimate.rows.iter().filter(|row| row.visual).count();
+    let scored = ScoredRun {
+        variant: args.variant(),
+        scores: scores(args, &experiment, &run.estimate),
+        unsolved: run.unsolved,
+        collapses: run.collapses,
+        estimate: run.estimate,
+    };
     let warnings: Vec<String> = misread(&experiment.setup, &experiment.log)
         .into_iter()
-        .chain(collapsed(run.collapses, seen))
+        .chain(collapsed(scored.collapses, scored.seen()))
         .map(|finding| finding.to_string())
         .collect();
-    let summary = Summary::new(&experiment, &run, &scores, seconds, &warnings);
+    let summary = Summary::new(&experiment, &scored, seconds, &warnings);
     show_result(args.shared.json, &summary, || {
-        tables(args, &experiment, &run.estimate, &summary)
+        tables(args, &experiment, &scored.estimate, &summary)
     })?;
     let written = args
         .out
         .as_deref()
-        .map(|folder| write(folder.join(ESTIMATE), &run.estimate))
+        .map(|folder| write(folder.join(ESTIMATE), &scored.estimate))
         .transpose()?;
     let reported = args
         .report
         .as_deref()
-        .map(|path| report(args, &experiment, &run, &warnings, &scores, sample, path))
+        .map(|path| report(args, &experiment, scored, &warnings, sample, path))
         .transpose()?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
@@ -105,7 +110,7 @@ fn check_places(args: &FilterArgs) -> Result<()> {
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     if let Some(folder) = &args.out {
         ready_folder(folder)?;
-        ready_file(&folder.join(ESTIMATE), &inputs)?;
+        refuse_inputs(&folder.join(ESTIMATE), &inputs)?;
     }
     args.report
         .iter()
@@ -145,20 +150,13 @@ fn timed_run(
 fn report(
     args: &FilterArgs,
     experiment: &Experiment,
-    run: &Run,
+    scored: ScoredRun,
     warnings: &[String],
-    scores: &Scores,
     sample: CloudSample,
     path: &Path,
 ) -> Result<PathBuf> {
     let run = ReportedRun {
-        scored: ScoredRun {
-            variant: args.variant(),
-            estimate: run.estimate.clone(),
-            scores: *scores,
-            unsolved: run.unsolved,
-            collapses: run.collapses,
-        },
+        scored,
         cloud: sample.into_rows(experiment.log.len()),
     };
     let (name, title) = (args.log.display().to_string(), run.title());
@@ -193,13 +191,8 @@ fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Sc
 }
 
 impl<'a> Summary<'a> {
-    fn new(
-        experiment: &Experiment,
-        run: &Run,
-        scores: &Scores,
-        seconds: f64,
-        warnings: &'a [String],
-    ) -> Self {
+    fn new(experiment: &Experiment, run: &ScoredRun, seconds: f64, warnings: &'a [String]) -> Self {
+        let scores = &run.scores;
         Self {
             wmse_mm: scores.wmse_mm,
             wmse_occluded_mm: scores.wmse_occluded_mm,

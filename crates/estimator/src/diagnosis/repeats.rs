@@ -24,37 +24,43 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         1e2 * all,
         1e2 * moving
     );
-    let frozen = frozen(evidence).filter(|_| moving <= MANY);
-    vec![match (moving > MANY, frozen) {
-        (true, _) => Finding::warning(
+    vec![match frozen(evidence) {
+        Some(finding) => finding,
+        None if moving > MANY => Finding::warning(
             Subject::RepeatedFrames,
             found,
             "leave the cells of repeated frames empty: the camera is slower than the log",
         ),
-        (false, Some(finding)) => finding,
-        (false, None) => Finding::ok(Subject::RepeatedFrames, found),
+        None => Finding::ok(Subject::RepeatedFrames, found),
     }]
 }
 
-/// Many equal poses on end while the pusher goes on, from a camera whose poses scatter: it stood still.
+/// Many equal poses on end and then one far from them, from a camera whose poses scatter: it stood still
+/// while the object went on.
 fn frozen(evidence: &Evidence<'_>) -> Option<Finding> {
-    let log = evidence.log;
-    let runs = evidence
-        .seen
-        .chunk_by(|a, b| log.object[*a] == log.object[*b]);
-    let longest = runs.max_by_key(|rows| rows.len())?;
-    let (first, last) = (*longest.first()?, *longest.last()?);
-    let pusher = |row: usize| evidence.pusher_at(log.time[row]);
-    let (from, to) = (pusher(first)?, pusher(last)?);
-    let way = (to.x - from.x).hypot(to.y - from.y);
-    let scatters = evidence.noise.is_some_and(|noise| noise.position > 1e-6);
-    let is_frozen = longest.len() >= FROZEN && scatters && way > evidence.tolerance();
-    is_frozen.then(|| {
-        let found = format!(
-            "rows {first} to {last} have one and the same object pose, while the pusher goes {}",
-            mm(way)
-        );
-        let advice = "the camera stood still: leave the cells of these rows empty";
-        Finding::warning(Subject::RepeatedFrames, found, advice)
-    })
+    let (object, seen) = (&evidence.log.object, &evidence.seen);
+    if evidence.noise.is_none_or(|noise| noise.position < 1e-6) {
+        return None;
+    }
+    let way = |from: usize, to: usize| {
+        let (from, to) = (object[from]?, object[to]?);
+        Some((to.x - from.x).hypot(to.y - from.y))
+    };
+    let mut end = 0;
+    for rows in seen.chunk_by(|a, b| object[*a] == object[*b]) {
+        end += rows.len();
+        let (first, last) = (*rows.first()?, *rows.last()?);
+        let jump = seen.get(end).and_then(|next| way(last, *next));
+        if rows.len() >= FROZEN
+            && let Some(jump) = jump.filter(|jump| *jump > evidence.tolerance())
+        {
+            let found = format!(
+                "rows {first} to {last} have one and the same object pose, and the next one is {} from it",
+                mm(jump)
+            );
+            let advice = "the camera stood still: leave the cells of these rows empty";
+            return Some(Finding::warning(Subject::RepeatedFrames, found, advice));
+        }
+    }
+    None
 }
