@@ -3,6 +3,7 @@
 
 mod folders;
 mod page;
+mod played;
 mod results;
 mod tables;
 
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, anyhow};
 use rayon::prelude::*;
-use stickslip::Occlusion;
+use stickslip::{Occlusion, Tracking};
 use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::Experiment;
 
@@ -31,6 +32,7 @@ struct Folder {
     path: PathBuf,
     experiment: Experiment,
     occlusion: Occlusion,
+    tracking: Tracking,
     /// Whether all of the log could be read.
     verdict: Verdict,
 }
@@ -48,7 +50,7 @@ struct Job {
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     let folders = folders::expand(&args.folders, &args.scene_name)?;
     let pool = args.shared.threads.pool()?;
-    let (comparison, verdict) = pool.install(|| compare_all(args, folders));
+    let (comparison, folders, verdict) = pool.install(|| compare_all(args, folders));
     let text = if args.shared.json {
         serde_json::to_string_pretty(&comparison)?
     } else {
@@ -58,7 +60,8 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
         show(text)?;
     }
     if let Some(path) = &args.report {
-        let path = write_report(path.clone(), &page::report(&comparison))?;
+        let played = pool.install(|| played::played(&comparison, &folders))?;
+        let path = write_report(path.clone(), &page::report(&comparison, played))?;
         talk(format_args!("wrote {}", path.display()));
     }
     for lost in &comparison.errors {
@@ -73,8 +76,8 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     )
 }
 
-/// The comparison, and whether all of the logs in it could be read.
-fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict) {
+/// The comparison, the folders that could be read, and whether all of the logs in them could be.
+fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Vec<Folder>, Verdict) {
     // read all folders; those that cannot be read are reported and left out
     let read: Vec<Result<Folder, LostFolder>> =
         paths.into_par_iter().map(|path| read(args, path)).collect();
@@ -113,10 +116,8 @@ fn compare_all(args: &CompareArgs, paths: Vec<PathBuf>) -> (Comparison, Verdict)
     }
     let mut verdicts = folders.iter().map(|folder| folder.verdict);
     let cut_off = verdicts.find(|verdict| *verdict != Verdict::Done);
-    (
-        Comparison::new(args, results, errors),
-        cut_off.unwrap_or(Verdict::Done),
-    )
+    let comparison = Comparison::new(args, results, errors);
+    (comparison, folders, cut_off.unwrap_or(Verdict::Done))
 }
 
 /// Reads a folder; hidden is what truth.json says, else what the options say.
@@ -131,6 +132,7 @@ fn read(args: &CompareArgs, path: PathBuf) -> Result<Folder, LostFolder> {
         path,
         experiment,
         occlusion,
+        tracking: args.shared.tracking(),
         verdict,
     })
 }
@@ -154,7 +156,7 @@ fn jobs(folders: &[Folder], seeds: u64) -> Vec<Job> {
 fn run(args: &CompareArgs, folder: &Folder, job: Job) -> Result<ShownScores> {
     let conditions = RunConditions {
         particles: args.shared.particles,
-        tracking: args.shared.tracking(),
+        tracking: folder.tracking,
         occlusion: folder.occlusion,
         seed: job.seed,
     };

@@ -10,16 +10,16 @@ use serde::Serialize;
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Occlusion, Run, TactileUse, keep_threads_awake, run, run_observed};
-use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant, score};
+use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{Experiment, write_estimate};
-use stickslip_report::{CloudSample, Report, ReportedExperiment, ReportedRun, Table, number};
+use stickslip_report::{CloudSample, Report, ReportedExperiment, Table, number};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
-use crate::experiment::{read_experiment, reference_name};
+use crate::experiment::{experiment_name, read_experiment, reference_name};
 use crate::failure::hinted;
 use crate::files::{write_out, write_report};
+use crate::origin::origin;
 use crate::output::{show_result, talk};
-use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
 use crate::reported_run::DRAWN;
 use crate::verdict::Verdict;
@@ -42,7 +42,7 @@ struct Summary {
     /// In N; `None` is a rigid drive.
     stall_force: Option<f64>,
     stall_force_assumed: bool,
-    friction: BTreeMap<&'static str, Parameter>,
+    friction: BTreeMap<&'static str, LearnedParameter>,
 }
 
 /// Runs the command.
@@ -63,20 +63,23 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
-    let scores = scores(args, &experiment, &run.estimate);
+    let radius = args.virtual_radius;
+    let radius = radius.unwrap_or(experiment.setup.virtual_radius());
+    let hidden = args.shared.occlusion();
+    let scored = ScoredRun::of(args.variant(), run, &experiment, (hidden, radius));
     let written = args
         .out
         .as_deref()
-        .map(|folder| write(folder.join("estimate.csv"), &run.estimate))
+        .map(|folder| write(folder.join("estimate.csv"), &scored.estimate))
         .transpose()?;
     let reported = args
         .report
         .as_deref()
-        .map(|path| report(args, &experiment, &run, &scores, sample, path))
+        .map(|path| report(args, &experiment, &scored, sample, path))
         .transpose()?;
-    let summary = Summary::new(&experiment, &run, &scores, seconds);
+    let summary = Summary::new(&experiment, &scored, seconds);
     show_result(args.shared.json, &summary, || {
-        tables(args, &experiment, &run.estimate, &summary)
+        tables(args, &experiment, &scored.estimate, &summary)
     })?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
@@ -134,27 +137,25 @@ fn timed_run(
 fn report(
     args: &FilterArgs,
     experiment: &Experiment,
-    run: &Run,
-    scores: &Scores,
+    scored: &ScoredRun,
     sample: CloudSample,
     path: &Path,
 ) -> Result<PathBuf> {
-    let run = ReportedRun {
-        scored: ScoredRun {
-            variant: args.variant(),
-            estimate: run.estimate.clone(),
-            scores: *scores,
-            unsolved: run.unsolved,
-        },
-        cloud: sample.into_rows(experiment.log.len()),
-    };
-    let (name, title) = (args.log.display().to_string(), run.title());
+    let run = sample.into_run(scored.clone());
+    let (name, title) = (experiment_name(&args.log), run.title());
     let occlusion = args.shared.occlusion();
     let reported = ReportedExperiment::new(&name, "", experiment, occlusion, vec![run]);
     let report = Report {
-        title: format!("{title}: {name}"),
+        title: format!("{name}: {title}"),
         summary: reported.summary().to_vec(),
         sections: vec![reported.section()],
+        origin: origin([
+            ("log", args.log.display().to_string()),
+            ("scene", args.scene.display().to_string()),
+            ("scored against", reference_name(experiment).to_owned()),
+            ("particles", args.shared.particles.to_string()),
+            ("seed", args.seed.to_string()),
+        ]),
     };
     write_report(path.to_owned(), &report)
 }
@@ -164,19 +165,9 @@ fn write(path: PathBuf, estimate: &Estimate) -> Result<PathBuf> {
     Ok(path)
 }
 
-fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {
-    let hidden = args.shared.occlusion().hidden(&experiment.log);
-    score(
-        estimate,
-        &Reference::of(experiment),
-        &hidden,
-        args.virtual_radius
-            .unwrap_or(experiment.setup.virtual_radius()),
-    )
-}
-
 impl Summary {
-    fn new(experiment: &Experiment, run: &Run, scores: &Scores, seconds: f64) -> Self {
+    fn new(experiment: &Experiment, run: &ScoredRun, seconds: f64) -> Self {
+        let scores = &run.scores;
         Self {
             wmse_mm: scores.wmse_mm,
             wmse_occluded_mm: scores.wmse_occluded_mm,
@@ -189,7 +180,7 @@ impl Summary {
             real_time_factor: experiment.log.duration() / seconds,
             stall_force: experiment.setup.scene.pusher.stall_force,
             stall_force_assumed: experiment.setup.stall_force_assumed,
-            friction: Parameter::at_end(&run.estimate)
+            friction: LearnedParameter::all(&run.estimate)
                 .into_iter()
                 .map(|parameter| (parameter.name, parameter))
                 .collect(),
@@ -209,7 +200,7 @@ fn tables(
         Variant::of(args.method.into(), TactileUse::Used).title(),
         reference_name(experiment)
     );
-    let parameters = Parameter::at_end(estimate);
+    let parameters = LearnedParameter::all(estimate);
     let friction =
         (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
     let parts = [title, score_table(summary).to_string()]
@@ -253,10 +244,10 @@ fn score_table(summary: &Summary) -> Table {
     table
 }
 
-fn friction_table(experiment: &Experiment, parameters: &[Parameter]) -> Table {
+fn friction_table(experiment: &Experiment, parameters: &[LearnedParameter]) -> Table {
     let mut table = Table::new(["friction", "estimate", "nominal"]);
     for parameter in parameters {
-        let nominal = parameter.shown_value(parameter.nominal(&experiment.setup.scene.nominal));
+        let nominal = parameter.shown_value(parameter.among(&experiment.setup.scene.nominal));
         table.push([parameter.name.to_owned(), parameter.shown(), nominal]);
     }
     table

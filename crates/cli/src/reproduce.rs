@@ -124,7 +124,7 @@ fn write(folder: &Path, report: &Report, run_sets: &[RunSet]) -> Result<()> {
     )?;
     let page = write_report(
         folder.join("report.html"),
-        &page(&report.tables, run_sets, &figures, report.particles)?,
+        &page(report, run_sets, &figures)?,
     )?;
     talk(format_args!(
         "wrote {} figures as SVG and PNG, reproduce.json and {}",

@@ -90,6 +90,12 @@ pub enum PaperName {
     /// Table IV: contact with a fixel and stop
     #[value(name = "4")]
     Fourth,
+    /// Added to them: caught at an edge by a fixel, or not
+    #[value(name = "5")]
+    Edge,
+    /// Added to them: a corner meets a fixel off its middle
+    #[value(name = "6")]
+    Corner,
 }
 
 impl From<PhysicsName> for Physics {
@@ -110,6 +116,8 @@ impl From<PaperName> for PaperExperiment {
             PaperName::Second => Self::Second,
             PaperName::Third => Self::Third,
             PaperName::Fourth => Self::Fourth,
+            PaperName::Edge => Self::Edge,
+            PaperName::Corner => Self::Corner,
         }
     }
 }

@@ -28,9 +28,10 @@ mod reported_experiment;
 mod story;
 mod table;
 mod time_figure;
+mod touch;
 
 pub use axis::Scale;
-pub use cloud_sample::CloudSample;
+pub use cloud_sample::{CloudSample, Distinct};
 pub use colour::{Colour, Line};
 pub use contact_timeline::{ContactEstimate, ContactLane, ContactTimeline};
 pub use curves::{FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_panels, pose_errors};

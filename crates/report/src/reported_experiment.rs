@@ -4,16 +4,18 @@
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip::dynamics::Pose;
 use stickslip::{Log, Occlusion, Setup};
-use stickslip_evaluation::{Reference, ScoredRun, Scores};
+use stickslip_evaluation::{LearnedParameter, Reference, ScoredRun, Scores};
 use stickslip_formats::Experiment;
 
-use crate::colour::Colour;
+use crate::colour::{Colour, Line};
 use crate::intervals::intervals;
 use crate::marks::Mark;
 use crate::page::{Block, Section};
+use crate::cloud_sample::Distinct;
 use crate::playback::{Playback, PlaybackRun};
 use crate::story::{Fate, Outcome, Story};
 use crate::table::{Table, number};
+use crate::touch::{GAP, TouchRule, true_touches};
 
 /// Time that is shown before the first contact and after the last one begins (s).
 const BEFORE: f64 = 1.0;
@@ -21,9 +23,6 @@ const AFTER: f64 = 4.0;
 
 /// Time after the last contact begins at which the playback shows its first picture (s).
 const POSTER: f64 = 1.5;
-
-/// Largest offset of a row of the truth from a row of the log at the same time (s).
-const SAME_TIME: f64 = 5e-4;
 
 /// An experiment and what several variants made of it.
 #[derive(Clone, Debug)]
@@ -60,9 +59,10 @@ pub struct ReportedExperiment<'a> {
 pub struct ReportedRun {
     /// The run.
     pub scored: ScoredRun,
-    /// Particles to draw, as [`crate::CloudSample::into_rows`] gives them; empty for variants
-    /// without.
+    /// Particles to draw, row by row; none for variants without.
     pub cloud: Vec<Vec<Pose>>,
+    /// How many of all its particles are different, row by row.
+    pub distinct: Vec<Option<Distinct>>,
 }
 
 impl ReportedRun {
@@ -123,15 +123,17 @@ impl<'a> ReportedExperiment<'a> {
         } else {
             "log's own poses"
         };
+        let reference = Reference::of(experiment);
+        let touches = true_touches(experiment, &reference);
         Self {
             name: name.to_owned(),
             what: what.to_owned(),
             setup,
             log,
-            reference: Reference::of(experiment),
+            reference,
             reference_name: reference_name.to_owned(),
             hidden: occlusion.hidden(log),
-            touches: touches(experiment),
+            touches,
             first_fixel: fixels.iter().map(|mark| mark.time).reduce(f64::min),
             contacts: pusher.into_iter().chain(fixels).collect(),
             friction: [facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri],
@@ -147,7 +149,8 @@ impl<'a> ReportedExperiment<'a> {
             camera_on: run.camera_on(),
             wmse_mm: run.wmse_mm(),
         };
-        let dark = self.dark();
+        let dark = intervals(&self.log.time, &self.hidden);
+        let lost = |(pose, hidden): &(&Option<Pose>, &bool)| pose.is_none() && !**hidden;
         Story {
             what: self.what.clone(),
             duration: self.log.duration(),
@@ -155,9 +158,84 @@ impl<'a> ReportedExperiment<'a> {
                 .first()
                 .zip(dark.last())
                 .map(|(first, last)| [first[0], last[1]]),
+            lost: self.log.object.iter().zip(&self.hidden).filter(lost).count(),
+            rows: self.log.len(),
             first_fixel: self.first_fixel,
             outcomes: self.runs.iter().map(outcome).collect(),
+            learnt: self.learnt(),
         }
+    }
+
+    /// What the learner says of itself, of friction and of contact.
+    fn learnt(&self) -> Vec<String> {
+        let Some(run) = self.learner() else {
+            return Vec::new();
+        };
+        let spread = run.scored.scores.spread_occluded_mm.map(|spread| {
+            format!("By its own account, the {} is off by {spread:.2} mm in the dark.", run.title())
+        });
+        let friction: Vec<String> = LearnedParameter::all(&run.scored.estimate)
+            .iter()
+            .zip(self.friction)
+            .map(|(parameter, truth)| self.told(parameter, truth))
+            .collect();
+        let friction = (!friction.is_empty())
+            .then(|| format!("Friction as the {} learns it: {}.", run.title(), friction.join(", ")));
+        spread
+            .into_iter()
+            .chain(friction)
+            .chain(self.contact_sentence(run))
+            .collect()
+    }
+
+    /// "mu_s 0.28 ± 0.02 (truth 0.27)", "mu_f not observed (told 0.25)".
+    fn told(&self, parameter: &LearnedParameter, truth: Option<f64>) -> String {
+        let nominal = parameter.among(&self.setup.scene.nominal);
+        let beside = match (parameter.observed, truth) {
+            (true, Some(_)) => format!(" (truth {})", parameter.shown_value(truth)),
+            (true, None) => String::new(),
+            (false, _) => format!(" (told {})", parameter.shown_value(nominal)),
+        };
+        format!("{} {}{beside}", parameter.name, parameter.shown())
+    }
+
+    /// When the first fixel is touched, according to the learner and in truth.
+    fn contact_sentence(&self, run: &ReportedRun) -> Option<String> {
+        let probabilities = self.touch_probabilities(run);
+        let time = |row: usize| self.log.time.get(row).copied();
+        let first_of = |body: usize| {
+            let row = probabilities.iter().position(|row| {
+                row.as_ref()
+                    .is_some_and(|all| all.get(body).is_some_and(|p| *p > 0.5))
+            });
+            Some((body, time(row?)?))
+        };
+        let found = (1..=self.setup.scene.fixels.len()).filter_map(first_of);
+        let (body, at) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let truly = match self.touches.get(body)? {
+            None => String::new(),
+            Some(touches) => match touches.iter().position(|touch| *touch).and_then(time) {
+                Some(truly) => format!(", and truly at {truly:.2} s"),
+                None => ", and truly never".to_owned(),
+            },
+        };
+        Some(format!(
+            "According to the {}, fixel {body} is first touched at {at:.2} s{truly}.",
+            run.title()
+        ))
+    }
+
+    /// Probabilities of contact with the pusher, then with each fixel, row by row, as a run has
+    /// them; `None` in rows without.
+    pub(crate) fn touch_probabilities(&self, run: &ReportedRun) -> Vec<Option<Vec<f64>>> {
+        let rule = TouchRule::measured(self.setup);
+        let rows = run.scored.estimate.rows.iter().enumerate();
+        rows.map(|(row, estimate)| {
+            let particles = run.cloud.get(row).map_or(&[][..], Vec::as_slice);
+            let pusher = self.log.pusher.get(row).copied().flatten();
+            rule.probabilities(estimate, particles, pusher)
+        })
+        .collect()
     }
 
     /// What a reader should know after a minute.
@@ -188,11 +266,23 @@ impl<'a> ReportedExperiment<'a> {
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
-                 angles weighted by the radius of gyration, against the {}. {}",
+                 angles weighted by the radius of gyration, against the {}. {} Two bodies touch where they press on each other or \
+                 their gap is at most {} mm.",
                 self.reference_name,
-                Fate::rule()
+                Fate::rule(),
+                1e3 * GAP
             )),
         ];
+        let estimate = self.learner().map(|run| {
+            let mut csv = Vec::new();
+            let written = stickslip_formats::write_estimate(&mut csv, &run.scored.estimate);
+            written.expect("memory can be written to");
+            Block::Download {
+                name: format!("{}-estimate.csv", self.name),
+                what: format!("every row of the {}", run.title()),
+                bytes: csv,
+            }
+        });
         let assumed =
             assumed_stall_force(self.setup).map(|finding| Block::Note(finding.to_string()));
         let figures = self
@@ -201,7 +291,12 @@ impl<'a> ReportedExperiment<'a> {
             .map(|figure| Block::Figure(figure.drawing, figure.caption));
         Section {
             title,
-            blocks: head.into_iter().chain(assumed).chain(figures).collect(),
+            blocks: head
+                .into_iter()
+                .chain(assumed)
+                .chain(figures)
+                .chain(estimate)
+                .collect(),
         }
     }
 
@@ -215,16 +310,19 @@ impl<'a> ReportedExperiment<'a> {
         };
         let mut table = Table::new([
             "method",
-            "verdict",
             wmse,
+            "own spread (mm)",
+            "verdict",
             "WMSE moving (mm)",
             "final error (mm)",
             "final error (°)",
             "unsolved steps",
+            "collapses",
         ]);
         for run in &self.runs {
             let Scores {
                 wmse_moving_mm,
+                spread_occluded_mm,
                 final_error_mm,
                 final_error_deg,
                 ..
@@ -234,16 +332,13 @@ impl<'a> ReportedExperiment<'a> {
             } else {
                 Fate::of(run.wmse_mm()).name()
             };
-            let scores = [
-                run.wmse_mm(),
-                wmse_moving_mm,
-                final_error_mm,
-                final_error_deg,
-            ];
-            let cells = [run.title().to_owned(), verdict.to_owned()]
+            let [dark, spread] = [run.wmse_mm(), spread_occluded_mm].map(|score| number(score, 3));
+            let scores = [wmse_moving_mm, final_error_mm, final_error_deg];
+            let counts = [run.scored.unsolved.to_string(), run.scored.collapses.to_string()];
+            let cells = [run.title().to_owned(), dark, spread, verdict.to_owned()]
                 .into_iter()
                 .chain(scores.map(|score| number(score, 3)))
-                .chain([run.scored.unsolved.to_string()]);
+                .chain(counts);
             table.push_coloured(run.colour(), cells);
         }
         table
@@ -256,12 +351,13 @@ impl<'a> ReportedExperiment<'a> {
             &self.setup.scene,
             self.log,
             &self.reference,
-            self.hidden.clone(),
+            self.blind(),
         );
         for (touch, truth) in playback.touches.iter_mut().zip(&self.touches) {
             touch.truth.clone_from(truth);
         }
-        let dark = self.dark().into_iter().map(|[from, _]| Mark {
+        let dark = intervals(&self.log.time, &self.hidden);
+        let dark = dark.into_iter().map(|[from, _]| Mark {
             time: from,
             name: "camera dark".to_owned(),
         });
@@ -271,13 +367,13 @@ impl<'a> ReportedExperiment<'a> {
         let track = |run: &ReportedRun| {
             let mut track = PlaybackRun::new(
                 run.title(),
-                run.colour(),
+                (run.colour(), Line::of(run.scored.variant)),
                 &run.scored.estimate,
                 &self.reference,
                 run.cloud.clone(),
             );
-            if learner != Some(run.title()) {
-                track.contacts.clear();
+            if learner == Some(run.title()) {
+                track.contacts = self.touch_probabilities(run);
             }
             track
         };
@@ -304,9 +400,15 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
-    /// Times without a camera (s).
+    /// Whether no row's pose is there for the methods: it was hidden, or the camera has lost it.
+    fn blind(&self) -> Vec<bool> {
+        let rows = self.hidden.iter().zip(&self.log.object);
+        rows.map(|(hidden, pose)| *hidden || pose.is_none()).collect()
+    }
+
+    /// Times without a pose (s).
     pub(crate) fn dark(&self) -> Vec<[f64; 2]> {
-        intervals(&self.log.time, &self.hidden)
+        intervals(&self.log.time, &self.blind())
     }
 
     /// From a little before the first contact to a while after the last one begins; all times where
@@ -347,30 +449,4 @@ impl<'a> ReportedExperiment<'a> {
         let first = learners.clone().next();
         learners.rfind(|run| !run.camera_on()).or(first)
     }
-}
-
-/// Whether the object touches the pusher, then each fixel, by the true forces; `None` where the
-/// truth has none.
-fn touches(experiment: &Experiment) -> Vec<Option<Vec<bool>>> {
-    let Experiment {
-        setup, log, truth, ..
-    } = experiment;
-    let bodies = 1 + setup.scene.fixels.len();
-    let Some(truth) = truth else {
-        return vec![None; bodies];
-    };
-    let row_at = |time: &f64| {
-        let row = truth.time.partition_point(|t| *t < time - SAME_TIME);
-        (*truth.time.get(row)? < time + SAME_TIME).then_some(row)
-    };
-    let rows: Vec<Option<usize>> = log.time.iter().map(row_at).collect();
-    let touches = |body: usize| {
-        let force = match body {
-            0 => &truth.pusher_force,
-            _ => truth.fixel_forces.get(body - 1)?,
-        };
-        let touch = |row: &Option<usize>| row.is_some_and(|k| force[k] > setup.tactile.touch_force);
-        (!force.is_empty()).then(|| rows.iter().map(touch).collect())
-    };
-    (0..bodies).map(touches).collect()
 }

@@ -11,7 +11,7 @@ mod results;
 mod run_set;
 mod scenes;
 
-pub use comparison::{CLEAR, Finding, PairedComparison};
+pub use comparison::{CLEAR, Difference, Finding, Measure, PairedComparison};
 pub use noise::{Noise, NoiseLevel};
 pub use published::{PUBLISHED, PublishedRow, PublishedTable};
 pub use replicate::Replicate;

@@ -6,7 +6,7 @@ use stickslip_formats::{Experiment, read_scene, read_truth_json};
 use super::noise::Noise;
 use super::scenes::{PaperExperiment, PaperScene};
 use crate::run::{RunConditions, ScoredRun};
-use crate::simulation::{Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+use crate::simulation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
 use crate::variant::Variant;
 
 /// Frames per second (Hz), as in the paper.
@@ -31,7 +31,7 @@ impl Replicate {
     /// # Errors
     /// The testbed refuses the seed's rig.
     pub fn simulate(paper: PaperExperiment, seed: u64) -> Result<Self, SimulationError> {
-        Self::simulate_with(paper, seed, REPEATS, |_| ())
+        Self::simulate_with(paper, seed, [REPEATS, PUSHER_MEMORY], |_| ())
     }
 
     /// The same rig with poses simulated at the noise of tracked ones and missing where this
@@ -42,7 +42,7 @@ impl Replicate {
     pub fn with_noise(&self, noise: &Noise) -> Result<Self, SimulationError> {
         let camera = Some(noise.camera());
         let mut replicate =
-            Self::simulate_with(self.paper, self.seed, 0.0, |setup| setup.camera = camera)?;
+            Self::simulate_with(self.paper, self.seed, [0.0; 2], |setup| setup.camera = camera)?;
         let (log, seen) = (&mut replicate.experiment.log, &self.experiment.log);
         for (poses, seen) in [
             (&mut log.object, &seen.object),
@@ -81,11 +81,12 @@ impl Replicate {
         }
     }
 
-    /// `repeats`: share of frames that are repeated; `adjust` may change what the scene says.
+    /// `repeats`: share of frames that are repeated, `pusher_memory`: how long the pusher's error
+    /// lasts (s); `adjust` may change what the scene says.
     fn simulate_with(
         paper: PaperExperiment,
         seed: u64,
-        repeats: f64,
+        [repeats, pusher_memory]: [f64; 2],
         adjust: impl FnOnce(&mut Setup),
     ) -> Result<Self, SimulationError> {
         let PaperScene {
@@ -99,6 +100,7 @@ impl Replicate {
             seed,
             rate: RATE,
             repeats,
+            pusher_memory,
         };
         let simulation = Simulation::run(&setup, &known, &options)?;
         Ok(Self {

@@ -151,13 +151,16 @@ pub fn experiment<'a>(
                     wmse_occluded_mm: Some(2e3 * off),
                     ..Scores::default()
                 },
+                camera_wmse_mm: None,
                 unsolved: 0,
+                collapses: 0,
             },
             cloud: if particles > 0 {
                 (0..rows).map(cloud).collect()
             } else {
                 Vec::new()
             },
+            distinct: Vec::new(),
         }
     };
     ReportedExperiment {
