@@ -10,9 +10,9 @@ use serde::Serialize;
 use stickslip::dynamics::Friction;
 use stickslip::{Estimate, EstimateRow};
 
-/// Speed from which the object counts as moving (m/s), and turning (rad/s).
-const MOVING: f64 = 1e-4;
-const TURNING: f64 = 2e-3;
+/// Speed from which the object counts as moving (m/s), and turning (rad/s): a jam ends in a creep.
+const MOVING: f64 = 1e-3;
+const TURNING: f64 = 0.03;
 
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;

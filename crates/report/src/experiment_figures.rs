@@ -13,6 +13,7 @@ use crate::overlay::{Body, Overlay};
 use crate::particle_cloud::ParticleCloud;
 use crate::reported_experiment::{ReportedExperiment, ReportedRun};
 use crate::time_figure::{Curve, Panel, TimeFigure};
+use crate::touch::rule;
 
 /// Smallest error drawn (mm, degrees).
 const FLOOR: f64 = 0.01;
@@ -58,7 +59,7 @@ impl ReportedExperiment<'_> {
             Figure::new(
                 "contacts",
                 self.contact_timeline().drawing(),
-                "Who touches the object when: two bodies touch where they press on each other or their gap is at most 0.1 mm.",
+                &format!("Who touches the object when: {}.", rule()),
             ),
         ];
         let friction = self.friction_figure().map(|figure| {

@@ -15,7 +15,7 @@ use crate::cloud_sample::Distinct;
 use crate::playback::{Playback, PlaybackRun};
 use crate::story::{Fate, Outcome, Story};
 use crate::table::{Table, number};
-use crate::touch::{GAP, TouchRule, true_touches};
+use crate::touch::{TouchRule, rule, true_touches};
 
 /// Time that is shown before the first contact and after the last one begins (s).
 const BEFORE: f64 = 1.0;
@@ -266,11 +266,10 @@ impl<'a> ReportedExperiment<'a> {
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
-                 angles weighted by the radius of gyration, against the {}. {} Two bodies touch where they press on each other or \
-                 their gap is at most {} mm.",
+                 angles weighted by the radius of gyration, against the {}. {} Contact: {}.",
                 self.reference_name,
                 Fate::rule(),
-                1e3 * GAP
+                rule()
             )),
         ];
         let estimate = self.learner().map(|run| {
@@ -313,10 +312,10 @@ impl<'a> ReportedExperiment<'a> {
             wmse,
             "own spread (mm)",
             "verdict",
-            "WMSE moving (mm)",
-            "final error (mm)",
-            "final error (°)",
-            "unsolved steps",
+            "WMSE moving",
+            "final (mm)",
+            "final (°)",
+            "unsolved",
             "collapses",
         ]);
         for run in &self.runs {

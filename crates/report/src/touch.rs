@@ -9,10 +9,16 @@ use stickslip_evaluation::Reference;
 use stickslip_formats::Experiment;
 
 /// Gap up to which two bodies touch (m).
-pub(crate) const GAP: f64 = 1e-4;
+const GAP: f64 = 2e-4;
 
 /// Largest offset of a row of the truth from a row of the log at the same time (s).
 const SAME_TIME: f64 = 5e-4;
+
+/// The rule in words.
+pub(crate) fn rule() -> String {
+    let gap = 1e3 * GAP;
+    format!("two bodies touch where they press on each other or their gap is at most {gap} mm")
+}
 
 /// What counts as contact in a scene.
 #[derive(Clone, Copy, Debug)]
@@ -174,8 +180,8 @@ mod tests {
     /// The object rests at the fixel from row 1 on; the pusher leaves it at row 2.
     fn experiment(forces: bool) -> Experiment {
         let time = vec![0.0, 0.1, 0.2];
-        let object = [0.01, 0.019_95, 0.019_95].map(|x| Pose::new(x, 0.0, 0.0));
-        let pusher = [-0.01, -5e-5, -0.01].map(|x| Pose::new(x, 0.0, 0.0));
+        let object = [0.01, 0.019_9, 0.019_9].map(|x| Pose::new(x, 0.0, 0.0));
+        let pusher = [-0.01, -1e-4, -0.01].map(|x| Pose::new(x, 0.0, 0.0));
         let log = Log {
             time: time.clone(),
             object: object.map(Some).to_vec(),
@@ -210,7 +216,7 @@ mod tests {
             contact_fixels: Some(vec![0.0]),
             ..EstimateRow::default()
         };
-        let particles = [0.0199, 0.02, 0.018, 0.0199].map(|x| Pose::new(x, 0.0, 0.0));
+        let particles = [0.0198, 0.02, 0.018, 0.0199].map(|x| Pose::new(x, 0.0, 0.0));
         let rule = TouchRule::measured(&setup);
         let found = rule.probabilities(&row, &particles, None);
         assert_eq!(found, Some(vec![0.25, 0.75]));
