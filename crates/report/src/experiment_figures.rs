@@ -78,8 +78,9 @@ impl ReportedExperiment<'_> {
             let text = "How many particles count: effective sample size after weighing, and how many are no copies of others.";
             Figure::new("particles", figure.drawing(), text)
         });
-        let rest = [friction, cloud, particles].into_iter().flatten();
-        always.into_iter().chain(rest).collect()
+        let [errors, poses, contacts] = always;
+        let shown = [Some(errors), Some(poses), cloud, Some(contacts), friction, particles];
+        shown.into_iter().flatten().collect()
     }
 
     /// Errors of all runs against time.

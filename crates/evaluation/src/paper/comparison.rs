@@ -94,7 +94,7 @@ impl Measure {
         match self {
             Self::AllRows => "all rows",
             Self::DarkRows => "dark rows",
-            Self::CameraPoses => "all rows, against the camera's poses",
+            Self::CameraPoses => "against camera poses",
         }
     }
 
