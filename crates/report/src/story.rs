@@ -229,6 +229,7 @@ mod tests {
                 outcome("particle", false, 0.123),
                 outcome("always on", true, 0.07),
             ],
+            ..Story::default()
         };
         assert_eq!(
             story.sentences(),

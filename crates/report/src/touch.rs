@@ -181,7 +181,7 @@ mod tests {
     fn experiment(forces: bool) -> Experiment {
         let time = vec![0.0, 0.1, 0.2];
         let object = [0.01, 0.019_9, 0.019_9].map(|x| Pose::new(x, 0.0, 0.0));
-        let pusher = [-0.01, -1e-4, -0.01].map(|x| Pose::new(x, 0.0, 0.0));
+        let pusher = [-0.011, -1e-4, -0.01].map(|x| Pose::new(x, 0.0, 0.0));
         let log = Log {
             time: time.clone(),
             object: object.map(Some).to_vec(),
@@ -216,7 +216,7 @@ mod tests {
             contact_fixels: Some(vec![0.0]),
             ..EstimateRow::default()
         };
-        let particles = [0.0198, 0.02, 0.018, 0.0199].map(|x| Pose::new(x, 0.0, 0.0));
+        let particles = [0.019_85, 0.02, 0.018, 0.0199].map(|x| Pose::new(x, 0.0, 0.0));
         let rule = TouchRule::measured(&setup);
         let found = rule.probabilities(&row, &particles, None);
         assert_eq!(found, Some(vec![0.25, 0.75]));

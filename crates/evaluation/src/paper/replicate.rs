@@ -66,16 +66,22 @@ impl Replicate {
     ///
     /// # Errors
     /// Those of [`stickslip::run`].
-    pub fn run(&self, variant: Variant, particles: usize) -> Result<ScoredRun, RunError> {
-        ScoredRun::new(variant, &self.experiment, &self.conditions(particles), None)
+    pub fn run(
+        &self,
+        variant: Variant,
+        particles: usize,
+        tracking: Tracking,
+    ) -> Result<ScoredRun, RunError> {
+        let conditions = self.conditions(particles, tracking);
+        ScoredRun::new(variant, &self.experiment, &conditions, None)
     }
 
-    /// How every variant is run: off-line, with the replicate's own occlusion and seed.
+    /// How every variant is run: with the replicate's own occlusion and seed.
     #[must_use]
-    pub fn conditions(&self, particles: usize) -> RunConditions {
+    pub fn conditions(&self, particles: usize, tracking: Tracking) -> RunConditions {
         RunConditions {
             particles,
-            tracking: Tracking::Smoothed,
+            tracking,
             occlusion: self.occlusion,
             seed: self.seed,
         }
