@@ -180,7 +180,7 @@ impl<'a> ReportedExperiment<'a> {
             .map(|(parameter, truth)| self.told(parameter, truth))
             .collect();
         let friction = (!friction.is_empty())
-            .then(|| format!("Friction as the {} learns it: {}.", run.title(), friction.join(", ")));
+            .then(|| format!("Friction according to the {}: {}.", run.title(), friction.join(", ")));
         spread
             .into_iter()
             .chain(friction)

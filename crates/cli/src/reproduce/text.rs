@@ -127,6 +127,7 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
         "nominal",
         "Kalman",
         "no tactile",
+        "camera on",
     ]);
     for result in results {
         let own = [
@@ -140,7 +141,8 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
             [title]
                 .into_iter()
                 .chain(own)
-                .chain(result.baselines.iter().map(difference)),
+                .chain(result.baselines.iter().map(difference))
+                .chain([median(result.camera_on_mm)]),
         );
     }
     table
