@@ -114,7 +114,10 @@ fn tables(experiment: &ReportedExperiment<'_>) -> String {
 fn friction(experiment: &ReportedExperiment<'_>, estimate: &Estimate) -> Table {
     let nominal = &experiment.setup.scene.nominal;
     let mut table = Table::new(["friction", "nominal", "particle", "truth"]);
-    for (parameter, truth) in LearnedParameter::all(estimate).iter().zip(experiment.friction) {
+    for (parameter, truth) in LearnedParameter::all(estimate)
+        .iter()
+        .zip(experiment.friction)
+    {
         table.push([
             parameter.name.to_owned(),
             parameter.shown_value(parameter.among(nominal)),

@@ -91,9 +91,15 @@ pub fn log_path(folder: &Path) -> PathBuf {
 /// What to call the experiment of a log: its folder where the log has the name that all have.
 pub fn experiment_name(log: &Path) -> String {
     let folder = log.parent().and_then(Path::file_name);
-    let own = matches!(log.file_name().and_then(|name| name.to_str()), Some("log.csv" | "log.mcap"));
+    let own = matches!(
+        log.file_name().and_then(|name| name.to_str()),
+        Some("log.csv" | "log.mcap")
+    );
     let name = folder.filter(|_| own).or(log.file_name());
-    name.map_or_else(|| log.display().to_string(), |name| name.to_string_lossy().into_owned())
+    name.map_or_else(
+        || log.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }
 
 /// What an experiment's reference is, in words.

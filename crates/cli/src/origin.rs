@@ -6,7 +6,10 @@ pub fn origin(more: impl IntoIterator<Item = (&'static str, String)>) -> Vec<(St
     let words = arguments.map(|word| quoted(&word.to_string_lossy()));
     let command: Vec<String> = ["stickslip".to_owned()].into_iter().chain(words).collect();
     let own = [
-        ("program", format!("stickslip {}", env!("CARGO_PKG_VERSION"))),
+        (
+            "program",
+            format!("stickslip {}", env!("CARGO_PKG_VERSION")),
+        ),
         ("command", command.join(" ")),
     ];
     own.into_iter()

@@ -195,11 +195,7 @@ fn filmed(replicates: &[Replicate]) -> Result<(Vec<Replicate>, Vec<Replicate>, V
 }
 
 /// Every variant of an experiment on every replicate of it.
-fn runs(
-    replicates: Vec<Replicate>,
-    particles: usize,
-    tracking: Tracking,
-) -> Result<Vec<RunSet>> {
+fn runs(replicates: Vec<Replicate>, particles: usize, tracking: Tracking) -> Result<Vec<RunSet>> {
     // one queue of all runs keeps all threads busy
     let variants = |replicate: &Replicate| replicate.paper.variants();
     let jobs: Vec<(&Replicate, Variant)> = replicates

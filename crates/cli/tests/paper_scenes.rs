@@ -168,7 +168,9 @@ fn goes_the_common_way(name: &str, seed: u64) -> bool {
 #[ignore = "40 simulations"]
 fn added_scenes_fork_and_most_rigs_go_one_way() {
     for (name, expected) in [("5", 17), ("6", 18)] {
-        let common = (0..20).filter(|seed| goes_the_common_way(name, *seed)).count();
+        let common = (0..20)
+            .filter(|seed| goes_the_common_way(name, *seed))
+            .count();
         assert_eq!(common, expected, "scene {name}");
     }
 }
@@ -176,7 +178,10 @@ fn added_scenes_fork_and_most_rigs_go_one_way() {
 /// The model with the friction that the methods are given goes the other way.
 #[test]
 fn given_friction_goes_the_other_way_in_the_added_scenes() {
-    for (name, own) in [("5", goes_the_common_way("5", 0)), ("6", goes_the_common_way("6", 0))] {
+    for (name, own) in [
+        ("5", goes_the_common_way("5", 0)),
+        ("6", goes_the_common_way("6", 0)),
+    ] {
         assert!(own, "scene {name} with seed 0 goes the common way");
         let scene = format!(
             "{}/../evaluation/scenes/{name}/scene.toml",
@@ -188,11 +193,19 @@ fn given_friction_goes_the_other_way_in_the_added_scenes() {
             .arg(&out)
             .output()
             .unwrap();
-        assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+        assert_eq!(
+            run.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
         let rows = fs::read_to_string(out.join("truth.csv")).unwrap();
         let last = rows.lines().last().unwrap().split(',').nth(3).unwrap();
         let end: f64 = last.parse().unwrap();
-        assert!(if name == "5" { end > 1.0 } else { end < -0.3 }, "scene {name}: {end}");
+        assert!(
+            if name == "5" { end > 1.0 } else { end < -0.3 },
+            "scene {name}: {end}"
+        );
     }
 }
 

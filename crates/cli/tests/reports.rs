@@ -118,7 +118,14 @@ fn demo_prints_tables_and_writes_a_report_and_figures() {
             .unwrap_or_else(|error| panic!("{name}: {error}"))
     };
     for experiment in ["stop-square50-bar-000", "slide-ell-disc-110"] {
-        for figure in ["errors", "poses", "contacts", "friction", "cloud", "particles"] {
+        for figure in [
+            "errors",
+            "poses",
+            "contacts",
+            "friction",
+            "cloud",
+            "particles",
+        ] {
             assert!(file(&format!("{experiment}-{figure}.svg")).starts_with(b"<svg"));
             assert!(file(&format!("{experiment}-{figure}.png")).starts_with(b"\x89PNG"));
         }

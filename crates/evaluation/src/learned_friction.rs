@@ -192,10 +192,8 @@ mod tests {
             ..Estimate::default()
         };
         let all = LearnedParameter::all(&estimate);
-        let found: Vec<(&str, Option<usize>, f64, f64)> = all
-            .iter()
-            .map(|p| (p.name, p.row, p.mean, p.std))
-            .collect();
+        let found: Vec<(&str, Option<usize>, f64, f64)> =
+            all.iter().map(|p| (p.name, p.row, p.mean, p.std)).collect();
         assert_eq!(
             found,
             [

@@ -14,7 +14,9 @@ mod variant;
 pub use learned_friction::LearnedParameter;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};
-pub use simulation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+pub use simulation::{
+    PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
+};
 pub use statistics::{Band, Direction, PairedDifference};
 pub use stickslip::quantile;
 pub use variant::Variant;

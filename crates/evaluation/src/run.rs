@@ -56,7 +56,12 @@ impl ScoredRun {
             None => run(setup, log, &options, &mut |_| ())?,
         };
         let radius = setup.virtual_radius();
-        Ok(Self::of(variant, run, experiment, (conditions.occlusion, radius)))
+        Ok(Self::of(
+            variant,
+            run,
+            experiment,
+            (conditions.occlusion, radius),
+        ))
     }
 
     /// Scores a run that was made while `occlusion` hid the object, angles weighted by `radius` (m).

@@ -165,10 +165,11 @@ fn final_error(errors: &[Option<Error>], reference: &Reference) -> Option<Error>
     let end = reference.time[errors.iter().rposition(Option::is_some)?];
     let rows = errors.iter().zip(&reference.time);
     let settled = rows.filter(|(_, time)| **time >= end - reference.settled);
-    let (sum, count) = settled.filter_map(|(error, _)| *error).fold(
-        (Error::default(), 0),
-        |(sum, count), error| (sum.plus(error), count + 1),
-    );
+    let (sum, count) = settled
+        .filter_map(|(error, _)| *error)
+        .fold((Error::default(), 0), |(sum, count), error| {
+            (sum.plus(error), count + 1)
+        });
     let mean = |sum: f64| sum / f64::from(count);
     Some(Error {
         dx: mean(sum.dx),

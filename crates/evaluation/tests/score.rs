@@ -198,5 +198,8 @@ fn final_error_without_truth_is_the_mean_of_the_last_second() {
     let found = scores.final_error_mm.expect("a last row");
     assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
     let turn = scores.final_error_deg.expect("a last row");
-    assert!((turn - (expected * 1e-3).to_degrees()).abs() < 1e-9, "{turn}");
+    assert!(
+        (turn - (expected * 1e-3).to_degrees()).abs() < 1e-9,
+        "{turn}"
+    );
 }

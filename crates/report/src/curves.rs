@@ -213,7 +213,11 @@ pub(crate) fn friction_curves(
     };
     let after = Curve {
         line: Line::Dotted,
-        ..Curve::new("no new information", colour, points[rows.saturating_sub(1)..].to_vec())
+        ..Curve::new(
+            "no new information",
+            colour,
+            points[rows.saturating_sub(1)..].to_vec(),
+        )
     };
     vec![learning, after]
 }

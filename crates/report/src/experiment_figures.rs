@@ -6,7 +6,10 @@ use stickslip_evaluation::LearnedParameter;
 use crate::axis::Scale;
 use crate::colour::{Colour, Line};
 use crate::contact_timeline::{ContactEstimate, ContactLane, ContactTimeline};
-use crate::curves::{FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_curves, friction_panels, pose_errors};
+use crate::curves::{
+    FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_curves, friction_panels,
+    pose_errors,
+};
 use crate::drawing::Drawing;
 use crate::intervals::intervals;
 use crate::overlay::{Body, Overlay};
@@ -79,7 +82,14 @@ impl ReportedExperiment<'_> {
             Figure::new("particles", figure.drawing(), text)
         });
         let [errors, poses, contacts] = always;
-        let shown = [Some(errors), Some(poses), cloud, Some(contacts), friction, particles];
+        let shown = [
+            Some(errors),
+            Some(poses),
+            cloud,
+            Some(contacts),
+            friction,
+            particles,
+        ];
         shown.into_iter().flatten().collect()
     }
 
@@ -242,7 +252,10 @@ impl ReportedExperiment<'_> {
         let shape = &self.setup.scene.object.shape;
         let estimates = self.runs.iter().filter_map(|run| {
             let pose = run.scored.estimate.rows.get(row)?.pose?;
-            Some(Body::new(run.title(), shape, &pose, run.colour()).line(Line::of(run.scored.variant)))
+            Some(
+                Body::new(run.title(), shape, &pose, run.colour())
+                    .line(Line::of(run.scored.variant)),
+            )
         });
         let known = self.known_bodies(row);
         Overlay {
@@ -313,7 +326,11 @@ impl ReportedExperiment<'_> {
         let estimate = &run.scored.estimate;
         let curve = |name: &str, colour: Colour, of: &dyn Fn(usize) -> Option<f64>| {
             let point = |(row, time): (usize, &f64)| [*time, of(row).unwrap_or(f64::NAN)];
-            Curve::new(name, colour, estimate.time.iter().enumerate().map(point).collect())
+            Curve::new(
+                name,
+                colour,
+                estimate.time.iter().enumerate().map(point).collect(),
+            )
         };
         let ess = |row: usize| estimate.rows[row].ess;
         let distinct = |row: usize| run.distinct.get(row).copied().flatten();

@@ -130,7 +130,11 @@ impl Playback {
                 .iter()
                 .map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose))
                 .collect(),
-            reference: log.time.iter().map(|time| reference.pose_at(*time)).collect(),
+            reference: log
+                .time
+                .iter()
+                .map(|time| reference.pose_at(*time))
+                .collect(),
             reference_name: "truth".to_owned(),
             pusher_poses: log.pusher.clone(),
             hidden,

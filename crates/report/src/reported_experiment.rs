@@ -7,11 +7,11 @@ use stickslip::{Log, Occlusion, Setup};
 use stickslip_evaluation::{LearnedParameter, Reference, ScoredRun, Scores};
 use stickslip_formats::Experiment;
 
+use crate::cloud_sample::Distinct;
 use crate::colour::{Colour, Line};
 use crate::intervals::intervals;
 use crate::marks::Mark;
 use crate::page::{Block, Section};
-use crate::cloud_sample::Distinct;
 use crate::playback::{Playback, PlaybackRun};
 use crate::story::{Fate, Outcome, Story};
 use crate::table::{Table, number};
@@ -158,7 +158,13 @@ impl<'a> ReportedExperiment<'a> {
                 .first()
                 .zip(dark.last())
                 .map(|(first, last)| [first[0], last[1]]),
-            lost: self.log.object.iter().zip(&self.hidden).filter(lost).count(),
+            lost: self
+                .log
+                .object
+                .iter()
+                .zip(&self.hidden)
+                .filter(lost)
+                .count(),
             rows: self.log.len(),
             first_fixel: self.first_fixel,
             outcomes: self.runs.iter().map(outcome).collect(),
@@ -172,15 +178,23 @@ impl<'a> ReportedExperiment<'a> {
             return Vec::new();
         };
         let spread = run.scored.scores.spread_occluded_mm.map(|spread| {
-            format!("By its own account, the {} is off by {spread:.2} mm in the dark.", run.title())
+            format!(
+                "By its own account, the {} is off by {spread:.2} mm in the dark.",
+                run.title()
+            )
         });
         let friction: Vec<String> = LearnedParameter::all(&run.scored.estimate)
             .iter()
             .zip(self.friction)
             .map(|(parameter, truth)| self.told(parameter, truth))
             .collect();
-        let friction = (!friction.is_empty())
-            .then(|| format!("Friction according to the {}: {}.", run.title(), friction.join(", ")));
+        let friction = (!friction.is_empty()).then(|| {
+            format!(
+                "Friction according to the {}: {}.",
+                run.title(),
+                friction.join(", ")
+            )
+        });
         spread
             .into_iter()
             .chain(friction)
@@ -333,7 +347,10 @@ impl<'a> ReportedExperiment<'a> {
             };
             let [dark, spread] = [run.wmse_mm(), spread_occluded_mm].map(|score| number(score, 3));
             let scores = [wmse_moving_mm, final_error_mm, final_error_deg];
-            let counts = [run.scored.unsolved.to_string(), run.scored.collapses.to_string()];
+            let counts = [
+                run.scored.unsolved.to_string(),
+                run.scored.collapses.to_string(),
+            ];
             let cells = [run.title().to_owned(), dark, spread, verdict.to_owned()]
                 .into_iter()
                 .chain(scores.map(|score| number(score, 3)))
@@ -346,12 +363,8 @@ impl<'a> ReportedExperiment<'a> {
     /// The experiment to be played back.
     #[must_use]
     pub fn playback(&self) -> Playback {
-        let mut playback = Playback::new(
-            &self.setup.scene,
-            self.log,
-            &self.reference,
-            self.blind(),
-        );
+        let mut playback =
+            Playback::new(&self.setup.scene, self.log, &self.reference, self.blind());
         for (touch, truth) in playback.touches.iter_mut().zip(&self.touches) {
             touch.truth.clone_from(truth);
         }
@@ -402,7 +415,8 @@ impl<'a> ReportedExperiment<'a> {
     /// Whether no row's pose is there for the methods: it was hidden, or the camera has lost it.
     fn blind(&self) -> Vec<bool> {
         let rows = self.hidden.iter().zip(&self.log.object);
-        rows.map(|(hidden, pose)| *hidden || pose.is_none()).collect()
+        rows.map(|(hidden, pose)| *hidden || pose.is_none())
+            .collect()
     }
 
     /// Times without a pose (s).

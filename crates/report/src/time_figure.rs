@@ -188,8 +188,16 @@ impl TimeFigure {
         let [from, to] = self.span;
         // through the gaps of a broken line one sees what it covers
         let lowest_first = || {
-            let of = |line: Line| panel.curves.iter().rev().filter(move |curve| curve.line == line);
-            [Line::Solid, Line::Dashed, Line::Dotted].into_iter().flat_map(of)
+            let of = |line: Line| {
+                panel
+                    .curves
+                    .iter()
+                    .rev()
+                    .filter(move |curve| curve.line == line)
+            };
+            [Line::Solid, Line::Dashed, Line::Dotted]
+                .into_iter()
+                .flat_map(of)
         };
         let curves = html! {
             @for curve in panel.curves.iter().rev() { (plot.band(&curve.band, curve.colour)) }

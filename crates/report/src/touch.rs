@@ -121,9 +121,8 @@ pub(crate) fn true_touches(
             let pressed = at.and_then(|k| force?.get(k).copied());
             let pusher = at.and_then(|k| truth.pusher.get(k).copied());
             pressed.is_some_and(|force| force > setup.tactile.touch_force)
-                || reference.pose[row].is_some_and(|pose| {
-                    rule.touches(pose, pusher.or(log.pusher[row]), body)
-                })
+                || reference.pose[row]
+                    .is_some_and(|pose| rule.touches(pose, pusher.or(log.pusher[row]), body))
         };
         rows.iter().enumerate().map(touch).collect()
     };

@@ -20,12 +20,18 @@ pub fn played(comparison: &Comparison, folders: &[Folder]) -> Result<Vec<Section
         .collect();
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (count, chosen) = (ranked.len(), [ranked.len().div_ceil(2), ranked.len()]);
-    let chosen = ranked.iter().enumerate().filter(|(rank, _)| chosen.contains(&(rank + 1)));
+    let chosen = ranked
+        .iter()
+        .enumerate()
+        .filter(|(rank, _)| chosen.contains(&(rank + 1)));
     let section = |(rank, (result, _)): (usize, &(&FolderResult, f64))| {
         let path = |folder: &&Folder| folder.path.display().to_string() == result.folder;
         let folder = folders.iter().find(path).expect("a result has its folder");
         let section = section(folder, comparison.particles)?;
-        let place = format!("number {} of {count} by the particle filter's WMSE", rank + 1);
+        let place = format!(
+            "number {} of {count} by the particle filter's WMSE",
+            rank + 1
+        );
         Ok(Section {
             title: format!("{}: {place}", section.title),
             ..section

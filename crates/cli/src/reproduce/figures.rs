@@ -11,8 +11,8 @@ use stickslip_evaluation::{
     },
 };
 use stickslip_report::{
-    Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Line, Mark, Panel, PoseError,
-    TimeFigure, friction_panels, pose_errors,
+    Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Line, Mark, Panel,
+    PoseError, TimeFigure, friction_panels, pose_errors,
 };
 
 use super::camera_view::CameraView;

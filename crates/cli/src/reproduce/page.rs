@@ -21,11 +21,7 @@ const ORDERS: &str = "Two methods that the paper's table puts in an order, compa
     error. It holds, or is reversed, where it exceeds two of them; fewer than six seeds have none.";
 
 /// Tables, figures, and the experiments B, A and 5 played back with the first seed.
-pub fn page(
-    made: &super::Report,
-    run_sets: &[RunSet],
-    figures: &[Figure],
-) -> Result<Report> {
+pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Result<Report> {
     let (results, particles) = (&made.tables, made.particles);
     let orders = Section {
         title: "The paper's orders, and ours".to_owned(),
@@ -51,7 +47,11 @@ pub fn page(
         title: "Figures 2 to 7".to_owned(),
         blocks: figures,
     };
-    let plays = [PaperExperiment::B, PaperExperiment::A, PaperExperiment::Edge];
+    let plays = [
+        PaperExperiment::B,
+        PaperExperiment::A,
+        PaperExperiment::Edge,
+    ];
     let plays = plays.map(|paper| played(run_sets, paper, (particles, made.tracking)));
     let plays = plays.into_iter().collect::<Result<Vec<_>>>()?;
     Ok(Report {
@@ -119,7 +119,10 @@ fn played(
     let mut replicates = run_sets.iter().map(|set| &set.replicate);
     let first = replicates.find(|replicate| replicate.paper == paper);
     let replicate = first.expect("every experiment was run");
-    let (experiment, conditions) = (&replicate.experiment, replicate.conditions(particles, made.tracking));
+    let (experiment, conditions) = (
+        &replicate.experiment,
+        replicate.conditions(particles, made.tracking),
+    );
     let runs = Variant::COMPARED
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, &conditions))

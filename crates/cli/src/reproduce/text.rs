@@ -18,7 +18,10 @@ pub fn text(results: &Results) -> String {
     });
     let orders = format!("{}\n{}\n", orders(results), counts(results).join("\n"));
     tables
-        .chain([orders, format!("{}{LEGEND}", occlusions(&results.occlusions))])
+        .chain([
+            orders,
+            format!("{}{LEGEND}", occlusions(&results.occlusions)),
+        ])
         .collect::<Vec<_>>()
         .join("\n")
 }
@@ -71,7 +74,11 @@ pub fn orders(results: &Results) -> Table {
     let mut table = Table::new(head.into_iter().chain(measures));
     for (row, order) in results.orders() {
         let experiment = row.split(',').next().unwrap_or(row);
-        let light = if row.contains("no visual occlusion") { ", camera on" } else { "" };
+        let light = if row.contains("no visual occlusion") {
+            ", camera on"
+        } else {
+            ""
+        };
         let [better, worse] = [order.better, order.worse].map(|key| key.replace('_', " "));
         let [less, more] = order.paper_mm;
         let cells = [
@@ -92,7 +99,10 @@ fn found(difference: &Difference) -> String {
     } = difference;
     match finding {
         Finding::TooFewSeeds => format!("{difference_mm:+.2}, {}", finding.name()),
-        _ => format!("{difference_mm:+.2} ± {standard_error_mm:.2} {}", finding.name()),
+        _ => format!(
+            "{difference_mm:+.2} ± {standard_error_mm:.2} {}",
+            finding.name()
+        ),
     }
 }
 
@@ -101,7 +111,12 @@ pub fn counts(results: &Results) -> Vec<String> {
     let all = results.orders().count();
     let counted = |measure: Measure| {
         let of = |finding| (results.count(measure, finding), finding);
-        let found = [Finding::Holds, Finding::Unclear, Finding::Reversed, Finding::TooFewSeeds];
+        let found = [
+            Finding::Holds,
+            Finding::Unclear,
+            Finding::Reversed,
+            Finding::TooFewSeeds,
+        ];
         let found = found.map(of).into_iter().filter(|(count, _)| *count > 0);
         let found: Vec<String> = found
             .map(|(count, finding)| match finding {
@@ -111,7 +126,11 @@ pub fn counts(results: &Results) -> Vec<String> {
                 Finding::TooFewSeeds => format!("{count} have too few seeds to say"),
             })
             .collect();
-        format!("Of {all} orders of the paper ({}), {}.", measure.name(), found.join(", "))
+        format!(
+            "Of {all} orders of the paper ({}), {}.",
+            measure.name(),
+            found.join(", ")
+        )
     };
     Measure::ALL.map(counted).into()
 }

@@ -228,8 +228,7 @@ mod tests {
         let finding = |pair: usize| Measure::ALL.map(|measure| pairs[pair].by(measure).finding);
         assert_eq!(finding(2)[..2], [Finding::Reversed; 2]);
         assert_eq!(finding(0), [Finding::Unclear; 3]);
-        let [all, dark, camera] =
-            Measure::ALL.map(|measure| pairs[2].by(measure).difference_mm);
+        let [all, dark, camera] = Measure::ALL.map(|measure| pairs[2].by(measure).difference_mm);
         assert!((all - 0.965).abs() < 1e-12 && (dark - 1.93).abs() < 1e-12 && camera == 0.0);
         assert_eq!(pairs[0].paper_mm, [0.2, 4.0]);
     }

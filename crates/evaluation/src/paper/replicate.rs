@@ -6,7 +6,9 @@ use stickslip_formats::{Experiment, read_scene, read_truth_json};
 use super::noise::Noise;
 use super::scenes::{PaperExperiment, PaperScene};
 use crate::run::{RunConditions, ScoredRun};
-use crate::simulation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+use crate::simulation::{
+    PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
+};
 use crate::variant::Variant;
 
 /// Frames per second (Hz), as in the paper.
@@ -41,8 +43,9 @@ impl Replicate {
     /// Those of [`Replicate::simulate`].
     pub fn with_noise(&self, noise: &Noise) -> Result<Self, SimulationError> {
         let camera = Some(noise.camera());
-        let mut replicate =
-            Self::simulate_with(self.paper, self.seed, [0.0; 2], |setup| setup.camera = camera)?;
+        let mut replicate = Self::simulate_with(self.paper, self.seed, [0.0; 2], |setup| {
+            setup.camera = camera
+        })?;
         let (log, seen) = (&mut replicate.experiment.log, &self.experiment.log);
         for (poses, seen) in [
             (&mut log.object, &seen.object),

@@ -89,8 +89,14 @@ impl PaperExperiment {
                 "4",
                 "the object is squeezed between thumb and fixel, and stops"
             ),
-            Self::Edge => embedded!("5", "the object is caught at its edge by a fixel, or passes it"),
-            Self::Corner => embedded!("6", "a corner of the object meets a fixel and passes it on one side"),
+            Self::Edge => embedded!(
+                "5",
+                "the object is caught at its edge by a fixel, or passes it"
+            ),
+            Self::Corner => embedded!(
+                "6",
+                "a corner of the object meets a fixel and passes it on one side"
+            ),
         }
     }
 }
