@@ -6,7 +6,7 @@ use stickslip::dynamics::Pose;
 use stickslip::{Observer, ParticleView, SolvedStep};
 use stickslip_evaluation::ScoredRun;
 
-use crate::reported_experiment::ReportedRun;
+use crate::reported_run::{Distinct, ReportedRun};
 
 /// Watches a run and keeps the poses of some particles after every row, drawn by their weights, so
 /// that all kept ones count the same.
@@ -21,15 +21,6 @@ pub struct CloudSample {
 struct SampledRow {
     poses: Vec<Pose>,
     distinct: Distinct,
-}
-
-/// Particles that are not copies of others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Distinct {
-    /// Different poses.
-    pub poses: usize,
-    /// Different friction values.
-    pub frictions: usize,
 }
 
 impl CloudSample {

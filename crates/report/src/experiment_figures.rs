@@ -14,7 +14,8 @@ use crate::drawing::Drawing;
 use crate::intervals::intervals;
 use crate::overlay::{Body, Overlay};
 use crate::particle_cloud::ParticleCloud;
-use crate::reported_experiment::{ReportedExperiment, ReportedRun};
+use crate::reported_experiment::ReportedExperiment;
+use crate::reported_run::ReportedRun;
 use crate::time_figure::{Curve, Panel, TimeFigure};
 use crate::touch::rule;
 
