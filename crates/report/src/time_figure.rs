@@ -199,10 +199,15 @@ impl TimeFigure {
                 .into_iter()
                 .flat_map(of)
         };
+        let levels = |solid: bool| {
+            let all = panel.levels.iter();
+            all.filter(move |level| (level.line == Line::Solid) == solid)
+        };
         let curves = html! {
             @for curve in panel.curves.iter().rev() { (plot.band(&curve.band, curve.colour)) }
-            @for level in &panel.levels { (plot.level(level.value, level.colour, level.line)) }
+            @for level in levels(true) { (plot.level(level.value, level.colour, level.line)) }
             @for curve in lowest_first() { (plot.curve(&curve.points, curve.colour, curve.line)) }
+            @for level in levels(false) { (plot.level(level.value, level.colour, level.line)) }
         };
         html! {
             (title.sized(LABEL))

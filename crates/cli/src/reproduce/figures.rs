@@ -213,10 +213,13 @@ impl<'a> Replicates<'a> {
         let mut pictures = Vec::new();
         for (row, variants) in rows {
             let frame = camera.frame(*row);
-            for variant in variants {
+            for (column, variant) in variants.iter().enumerate() {
                 let run = first.run(*variant);
                 let pose = run.and_then(|run| run.estimate.rows.get(*row)?.pose);
-                let title = format!("{}, row {row}", variant.paper_title());
+                let title = match column {
+                    0 => format!("{}, row {row}", variant.paper_title()),
+                    _ => variant.paper_title().to_owned(),
+                };
                 pictures.push(frame.with(&title, pose, Colour::of(*variant))?);
             }
         }

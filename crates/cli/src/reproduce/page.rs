@@ -121,7 +121,7 @@ fn played(
     let replicate = first.expect("every experiment was run");
     let (experiment, conditions) = (
         &replicate.experiment,
-        replicate.conditions(particles, made.tracking),
+        replicate.conditions(particles, tracking),
     );
     let runs = Variant::COMPARED
         .into_par_iter()
