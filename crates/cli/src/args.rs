@@ -11,7 +11,7 @@ use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
-/// Tracks a pushed object through contact and visual occlusion and learns the friction that governs
+/// Tracks a pushed object through contact and visual occlusion and adapts the friction that governs
 /// it.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version, max_term_width = 120)]

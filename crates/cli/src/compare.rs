@@ -3,6 +3,7 @@
 
 mod folders;
 mod page;
+mod played;
 mod results;
 mod tables;
 
@@ -12,7 +13,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow};
 use clap::CommandFactory;
 use rayon::prelude::*;
-use stickslip::Occlusion;
+use stickslip::{Occlusion, Tracking};
 use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::{Experiment, Topics};
 
@@ -32,6 +33,7 @@ struct Folder {
     path: PathBuf,
     experiment: Experiment,
     occlusion: Occlusion,
+    tracking: Tracking,
     /// Whether all of the log could be read.
     verdict: Verdict,
 }
@@ -55,7 +57,7 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     }
     let pool = args.shared.threads.pool()?;
     let topics = args.topics.topics(Program::command())?;
-    let (comparison, verdict) = pool.install(|| compare_all(args, &topics, folders));
+    let (comparison, folders, verdict) = pool.install(|| compare_all(args, &topics, folders));
     let text = if args.shared.json {
         serde_json::to_string_pretty(&comparison)?
     } else {
@@ -65,7 +67,8 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
         show(text)?;
     }
     if let Some(path) = &args.report {
-        let path = write_report(path.clone(), &page::report(&comparison))?;
+        let played = pool.install(|| played::played(&comparison, &folders))?;
+        let path = write_report(path.clone(), &page::report(&comparison, played))?;
         talk(format_args!("wrote {}", path.display()));
     }
     for lost in &comparison.errors {
@@ -80,8 +83,12 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     )
 }
 
-/// The comparison, and whether all of the logs in it could be read.
-fn compare_all(args: &CompareArgs, topics: &Topics, paths: Vec<PathBuf>) -> (Comparison, Verdict) {
+/// The comparison, the folders that could be read, and whether all of the logs in them could be.
+fn compare_all(
+    args: &CompareArgs,
+    topics: &Topics,
+    paths: Vec<PathBuf>,
+) -> (Comparison, Vec<Folder>, Verdict) {
     // read all folders; those that cannot be read are reported and left out
     let read: Vec<Result<Folder, LostFolder>> = paths
         .into_par_iter()
@@ -122,10 +129,8 @@ fn compare_all(args: &CompareArgs, topics: &Topics, paths: Vec<PathBuf>) -> (Com
     }
     let mut verdicts = folders.iter().map(|folder| folder.verdict);
     let cut_off = verdicts.find(|verdict| *verdict != Verdict::Done);
-    (
-        Comparison::new(args, results, errors),
-        cut_off.unwrap_or(Verdict::Done),
-    )
+    let comparison = Comparison::new(args, results, errors);
+    (comparison, folders, cut_off.unwrap_or(Verdict::Done))
 }
 
 /// Reads a folder; hidden is what truth.json says, else what the options say.
@@ -141,6 +146,7 @@ fn read(args: &CompareArgs, topics: &Topics, path: PathBuf) -> Result<Folder, Lo
         path,
         experiment,
         occlusion,
+        tracking: args.shared.tracking(),
         verdict,
     })
 }
@@ -164,7 +170,7 @@ fn jobs(folders: &[Folder], seeds: u64) -> Vec<Job> {
 fn run(args: &CompareArgs, folder: &Folder, job: Job) -> Result<ShownScores> {
     let conditions = RunConditions {
         particles: args.shared.particles,
-        tracking: args.shared.tracking(),
+        tracking: folder.tracking,
         occlusion: folder.occlusion,
         seed: job.seed,
     };

@@ -3,15 +3,15 @@
 use anyhow::Result;
 use rayon::prelude::*;
 use stickslip::{Estimate, Tracking};
-use stickslip_evaluation::{RunConditions, Variant};
+use stickslip_evaluation::{LearnedParameter, RunConditions, Variant};
 use stickslip_formats::Experiment;
 use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Table};
 
 use crate::args::DemoArgs;
 use crate::experiment::Texts;
 use crate::files::{ready_folder, write_figures, write_report};
+use crate::origin::origin;
 use crate::output::show;
-use crate::parameters::Parameter;
 use crate::reported_run::reported_run;
 use crate::verdict::Verdict;
 
@@ -71,6 +71,10 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
         title: "stickslip: tracking a pushed object through a camera blackout".to_owned(),
         summary,
         sections,
+        origin: origin([
+            ("particles", args.particles.to_string()),
+            ("seed", "0".to_owned()),
+        ]),
     };
     let path = write_report(args.out.join("report.html"), &report)?;
     show(format_args!(
@@ -111,10 +115,13 @@ fn tables(experiment: &ReportedExperiment<'_>) -> String {
 fn friction(experiment: &ReportedExperiment<'_>, estimate: &Estimate) -> Table {
     let nominal = &experiment.setup.scene.nominal;
     let mut table = Table::new(["friction", "nominal", "particle", "truth"]);
-    for (parameter, truth) in Parameter::at_end(estimate).iter().zip(experiment.friction) {
+    for (parameter, truth) in LearnedParameter::all(estimate)
+        .iter()
+        .zip(experiment.friction)
+    {
         table.push([
             parameter.name.to_owned(),
-            parameter.shown_value(parameter.nominal(nominal)),
+            parameter.shown_value(parameter.among(nominal)),
             parameter.shown(),
             parameter.shown_value(truth),
         ]);

@@ -105,6 +105,20 @@ pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<
     ))
 }
 
+/// What to call the experiment of a log: its folder where the log has the name that all have.
+pub fn experiment_name(log: &Path) -> String {
+    let folder = log.parent().and_then(Path::file_name);
+    let own = matches!(
+        log.file_name().and_then(|name| name.to_str()),
+        Some("log.csv" | "log.mcap")
+    );
+    let name = folder.filter(|_| own).or(log.file_name());
+    name.map_or_else(
+        || log.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
 /// What an experiment's reference is, in words.
 pub fn reference_name(experiment: &Experiment) -> &'static str {
     if experiment.truth.is_some() {

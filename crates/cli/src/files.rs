@@ -138,9 +138,9 @@ pub fn write_figures(folder: &Path, experiment: &ReportedExperiment<'_>) -> Resu
     Ok(figures.len())
 }
 
-/// Writes a figure into a folder as SVG and PNG.
+/// Writes a figure into a folder as SVG and PNG, for print.
 pub fn write_figure(folder: &Path, name: &str, drawing: &Drawing) -> Result<()> {
-    let svg = drawing.to_svg();
+    let svg = drawing.to_print_svg();
     write_file(&folder.join(format!("{name}.png")), &png_of(&svg)?)?;
     write_file(&folder.join(format!("{name}.svg")), svg.as_bytes())
 }

@@ -10,17 +10,15 @@ use serde::Serialize;
 use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
-use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant, score};
+use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{Experiment, write_estimate};
-use stickslip_report::{
-    Block, CloudSample, Report, ReportedExperiment, ReportedRun, Table, number,
-};
+use stickslip_report::{Block, CloudSample, Report, ReportedExperiment, Table, number};
 
 use crate::args::{FilterArgs, MethodName, Mode, Program};
-use crate::experiment::{check_occlusion, read_experiment, reference_name};
+use crate::experiment::{check_occlusion, experiment_name, read_experiment, reference_name};
 use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::origin::origin;
 use crate::output::{show_result, talk};
-use crate::parameters::Parameter;
 use crate::progress::{Work, bar};
 use crate::reported_run::DRAWN;
 use crate::verdict::Verdict;
@@ -50,7 +48,7 @@ struct Summary<'a> {
     /// In N; `None` is a rigid drive.
     stall_force: Option<f64>,
     stall_force_assumed: bool,
-    friction: BTreeMap<&'static str, Parameter>,
+    friction: BTreeMap<&'static str, LearnedParameter>,
 }
 
 /// Runs the command.
@@ -72,13 +70,10 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
-    let scored = ScoredRun {
-        variant: args.variant(),
-        scores: scores(args, &experiment, &run.estimate),
-        unsolved: run.unsolved,
-        collapses: run.collapses,
-        estimate: run.estimate,
-    };
+    let radius = args.virtual_radius;
+    let radius = radius.unwrap_or(experiment.setup.virtual_radius());
+    let hidden = args.shared.occlusion();
+    let scored = ScoredRun::of(args.variant(), run, &experiment, (hidden, radius));
     let warnings: Vec<String> = misread(&experiment.setup, &experiment.log)
         .into_iter()
         .chain(collapsed(scored.collapses, scored.seen()))
@@ -96,7 +91,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let reported = args
         .report
         .as_deref()
-        .map(|path| report(args, &experiment, scored, &warnings, sample, path))
+        .map(|path| report(args, &experiment, &scored, &warnings, sample, path))
         .transpose()?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
@@ -150,26 +145,30 @@ fn timed_run(
 fn report(
     args: &FilterArgs,
     experiment: &Experiment,
-    scored: ScoredRun,
+    scored: &ScoredRun,
     warnings: &[String],
     sample: CloudSample,
     path: &Path,
 ) -> Result<PathBuf> {
-    let run = ReportedRun {
-        scored,
-        cloud: sample.into_rows(experiment.log.len()),
-    };
-    let (name, title) = (args.log.display().to_string(), run.title());
+    let run = sample.into_run(scored.clone());
+    let (name, title) = (experiment_name(&args.log), run.title());
     let occlusion = args.shared.occlusion();
     let reported = ReportedExperiment::new(&name, "", experiment, occlusion, vec![run]);
     let report = Report {
-        title: format!("{title}: {name}"),
+        title: format!("{name}: {title}"),
         summary: warnings
             .iter()
             .map(|text| Block::Note(format!("Warning: {text}")))
             .chain(reported.summary().iter().cloned())
             .collect(),
         sections: vec![reported.section()],
+        origin: origin([
+            ("log", args.log.display().to_string()),
+            ("scene", args.scene.display().to_string()),
+            ("scored against", reference_name(experiment).to_owned()),
+            ("particles", args.shared.particles.to_string()),
+            ("seed", args.seed.to_string()),
+        ]),
     };
     write_report(path.to_owned(), &report)
 }
@@ -177,17 +176,6 @@ fn report(
 fn write(path: PathBuf, estimate: &Estimate) -> Result<PathBuf> {
     write_out(&path, |file| write_estimate(file, estimate))?;
     Ok(path)
-}
-
-fn scores(args: &FilterArgs, experiment: &Experiment, estimate: &Estimate) -> Scores {
-    let hidden = args.shared.occlusion().hidden(&experiment.log);
-    score(
-        estimate,
-        &Reference::of(experiment),
-        &hidden,
-        args.virtual_radius
-            .unwrap_or(experiment.setup.virtual_radius()),
-    )
 }
 
 impl<'a> Summary<'a> {
@@ -207,7 +195,7 @@ impl<'a> Summary<'a> {
             real_time_factor: experiment.log.duration() / seconds,
             stall_force: experiment.setup.scene.pusher.stall_force,
             stall_force_assumed: experiment.setup.stall_force_assumed,
-            friction: Parameter::at_end(&run.estimate)
+            friction: LearnedParameter::all(&run.estimate)
                 .into_iter()
                 .map(|parameter| (parameter.name, parameter))
                 .collect(),
@@ -227,7 +215,7 @@ fn tables(
         Variant::of(args.method.into(), TactileUse::Used).title(),
         reference_name(experiment)
     );
-    let parameters = Parameter::at_end(estimate);
+    let parameters = LearnedParameter::all(estimate);
     let friction =
         (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
     let parts = [title, score_table(summary).to_string()]
@@ -278,10 +266,10 @@ fn score_table(summary: &Summary<'_>) -> Table {
     table
 }
 
-fn friction_table(experiment: &Experiment, parameters: &[Parameter]) -> Table {
+fn friction_table(experiment: &Experiment, parameters: &[LearnedParameter]) -> Table {
     let mut table = Table::new(["friction", "estimate", "nominal"]);
     for parameter in parameters {
-        let nominal = parameter.shown_value(parameter.nominal(&experiment.setup.scene.nominal));
+        let nominal = parameter.shown_value(parameter.among(&experiment.setup.scene.nominal));
         table.push([parameter.name.to_owned(), parameter.shown(), nominal]);
     }
     table

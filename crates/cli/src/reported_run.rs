@@ -18,8 +18,5 @@ pub fn reported_run(
     let drawn = if variant.camera_on() { 0 } else { DRAWN };
     let sample = CloudSample::new(drawn);
     let scored = ScoredRun::new(variant, experiment, conditions, Some(&sample))?;
-    Ok(ReportedRun {
-        scored,
-        cloud: sample.into_rows(experiment.log.len()),
-    })
+    Ok(sample.into_run(scored))
 }

@@ -11,6 +11,7 @@ use std::path::Path;
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
+use stickslip::Tracking;
 use stickslip_evaluation::paper::{
     Noise, NoiseLevel, PaperExperiment, Ratio, Replicate, Results, RunSet,
 };
@@ -34,6 +35,11 @@ const SEEDS: u64 = 20;
 struct Report {
     particles: usize,
     seeds: u64,
+    /// Whether no estimate uses a later row.
+    causal: bool,
+    /// The same, as runs take it.
+    #[serde(skip)]
+    tracking: Tracking,
     /// The tables; from frames where [`Report::equal`] is there.
     #[serde(flatten)]
     tables: Results,
@@ -64,10 +70,12 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
 
 fn report(args: &ReproduceArgs) -> Result<Report> {
     let (seeds, particles) = (args.seeds.unwrap_or(SEEDS), args.particles);
+    let tracking = args.tracking();
+    let runs = |replicates| runs(replicates, particles, tracking);
     let replicates = simulated(seeds)?;
     let (run_sets, equal) = if args.from_frames {
         let (tracked, simulated, noise) = filmed(&replicates)?;
-        let (tracked, simulated) = (runs(tracked, particles)?, runs(simulated, particles)?);
+        let (tracked, simulated) = (runs(tracked)?, runs(simulated)?);
         let from_poses = Results::new(&simulated);
         let ratios = Ratio::all(&Results::new(&tracked), &from_poses);
         let equal = Equal {
@@ -77,11 +85,13 @@ fn report(args: &ReproduceArgs) -> Result<Report> {
         };
         (tracked, Some(equal))
     } else {
-        (runs(replicates, particles)?, None)
+        (runs(replicates)?, None)
     };
     let report = Report {
         particles,
         seeds,
+        causal: args.causal,
+        tracking,
         tables: Results::new(&run_sets),
         equal,
     };
@@ -124,7 +134,7 @@ fn write(folder: &Path, report: &Report, run_sets: &[RunSet]) -> Result<()> {
     )?;
     let page = write_report(
         folder.join("report.html"),
-        &page(&report.tables, run_sets, &figures, report.particles)?,
+        &page(report, run_sets, &figures)?,
     )?;
     talk(format_args!(
         "wrote {} figures as SVG and PNG, reproduce.json and {}",
@@ -185,7 +195,7 @@ fn filmed(replicates: &[Replicate]) -> Result<(Vec<Replicate>, Vec<Replicate>, V
 }
 
 /// Every variant of an experiment on every replicate of it.
-fn runs(replicates: Vec<Replicate>, particles: usize) -> Result<Vec<RunSet>> {
+fn runs(replicates: Vec<Replicate>, particles: usize, tracking: Tracking) -> Result<Vec<RunSet>> {
     // one queue of all runs keeps all threads busy
     let variants = |replicate: &Replicate| replicate.paper.variants();
     let jobs: Vec<(&Replicate, Variant)> = replicates
@@ -194,7 +204,7 @@ fn runs(replicates: Vec<Replicate>, particles: usize) -> Result<Vec<RunSet>> {
         .collect();
     let progress = bar(jobs.len(), "runs", Work::Long);
     let run = |(replicate, variant): &(&Replicate, Variant)| {
-        let run = replicate.run(*variant, particles);
+        let run = replicate.run(*variant, particles, tracking);
         progress.inc(1);
         run
     };

@@ -8,7 +8,9 @@ use anyhow::{Context, Result};
 use stickslip::Setup;
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip_evaluation::paper::{PaperExperiment, PaperScene};
-use stickslip_evaluation::{REPEATS, Simulation, SimulationError, SimulationOptions};
+use stickslip_evaluation::{
+    PUSHER_MEMORY, REPEATS, Simulation, SimulationError, SimulationOptions,
+};
 use stickslip_formats::{
     TruthFacts, read_scene, read_truth_json, write_log, write_truth_csv, write_truth_json,
 };
@@ -43,6 +45,7 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
         seed: args.seed,
         rate: args.rate,
         repeats: REPEATS,
+        pusher_memory: PUSHER_MEMORY,
     };
     let simulation =
         Simulation::run(&setup, &known, &options).map_err(|error| refused(error, &source.name))?;

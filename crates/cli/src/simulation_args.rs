@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use stickslip::Tracking;
 use stickslip_evaluation::{Physics, paper::PaperExperiment};
 
 use crate::arg_values::{ThreadArgs, particles, positive};
@@ -49,6 +50,9 @@ pub struct ReproduceArgs {
     /// Render camera frames and track them, instead of measuring poses with the paper's noise
     #[arg(long)]
     pub from_frames: bool,
+    /// Use no later row for any estimate, as live; else the thumb is tracked from the whole log
+    #[arg(long)]
+    pub causal: bool,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,
@@ -58,6 +62,17 @@ pub struct ReproduceArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+impl ReproduceArgs {
+    /// How the thumb is tracked.
+    pub fn tracking(&self) -> Tracking {
+        if self.causal {
+            Tracking::Causal
+        } else {
+            Tracking::Smoothed
+        }
+    }
 }
 
 /// What moves the object of a simulation.
@@ -90,6 +105,12 @@ pub enum PaperName {
     /// Table IV: contact with a fixel and stop
     #[value(name = "4")]
     Fourth,
+    /// Added to them: caught at an edge by a fixel, or not
+    #[value(name = "5")]
+    Edge,
+    /// Added to them: a corner meets a fixel off its middle
+    #[value(name = "6")]
+    Corner,
 }
 
 impl From<PhysicsName> for Physics {
@@ -110,6 +131,8 @@ impl From<PaperName> for PaperExperiment {
             PaperName::Second => Self::Second,
             PaperName::Third => Self::Third,
             PaperName::Fourth => Self::Fourth,
+            PaperName::Edge => Self::Edge,
+            PaperName::Corner => Self::Corner,
         }
     }
 }

@@ -118,7 +118,14 @@ fn demo_prints_tables_and_writes_a_report_and_figures() {
             .unwrap_or_else(|error| panic!("{name}: {error}"))
     };
     for experiment in ["stop-square50-bar-000", "slide-ell-disc-110"] {
-        for figure in ["errors", "poses", "contacts", "friction", "cloud"] {
+        for figure in [
+            "errors",
+            "poses",
+            "contacts",
+            "friction",
+            "cloud",
+            "particles",
+        ] {
             assert!(file(&format!("{experiment}-{figure}.svg")).starts_with(b"<svg"));
             assert!(file(&format!("{experiment}-{figure}.png")).starts_with(b"\x89PNG"));
         }
@@ -178,10 +185,17 @@ fn filter_writes_a_report_and_the_same_estimate() {
         "a report changes no estimate"
     );
     let page = fs::read_to_string(page).unwrap();
-    assert!(
-        page.contains("class=\"player\"")
-            && page.contains("At 5.1 s, 0.2 s before the object first touches a fixel")
-    );
+    for text in [
+        "class=\"player\"",
+        "At 5.1 s, 0.2 s before the object first touches a fixel",
+        "<h1>filter_report: particle filter</h1>",
+        "download=\"filter_report-estimate.csv\"",
+        "--occlude 153",
+        "<dt>seed</dt><dd>0</dd>",
+        "mu_f not observed (told 0.250)",
+    ] {
+        assert!(page.contains(text), "{text} is missing");
+    }
     let unwritable = filter(&plain)
         .arg("--report")
         .arg(case.folder.join("log.csv/report.html"))
@@ -212,6 +226,8 @@ fn compare_writes_a_report_of_all_folders() {
     for text in [
         "1 experiments",
         "All experiments",
+        "class=\"player\"",
+        "number 1 of 1 by the particle filter's WMSE",
         "compare_report",
         "particle, no tactile",
     ] {

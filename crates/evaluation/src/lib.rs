@@ -3,6 +3,7 @@
 //!
 //! Nothing here opens a file or reads a clock. The same arguments give the same bits.
 
+mod learned_friction;
 pub mod paper;
 mod run;
 mod score;
@@ -10,9 +11,12 @@ mod simulation;
 mod statistics;
 mod variant;
 
+pub use learned_friction::LearnedParameter;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};
-pub use simulation::{Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+pub use simulation::{
+    PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
+};
 pub use statistics::{Band, Direction, PairedDifference};
 pub use stickslip::quantile;
 pub use variant::Variant;

@@ -30,8 +30,12 @@ pub struct ScoredRun {
     pub estimate: Estimate,
     /// Its scores; those over hidden rows are over the same rows where its camera stayed on.
     pub scores: Scores,
+    /// Weighted RMSE over all rows against the log's own poses, hidden ones included (mm).
+    pub camera_wmse_mm: Option<f64>,
     /// Particle-steps without a certified solution.
     pub unsolved: u64,
+    /// Of those, the ones whose solver gave up.
+    pub failed: u64,
     /// Rows at which no particle explained the camera.
     pub collapses: u32,
 }
@@ -49,27 +53,44 @@ impl ScoredRun {
     ) -> Result<Self, RunError> {
         let Experiment { setup, log, .. } = experiment;
         let options = conditions.options(variant);
-        let Run {
-            estimate,
-            unsolved,
-            collapses,
-        } = match observer {
+        let run = match observer {
             Some(observer) => run_observed(setup, log, &options, observer, &mut |_| ())?,
             None => run(setup, log, &options, &mut |_| ())?,
         };
-        let scores = score(
-            &estimate,
-            &Reference::of(experiment),
-            &conditions.occlusion.hidden(log),
-            setup.virtual_radius(),
-        );
-        Ok(Self {
+        let radius = setup.virtual_radius();
+        Ok(Self::of(
             variant,
+            run,
+            experiment,
+            (conditions.occlusion, radius),
+        ))
+    }
+
+    /// Scores a run that was made while `occlusion` hid the object, angles weighted by `radius` (m).
+    #[must_use]
+    pub fn of(
+        variant: Variant,
+        run: Run,
+        experiment: &Experiment,
+        (occlusion, radius): (Occlusion, f64),
+    ) -> Self {
+        let Run {
             estimate,
-            scores,
             unsolved,
+            failed,
             collapses,
-        })
+        } = run;
+        let hidden = occlusion.hidden(&experiment.log);
+        let against = |reference: &Reference| score(&estimate, reference, &hidden, radius);
+        Self {
+            variant,
+            scores: against(&Reference::of(experiment)),
+            camera_wmse_mm: against(&Reference::measured(experiment)).wmse_mm,
+            estimate,
+            unsolved,
+            failed,
+            collapses,
+        }
     }
 
     /// Rows with a camera pose that was used.

@@ -15,6 +15,13 @@ const POSITION_STD: f64 = 3e-4;
 /// Distance below which an exact motion counts as rest (m).
 const REST: f64 = 1e-5;
 
+/// Largest offset of a row from an instant at the same time (s).
+const SAME_TIME: f64 = 1e-4;
+
+/// Time over which the final error is a mean where the reference is measured (s): one noisy pose
+/// says little.
+const SETTLED: f64 = 1.0;
+
 /// The trajectory an estimate is scored against.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
@@ -29,6 +36,9 @@ pub struct Reference {
     pub first_pusher_contact: Option<usize>,
     /// Distance below which the reference counts as having come to rest (m).
     pub rest: f64,
+    /// The final error is the mean over this time before the last pose (s); 0: that of the last
+    /// pose.
+    pub settled: f64,
 }
 
 impl Reference {
@@ -51,6 +61,7 @@ impl Reference {
                     latency: 0.0,
                     first_pusher_contact: None,
                     rest: REST,
+                    settled: 0.0,
                 }
             }
             None => Self::of_log(log, setup.camera.as_ref()),
@@ -58,6 +69,16 @@ impl Reference {
         Self {
             first_pusher_contact: facts.first_pusher_contact,
             ..reference
+        }
+    }
+
+    /// The log's own poses, hidden ones included, whether there is a truth or not: what the paper
+    /// scores against.
+    #[must_use]
+    pub fn measured(experiment: &Experiment) -> Self {
+        Self {
+            first_pusher_contact: experiment.facts.first_pusher_contact,
+            ..Self::of_log(&experiment.log, experiment.setup.camera.as_ref())
         }
     }
 
@@ -69,7 +90,23 @@ impl Reference {
             latency: camera.map_or(0.0, |camera| camera.latency),
             first_pusher_contact: None,
             rest: (4.0 * position_std).max(REST),
+            settled: SETTLED,
         }
+    }
+
+    /// Where the object was at `time` (s), linear between the rows that show it then; `None` where
+    /// one of the two shows no pose.
+    #[must_use]
+    pub fn pose_at(&self, time: f64) -> Option<Pose> {
+        let shown = time + self.latency;
+        let later = self.time.partition_point(|t| *t < shown - SAME_TIME);
+        let after = *self.time.get(later)?;
+        if after <= shown + SAME_TIME {
+            return self.pose[later];
+        }
+        let earlier = later.checked_sub(1)?;
+        let fraction = (shown - self.time[earlier]) / (after - self.time[earlier]);
+        Some(self.pose[earlier]?.interpolate(self.pose[later]?, fraction))
     }
 }
 
@@ -85,9 +122,10 @@ pub struct Scores {
     /// What `wmse_occluded_mm` would be if the estimate's own standard deviations told the truth
     /// (mm): root of the mean variance over the hidden rows.
     pub spread_occluded_mm: Option<f64>,
-    /// Distance of the last scored positions (mm).
+    /// Distance of the last scored positions (mm); where the reference is measured, length of the
+    /// mean error over the last second.
     pub final_error_mm: Option<f64>,
-    /// Difference of the last scored angles, on the circle (degrees).
+    /// Difference of the last scored angles, on the circle (degrees), or that mean of it.
     pub final_error_deg: Option<f64>,
 }
 
@@ -111,7 +149,7 @@ pub fn score(
             .filter_map(|(_, error)| *error);
         weighted_rmse(kept, virtual_radius)
     };
-    let last = errors.iter().rev().flatten().next();
+    let last = final_error(&errors, reference);
     Scores {
         wmse_mm: over(&|_| true),
         wmse_occluded_mm: over(&|row| hidden.get(row).copied().unwrap_or(false)),
@@ -122,12 +160,40 @@ pub fn score(
     }
 }
 
+/// The mean error over the time before the last one in which the reference has settled.
+fn final_error(errors: &[Option<Error>], reference: &Reference) -> Option<Error> {
+    let end = reference.time[errors.iter().rposition(Option::is_some)?];
+    let rows = errors.iter().zip(&reference.time);
+    let settled = rows.filter(|(_, time)| **time >= end - reference.settled);
+    let (sum, count) = settled
+        .filter_map(|(error, _)| *error)
+        .fold((Error::default(), 0), |(sum, count), error| {
+            (sum.plus(error), count + 1)
+        });
+    let mean = |sum: f64| sum / f64::from(count);
+    Some(Error {
+        dx: mean(sum.dx),
+        dy: mean(sum.dy),
+        turn: mean(sum.turn),
+    })
+}
+
 /// Estimate minus reference at one row.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Error {
     dx: f64,
     dy: f64,
     turn: f64,
+}
+
+impl Error {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            dx: self.dx + other.dx,
+            dy: self.dy + other.dy,
+            turn: self.turn + other.turn,
+        }
+    }
 }
 
 fn error_at(estimate: &Estimate, reference: &Reference, row: usize) -> Option<Error> {

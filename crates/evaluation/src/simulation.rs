@@ -10,6 +10,10 @@ use stickslip_testbed::{
 /// Share of frames that the paper's frame grabber repeats.
 pub const REPEATS: f64 = 0.02;
 
+/// Time over which the error of a tracked pusher forgets itself (s): that of a simple Kalman filter on
+/// a hundred sightings.
+pub const PUSHER_MEMORY: f64 = 0.15;
+
 /// Time from the blackout to the first contact with a fixel (s): five frames at 30 Hz.
 const BLACKOUT_LEAD: f64 = 1.0 / 6.0;
 
@@ -33,6 +37,8 @@ pub struct SimulationOptions {
     pub rate: f64,
     /// Share of frames that the frame grabber repeats, 0 to 1.
     pub repeats: f64,
+    /// Time over which the pusher's error forgets itself (s); 0: every frame has its own.
+    pub pusher_memory: f64,
 }
 
 /// A simulated experiment.
@@ -116,7 +122,7 @@ impl Simulation {
         }?;
 
         // what is measured of it, and what is true
-        let measurements = tracker(setup, options.repeats).measure(&trace, options.seed);
+        let measurements = tracker(setup, options).measure(&trace, options.seed);
         Ok(Self {
             log: log(&trace, &measurements),
             truth: truth(&trace),
@@ -149,7 +155,7 @@ fn friction(setup: &Setup, known: &TruthFacts) -> Friction {
 }
 
 /// A camera as noisy as the scene says, exact where it says nothing.
-fn tracker(setup: &Setup, repeats: f64) -> TrackingCamera {
+fn tracker(setup: &Setup, options: &SimulationOptions) -> TrackingCamera {
     setup
         .camera
         .map_or(TrackingCamera::EXACT, |camera| TrackingCamera {
@@ -158,7 +164,8 @@ fn tracker(setup: &Setup, repeats: f64) -> TrackingCamera {
             pusher_position_std: camera.pusher_position_std,
             pusher_orientation_std: camera.pusher_orientation_std,
             latency: camera.latency,
-            repeats,
+            repeats: options.repeats,
+            pusher_memory: options.pusher_memory,
         })
 }
 

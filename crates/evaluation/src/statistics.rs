@@ -27,6 +27,9 @@ impl Band {
     }
 }
 
+/// Pairs below which a median has no standard error.
+pub const FEWEST_PAIRS: usize = 6;
+
 /// By how much one method's scores are above another's, seed by seed.
 ///
 /// Scores of methods that lose the object now and then have heavy tails, so that the median of the
@@ -85,10 +88,9 @@ impl PairedDifference {
 
 /// Standard error of the median of sorted numbers.
 fn error_of_median(sorted: &[f64]) -> f64 {
-    const FEWEST: usize = 6;
     const NORMAL_95: f64 = 1.96;
     let n = sorted.len();
-    if n < FEWEST {
+    if n < FEWEST_PAIRS {
         return f64::INFINITY;
     }
     // the interval from the c-th smallest to the c-th largest

@@ -85,7 +85,11 @@ class Player {
       return group;
     });
     this.pusher = addBody(world, data.pusher, "pusher");
-    this.ghosts = data.methods.map((method) => addBody(world, data.object, "ghost", method.colour));
+    this.ghosts = data.methods.map((method) => {
+      const ghost = addBody(world, data.object, "ghost", method.colour);
+      if (method.dashes) ghost.lastChild.style.strokeDasharray = method.dashes;
+      return ghost;
+    });
     for (const k of data.order) world.append(this.ghosts[k]);
     const bar = add(this.svg, "g", { class: "scale" });
     add(bar, "path", { d: `M${left + 0.04 * width} ${-low - 0.05 * height}h20` });
@@ -117,6 +121,7 @@ class Player {
       });
       const curve = add(strip, "path", { class: "curve", d: points.join("") });
       curve.style.setProperty("--colour", method.colour);
+      if (method.dashes) curve.style.strokeDasharray = method.dashes;
       return curve;
     });
     for (const k of data.order) strip.append(this.curves[k]);

@@ -69,7 +69,9 @@ impl Axis {
     fn spread(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
-            Scale::Log { floor } => libm::log10(value.max(floor)),
+            // a missing value stays one: `max` would make the floor of it
+            Scale::Log { floor } if value < floor => libm::log10(floor),
+            Scale::Log { .. } => libm::log10(value),
         }
     }
 
@@ -171,6 +173,7 @@ mod tests {
             [0.01, 1.0, 100.0, 0.0].map(|value| axis.at(value)),
             [400.0, 200.0, 0.0, 400.0]
         );
+        assert!(axis.at(f64::NAN).is_nan(), "a missing value is a gap");
         let axis = Axis {
             scale: Scale::Linear,
             limits: [-1.0, 1.0],

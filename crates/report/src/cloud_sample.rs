@@ -1,16 +1,26 @@
-//! A few particles of every row, to be drawn: [`CloudSample`].
+//! A few particles of every row, to be drawn, and how many there are: [`CloudSample`].
 
 use std::sync::{Mutex, PoisonError};
 
 use stickslip::dynamics::Pose;
 use stickslip::{Observer, ParticleView, SolvedStep};
+use stickslip_evaluation::ScoredRun;
+
+use crate::reported_run::{Distinct, ReportedRun};
 
 /// Watches a run and keeps the poses of some particles after every row, drawn by their weights, so
 /// that all kept ones count the same.
 #[derive(Debug)]
 pub struct CloudSample {
     kept: usize,
-    rows: Mutex<Vec<(usize, Vec<Pose>)>>,
+    rows: Mutex<Vec<(usize, SampledRow)>>,
+}
+
+/// What is kept of one row.
+#[derive(Debug)]
+struct SampledRow {
+    poses: Vec<Pose>,
+    distinct: Distinct,
 }
 
 impl CloudSample {
@@ -23,20 +33,23 @@ impl CloudSample {
         }
     }
 
-    /// The poses kept after each row of a log of this length; none where the run has no particles.
+    /// The run with what was kept of each of its rows; nothing where it has no particles.
     #[must_use]
-    pub fn into_rows(self, rows: usize) -> Vec<Vec<Pose>> {
-        let mut all = vec![Vec::new(); rows];
-        for (row, poses) in self
-            .rows
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner)
-        {
-            if let Some(place) = all.get_mut(row) {
-                *place = poses;
+    pub fn into_run(self, scored: ScoredRun) -> ReportedRun {
+        let rows = scored.estimate.rows.len();
+        let (mut cloud, mut distinct) = (vec![Vec::new(); rows], vec![None; rows]);
+        let sampled = self.rows.into_inner();
+        for (row, sampled) in sampled.unwrap_or_else(PoisonError::into_inner) {
+            if row < rows {
+                cloud[row] = sampled.poses;
+                distinct[row] = Some(sampled.distinct);
             }
         }
-        all
+        ReportedRun {
+            scored,
+            cloud,
+            distinct,
+        }
     }
 }
 
@@ -48,11 +61,29 @@ impl Observer for CloudSample {
             .into_iter()
             .map(|particle| cloud.pose(particle))
             .collect();
+        let distinct = Distinct {
+            poses: different(cloud.len(), |k| {
+                let Pose { x, y, theta } = cloud.pose(k);
+                [x, y, theta, 0.0]
+            }),
+            frictions: different(cloud.len(), |k| {
+                let friction = cloud.friction(k);
+                [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri]
+            }),
+        };
         self.rows
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
-            .push((row, poses));
+            .push((row, SampledRow { poses, distinct }));
     }
+}
+
+/// How many of `count` particles differ in what is taken of them, to the bit.
+fn different(count: usize, of: impl Fn(usize) -> [f64; 4]) -> usize {
+    let mut all: Vec<[u64; 4]> = (0..count).map(|k| of(k).map(f64::to_bits)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all.len()
 }
 
 /// The particles at which the running sum of weights passes (k + 1/2) / `count`: systematic
@@ -74,6 +105,13 @@ fn systematic(weights: &[f64], count: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn copies_are_counted_once() {
+        let values = [1.0, 2.0, 1.0, 1.0, -0.0, 0.0];
+        assert_eq!(different(6, |k| [values[k], 0.0, 0.0, 0.0]), 4);
+        assert_eq!(different(0, |_| [0.0; 4]), 0);
+    }
 
     #[test]
     fn systematic_draws_by_weight() {

@@ -64,6 +64,17 @@ pub enum Line {
 }
 
 impl Line {
+    /// Of a variant, in every figure and playback: what uses less is broken, so that it covers
+    /// nothing.
+    #[must_use]
+    pub fn of(variant: Variant) -> Self {
+        match variant {
+            Variant::Nominal | Variant::Kalman | Variant::Particle => Self::Solid,
+            Variant::ParticleNoTouch | Variant::ParticleNoTouchCameraOn => Self::Dashed,
+            Variant::KalmanCameraOn | Variant::ParticleCameraOn => Self::Dotted,
+        }
+    }
+
     /// SVG's `stroke-dasharray`; `None` for a solid line.
     pub(crate) fn dashes(self) -> Option<&'static str> {
         match self {

@@ -9,7 +9,7 @@ use crate::font::{Weight, width};
 use crate::legend::{Legend, Swatch};
 use crate::plot::Plot;
 
-const WIDTH: f64 = 780.0;
+const WIDTH: f64 = 882.0;
 const RIGHT: f64 = 18.0;
 
 /// Heights of a bar, of an estimate and of the room under a body (px).
@@ -94,6 +94,7 @@ impl ContactTimeline {
                 pixels: [bottom, top],
             },
             x_label: "time (s)",
+            steps: None,
             y_label: "",
         };
         let whole = plot([bottom, top]);

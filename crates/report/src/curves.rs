@@ -22,20 +22,10 @@ pub struct PoseError {
 }
 
 impl PoseError {
-    /// Distance of the positions (mm).
+    /// That of a guess at a time; NaN where either has no pose.
     #[must_use]
-    pub fn distance_mm(&self) -> f64 {
-        self.x_mm.hypot(self.y_mm)
-    }
-}
-
-/// The errors of an estimate at every row of the reference, as scores have them; NaN where either
-/// has no pose.
-#[must_use]
-pub fn pose_errors(estimate: &Estimate, reference: &Reference) -> Vec<PoseError> {
-    let rows = reference.time.iter().zip(&reference.pose);
-    let error = |(time, truth): (&f64, &Option<Pose>)| {
-        let pair = truth.zip(estimate.pose_at(time - reference.latency));
+    pub fn of(time: f64, guess: Option<Pose>, truth: Option<Pose>) -> Self {
+        let pair = truth.zip(guess);
         let [x_mm, y_mm, turn_deg] = pair.map_or([f64::NAN; 3], |(truth, guess)| {
             [
                 1e3 * (guess.x - truth.x),
@@ -43,12 +33,29 @@ pub fn pose_errors(estimate: &Estimate, reference: &Reference) -> Vec<PoseError>
                 on_circle((guess.theta - truth.theta).to_degrees()),
             ]
         });
-        PoseError {
-            time: *time,
+        Self {
+            time,
             x_mm,
             y_mm,
             turn_deg,
         }
+    }
+
+    /// Distance of the positions (mm).
+    #[must_use]
+    pub fn distance_mm(&self) -> f64 {
+        self.x_mm.hypot(self.y_mm)
+    }
+}
+
+/// The errors of an estimate at every row of the reference, as scores have them, each at the time
+/// of which it speaks; NaN where either has no pose.
+#[must_use]
+pub fn pose_errors(estimate: &Estimate, reference: &Reference) -> Vec<PoseError> {
+    let rows = reference.time.iter().zip(&reference.pose);
+    let error = |(time, truth): (&f64, &Option<Pose>)| {
+        let seen = time - reference.latency;
+        PoseError::of(seen, estimate.pose_at(seen), *truth)
     };
     rows.map(error).collect()
 }
@@ -104,6 +111,8 @@ impl Curve {
 /// A friction parameter as figures show it.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionParameter {
+    /// Its name, as in files.
+    pub name: &'static str,
     /// Label of its axis.
     pub label: &'static str,
     /// Factor to the unit shown.
@@ -115,35 +124,42 @@ pub struct FrictionParameter {
 /// The four parameters; d_tri is the last one, which is none where the feet are known.
 pub const FRICTION_PARAMETERS: [FrictionParameter; 4] = [
     FrictionParameter {
+        name: "mu_s",
         label: "μ_s",
         unit: 1.0,
         of: |friction| friction.mu_s,
     },
     FrictionParameter {
+        name: "mu_p",
         label: "μ_p",
         unit: 1.0,
         of: |friction| friction.mu_p,
     },
     FrictionParameter {
+        name: "mu_f",
         label: "μ_f",
         unit: 1.0,
         of: |friction| friction.mu_f,
     },
     FrictionParameter {
+        name: "d_tri",
         label: "d_tri (mm)",
         unit: 1e3,
         of: |friction| friction.d_tri,
     },
 ];
 
-/// A panel for each parameter: the curve that `curve` draws, the nominal value and, where it is
+/// Least height of a panel as a share of the nominal value: less is of no consequence.
+const LEAST_SPAN: f64 = 0.3;
+
+/// A panel for each parameter: the curves that `curves` draws, the nominal value and, where it is
 /// known, the truth (SI).
 #[must_use]
 pub fn friction_panels(
     parameters: &[FrictionParameter],
     nominal: &Friction,
     truth: &[Option<f64>; 4],
-    curve: impl Fn(&FrictionParameter) -> Curve,
+    curves: impl Fn(&FrictionParameter) -> Vec<Curve>,
 ) -> Vec<Panel> {
     let panel = |(parameter, truth): (&FrictionParameter, &Option<f64>)| {
         let level = |name: &str, value: f64, line: Line| Level {
@@ -156,7 +172,8 @@ pub fn friction_panels(
         let nominal = level("nominal", (parameter.of)(nominal), Line::Dashed);
         Panel {
             label: parameter.label.to_owned(),
-            curves: vec![curve(parameter)],
+            curves: curves(parameter),
+            least_span: LEAST_SPAN * nominal.value,
             levels: truth.into_iter().chain([nominal]).collect(),
             ..Panel::default()
         }
@@ -172,25 +189,37 @@ impl FrictionParameter {
     }
 }
 
-/// A parameter of one estimate with a band of one standard deviation to either side.
-pub(crate) fn friction_curve(
+/// A parameter of one estimate with a band of one standard deviation to either side, up to the last
+/// row that informs about it; what follows is dotted and has no band.
+pub(crate) fn friction_curves(
     name: &str,
     colour: Colour,
     estimate: &Estimate,
     parameter: &FrictionParameter,
-) -> Curve {
+    informed: Option<usize>,
+) -> Vec<Curve> {
     let rows = estimate.time.iter().zip(&estimate.rows);
     let values = rows.map(|(time, row)| {
         let std = row.spread.and_then(|spread| spread.friction);
         [*time, parameter.shown(row.friction), parameter.shown(std)]
     });
-    let (points, band) = values
+    let (points, band): (Vec<[f64; 2]>, Vec<[f64; 3]>) = values
         .map(|[time, mean, std]| ([time, mean], [time, mean - std, mean + std]))
         .unzip();
-    Curve {
-        band,
-        ..Curve::new(name, colour, points)
-    }
+    let rows = informed.map_or(0, |row| row + 1);
+    let learning = Curve {
+        band: band[..rows].to_vec(),
+        ..Curve::new(name, colour, points[..rows].to_vec())
+    };
+    let after = Curve {
+        line: Line::Dotted,
+        ..Curve::new(
+            "no new information",
+            colour,
+            points[rows.saturating_sub(1)..].to_vec(),
+        )
+    };
+    vec![learning, after]
 }
 
 #[cfg(test)]

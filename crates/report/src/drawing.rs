@@ -16,8 +16,14 @@ pub(crate) const GRID: Colour = Colour(228, 228, 228);
 /// Behind what happened while the camera was dark.
 pub(crate) const DARK: Colour = Colour(236, 233, 226);
 
+/// Width below which a figure does not fill a page (px).
+const NARROW: f64 = 600.0;
+
 /// Font size of labels (px).
 pub(crate) const LABEL: f64 = 14.0;
+
+/// Font size of labels in print (pt).
+const PRINT: f64 = 8.0;
 
 /// Font size of titles (px).
 pub(crate) const TITLE: f64 = 16.0;
@@ -39,14 +45,27 @@ impl Drawing {
     /// The picture as a text of SVG 1.1 that stands alone.
     #[must_use]
     pub fn to_svg(&self) -> String {
+        self.sized("", 1.0)
+    }
+
+    /// The same for print: labels of 8 pt, so that 441 px are a column of 252 pt and 882 px a page of
+    /// two.
+    #[must_use]
+    pub fn to_print_svg(&self) -> String {
+        self.sized("pt", PRINT / LABEL)
+    }
+
+    /// The picture with its size in a unit, `scale` of which are a pixel.
+    fn sized(&self, unit: &str, scale: f64) -> String {
         let Self {
             width,
             height,
             label,
             body,
         } = self;
+        let [wide, high] = [width, height].map(|length| format!("{}{unit}", px(scale * length)));
         let markup = html! {
-            svg xmlns="http://www.w3.org/2000/svg" class="figure" width=(px(*width)) height=(px(*height)) viewBox={ "0 0 " (px(*width)) " " (px(*height)) }
+            svg xmlns="http://www.w3.org/2000/svg" class=(if *width < NARROW { "figure narrow" } else { "figure" }) width=(wide) height=(high) viewBox={ "0 0 " (px(*width)) " " (px(*height)) }
                 font-family=(FAMILY) font-size=(px(LABEL)) role="img" aria-label=[(!label.is_empty()).then_some(label)] {
                 rect class="paper" width=(px(*width)) height=(px(*height)) fill="#ffffff" {}
                 (body)
@@ -230,6 +249,21 @@ mod tests {
         ];
         assert_eq!(path(points, false), "M0 0L1 1M3 1L4 0");
         assert_eq!(path([], true), "");
+    }
+
+    #[test]
+    fn print_has_letters_of_8_pt_on_columns_of_252_pt() {
+        let column = Drawing {
+            width: 441.0,
+            height: 350.0,
+            label: String::new(),
+            body: html! {},
+        };
+        let text = column.to_print_svg();
+        assert!(
+            text.contains(r#"width="252pt" height="200pt" viewBox="0 0 441 350""#),
+            "{text}"
+        );
     }
 
     #[test]

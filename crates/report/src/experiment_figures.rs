@@ -1,17 +1,23 @@
 //! The figures of one experiment: [`ReportedExperiment::figures`].
 
-use stickslip::EstimateRow;
+use stickslip::dynamics::Pose;
+use stickslip_evaluation::LearnedParameter;
 
 use crate::axis::Scale;
-use crate::colour::Colour;
+use crate::colour::{Colour, Line};
 use crate::contact_timeline::{ContactEstimate, ContactLane, ContactTimeline};
-use crate::curves::{FRICTION_PARAMETERS, PoseError, friction_curve, friction_panels, pose_errors};
+use crate::curves::{
+    FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_curves, friction_panels,
+    pose_errors,
+};
 use crate::drawing::Drawing;
 use crate::intervals::intervals;
 use crate::overlay::{Body, Overlay};
 use crate::particle_cloud::ParticleCloud;
-use crate::reported_experiment::{ReportedExperiment, ReportedRun};
+use crate::reported_experiment::ReportedExperiment;
+use crate::reported_run::ReportedRun;
 use crate::time_figure::{Curve, Panel, TimeFigure};
+use crate::touch::rule;
 
 /// Smallest error drawn (mm, degrees).
 const FLOOR: f64 = 0.01;
@@ -47,44 +53,66 @@ impl ReportedExperiment<'_> {
             Figure::new(
                 "errors",
                 self.errors().drawing(),
-                "Errors against time, smallest ones drawn at 0.01.",
+                "Errors against time, those below 0.01 drawn there; shaded in a method's colour: its own standard deviation.",
             ),
             Figure::new(
                 "poses",
                 self.poses(),
-                "Bodies at the first contact with a fixel, if there is one, and at the end of the time shown.",
+                "Bodies at the first contact with a fixel, if one is known, and at the end of the time shown.",
             ),
             Figure::new(
                 "contacts",
                 self.contact_timeline().drawing(),
-                "Who touches the object when.",
+                &format!("Who touches the object when: {}.", rule()),
             ),
         ];
         let friction = self.friction_figure().map(|figure| {
             Figure::new(
                 "friction",
                 figure.drawing(),
-                "Estimated friction, mean and one standard deviation; its nominal value; the truth, where it is known.",
+                "Estimated friction, mean and one standard deviation; its nominal value; the truth, where it is known. Dotted from \
+                 the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it.",
             )
         });
-        let cloud = self.cloud().map(|figure| {
-            Figure::new(
-                "cloud",
-                figure.drawing(),
-                "Particles at the row that the playback shows first.",
-            )
+        let cloud = self.clouds().map(|drawing| {
+            let text = "Particles at the same instants; the ellipse holds 95 % of a normal distribution with their covariance.";
+            Figure::new("cloud", drawing, text)
         });
-        always.into_iter().chain(friction).chain(cloud).collect()
+        let particles = self.particles().map(|figure| {
+            let text = "How many particles count: effective sample size after weighing, and how many are no copies of others.";
+            Figure::new("particles", figure.drawing(), text)
+        });
+        let [errors, poses, contacts] = always;
+        let shown = [
+            Some(errors),
+            Some(poses),
+            cloud,
+            Some(contacts),
+            friction,
+            particles,
+        ];
+        shown.into_iter().flatten().collect()
     }
 
     /// Errors of all runs against time.
     #[must_use]
     pub fn errors(&self) -> TimeFigure {
-        let panel = |label: &str, of: fn(&PoseError) -> f64| {
+        let panel = |label: &str, of: fn(&PoseError) -> f64, spread: fn(&Pose) -> f64| {
             let curve = |run: &ReportedRun| {
-                let errors = pose_errors(&run.scored.estimate, &self.reference);
+                let estimate = &run.scored.estimate;
+                let errors = pose_errors(estimate, &self.reference);
                 let points = errors.iter().map(|error| [error.time, of(error)]).collect();
-                Curve::new(run.title(), run.colour(), points)
+                let rows = estimate.time.iter().zip(&estimate.rows);
+                let own = rows.map(|(time, row)| {
+                    let std = row.spread.map_or(f64::NAN, |std| spread(&std.pose));
+                    [*time, FLOOR, std.max(FLOOR)]
+                });
+                let is_learner = self.learner().map(ReportedRun::title) == Some(run.title());
+                Curve {
+                    line: Line::of(run.scored.variant),
+                    band: own.filter(|_| is_learner).collect(),
+                    ..Curve::new(run.title(), run.colour(), points)
+                }
             };
             Panel {
                 label: label.to_owned(),
@@ -96,9 +124,19 @@ impl ReportedExperiment<'_> {
         TimeFigure {
             title: self.what.clone(),
             panels: vec![
-                panel("position error (mm)", PoseError::distance_mm),
-                panel("angle error (°)", |error| error.turn_deg.abs()),
+                panel("position error (mm)", PoseError::distance_mm, |std| {
+                    1e3 * std.x.hypot(std.y)
+                }),
+                panel(
+                    "angle error (°)",
+                    |error| error.turn_deg.abs(),
+                    |std| std.theta.to_degrees(),
+                ),
             ],
+            band_name: self
+                .learner()
+                .map(|run| format!("own standard deviation of the {}", run.title()))
+                .unwrap_or_default(),
             ..self.time_figure()
         }
     }
@@ -106,16 +144,29 @@ impl ReportedExperiment<'_> {
     fn friction_figure(&self) -> Option<TimeFigure> {
         let run = self.learner()?;
         let estimate = &run.scored.estimate;
-        let parameters = if estimate.has_tripod { 4 } else { 3 };
+        let learned = LearnedParameter::all(estimate);
+        let informed = |parameter: &FrictionParameter| {
+            let found = learned.iter().find(|found| found.name == parameter.name);
+            found.and_then(|found| found.row)
+        };
+        let mut panels = friction_panels(
+            &FRICTION_PARAMETERS[..learned.len()],
+            &self.setup.scene.nominal,
+            &self.friction,
+            |parameter| {
+                let row = informed(parameter);
+                friction_curves(run.title(), run.colour(), estimate, parameter, row)
+            },
+        );
+        for (panel, learned) in panels.iter_mut().zip(&learned) {
+            if !learned.observed {
+                panel.title = "not observed: as told".to_owned();
+            }
+        }
         Some(TimeFigure {
             columns: 2,
-            panel_size: [430.0, 210.0],
-            panels: friction_panels(
-                &FRICTION_PARAMETERS[..parameters],
-                &self.setup.scene.nominal,
-                &self.friction,
-                |parameter| friction_curve(run.title(), run.colour(), estimate, parameter),
-            ),
+            panel_size: [441.0, 210.0],
+            panels,
             band_name: "± one standard deviation".to_owned(),
             ..self.time_figure()
         })
@@ -144,15 +195,14 @@ impl ReportedExperiment<'_> {
             let touches: Vec<bool> = readings.iter().map(|r| *r == Some(true)).collect();
             Some(intervals(time, &touches))
         };
+        let learner = self
+            .learner()
+            .map(|run| (run, self.touch_probabilities(run)));
         let estimate = |body: usize| {
-            let run = self.learner()?;
-            let rows = run
-                .scored
-                .estimate
-                .time
-                .iter()
-                .zip(&run.scored.estimate.rows);
-            let points = rows.map(|(time, row)| [*time, contact(row, body).unwrap_or(f64::NAN)]);
+            let (run, probabilities) = learner.as_ref()?;
+            let at = |row: &Option<Vec<f64>>| row.as_ref()?.get(body).copied();
+            let rows = run.scored.estimate.time.iter().zip(probabilities);
+            let points = rows.map(|(time, row)| [*time, at(row).unwrap_or(f64::NAN)]);
             Some(ContactEstimate {
                 name: run.title().to_owned(),
                 colour: run.colour(),
@@ -178,8 +228,7 @@ impl ReportedExperiment<'_> {
 
     /// Bodies at the first fixel contact and at the end, side by side and on the same scale.
     fn poses(&self) -> Drawing {
-        let times = self.first_fixel.into_iter().chain([self.span()[1]]);
-        let rows: Vec<usize> = times.map(|time| self.row_at(time)).collect();
+        let rows = self.shown_rows();
         let bodies = rows.iter().flat_map(|row| self.known_bodies(*row));
         let view = Some(view_of(bodies.collect()));
         let drawing = |row: &usize| {
@@ -192,34 +241,51 @@ impl ReportedExperiment<'_> {
         Drawing::grid(&rows.iter().map(drawing).collect::<Vec<_>>(), 2)
     }
 
+    /// The rows that pictures show: the first contact with a fixel and the end.
+    fn shown_rows(&self) -> Vec<usize> {
+        let times = self.first_fixel.into_iter().chain([self.span()[1]]);
+        times.map(|time| self.row_at(time)).collect()
+    }
+
     /// All estimated poses at a row over what stands around.
     #[must_use]
     pub fn poses_at(&self, row: usize) -> Overlay {
         let shape = &self.setup.scene.object.shape;
         let estimates = self.runs.iter().filter_map(|run| {
             let pose = run.scored.estimate.rows.get(row)?.pose?;
-            Some(Body::new(run.title(), shape, &pose, run.colour()))
+            Some(
+                Body::new(run.title(), shape, &pose, run.colour())
+                    .line(Line::of(run.scored.variant)),
+            )
         });
         let known = self.known_bodies(row);
-        let time = self.log.time.get(row).copied().unwrap_or(0.0);
+        Overlay {
+            title: self.instant(row),
+            view: Some(view_of(known.clone())),
+            bodies: known.into_iter().chain(estimates).collect(),
+            width: 441.0,
+        }
+    }
+
+    /// "5.27 s, camera dark".
+    fn instant(&self, row: usize) -> String {
         let dark = if self.hidden.get(row) == Some(&true) {
             ", camera dark"
         } else {
             ""
         };
-        Overlay {
-            title: format!("{time:.2} s{dark}"),
-            view: Some(view_of(known.clone())),
-            bodies: known.into_iter().chain(estimates).collect(),
-            width: 440.0,
-        }
+        format!("{:.2} s{dark}", self.time_of(row))
+    }
+
+    fn time_of(&self, row: usize) -> f64 {
+        self.log.time.get(row).copied().unwrap_or(0.0)
     }
 
     /// Fixels, pusher and the object where it was.
     fn known_bodies(&self, row: usize) -> Vec<Body> {
         let scene = &self.setup.scene;
         let pusher = self.log.pusher.get(row).copied().flatten();
-        let truth = self.reference.pose.get(row).copied().flatten();
+        let truth = self.reference.pose_at(self.time_of(row));
         let object = truth.map(|pose| {
             let name = &self.reference_name;
             Body::new(name, &scene.object.shape, &pose, Colour::INK).filled(0.12)
@@ -229,21 +295,65 @@ impl ReportedExperiment<'_> {
         bodies
     }
 
-    fn cloud(&self) -> Option<ParticleCloud> {
-        let (run, row) = (self.learner()?, self.poster());
+    /// The learner's particles at the rows that pictures show, side by side.
+    fn clouds(&self) -> Option<Drawing> {
+        let rows = self.shown_rows();
+        let clouds = rows.iter().filter_map(|row| self.cloud(*row));
+        let drawings: Vec<Drawing> = clouds.map(|cloud| cloud.drawing()).collect();
+        (!drawings.is_empty()).then(|| Drawing::grid(&drawings, 2))
+    }
+
+    fn cloud(&self, row: usize) -> Option<ParticleCloud> {
+        let run = self.learner()?;
         let particles = run.cloud.get(row).filter(|cloud| !cloud.is_empty())?;
         let centre = run.scored.estimate.rows.get(row)?.pose?;
-        let reference = self.reference.pose.get(row).copied().flatten();
+        let reference = self.reference.pose_at(self.time_of(row));
         let reference = reference.map(|pose| (self.reference_name.clone(), Colour::INK, pose));
-        let mean = (run.title().to_owned(), Colour::BLUE, centre);
+        let mean = (run.title().to_owned(), run.colour(), centre);
         Some(ParticleCloud {
-            title: String::new(),
+            title: self.instant(row),
             centre,
             particles: particles.clone(),
             colour: run.colour(),
             compared: reference.into_iter().chain([mean]).collect(),
             turn_factor: 10.0,
-            width: 440.0,
+            width: 441.0,
+        })
+    }
+
+    /// How many of the learner's particles count.
+    fn particles(&self) -> Option<TimeFigure> {
+        let run = self.learner()?;
+        let estimate = &run.scored.estimate;
+        let curve = |name: &str, colour: Colour, of: &dyn Fn(usize) -> Option<f64>| {
+            let point = |(row, time): (usize, &f64)| [*time, of(row).unwrap_or(f64::NAN)];
+            Curve::new(
+                name,
+                colour,
+                estimate.time.iter().enumerate().map(point).collect(),
+            )
+        };
+        let ess = |row: usize| estimate.rows[row].ess;
+        let distinct = |row: usize| run.distinct.get(row).copied().flatten();
+        let poses = |row: usize| distinct(row).map(|found| found.poses as f64);
+        let frictions = |row: usize| distinct(row).map(|found| found.frictions as f64);
+        let panel = Panel {
+            label: "particles".to_owned(),
+            scale: Scale::Log { floor: 1.0 },
+            curves: vec![
+                curve("effective sample size", run.colour(), &ess),
+                curve("different poses", Colour::INK, &poses),
+                Curve {
+                    line: Line::Dashed,
+                    ..curve("different friction values", Colour::INK, &frictions)
+                },
+            ],
+            ..Panel::default()
+        };
+        let known = run.distinct.iter().any(Option::is_some);
+        known.then(|| TimeFigure {
+            panels: vec![panel],
+            ..self.time_figure()
         })
     }
 }
@@ -255,12 +365,4 @@ fn view_of(bodies: Vec<Body>) -> [[f64; 2]; 2] {
         ..Overlay::default()
     };
     overlay.whole_view()
-}
-
-/// Estimated probability of contact with the pusher (0) or a fixel (from 1 on).
-fn contact(row: &EstimateRow, body: usize) -> Option<f64> {
-    match body {
-        0 => row.contact_pusher,
-        _ => row.contact_fixels.as_ref()?.get(body - 1).copied(),
-    }
 }

@@ -22,6 +22,8 @@ pub struct Report {
     pub summary: Vec<Block>,
     /// The rest.
     pub sections: Vec<Section>,
+    /// What made it, name by name: program, command, seed.
+    pub origin: Vec<(String, String)>,
 }
 
 /// A part of a page.
@@ -48,6 +50,15 @@ pub enum Block {
     Figure(Drawing, String),
     /// An experiment to be played back.
     Playback(Box<Playback>),
+    /// A file that the page holds.
+    Download {
+        /// Its name.
+        name: String,
+        /// What it has, as "every row of the particle filter".
+        what: String,
+        /// Its content, text.
+        bytes: Vec<u8>,
+    },
 }
 
 impl Report {
@@ -74,6 +85,9 @@ impl Report {
                         h1 { (self.title) }
                         @if !self.summary.is_empty() { div class="summary" { @for block in &self.summary { (block.html()) } } }
                         @for section in &self.sections { (section.html()) }
+                        @if !self.origin.is_empty() {
+                            footer { h2 { "How this page was made" } dl { @for (name, value) in &self.origin { dt { (name) } dd { (value) } } } }
+                        }
                     }
                     @if plays { script { (PreEscaped(SCRIPT)) } }
                 }
@@ -103,6 +117,10 @@ impl Block {
                 figure { (PreEscaped(drawing.to_svg())) @if !caption.is_empty() { figcaption { (caption) } } }
             },
             Self::Playback(playback) => playback.html(),
+            Self::Download { name, what, bytes } => {
+                let data = format!("data:text/csv;base64,{}", BASE64_STANDARD.encode(bytes));
+                html! { p class="download" { a download=(name) href=(data) { (name) } " " (what) } }
+            }
         }
     }
 }
@@ -111,10 +129,10 @@ fn fates(story: &Story) -> Markup {
     html! {
         ul class="fates" {
             @for (fate, names) in story.fates() {
-                @let (class, sign) = match fate { Fate::Kept => ("kept", "✓"), Fate::Drifted => ("drifted", "≈"), Fate::Lost => ("lost", "✗") };
+                @let (class, sign) = match fate { Fate::Kept => ("kept", "✓"), Fate::Drifted => ("drifted", "≈"), Fate::Lost => ("lost", "✗"), Fate::Unknown => ("unknown", "?") };
                 li class=(class) { span aria-hidden="true" { (sign) } b { (fate.name()) } (names) }
             }
-            @if let Some(seen) = story.seen() { li { span aria-hidden="true" { "•" } (seen) } }
+            @for line in story.seen().into_iter().chain(story.learnt.iter().cloned()) { li { span aria-hidden="true" { "•" } (line) } }
         }
     }
 }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use stickslip_dynamics::Pose;
 
 use crate::axis::{Axis, Scale};
-use crate::colour::Colour;
+use crate::colour::{Colour, Line};
 use crate::drawing::{Drawing, TITLE, Text, path, px};
 use crate::font::Weight;
 use crate::legend::{Legend, Swatch};
@@ -67,10 +67,12 @@ impl ParticleCloud {
                 pixels: [top + side, top],
             },
             x_label: "x \u{2212} estimate (mm)",
+            steps: None,
             y_label: "y \u{2212} estimate (mm)",
         };
         let points = html! {
-            @for pose in &self.particles { (self.particle(&plot, pose, self.colour, 0.5)) }
+            @for pose in &self.particles { (self.particle(&plot, pose, self.colour, 0.35)) }
+            (plot.curve(&self.ellipse(), self.colour, Line::Solid))
             @for (_, colour, pose) in &self.compared { (self.particle(&plot, pose, *colour, 1.0)) }
         };
         let body = html! {
@@ -87,6 +89,28 @@ impl ParticleCloud {
         }
     }
 
+    /// What holds 95 % of a normal distribution with the particles' mean and covariance (mm, from the
+    /// centre).
+    fn ellipse(&self) -> Vec<[f64; 2]> {
+        let count = self.particles.len() as f64;
+        let points = || self.particles.iter().map(|pose| self.relative(pose));
+        let mean = |of: &dyn Fn([f64; 2]) -> f64| points().fold(0.0, |sum, p| sum + of(p)) / count;
+        let (x, y) = (mean(&|[x, _]| x), mean(&|[_, y]| y));
+        let (xx, yy) = (mean(&|p| (p[0] - x).powi(2)), mean(&|p| (p[1] - y).powi(2)));
+        let xy = mean(&|p| (p[0] - x) * (p[1] - y));
+
+        // Cholesky's factor maps the circle onto it
+        let a = xx.sqrt();
+        let b = if a > 0.0 { xy / a } else { 0.0 };
+        let c = (yy - b * b).max(0.0).sqrt();
+        let radius = (-2.0 * libm::log(0.05)).sqrt();
+        let at = |k: u32| {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / 72.0);
+            [x + radius * a * cos, y + radius * (b * cos + c * sin)]
+        };
+        (0..=72).map(at).collect()
+    }
+
     /// A pose from the centre (mm).
     fn relative(&self, pose: &Pose) -> [f64; 2] {
         [
@@ -100,9 +124,11 @@ impl ParticleCloud {
         let all = self
             .particles
             .iter()
-            .chain(self.compared.iter().map(|(.., pose)| pose));
-        let [[left, low], [right, high]] =
-            bounds(all.map(|pose| self.relative(pose))).unwrap_or([[-1.0; 2], [1.0; 2]]);
+            .chain(self.compared.iter().map(|(.., pose)| pose))
+            .map(|pose| self.relative(pose))
+            .chain(self.ellipse())
+            .filter(|point| point.iter().all(|x| x.is_finite()));
+        let [[left, low], [right, high]] = bounds(all).unwrap_or([[-1.0; 2], [1.0; 2]]);
         let half = (0.6 * (right - left).max(high - low)).max(1e-3);
         let about = |low: f64, high: f64| [0.5 * (low + high) - half, 0.5 * (low + high) + half];
         (about(left, right), about(low, high))

@@ -5,8 +5,8 @@ use stickslip::dynamics::{Pose, Scene};
 use stickslip::{Estimate, Log};
 use stickslip_evaluation::Reference;
 
-use crate::colour::Colour;
-use crate::curves::{PoseError, pose_errors};
+use crate::colour::{Colour, Line};
+use crate::curves::PoseError;
 use crate::marks::Mark;
 use crate::outline::Outline;
 use crate::playback_data::data;
@@ -65,6 +65,8 @@ pub struct PlaybackRun {
     pub name: String,
     /// Colour.
     pub colour: Colour,
+    /// How it is drawn.
+    pub line: Line,
     /// Estimated poses.
     pub poses: Vec<Option<Pose>>,
     /// Their errors.
@@ -72,36 +74,34 @@ pub struct PlaybackRun {
     /// Some of its particles, all of the same weight; empty for variants without.
     pub cloud: Vec<Vec<Pose>>,
     /// Probabilities of contact with the pusher, then with each fixel (0 to 1); `None` where there
-    /// are none.
+    /// are none, and no rows where they are not shown.
     pub contacts: Vec<Option<Vec<f64>>>,
 }
 
 impl PlaybackRun {
-    /// The run of an estimate, beside the reference that it is scored against; `cloud` as
-    /// [`crate::CloudSample::into_rows`] gives it.
+    /// The run of an estimate, beside the reference that it is scored against, without contacts;
+    /// `cloud` as [`crate::ReportedRun`] has it.
     #[must_use]
     pub fn new(
         name: &str,
-        colour: Colour,
+        (colour, line): (Colour, Line),
         estimate: &Estimate,
         reference: &Reference,
         cloud: Vec<Vec<Pose>>,
     ) -> Self {
-        let contacts = estimate.rows.iter().map(|row| {
-            let fixels = row.contact_fixels.as_ref()?;
-            Some(
-                std::iter::once(row.contact_pusher?)
-                    .chain(fixels.iter().copied())
-                    .collect(),
-            )
-        });
+        // what is drawn at a row is the present, where the camera's poses are late too
+        let rows = estimate.time.iter().zip(&estimate.rows);
+        let errors = rows
+            .map(|(time, row)| PoseError::of(*time, row.pose, reference.pose_at(*time)))
+            .collect();
         Self {
             name: name.to_owned(),
             colour,
+            line,
             poses: estimate.rows.iter().map(|row| row.pose).collect(),
-            errors: pose_errors(estimate, reference),
+            errors,
             cloud,
-            contacts: contacts.collect(),
+            contacts: Vec::new(),
         }
     }
 }
@@ -130,7 +130,11 @@ impl Playback {
                 .iter()
                 .map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose))
                 .collect(),
-            reference: reference.pose.clone(),
+            reference: log
+                .time
+                .iter()
+                .map(|time| reference.pose_at(*time))
+                .collect(),
             reference_name: "truth".to_owned(),
             pusher_poses: log.pusher.clone(),
             hidden,

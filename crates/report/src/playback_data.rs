@@ -127,6 +127,7 @@ fn run(run: &PlaybackRun, bodies: usize, rows: Range<usize>) -> Value {
     json!({
         "name": run.name,
         "colour": run.colour.hex(),
+        "dashes": run.line.dashes(),
         "pose": poses(&run.poses, rows.clone()),
         "error": error(PoseError::distance_mm),
         "turn": error(|error| error.turn_deg),

@@ -10,6 +10,9 @@ use crate::font::{Weight, width};
 /// Space between ticks (px).
 const SPACING: [f64; 2] = [80.0, 38.0];
 
+/// Height of the line of time steps (px).
+pub(crate) const STEPS: f64 = 17.0;
+
 /// Axes of a chart; `x.pixels` rise, `y.pixels` fall.
 #[derive(Clone, Debug)]
 pub(crate) struct Plot<'a> {
@@ -17,6 +20,8 @@ pub(crate) struct Plot<'a> {
     pub y: Axis,
     /// Quantity and unit; empty: no numbers either.
     pub x_label: &'a str,
+    /// Time steps per unit of x, to be written under the numbers; `None`: not there.
+    pub steps: Option<f64>,
     pub y_label: &'a str,
 }
 
@@ -71,7 +76,19 @@ impl Plot<'_> {
                 @for tick in &ticks {
                     (Text { anchor: Anchor::Middle, ..Text::at([self.x.at(tick.value), top + height + 20.0], &tick.label) }.sized(LABEL))
                 }
-                (Text { anchor: Anchor::Middle, ..Text::at([left + 0.5 * width, top + height + 40.0], self.x_label) }.sized(LABEL))
+                @if let Some(steps) = self.steps { (self.step_numbers(&ticks, steps)) }
+                @let below = if self.steps.is_some() { STEPS } else { 0.0 };
+                (Text { anchor: Anchor::Middle, ..Text::at([left + 0.5 * width, top + height + below + 40.0], self.x_label) }.sized(LABEL))
+            }
+        }
+    }
+
+    /// The time step at each tick, in a line of its own.
+    fn step_numbers(&self, ticks: &[Tick], steps: f64) -> Markup {
+        let y = self.y.pixels[0] + 20.0 + STEPS;
+        html! {
+            @for tick in ticks {
+                (Text { anchor: Anchor::Middle, ..Text::at([self.x.at(tick.value), y], &format!("{:.0}", steps * tick.value)) }.sized(LABEL))
             }
         }
     }

@@ -4,16 +4,18 @@
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip::dynamics::Pose;
 use stickslip::{Log, Occlusion, Setup};
-use stickslip_evaluation::{Reference, ScoredRun, Scores};
+use stickslip_evaluation::{Reference, Scores};
 use stickslip_formats::Experiment;
 
-use crate::colour::Colour;
+use crate::colour::Line;
 use crate::intervals::intervals;
 use crate::marks::Mark;
 use crate::page::{Block, Section};
 use crate::playback::{Playback, PlaybackRun};
+use crate::reported_run::ReportedRun;
 use crate::story::{Fate, Outcome, Story};
 use crate::table::{Table, number};
+use crate::touch::{rule, true_touches};
 
 /// Time that is shown before the first contact and after the last one begins (s).
 const BEFORE: f64 = 1.0;
@@ -21,9 +23,6 @@ const AFTER: f64 = 4.0;
 
 /// Time after the last contact begins at which the playback shows its first picture (s).
 const POSTER: f64 = 1.5;
-
-/// Largest offset of a row of the truth from a row of the log at the same time (s).
-const SAME_TIME: f64 = 5e-4;
 
 /// An experiment and what several variants made of it.
 #[derive(Clone, Debug)]
@@ -53,41 +52,6 @@ pub struct ReportedExperiment<'a> {
     pub friction: [Option<f64>; 4],
     /// The runs.
     pub runs: Vec<ReportedRun>,
-}
-
-/// One run with what is drawn of its particles.
-#[derive(Clone, Debug)]
-pub struct ReportedRun {
-    /// The run.
-    pub scored: ScoredRun,
-    /// Particles to draw, as [`crate::CloudSample::into_rows`] gives them; empty for variants
-    /// without.
-    pub cloud: Vec<Vec<Pose>>,
-}
-
-impl ReportedRun {
-    /// Name in tables and figures.
-    #[must_use]
-    pub fn title(&self) -> &'static str {
-        self.scored.variant.title()
-    }
-
-    /// Colour in every figure.
-    #[must_use]
-    pub fn colour(&self) -> Colour {
-        Colour::of(self.scored.variant)
-    }
-
-    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
-    #[must_use]
-    pub fn wmse_mm(&self) -> Option<f64> {
-        let scores = &self.scored.scores;
-        scores.wmse_occluded_mm.or(scores.wmse_mm)
-    }
-
-    pub(crate) fn camera_on(&self) -> bool {
-        self.scored.variant.camera_on()
-    }
 }
 
 impl<'a> ReportedExperiment<'a> {
@@ -123,15 +87,17 @@ impl<'a> ReportedExperiment<'a> {
         } else {
             "log's own poses"
         };
+        let reference = Reference::of(experiment);
+        let touches = true_touches(experiment, &reference);
         Self {
             name: name.to_owned(),
             what: what.to_owned(),
             setup,
             log,
-            reference: Reference::of(experiment),
+            reference,
             reference_name: reference_name.to_owned(),
             hidden: occlusion.hidden(log),
-            touches: touches(experiment),
+            touches,
             first_fixel: fixels.iter().map(|mark| mark.time).reduce(f64::min),
             contacts: pusher.into_iter().chain(fixels).collect(),
             friction: [facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri],
@@ -147,7 +113,8 @@ impl<'a> ReportedExperiment<'a> {
             camera_on: run.camera_on(),
             wmse_mm: run.wmse_mm(),
         };
-        let dark = self.dark();
+        let dark = intervals(&self.log.time, &self.hidden);
+        let lost = |(pose, hidden): &(&Option<Pose>, &bool)| pose.is_none() && !**hidden;
         Story {
             what: self.what.clone(),
             duration: self.log.duration(),
@@ -155,8 +122,17 @@ impl<'a> ReportedExperiment<'a> {
                 .first()
                 .zip(dark.last())
                 .map(|(first, last)| [first[0], last[1]]),
+            lost: self
+                .log
+                .object
+                .iter()
+                .zip(&self.hidden)
+                .filter(lost)
+                .count(),
+            rows: self.log.len(),
             first_fixel: self.first_fixel,
             outcomes: self.runs.iter().map(outcome).collect(),
+            learnt: self.learnt(),
         }
     }
 
@@ -188,11 +164,22 @@ impl<'a> ReportedExperiment<'a> {
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
-                 angles weighted by the radius of gyration, against the {}. {}",
+                 angles weighted by the radius of gyration, against the {}. {} Contact: {}.",
                 self.reference_name,
-                Fate::rule()
+                Fate::rule(),
+                rule()
             )),
         ];
+        let estimate = self.learner().map(|run| {
+            let mut csv = Vec::new();
+            let written = stickslip_formats::write_estimate(&mut csv, &run.scored.estimate);
+            written.expect("memory can be written to");
+            Block::Download {
+                name: format!("{}-estimate.csv", self.name),
+                what: format!("every row of the {}", run.title()),
+                bytes: csv,
+            }
+        });
         let assumed =
             assumed_stall_force(self.setup).map(|finding| Block::Note(finding.to_string()));
         let figures = self
@@ -201,7 +188,12 @@ impl<'a> ReportedExperiment<'a> {
             .map(|figure| Block::Figure(figure.drawing, figure.caption));
         Section {
             title,
-            blocks: head.into_iter().chain(assumed).chain(figures).collect(),
+            blocks: head
+                .into_iter()
+                .chain(assumed)
+                .chain(figures)
+                .chain(estimate)
+                .collect(),
         }
     }
 
@@ -215,16 +207,19 @@ impl<'a> ReportedExperiment<'a> {
         };
         let mut table = Table::new([
             "method",
-            "verdict",
             wmse,
-            "WMSE moving (mm)",
-            "final error (mm)",
-            "final error (°)",
-            "unsolved steps",
+            "own spread (mm)",
+            "verdict",
+            "WMSE moving",
+            "final (mm)",
+            "final (°)",
+            "unsolved",
+            "collapses",
         ]);
         for run in &self.runs {
             let Scores {
                 wmse_moving_mm,
+                spread_occluded_mm,
                 final_error_mm,
                 final_error_deg,
                 ..
@@ -234,16 +229,16 @@ impl<'a> ReportedExperiment<'a> {
             } else {
                 Fate::of(run.wmse_mm()).name()
             };
-            let scores = [
-                run.wmse_mm(),
-                wmse_moving_mm,
-                final_error_mm,
-                final_error_deg,
+            let [dark, spread] = [run.wmse_mm(), spread_occluded_mm].map(|score| number(score, 3));
+            let scores = [wmse_moving_mm, final_error_mm, final_error_deg];
+            let counts = [
+                run.scored.unsolved.to_string(),
+                run.scored.collapses.to_string(),
             ];
-            let cells = [run.title().to_owned(), verdict.to_owned()]
+            let cells = [run.title().to_owned(), dark, spread, verdict.to_owned()]
                 .into_iter()
                 .chain(scores.map(|score| number(score, 3)))
-                .chain([run.scored.unsolved.to_string()]);
+                .chain(counts);
             table.push_coloured(run.colour(), cells);
         }
         table
@@ -252,16 +247,13 @@ impl<'a> ReportedExperiment<'a> {
     /// The experiment to be played back.
     #[must_use]
     pub fn playback(&self) -> Playback {
-        let mut playback = Playback::new(
-            &self.setup.scene,
-            self.log,
-            &self.reference,
-            self.hidden.clone(),
-        );
+        let mut playback =
+            Playback::new(&self.setup.scene, self.log, &self.reference, self.blind());
         for (touch, truth) in playback.touches.iter_mut().zip(&self.touches) {
             touch.truth.clone_from(truth);
         }
-        let dark = self.dark().into_iter().map(|[from, _]| Mark {
+        let dark = intervals(&self.log.time, &self.hidden);
+        let dark = dark.into_iter().map(|[from, _]| Mark {
             time: from,
             name: "camera dark".to_owned(),
         });
@@ -271,13 +263,13 @@ impl<'a> ReportedExperiment<'a> {
         let track = |run: &ReportedRun| {
             let mut track = PlaybackRun::new(
                 run.title(),
-                run.colour(),
+                (run.colour(), Line::of(run.scored.variant)),
                 &run.scored.estimate,
                 &self.reference,
                 run.cloud.clone(),
             );
-            if learner != Some(run.title()) {
-                track.contacts.clear();
+            if learner == Some(run.title()) {
+                track.contacts = self.touch_probabilities(run);
             }
             track
         };
@@ -304,9 +296,16 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
-    /// Times without a camera (s).
+    /// Whether no row's pose is there for the methods: it was hidden, or the camera has lost it.
+    fn blind(&self) -> Vec<bool> {
+        let rows = self.hidden.iter().zip(&self.log.object);
+        rows.map(|(hidden, pose)| *hidden || pose.is_none())
+            .collect()
+    }
+
+    /// Times without a pose (s).
     pub(crate) fn dark(&self) -> Vec<[f64; 2]> {
-        intervals(&self.log.time, &self.hidden)
+        intervals(&self.log.time, &self.blind())
     }
 
     /// From a little before the first contact to a while after the last one begins; all times where
@@ -347,30 +346,4 @@ impl<'a> ReportedExperiment<'a> {
         let first = learners.clone().next();
         learners.rfind(|run| !run.camera_on()).or(first)
     }
-}
-
-/// Whether the object touches the pusher, then each fixel, by the true forces; `None` where the
-/// truth has none.
-fn touches(experiment: &Experiment) -> Vec<Option<Vec<bool>>> {
-    let Experiment {
-        setup, log, truth, ..
-    } = experiment;
-    let bodies = 1 + setup.scene.fixels.len();
-    let Some(truth) = truth else {
-        return vec![None; bodies];
-    };
-    let row_at = |time: &f64| {
-        let row = truth.time.partition_point(|t| *t < time - SAME_TIME);
-        (*truth.time.get(row)? < time + SAME_TIME).then_some(row)
-    };
-    let rows: Vec<Option<usize>> = log.time.iter().map(row_at).collect();
-    let touches = |body: usize| {
-        let force = match body {
-            0 => &truth.pusher_force,
-            _ => truth.fixel_forces.get(body - 1)?,
-        };
-        let touch = |row: &Option<usize>| row.is_some_and(|k| force[k] > setup.tactile.touch_force);
-        (!force.is_empty()).then(|| rows.iter().map(touch).collect())
-    };
-    (0..bodies).map(touches).collect()
 }

@@ -16,10 +16,16 @@ pub struct Story {
     pub duration: f64,
     /// When the camera was dark: from, to (s).
     pub dark: Option<[f64; 2]>,
+    /// Rows, hidden ones left out, in which the camera lost the object.
+    pub lost: usize,
+    /// All rows.
+    pub rows: usize,
     /// When the object first touched a fixel (s).
     pub first_fixel: Option<f64>,
     /// The methods.
     pub outcomes: Vec<Outcome>,
+    /// What the filter that learns says of itself, of friction and of contact, in sentences.
+    pub learnt: Vec<String>,
 }
 
 /// How one method fared.
@@ -40,8 +46,10 @@ pub enum Fate {
     Kept,
     /// Between the two.
     Drifted,
-    /// Weighted RMSE above [`LOST_MM`], or no number.
+    /// Weighted RMSE above [`LOST_MM`].
     Lost,
+    /// Nothing to score it against.
+    Unknown,
 }
 
 impl Fate {
@@ -51,7 +59,8 @@ impl Fate {
         match wmse_mm {
             Some(wmse) if wmse <= KEPT_MM => Self::Kept,
             Some(wmse) if wmse <= LOST_MM => Self::Drifted,
-            _ => Self::Lost,
+            Some(_) => Self::Lost,
+            None => Self::Unknown,
         }
     }
 
@@ -62,6 +71,7 @@ impl Fate {
             Self::Kept => "Kept track",
             Self::Drifted => "Drifted",
             Self::Lost => "Lost it",
+            Self::Unknown => "Not scored",
         }
     }
 
@@ -87,6 +97,7 @@ impl Story {
             .chain([self.darkness()])
             .chain(fates)
             .chain(self.seen())
+            .chain(self.learnt.iter().cloned())
             .collect()
     }
 
@@ -99,8 +110,19 @@ impl Story {
     /// When the camera was dark.
     #[must_use]
     pub fn darkness(&self) -> String {
+        let lost = match (self.lost, self.dark) {
+            (0, _) => String::new(),
+            (lost, None) => format!(" The camera gives no pose in {lost} of {} rows.", self.rows),
+            (lost, Some(_)) => format!(
+                " Besides, it gives no pose in {lost} of {} rows.",
+                self.rows
+            ),
+        };
         let Some([from, to]) = self.dark else {
-            return "The camera sees the object all the time.".to_owned();
+            return match self.lost {
+                0 => "The camera sees the object all the time.".to_owned(),
+                _ => format!("Nothing is hidden from the methods.{lost}"),
+            };
         };
         let contact = match self.first_fixel.map(|contact| contact - from) {
             Some(ahead) if ahead >= 0.0 => {
@@ -114,7 +136,7 @@ impl Story {
         } else {
             format!("is back at {to:.1} s")
         };
-        format!("At {from:.1} s{contact} the camera goes dark; it {end}.")
+        format!("At {from:.1} s{contact} the camera goes dark; it {end}.{lost}")
     }
 
     /// The methods by their fates, those whose camera stayed on left out: "particle filter (0.12 mm),
@@ -138,7 +160,7 @@ impl Story {
                 .map(|outcome| outcome.named());
             (fate, named.collect::<Vec<_>>().join(", "))
         };
-        [Fate::Kept, Fate::Drifted, Fate::Lost]
+        [Fate::Kept, Fate::Drifted, Fate::Lost, Fate::Unknown]
             .map(listed)
             .into_iter()
             .filter(|(_, names)| !names.is_empty())
@@ -207,6 +229,7 @@ mod tests {
                 outcome("particle", false, 0.123),
                 outcome("always on", true, 0.07),
             ],
+            ..Story::default()
         };
         assert_eq!(
             story.sentences(),
@@ -232,6 +255,24 @@ mod tests {
             [
                 "The camera sees the object all the time.",
                 "Lost it: kalman (12.0 mm)."
+            ]
+        );
+        let unscored = Story {
+            lost: 3,
+            rows: 40,
+            outcomes: vec![Outcome {
+                wmse_mm: None,
+                ..outcome("kalman", false, 0.0)
+            }],
+            learnt: vec!["mu_s 0.3.".to_owned()],
+            ..Story::default()
+        };
+        assert_eq!(
+            unscored.sentences(),
+            [
+                "Nothing is hidden from the methods. The camera gives no pose in 3 of 40 rows.",
+                "Not scored: kalman.",
+                "mu_s 0.3."
             ]
         );
     }

@@ -9,7 +9,7 @@ use crate::drawing::{Anchor, Drawing, LABEL, TITLE, Text};
 use crate::font::Weight;
 use crate::legend::{Legend, Swatch};
 use crate::marks::{MARK_LINE, Mark, place};
-use crate::plot::Plot;
+use crate::plot::{Plot, STEPS};
 
 /// Widths of a panel's surroundings (px).
 const LEFT: f64 = 76.0;
@@ -27,6 +27,8 @@ pub struct TimeFigure {
     pub span: [f64; 2],
     /// Name of the time axis with its unit.
     pub time_label: String,
+    /// Time steps per unit of time, to be written under the times; `None`: not there.
+    pub steps: Option<f64>,
     /// Times without a camera, from..to; shaded in every panel that has none of its own.
     pub dark: Vec<[f64; 2]>,
     /// Events, as first contacts; a line in every panel, named above the upper ones.
@@ -52,9 +54,12 @@ pub struct Panel {
     pub scale: Scale,
     /// Smallest and largest value shown; `None`: what holds all curves and levels.
     pub limits: Option<[f64; 2]>,
+    /// What is shown at least, from lowest to highest; 0: as little as there is.
+    pub least_span: f64,
     /// Times without a camera where they differ from the figure's.
     pub dark: Option<Vec<[f64; 2]>>,
-    /// Curves; where they cover each other, earlier ones lie on top.
+    /// Curves; where they cover each other, dotted ones lie on dashed ones, those on solid ones, and
+    /// of the same kind earlier ones on top.
     pub curves: Vec<Curve>,
     /// Values that do not change, as the truth.
     pub levels: Vec<Level>,
@@ -102,11 +107,12 @@ impl Default for TimeFigure {
             title: String::new(),
             span: [0.0, 1.0],
             time_label: "time (s)".to_owned(),
+            steps: None,
             dark: Vec::new(),
             marks: Vec::new(),
             panels: Vec::new(),
             columns: 1,
-            panel_size: [780.0, 240.0],
+            panel_size: [882.0, 250.0],
             band_name: String::new(),
         }
     }
@@ -142,7 +148,7 @@ impl TimeFigure {
         };
         Drawing {
             width,
-            height: head + rows as f64 * panel_height + TIMES,
+            height: head + rows as f64 * panel_height + TIMES + self.steps.map_or(0.0, |_| STEPS),
             label: self.title.clone(),
             body,
         }
@@ -172,6 +178,7 @@ impl TimeFigure {
             },
             x_label: if place.last_row { &self.time_label } else { "" },
             y_label: &panel.label,
+            steps: self.steps,
         };
         let title = Text {
             weight: Weight::Bold,
@@ -179,10 +186,28 @@ impl TimeFigure {
             ..Text::at([left + LEFT, top + head - 8.0], &panel.title)
         };
         let [from, to] = self.span;
+        // through the gaps of a broken line one sees what it covers
+        let lowest_first = || {
+            let of = |line: Line| {
+                panel
+                    .curves
+                    .iter()
+                    .rev()
+                    .filter(move |curve| curve.line == line)
+            };
+            [Line::Solid, Line::Dashed, Line::Dotted]
+                .into_iter()
+                .flat_map(of)
+        };
+        let levels = |solid: bool| {
+            let all = panel.levels.iter();
+            all.filter(move |level| (level.line == Line::Solid) == solid)
+        };
         let curves = html! {
             @for curve in panel.curves.iter().rev() { (plot.band(&curve.band, curve.colour)) }
-            @for level in &panel.levels { (plot.level(level.value, level.colour, level.line)) }
-            @for curve in panel.curves.iter().rev() { (plot.curve(&curve.points, curve.colour, curve.line)) }
+            @for level in levels(true) { (plot.level(level.value, level.colour, level.line)) }
+            @for curve in lowest_first() { (plot.curve(&curve.points, curve.colour, curve.line)) }
+            @for level in levels(false) { (plot.level(level.value, level.colour, level.line)) }
         };
         html! {
             (title.sized(LABEL))
@@ -198,7 +223,8 @@ impl TimeFigure {
     fn legend(&self) -> Legend {
         let mut legend = Legend::default();
         let curves = || self.panels.iter().flat_map(|panel| &panel.curves);
-        curves().for_each(|curve| legend.push(Swatch::Line(curve.colour, curve.line), &curve.name));
+        let drawn = curves().filter(|curve| !curve.points.is_empty());
+        drawn.for_each(|curve| legend.push(Swatch::Line(curve.colour, curve.line), &curve.name));
         for level in self.panels.iter().flat_map(|panel| &panel.levels) {
             legend.push(Swatch::Line(level.colour, level.line), &level.name);
         }
@@ -229,7 +255,10 @@ impl Panel {
             .filter(|[time, ..]| within(time))
             .flat_map(|[_, low, high]| [*low, *high]);
         let levels = self.levels.iter().map(|level| level.value);
-        self.limits
-            .unwrap_or_else(|| self.scale.limits(points.chain(bands).chain(levels)))
+        self.limits.unwrap_or_else(|| {
+            let [low, high] = self.scale.limits(points.chain(bands).chain(levels));
+            let more = (0.5 * (self.least_span - (high - low))).max(0.0);
+            [low - more, high + more]
+        })
     }
 }

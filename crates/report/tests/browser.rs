@@ -34,6 +34,7 @@ fn page() -> String {
         title: "A test of the report".to_owned(),
         summary,
         sections: vec![experiment.section()],
+        ..Report::default()
     }
     .to_html()
 }

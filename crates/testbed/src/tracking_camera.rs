@@ -21,6 +21,9 @@ pub struct TrackingCamera {
     pub pusher_position_std: f64,
     /// Standard deviation of one pusher angle (rad).
     pub pusher_orientation_std: f64,
+    /// Time over which the pusher's error forgets itself (s); 0: every frame has its own. A tracker
+    /// filters what it sees, so that its error drifts: an Ornstein–Uhlenbeck process.
+    pub pusher_memory: f64,
     /// Age of the object's pose when it is reported (s).
     pub latency: f64,
     /// Share of frames that repeat the one before.
@@ -45,6 +48,7 @@ impl TrackingCamera {
         orientation_std: 0.0,
         pusher_position_std: 0.0,
         pusher_orientation_std: 0.0,
+        pusher_memory: 0.0,
         latency: 0.0,
         repeats: 0.0,
     };
@@ -53,16 +57,29 @@ impl TrackingCamera {
     pub fn measure(&self, trace: &Trace, seed: u64) -> Vec<CameraMeasurement> {
         let streams = Streams::new(seed).of(Purpose::Measure);
         let mut measured: Vec<CameraMeasurement> = Vec::with_capacity(trace.frames.len());
+        let mut drift = [0.0; 3];
         for (k, frame) in trace.frames.iter().enumerate() {
             let draw = streams.at(k as u64);
-            let noisy = |pose: Pose, number: u32, [position, angle]: [f64; 2]| {
-                let [x, y, theta] = draw.normals(number, 0);
+            let noisy = |pose: Pose, [x, y, theta]: [f64; 3], [position, angle]: [f64; 2]| {
                 Pose::new(
                     pose.x + position * x,
                     pose.y + position * y,
                     pose.theta + angle * theta,
                 )
             };
+
+            // the pusher's error keeps a part of what it was, and its variance
+            let kept = match k.checked_sub(1) {
+                Some(before) if self.pusher_memory > 0.0 => {
+                    let age = frame.time - trace.frames[before].time;
+                    libm::exp(-age / self.pusher_memory)
+                }
+                _ => 0.0,
+            };
+            let fresh = (1.0 - kept * kept).sqrt();
+            for (error, new) in drift.iter_mut().zip(draw.normals::<3>(PUSHER, 0)) {
+                *error = kept * *error + fresh * new;
+            }
             let repeated = measured
                 .last()
                 .copied()
@@ -71,12 +88,12 @@ impl TrackingCamera {
                 || CameraMeasurement {
                     object: noisy(
                         object_at(trace, frame.time - self.latency),
-                        OBJECT,
+                        draw.normals(OBJECT, 0),
                         [self.position_std, self.orientation_std],
                     ),
                     pusher: noisy(
                         frame.pusher,
-                        PUSHER,
+                        drift,
                         [self.pusher_position_std, self.pusher_orientation_std],
                     ),
                     repeated: false,
@@ -186,6 +203,28 @@ mod tests {
                 "{measured} {expected}"
             );
         }
+    }
+
+    /// A frame later a part exp(-1/(30 · 0.15)) of the error is left, and its size is the same.
+    #[test]
+    fn pusher_error_forgets_itself_over_its_memory() {
+        let camera = TrackingCamera {
+            pusher_position_std: 1e-4,
+            pusher_memory: 0.15,
+            ..TrackingCamera::EXACT
+        };
+        let measured = camera.measure(&trace(), 7);
+        let error: Vec<f64> = measured.iter().map(|seen| seen.pusher.x + 1.0).collect();
+        let variance = root_mean_square(error.iter().copied()).powi(2);
+        for lag in [1, 5] {
+            let product = |k: usize| error[k] * error[k + lag];
+            let sum = (0..FRAMES - lag).map(product).fold(0.0, |sum, x| sum + x);
+            let expected = libm::exp(-(lag as f64) / (30.0 * 0.15));
+            let found = sum / FRAMES as f64 / variance;
+            assert!((found - expected).abs() < 0.03, "{found} {expected}");
+        }
+        // about 2200 independent errors: a standard error of 1.5 %
+        assert!((variance.sqrt() / 1e-4 - 1.0).abs() < 0.06, "{variance}");
     }
 
     #[test]

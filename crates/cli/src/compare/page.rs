@@ -4,9 +4,10 @@ use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
 
 use super::results::{Comparison, Overall};
 use super::tables;
+use crate::origin::origin;
 
-/// The table over all folders on top, then each folder's.
-pub fn report(comparison: &Comparison) -> Report {
+/// The table over all folders on top, then those `played` back, then each folder's.
+pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
     let Comparison {
         particles,
         seeds,
@@ -51,14 +52,21 @@ pub fn report(comparison: &Comparison) -> Report {
     let sections = sections
         .into_iter()
         .filter(|(_, blocks)| !blocks.is_empty());
+    let mut sections: Vec<Section> = sections
+        .map(|(title, blocks)| Section {
+            title: title.to_owned(),
+            blocks,
+        })
+        .collect();
+    let first = sections.len().min(1);
+    sections.splice(first..first, played);
     Report {
         title: "Methods compared".to_owned(),
         summary: vec![Block::Text(text), Block::Fates(story)],
-        sections: sections
-            .map(|(title, blocks)| Section {
-                title: title.to_owned(),
-                blocks,
-            })
-            .collect(),
+        sections,
+        origin: origin([
+            ("particles", particles.to_string()),
+            ("seeds", seeds.to_string()),
+        ]),
     }
 }

@@ -14,7 +14,7 @@ use crate::camera_setup::CameraSetup;
 /// Height of the object's upper face (m), where outlines are drawn.
 const FACE: f64 = 0.020;
 /// Width of a picture (px).
-const WIDTH: f64 = 330.0;
+const WIDTH: f64 = 294.0;
 /// Room about the bodies in a picture (px).
 const ROOM: f64 = 28.0;
 

@@ -2,6 +2,7 @@
 //! the first one.
 
 use anyhow::Result;
+use stickslip::EstimateRow;
 use stickslip_evaluation::paper::{PaperExperiment, RunSet};
 use stickslip_evaluation::{
     Reference, ScoredRun,
@@ -10,8 +11,8 @@ use stickslip_evaluation::{
     },
 };
 use stickslip_report::{
-    Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Mark, Panel, PoseError,
-    TimeFigure, friction_panels, pose_errors,
+    Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Line, Mark, Panel,
+    PoseError, TimeFigure, friction_panels, pose_errors,
 };
 
 use super::camera_view::CameraView;
@@ -43,7 +44,7 @@ pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
         Figure::new(
             "fig4",
             a.parameters(ParticleNoTouchCameraOn),
-            "Figure 4, experiment A: friction as the particle filter estimates it, the camera always on.",
+            "Figure 4, experiment A: friction as the particle filter estimates it, the camera always on; dashed: its own standard deviation.",
         ),
         Figure::new(
             "fig5",
@@ -58,7 +59,7 @@ pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
         Figure::new(
             "fig7",
             b.parameters(Particle),
-            "Figure 7, experiment B: friction as the particle filter with tactile data estimates it.",
+            "Figure 7, experiment B: friction as the particle filter with tactile data estimates it; dashed: its own standard deviation.",
         ),
     ])
 }
@@ -84,11 +85,11 @@ impl<'a> Replicates<'a> {
     ) -> Curve {
         let runs = self.run_sets.iter();
         let runs = runs.filter_map(|set| Some(points(set, set.run(variant)?)));
-        Curve::over_runs(
-            variant.paper_title(),
-            Colour::of(variant),
-            &runs.collect::<Vec<_>>(),
-        )
+        let runs: Vec<_> = runs.collect();
+        Curve {
+            line: Line::of(variant),
+            ..Curve::over_runs(variant.paper_title(), Colour::of(variant), &runs)
+        }
     }
 
     /// One kind of error of some variants.
@@ -129,6 +130,8 @@ impl<'a> Replicates<'a> {
             marks: thumb.into_iter().chain(fixels).collect(),
             panels,
             band_name: format!("10–90 % of {} seeds", self.run_sets.len()),
+            time_label: "time (s), and time step below".to_owned(),
+            steps: Some(30.0),
             ..TimeFigure::default()
         }
     }
@@ -148,7 +151,7 @@ impl<'a> Replicates<'a> {
 
     fn errors(&self, variants: &[Variant]) -> Drawing {
         let figure = TimeFigure {
-            panel_size: [780.0, 200.0],
+            panel_size: [882.0, 200.0],
             ..self.time_figure(vec![
                 self.panel("error of x (mm)", variants, |error| error.x_mm),
                 self.panel("error of y (mm)", variants, |error| error.y_mm),
@@ -162,25 +165,42 @@ impl<'a> Replicates<'a> {
     fn parameters(&self, variant: Variant) -> Drawing {
         let experiment = &self.first().replicate.experiment;
         let facts = &experiment.facts;
-        let curve = |parameter: &FrictionParameter| {
+        // the median over seeds, and about it the median of the filters' own standard deviations
+        let off_by = |parameter: &FrictionParameter, deviations: f64| {
             self.curve(variant, |_, run| {
                 let rows = run.estimate.time.iter().zip(&run.estimate.rows);
-                rows.map(|(time, row)| [*time, parameter.shown(row.friction)])
-                    .collect()
+                let value = |row: &EstimateRow| {
+                    let std = row.spread.and_then(|spread| spread.friction);
+                    parameter.shown(row.friction) + deviations * parameter.shown(std)
+                };
+                rows.map(|(time, row)| [*time, value(row)]).collect()
             })
+        };
+        let curves = |parameter: &FrictionParameter| {
+            let own = [-1.0, 1.0].map(|deviations| Curve {
+                name: "± its own standard deviation".to_owned(),
+                line: Line::Dashed,
+                band: Vec::new(),
+                ..off_by(parameter, deviations)
+            });
+            let middle = Curve {
+                line: Line::Solid,
+                ..off_by(parameter, 0.0)
+            };
+            [middle].into_iter().chain(own).collect()
         };
         let mut panels = friction_panels(
             &FRICTION_PARAMETERS,
             &experiment.setup.scene.nominal,
             &[facts.mu_s, facts.mu_p, facts.mu_f, facts.d_tri],
-            curve,
+            curves,
         );
         for panel in &mut panels {
             panel.dark = variant.camera_on().then(Vec::new);
         }
         let figure = TimeFigure {
             columns: 2,
-            panel_size: [430.0, 210.0],
+            panel_size: [441.0, 210.0],
             ..self.time_figure(panels)
         };
         figure.drawing()
@@ -193,10 +213,13 @@ impl<'a> Replicates<'a> {
         let mut pictures = Vec::new();
         for (row, variants) in rows {
             let frame = camera.frame(*row);
-            for variant in variants {
+            for (column, variant) in variants.iter().enumerate() {
                 let run = first.run(*variant);
                 let pose = run.and_then(|run| run.estimate.rows.get(*row)?.pose);
-                let title = format!("{}, row {row}", variant.paper_title());
+                let title = match column {
+                    0 => format!("{}, row {row}", variant.paper_title()),
+                    _ => variant.paper_title().to_owned(),
+                };
                 pictures.push(frame.with(&title, pose, Colour::of(*variant))?);
             }
         }

@@ -2,13 +2,13 @@
 
 use stickslip_evaluation::Band;
 use stickslip_evaluation::paper::{
-    BaselineComparison, Finding, NoiseLevel, OcclusionResult, PairedComparison, PaperExperiment,
+    BaselineComparison, Difference, Finding, Measure, NoiseLevel, OcclusionResult, PaperExperiment,
     Ratio, Results, ResultsRow,
 };
 use stickslip_report::Table;
 
 /// How differences are shown.
-const LEGEND: &str = "  against others: median difference ± its standard error; * by more than 2 of them better, ! worse\n";
+const LEGEND: &str = "  others: their median (ours less theirs: median difference ± its standard error; * by more than 2 of them better, ! worse)\n";
 
 /// All tables, what holds of the paper's orders, and the particle filter under occlusion.
 pub fn text(results: &Results) -> String {
@@ -16,8 +16,12 @@ pub fn text(results: &Results) -> String {
         let rows: Vec<String> = table.rows.iter().map(row).collect();
         format!("{}, WMSE in mm\n\n{}", table.name, rows.join("\n"))
     });
+    let orders = format!("{}\n{}\n", orders(results), counts(results).join("\n"));
     tables
-        .chain([format!("{}{LEGEND}", occlusions(&results.occlusions))])
+        .chain([
+            orders,
+            format!("{}{LEGEND}", occlusions(&results.occlusions)),
+        ])
         .collect::<Vec<_>>()
         .join("\n")
 }
@@ -30,6 +34,7 @@ fn row(row: &ResultsRow) -> String {
         "10-90 %",
         "dark rows",
         "10-90 %",
+        "camera's poses",
         "unsolved",
     ]);
     for cell in &row.cells {
@@ -40,6 +45,7 @@ fn row(row: &ResultsRow) -> String {
             band(all),
             median(dark),
             band(dark),
+            median(cell.camera_mm),
             cell.unsolved.to_string(),
         ];
         table.push(
@@ -48,7 +54,7 @@ fn row(row: &ResultsRow) -> String {
                 .chain(numbers),
         );
     }
-    format!("{table}{}", orders(&row.orderings))
+    table.to_string()
 }
 
 /// The median of a band.
@@ -61,38 +67,72 @@ pub fn band(band: Band) -> String {
     format!("{:.2}-{:.2}", band.low, band.high)
 }
 
-/// How many of the paper's orders hold, and those that do not.
-pub fn orders(pairs: &[PairedComparison]) -> String {
-    let holding = pairs
-        .iter()
-        .filter(|pair| pair.finding == Finding::Holds)
-        .count();
-    let others = pairs
-        .iter()
-        .filter(|pair| pair.finding != Finding::Holds)
-        .map(order);
-    let head = format!(
-        "  order of the paper: {holding} of {} pairs hold\n",
-        pairs.len()
-    );
-    [head].into_iter().chain(others).collect()
+/// Every order of the paper's tables, ours beside it, by every measure.
+pub fn orders(results: &Results) -> Table {
+    let head = ["order in the paper", "paper"].map(str::to_owned);
+    let measures = Measure::ALL.map(|measure| measure.name().to_owned());
+    let mut table = Table::new(head.into_iter().chain(measures));
+    for (row, order) in results.orders() {
+        let experiment = row.split(',').next().unwrap_or(row);
+        let light = if row.contains("no visual occlusion") {
+            ", camera on"
+        } else {
+            ""
+        };
+        let [better, worse] = [order.better, order.worse].map(|key| key.replace('_', " "));
+        let [less, more] = order.paper_mm;
+        let cells = [
+            format!("{experiment}{light}: {better} < {worse}"),
+            format!("{less:.2} < {more:.2}"),
+        ];
+        let ours = Measure::ALL.map(|measure| found(order.by(measure)));
+        table.push(cells.into_iter().chain(ours));
+    }
+    table
 }
 
-fn order(pair: &PairedComparison) -> String {
-    let PairedComparison {
-        better,
-        worse,
+fn found(difference: &Difference) -> String {
+    let Difference {
         difference_mm,
         standard_error_mm,
         finding,
-        ..
-    } = pair;
-    let finding = if *finding == Finding::Unclear {
-        "unclear"
-    } else {
-        "reversed"
+    } = difference;
+    match finding {
+        Finding::TooFewSeeds => format!("{difference_mm:+.2}, {}", finding.name()),
+        _ => format!(
+            "{difference_mm:+.2} ± {standard_error_mm:.2} {}",
+            finding.name()
+        ),
+    }
+}
+
+/// How many of the orders hold, by every measure, in a sentence each.
+pub fn counts(results: &Results) -> Vec<String> {
+    let all = results.orders().count();
+    let counted = |measure: Measure| {
+        let of = |finding| (results.count(measure, finding), finding);
+        let found = [
+            Finding::Holds,
+            Finding::Unclear,
+            Finding::Reversed,
+            Finding::TooFewSeeds,
+        ];
+        let found = found.map(of).into_iter().filter(|(count, _)| *count > 0);
+        let found: Vec<String> = found
+            .map(|(count, finding)| match finding {
+                Finding::Holds => format!("{count} hold"),
+                Finding::Unclear => format!("{count} are unclear"),
+                Finding::Reversed => format!("{count} are reversed"),
+                Finding::TooFewSeeds => format!("{count} have too few seeds to say"),
+            })
+            .collect();
+        format!(
+            "Of {all} orders of the paper ({}), {}.",
+            measure.name(),
+            found.join(", ")
+        )
     };
-    format!("    {better} < {worse} {finding} ({difference_mm:+.2} ± {standard_error_mm:.2})\n")
+    Measure::ALL.map(counted).into()
 }
 
 /// The particle filter with tactile data after the blackout begins.
@@ -106,6 +146,7 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
         "nominal",
         "Kalman",
         "no tactile",
+        "camera on",
     ]);
     for result in results {
         let own = [
@@ -119,7 +160,8 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
             [title]
                 .into_iter()
                 .chain(own)
-                .chain(result.baselines.iter().map(difference)),
+                .chain(result.baselines.iter().map(difference))
+                .chain([median(result.camera_on_mm)]),
         );
     }
     table
@@ -129,10 +171,14 @@ fn difference(against: &BaselineComparison) -> String {
     let mark = match (against.better, against.worse) {
         (true, _) => "*",
         (_, true) => "!",
-        _ => " ",
+        _ => "",
     };
+    let theirs = against.baseline_mm.median;
+    if against.standard_error_mm.is_infinite() {
+        return format!("{theirs:.2} ({:+.2}, too few seeds)", against.difference_mm);
+    }
     format!(
-        "{:+.2} ± {:.2} {mark}",
+        "{theirs:.2} ({:+.2} ± {:.2}{mark})",
         against.difference_mm, against.standard_error_mm
     )
 }

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::statistics::{Direction, PairedDifference};
+use crate::run::ScoredRun;
+use crate::statistics::{Direction, FEWEST_PAIRS, PairedDifference};
 use crate::variant::Variant;
 
 /// Standard errors that a difference must exceed to count.
@@ -18,6 +19,30 @@ pub enum Finding {
     Unclear,
     /// It is the other way round, by more than them.
     Reversed,
+    /// So few seeds have no standard error.
+    TooFewSeeds,
+}
+
+/// By which scores two variants are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Over all rows, against the exact motion.
+    AllRows,
+    /// Over the rows after the occlusion begins, against the exact motion.
+    DarkRows,
+    /// Over all rows, against the camera's own poses: as the paper scores.
+    CameraPoses,
+}
+
+/// The better one's scores less the worse one's, seed by seed.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Difference {
+    /// Median over seeds (mm).
+    pub difference_mm: f64,
+    /// Standard error of that median (mm); null for fewer than six seeds.
+    pub standard_error_mm: f64,
+    /// What became of the paper's order.
+    pub finding: Finding,
 }
 
 /// Two variants of a row that the paper puts in an order, compared seed by seed.
@@ -29,26 +54,95 @@ pub struct PairedComparison {
     pub worse: &'static str,
     /// Their numbers there (mm).
     pub paper_mm: [f64; 2],
-    /// The better one's weighted RMSE less the worse one's, median over seeds (mm).
-    pub difference_mm: f64,
-    /// Standard error of that median (mm); null for fewer than six seeds.
-    pub standard_error_mm: f64,
-    /// What became of the order.
-    pub finding: Finding,
+    /// Over all rows.
+    #[serde(flatten)]
+    pub all_rows: Difference,
+    /// Over the rows after the occlusion begins.
+    pub dark_rows: Difference,
+    /// Over all rows, against the camera's own poses.
+    pub camera_poses: Difference,
 }
 
-/// A variant in a row: its number in the paper and its scores (mm), seed by seed.
+/// A variant in a row: its number in the paper and its runs, seed by seed.
 #[derive(Clone, Debug)]
-pub(super) struct SeedScores {
+pub(super) struct SeedRuns<'a> {
     pub variant: Variant,
     pub paper_mm: f64,
-    pub scores: Vec<f64>,
+    pub runs: Vec<&'a ScoredRun>,
+}
+
+impl Finding {
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Unclear => "unclear",
+            Self::Reversed => "reversed",
+            Self::TooFewSeeds => "too few seeds",
+        }
+    }
+}
+
+impl Measure {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 3] = [Self::AllRows, Self::DarkRows, Self::CameraPoses];
+
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AllRows => "all rows",
+            Self::DarkRows => "dark rows",
+            Self::CameraPoses => "against camera poses",
+        }
+    }
+
+    /// A run's score (mm).
+    ///
+    /// # Panics
+    /// If the run is of an experiment without truth, occlusion or pose.
+    #[must_use]
+    pub fn score(self, run: &ScoredRun) -> f64 {
+        let score = match self {
+            Self::AllRows => run.scores.wmse_mm,
+            Self::DarkRows => run.scores.wmse_occluded_mm,
+            Self::CameraPoses => run.camera_wmse_mm,
+        };
+        score.expect("a simulated experiment has a truth and a pose for every row")
+    }
+}
+
+impl Difference {
+    /// `None` without seeds.
+    fn of(better: &SeedRuns<'_>, worse: &SeedRuns<'_>, measure: Measure) -> Option<Self> {
+        let [a, b] = [better, worse].map(|own| own.scores(measure));
+        let difference = PairedDifference::of(&a, &b)?;
+        let finding = match difference.direction(CLEAR) {
+            _ if difference.pairs < FEWEST_PAIRS => Finding::TooFewSeeds,
+            Direction::Below => Finding::Holds,
+            Direction::Unclear => Finding::Unclear,
+            Direction::Above => Finding::Reversed,
+        };
+        Some(Self {
+            difference_mm: difference.median,
+            standard_error_mm: difference.standard_error,
+            finding,
+        })
+    }
+}
+
+impl SeedRuns<'_> {
+    /// One score, seed by seed (mm).
+    pub fn scores(&self, measure: Measure) -> Vec<f64> {
+        self.runs.iter().map(|run| measure.score(run)).collect()
+    }
 }
 
 impl PairedComparison {
     /// All pairs of a row, the best of the paper first.
-    pub(super) fn all(row: &[SeedScores]) -> Vec<Self> {
-        let mut ranked: Vec<&SeedScores> = row.iter().collect();
+    pub(super) fn all(row: &[SeedRuns<'_>]) -> Vec<Self> {
+        let mut ranked: Vec<&SeedRuns<'_>> = row.iter().collect();
         ranked.sort_by(|a, b| a.paper_mm.total_cmp(&b.paper_mm));
         let pairs = ranked
             .iter()
@@ -59,46 +153,69 @@ impl PairedComparison {
             .collect()
     }
 
-    fn of(better: &SeedScores, worse: &SeedScores) -> Option<Self> {
-        let difference = PairedDifference::of(&better.scores, &worse.scores)?;
-        let finding = match difference.direction(CLEAR) {
-            Direction::Below => Finding::Holds,
-            Direction::Unclear => Finding::Unclear,
-            Direction::Above => Finding::Reversed,
-        };
+    fn of(better: &SeedRuns<'_>, worse: &SeedRuns<'_>) -> Option<Self> {
+        let by = |measure: Measure| Difference::of(better, worse, measure);
         Some(Self {
             better: better.variant.paper_key(),
             worse: worse.variant.paper_key(),
             paper_mm: [better.paper_mm, worse.paper_mm],
-            difference_mm: difference.median,
-            standard_error_mm: difference.standard_error,
-            finding,
+            all_rows: by(Measure::AllRows)?,
+            dark_rows: by(Measure::DarkRows)?,
+            camera_poses: by(Measure::CameraPoses)?,
         })
+    }
+
+    /// The difference by one measure.
+    #[must_use]
+    pub fn by(&self, measure: Measure) -> &Difference {
+        match measure {
+            Measure::AllRows => &self.all_rows,
+            Measure::DarkRows => &self.dark_rows,
+            Measure::CameraPoses => &self.camera_poses,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use stickslip::Estimate;
 
-    fn scores(variant: Variant, paper_mm: f64, score: impl Fn(usize) -> f64) -> SeedScores {
-        SeedScores {
+    use super::*;
+    use crate::score::Scores;
+
+    /// Runs whose scores over all rows are those given, twice them in the dark.
+    fn runs(variant: Variant, seeds: usize, score: impl Fn(usize) -> f64) -> Vec<ScoredRun> {
+        let run = |seed: usize| ScoredRun {
             variant,
+            estimate: Estimate::default(),
+            scores: Scores {
+                wmse_mm: Some(score(seed)),
+                wmse_occluded_mm: Some(2.0 * score(seed)),
+                ..Scores::default()
+            },
+            camera_wmse_mm: Some(1.0),
+            unsolved: 0,
+            failed: 0,
+            collapses: 0,
+        };
+        (0..seeds).map(run).collect()
+    }
+
+    fn row(paper_mm: f64, runs: &[ScoredRun]) -> SeedRuns<'_> {
+        SeedRuns {
+            variant: runs[0].variant,
             paper_mm,
-            scores: (0..8).map(score).collect(),
+            runs: runs.iter().collect(),
         }
     }
 
     #[test]
     fn pairs_compare_seed_by_seed_in_the_papers_order() {
         // the large spread over seeds is shared by two of them, so their small difference counts
-        let rows = [
-            scores(Variant::Nominal, 4.0, |seed| 10.0 * seed as f64 + 1.0),
-            scores(Variant::Kalman, 17.0, |seed| {
-                10.0 * seed as f64 + 0.01 * seed as f64
-            }),
-            scores(Variant::Particle, 0.2, |seed| 30.0 + (seed % 2) as f64),
-        ];
+        let nominal = runs(Variant::Nominal, 8, |seed| 10.0 * seed as f64 + 1.0);
+        let kalman = runs(Variant::Kalman, 8, |seed| 10.01 * seed as f64);
+        let particle = runs(Variant::Particle, 8, |seed| 30.0 + (seed % 2) as f64);
+        let rows = [row(4.0, &nominal), row(17.0, &kalman), row(0.2, &particle)];
         let pairs = PairedComparison::all(&rows);
         let order: Vec<[&str; 2]> = pairs.iter().map(|pair| [pair.better, pair.worse]).collect();
         assert_eq!(
@@ -109,22 +226,21 @@ mod tests {
                 ["nominal", "kalman"]
             ]
         );
-        assert_eq!(pairs[2].finding, Finding::Reversed);
-        assert!((pairs[2].difference_mm - 0.965).abs() < 1e-12, "{pairs:?}");
-        assert_eq!(
-            (pairs[0].finding, pairs[1].finding),
-            (Finding::Unclear, Finding::Unclear)
-        );
+        let finding = |pair: usize| Measure::ALL.map(|measure| pairs[pair].by(measure).finding);
+        assert_eq!(finding(2)[..2], [Finding::Reversed; 2]);
+        assert_eq!(finding(0), [Finding::Unclear; 3]);
+        let [all, dark, camera] = Measure::ALL.map(|measure| pairs[2].by(measure).difference_mm);
+        assert!((all - 0.965).abs() < 1e-12 && (dark - 1.93).abs() < 1e-12 && camera == 0.0);
         assert_eq!(pairs[0].paper_mm, [0.2, 4.0]);
     }
 
     #[test]
-    fn comparison_of_one_seed_is_unclear() {
-        let rows = [Variant::Nominal, Variant::Kalman].map(|variant| SeedScores {
-            variant,
-            paper_mm: 1.0,
-            scores: vec![3.0],
-        });
-        assert_eq!(PairedComparison::all(&rows)[0].finding, Finding::Unclear);
+    fn five_seeds_are_too_few_and_six_are_not() {
+        for (seeds, finding) in [(5, Finding::TooFewSeeds), (6, Finding::Holds)] {
+            let nominal = runs(Variant::Nominal, seeds, |_| 1.0);
+            let kalman = runs(Variant::Kalman, seeds, |_| 3.0);
+            let pairs = PairedComparison::all(&[row(1.0, &nominal), row(2.0, &kalman)]);
+            assert_eq!(pairs[0].all_rows.finding, finding);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The paper's evaluation: its six experiments, its tables as printed, and ours beside them.
+//! The paper's evaluation: its six experiments and two added ones, its tables as printed, and ours beside them.
 //!
 //! A [`Replicate`] is one experiment with one seed; a [`RunSet`] has the runs of all variants on
 //! it; [`Results`] compares the run sets with the paper's tables.
@@ -11,7 +11,7 @@ mod results;
 mod run_set;
 mod scenes;
 
-pub use comparison::{CLEAR, Finding, PairedComparison};
+pub use comparison::{CLEAR, Difference, Finding, Measure, PairedComparison};
 pub use noise::{Noise, NoiseLevel};
 pub use published::{PUBLISHED, PublishedRow, PublishedTable};
 pub use replicate::Replicate;

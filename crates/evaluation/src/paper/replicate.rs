@@ -6,7 +6,9 @@ use stickslip_formats::{Experiment, read_scene, read_truth_json};
 use super::noise::Noise;
 use super::scenes::{PaperExperiment, PaperScene};
 use crate::run::{RunConditions, ScoredRun};
-use crate::simulation::{Physics, REPEATS, Simulation, SimulationError, SimulationOptions};
+use crate::simulation::{
+    PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
+};
 use crate::variant::Variant;
 
 /// Frames per second (Hz), as in the paper.
@@ -31,7 +33,7 @@ impl Replicate {
     /// # Errors
     /// The testbed refuses the seed's rig.
     pub fn simulate(paper: PaperExperiment, seed: u64) -> Result<Self, SimulationError> {
-        Self::simulate_with(paper, seed, REPEATS, |_| ())
+        Self::simulate_with(paper, seed, [REPEATS, PUSHER_MEMORY], |_| ())
     }
 
     /// The same rig with poses simulated at the noise of tracked ones and missing where this
@@ -41,8 +43,9 @@ impl Replicate {
     /// Those of [`Replicate::simulate`].
     pub fn with_noise(&self, noise: &Noise) -> Result<Self, SimulationError> {
         let camera = Some(noise.camera());
-        let mut replicate =
-            Self::simulate_with(self.paper, self.seed, 0.0, |setup| setup.camera = camera)?;
+        let mut replicate = Self::simulate_with(self.paper, self.seed, [0.0; 2], |setup| {
+            setup.camera = camera
+        })?;
         let (log, seen) = (&mut replicate.experiment.log, &self.experiment.log);
         for (poses, seen) in [
             (&mut log.object, &seen.object),
@@ -66,26 +69,33 @@ impl Replicate {
     ///
     /// # Errors
     /// Those of [`stickslip::run`].
-    pub fn run(&self, variant: Variant, particles: usize) -> Result<ScoredRun, RunError> {
-        ScoredRun::new(variant, &self.experiment, &self.conditions(particles), None)
+    pub fn run(
+        &self,
+        variant: Variant,
+        particles: usize,
+        tracking: Tracking,
+    ) -> Result<ScoredRun, RunError> {
+        let conditions = self.conditions(particles, tracking);
+        ScoredRun::new(variant, &self.experiment, &conditions, None)
     }
 
-    /// How every variant is run: off-line, with the replicate's own occlusion and seed.
+    /// How every variant is run: with the replicate's own occlusion and seed.
     #[must_use]
-    pub fn conditions(&self, particles: usize) -> RunConditions {
+    pub fn conditions(&self, particles: usize, tracking: Tracking) -> RunConditions {
         RunConditions {
             particles,
-            tracking: Tracking::Smoothed,
+            tracking,
             occlusion: self.occlusion,
             seed: self.seed,
         }
     }
 
-    /// `repeats`: share of frames that are repeated; `adjust` may change what the scene says.
+    /// `repeats`: share of frames that are repeated, `pusher_memory`: how long the pusher's error
+    /// lasts (s); `adjust` may change what the scene says.
     fn simulate_with(
         paper: PaperExperiment,
         seed: u64,
-        repeats: f64,
+        [repeats, pusher_memory]: [f64; 2],
         adjust: impl FnOnce(&mut Setup),
     ) -> Result<Self, SimulationError> {
         let PaperScene {
@@ -99,6 +109,7 @@ impl Replicate {
             seed,
             rate: RATE,
             repeats,
+            pusher_memory,
         };
         let simulation = Simulation::run(&setup, &known, &options)?;
         Ok(Self {

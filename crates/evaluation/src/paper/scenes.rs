@@ -1,4 +1,4 @@
-//! The paper's six experiments: [`PaperExperiment`] and its [`PaperScene`].
+//! The paper's six experiments and two of our own: [`PaperExperiment`] and its [`PaperScene`].
 
 macro_rules! embedded {
     ($name:literal, $story:literal) => {
@@ -11,7 +11,7 @@ macro_rules! embedded {
     };
 }
 
-/// One of the paper's experiments.
+/// One of the paper's experiments, or one added to them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PaperExperiment {
     /// Table II, Figures 2 to 4: jams soon after the first fixel contact.
@@ -26,6 +26,10 @@ pub enum PaperExperiment {
     Third,
     /// Table IV: contact with a fixel and stop.
     Fourth,
+    /// Not the paper's: friction decides whether an edge is caught at a fixel.
+    Edge,
+    /// Not the paper's: friction decides on which side of a fixel a corner passes.
+    Corner,
 }
 
 /// A scene with the truth that it does not tell.
@@ -42,14 +46,16 @@ pub struct PaperScene {
 }
 
 impl PaperExperiment {
-    /// All, in the paper's order.
-    pub const ALL: [Self; 6] = [
+    /// All, in the paper's order, the added ones last.
+    pub const ALL: [Self; 8] = [
         Self::A,
         Self::B,
         Self::First,
         Self::Second,
         Self::Third,
         Self::Fourth,
+        Self::Edge,
+        Self::Corner,
     ];
 
     /// Its name.
@@ -62,6 +68,8 @@ impl PaperExperiment {
             Self::Second => "2",
             Self::Third => "3",
             Self::Fourth => "4",
+            Self::Edge => "5",
+            Self::Corner => "6",
         }
     }
 
@@ -80,6 +88,14 @@ impl PaperExperiment {
             Self::Fourth => embedded!(
                 "4",
                 "the object is squeezed between thumb and fixel, and stops"
+            ),
+            Self::Edge => embedded!(
+                "5",
+                "the object is caught at its edge by a fixel, or passes it"
+            ),
+            Self::Corner => embedded!(
+                "6",
+                "a corner of the object meets a fixel and passes it on one side"
             ),
         }
     }

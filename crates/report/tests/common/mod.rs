@@ -151,7 +151,9 @@ pub fn experiment<'a>(
                     wmse_occluded_mm: Some(2e3 * off),
                     ..Scores::default()
                 },
+                camera_wmse_mm: None,
                 unsolved: 0,
+                failed: 0,
                 collapses: 0,
             },
             cloud: if particles > 0 {
@@ -159,6 +161,7 @@ pub fn experiment<'a>(
             } else {
                 Vec::new()
             },
+            distinct: Vec::new(),
         }
     };
     ReportedExperiment {

@@ -1,0 +1,41 @@
+//! What made a report: [`origin`].
+
+/// Program, command line and what else is to be known, name by name.
+pub fn origin(more: impl IntoIterator<Item = (&'static str, String)>) -> Vec<(String, String)> {
+    let arguments = std::env::args_os().skip(1);
+    let words = arguments.map(|word| quoted(&word.to_string_lossy()));
+    let command: Vec<String> = ["stickslip".to_owned()].into_iter().chain(words).collect();
+    let own = [
+        (
+            "program",
+            format!("stickslip {}", env!("CARGO_PKG_VERSION")),
+        ),
+        ("command", command.join(" ")),
+    ];
+    own.into_iter()
+        .chain(more)
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
+}
+
+/// An argument as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "-_./:=,+%@".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_are_quoted_where_a_shell_would_take_them_apart() {
+        let words = ["--occlude", "60:", "my log.csv", "it's", ""].map(quoted);
+        let expected = ["--occlude", "60:", "'my log.csv'", "'it'\\''s'", "''"];
+        assert_eq!(words, expected);
+    }
+}

@@ -1,0 +1,223 @@
+//! What a run knows of friction when it ends: [`LearnedParameter`].
+//!
+//! Particles get new friction values only where the camera sees the object and Φ keeps them
+//! (docs/method.md (20), (21)). In the dark and at rest the set is resampled without them, until all
+//! its particles are copies of a few: its spread then shrinks though nothing has been learnt. So the
+//! last row that informs about a parameter has its estimate, and where there is none it was not
+//! observed.
+
+use serde::Serialize;
+use stickslip::dynamics::Friction;
+use stickslip::{Estimate, EstimateRow};
+
+/// Speed from which the object counts as moving (m/s), and turning (rad/s): a jam ends in a creep.
+const MOVING: f64 = 1e-3;
+const TURNING: f64 = 0.03;
+
+/// Probability from which a contact counts as there.
+const TOUCHING: f64 = 0.5;
+
+/// One friction parameter at the end of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LearnedParameter {
+    /// Its name, as in files.
+    #[serde(skip)]
+    pub name: &'static str,
+    /// Posterior mean (SI).
+    pub mean: f64,
+    /// Posterior standard deviation (SI); 0 where it was not observed.
+    pub std: f64,
+    /// Whether any row informed about it; where none did, the mean is the nominal value.
+    pub observed: bool,
+    /// The row of mean and standard deviation: the last one that informed.
+    pub row: Option<usize>,
+}
+
+/// A parameter's name, its value, and the rows that inform about it.
+struct Source {
+    name: &'static str,
+    value: fn(&Friction) -> f64,
+    informs: fn(&EstimateRow) -> bool,
+}
+
+/// μ_s, μ_p, μ_f and d_tri.
+const SOURCES: [Source; 4] = [
+    Source {
+        name: "mu_s",
+        value: |friction| friction.mu_s,
+        informs: |row| moves(row),
+    },
+    Source {
+        name: "mu_p",
+        value: |friction| friction.mu_p,
+        informs: |row| moves(row) && touches(row.contact_pusher),
+    },
+    Source {
+        name: "mu_f",
+        value: |friction| friction.mu_f,
+        informs: |row| moves(row) && fixels(row).any(touches),
+    },
+    Source {
+        name: "d_tri",
+        value: |friction| friction.d_tri,
+        informs: |row| moves(row),
+    },
+];
+
+impl LearnedParameter {
+    /// All parameters of a run; none for methods that do not estimate them, and no `d_tri` where the
+    /// feet are known.
+    #[must_use]
+    pub fn all(estimate: &Estimate) -> Vec<Self> {
+        SOURCES
+            .iter()
+            .filter(|source| source.name != "d_tri" || estimate.has_tripod)
+            .filter_map(|source| Self::of(source, estimate))
+            .collect()
+    }
+
+    fn of(source: &Source, estimate: &Estimate) -> Option<Self> {
+        let value = |row: &EstimateRow| row.friction.map(|mean| (source.value)(&mean));
+        let spread = |row: &EstimateRow| row.spread?.friction.map(|std| (source.value)(&std));
+        let mut rows = estimate.rows.iter();
+        let nominal = rows.find_map(value)?;
+
+        // a row informs that the camera saw, and that follows a step in which the parameter acted
+        let informing = |row: &EstimateRow| {
+            row.visual && (source.informs)(row) && spread(row).is_some_and(|std| std > 0.0)
+        };
+        let row = estimate.rows.iter().rposition(informing);
+        let at_row = row.map(|row| &estimate.rows[row]);
+        Some(Self {
+            name: source.name,
+            mean: at_row.and_then(value).unwrap_or(nominal),
+            std: at_row.and_then(spread).unwrap_or(0.0),
+            observed: row.is_some(),
+            row,
+        })
+    }
+
+    /// "0.283 ± 0.021", "not observed"; lengths in mm.
+    #[must_use]
+    pub fn shown(&self) -> String {
+        match (self.observed, self.name) {
+            (false, _) => "not observed".to_owned(),
+            (true, "d_tri") => format!("{:.1} ± {:.1} mm", 1e3 * self.mean, 1e3 * self.std),
+            (true, _) => format!("{:.3} ± {:.3}", self.mean, self.std),
+        }
+    }
+
+    /// A value of this parameter as `shown` has it, without a spread; a dash where there is none.
+    #[must_use]
+    pub fn shown_value(&self, value: Option<f64>) -> String {
+        match (value, self.name) {
+            (None, _) => "-".to_owned(),
+            (Some(value), "d_tri") => format!("{:.1} mm", 1e3 * value),
+            (Some(value), _) => format!("{value:.3}"),
+        }
+    }
+
+    /// Its value among those of all parameters.
+    #[must_use]
+    pub fn among(&self, friction: &Friction) -> Option<f64> {
+        let mut sources = SOURCES.iter();
+        let source = sources.find(|source| source.name == self.name)?;
+        Some((source.value)(friction))
+    }
+}
+
+fn moves(row: &EstimateRow) -> bool {
+    row.twist
+        .is_some_and(|v| v.vx.hypot(v.vy) > MOVING || v.omega.abs() > TURNING)
+}
+
+fn touches(probability: Option<f64>) -> bool {
+    probability.is_some_and(|p| p > TOUCHING)
+}
+
+fn fixels(row: &EstimateRow) -> impl Iterator<Item = Option<f64>> {
+    row.contact_fixels.iter().flatten().copied().map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use stickslip::Spread;
+    use stickslip::dynamics::{Pose, Twist};
+
+    use super::*;
+
+    fn friction(all: f64) -> Friction {
+        Friction {
+            mu_s: all,
+            mu_p: all,
+            mu_f: all,
+            d_tri: all,
+        }
+    }
+
+    /// A row in which every parameter has this mean and this standard deviation.
+    fn row(mean: f64, std: f64, speed: f64, touches: [f64; 2], visual: bool) -> EstimateRow {
+        EstimateRow {
+            pose: Some(Pose::default()),
+            twist: Some(Twist {
+                vx: speed,
+                vy: 0.0,
+                omega: 0.0,
+            }),
+            friction: Some(friction(mean)),
+            spread: Some(Spread {
+                pose: Pose::default(),
+                friction: Some(friction(std)),
+            }),
+            contact_pusher: Some(touches[0]),
+            contact_fixels: Some(vec![0.0, touches[1]]),
+            visual,
+            ..EstimateRow::default()
+        }
+    }
+
+    #[test]
+    fn last_row_that_informs_has_the_estimate() {
+        let estimate = Estimate {
+            rows: vec![
+                EstimateRow::default(),
+                row(0.3, 0.0, 0.0, [0.0, 0.0], true),
+                row(0.31, 0.1, 0.02, [1.0, 0.0], true),
+                // free of the pusher, then at rest, then in the dark with a fixel
+                row(0.32, 0.2, 0.02, [0.1, 0.0], true),
+                row(0.33, 0.01, 0.0, [1.0, 0.0], true),
+                row(0.34, 0.001, 0.02, [1.0, 1.0], false),
+            ],
+            has_tripod: true,
+            ..Estimate::default()
+        };
+        let all = LearnedParameter::all(&estimate);
+        let found: Vec<(&str, Option<usize>, f64, f64)> =
+            all.iter().map(|p| (p.name, p.row, p.mean, p.std)).collect();
+        assert_eq!(
+            found,
+            [
+                ("mu_s", Some(3), 0.32, 0.2),
+                ("mu_p", Some(2), 0.31, 0.1),
+                ("mu_f", None, 0.3, 0.0),
+                ("d_tri", Some(3), 0.32, 0.2)
+            ]
+        );
+        assert_eq!(all[2].shown(), "not observed");
+        assert_eq!(all[3].shown(), "320.0 ± 200.0 mm");
+        let known_feet = Estimate {
+            has_tripod: false,
+            ..estimate
+        };
+        assert_eq!(LearnedParameter::all(&known_feet).len(), 3);
+    }
+
+    #[test]
+    fn methods_without_friction_have_no_parameters() {
+        let estimate = Estimate {
+            rows: vec![EstimateRow::default()],
+            ..Estimate::default()
+        };
+        assert!(LearnedParameter::all(&estimate).is_empty());
+    }
+}

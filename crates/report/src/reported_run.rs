@@ -1,0 +1,51 @@
+//! One run with what is drawn of its particles: [`ReportedRun`].
+
+use stickslip::dynamics::Pose;
+use stickslip_evaluation::ScoredRun;
+
+use crate::colour::Colour;
+
+/// One run with what is drawn of its particles.
+#[derive(Clone, Debug)]
+pub struct ReportedRun {
+    /// The run.
+    pub scored: ScoredRun,
+    /// Particles to draw, row by row; none for variants without.
+    pub cloud: Vec<Vec<Pose>>,
+    /// How many of all its particles are different, row by row.
+    pub distinct: Vec<Option<Distinct>>,
+}
+
+impl ReportedRun {
+    /// Name in tables and figures.
+    #[must_use]
+    pub fn title(&self) -> &'static str {
+        self.scored.variant.title()
+    }
+
+    /// Colour in every figure.
+    #[must_use]
+    pub fn colour(&self) -> Colour {
+        Colour::of(self.scored.variant)
+    }
+
+    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
+    #[must_use]
+    pub fn wmse_mm(&self) -> Option<f64> {
+        let scores = &self.scored.scores;
+        scores.wmse_occluded_mm.or(scores.wmse_mm)
+    }
+
+    pub(crate) fn camera_on(&self) -> bool {
+        self.scored.variant.camera_on()
+    }
+}
+
+/// Particles that are not copies of others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Distinct {
+    /// Different poses.
+    pub poses: usize,
+    /// Different friction values.
+    pub frictions: usize,
+}
