@@ -120,6 +120,23 @@ fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
     }
 }
 
+/// A run whose error is `off` metres, twice that in the dark.
+fn scored(variant: Variant, estimate: Estimate, off: f64) -> ScoredRun {
+    ScoredRun {
+        variant,
+        estimate,
+        scores: Scores {
+            wmse_mm: Some(1e3 * off),
+            wmse_occluded_mm: Some(2e3 * off),
+            ..Scores::default()
+        },
+        camera_wmse_mm: None,
+        unsolved: 0,
+        failed: 0,
+        collapses: 0,
+    }
+}
+
 /// Five variants on `rows` rows, two with `particles` particles each.
 pub fn experiment<'a>(
     name: &str,
@@ -143,19 +160,7 @@ pub fn experiment<'a>(
                 .collect()
         };
         ReportedRun {
-            scored: ScoredRun {
-                variant,
-                estimate: estimate(rows, off, particles > 0),
-                scores: Scores {
-                    wmse_mm: Some(1e3 * off),
-                    wmse_occluded_mm: Some(2e3 * off),
-                    ..Scores::default()
-                },
-                camera_wmse_mm: None,
-                unsolved: 0,
-                failed: 0,
-                collapses: 0,
-            },
+            scored: scored(variant, estimate(rows, off, particles > 0), off),
             cloud: if particles > 0 {
                 (0..rows).map(cloud).collect()
             } else {
