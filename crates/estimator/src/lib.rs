@@ -1,4 +1,4 @@
-//! Tracks a pushed object through contact and visual occlusion and learns the friction that governs
+//! Tracks a pushed object through contact and visual occlusion and adapts the friction that governs
 //! it.
 //!
 //! [`Tracker`] takes one row at a time; [`run`] takes a whole [`Log`].
