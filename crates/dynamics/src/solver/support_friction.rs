@@ -152,8 +152,9 @@ impl SupportFriction {
             }
             let rest = add_scaled(&load.map(|x| h * x), -1.0, &pivot.others.total);
             let impulse = [rest[0], rest[1]];
+            // no pivot moves, so that h is at least 1
             if let Some(friction) = self.surface.on_facet(pivot, impulse) {
-                return Motion::at(h, &e, friction);
+                return Motion::Rests(friction.scaled(1.0 / h));
             }
             // off it, in the plane
             let across = -(impulse[0] * load[0] + impulse[1] * load[1]) / along;
