@@ -97,6 +97,20 @@ impl<const W: usize> Assembly<W> {
         sum * self.scaling.mass
     }
 
+    /// Smallest gap (m) to one body after the step; infinite where there is no contact.
+    #[inline(always)]
+    pub fn gaps(&self, ncp: &Ncp<W>, p: &Unknowns<W>, body: Body) -> Lanes<W> {
+        let far = Lanes::splat(f64::INFINITY);
+        let mut smallest = far;
+        for (row, contact) in self.rows.iter().zip(&ncp.contacts) {
+            if row.body == body {
+                let gap = contact.gap_velocity(&p.v, p.pusher_yield) * self.scaling.h;
+                smallest = smallest.min(row.present.select(gap, far));
+            }
+        }
+        smallest
+    }
+
     /// Writes the step's problems.
     #[inline(always)]
     pub fn collect(

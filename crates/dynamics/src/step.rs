@@ -71,6 +71,13 @@ impl<const W: usize> StepWork<W> {
         self.chunks[chunk].normal_impulses(&self.unknowns[chunk], body)
     }
 
+    /// Smallest gap (m) between the object and a body at the end of the last step, as its contacts
+    /// tell it, by lane of a chunk; infinite where none was near.
+    #[inline(always)]
+    pub fn gaps(&self, chunk: usize, body: Body) -> Lanes<W> {
+        self.chunks[chunk].gaps(&self.ncps[chunk], &self.unknowns[chunk], body)
+    }
+
     /// The body of each contact in the last step's problem of one particle.
     pub fn bodies(&self, particle: usize) -> Vec<Body> {
         self.chunks[particle / W].bodies(particle % W)

@@ -1,5 +1,6 @@
 //! How a run is made: [`RunOptions`].
 
+use crate::mode::Mode;
 use crate::occlusion::Occlusion;
 use crate::pusher::track::Tracking;
 
@@ -30,6 +31,8 @@ pub enum TactileUse {
 pub struct RunOptions {
     /// Method.
     pub method: Method,
+    /// Rules of the particle filter.
+    pub mode: Mode,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all random numbers.
@@ -48,6 +51,7 @@ impl Default for RunOptions {
     fn default() -> Self {
         Self {
             method: Method::Particle,
+            mode: Mode::default(),
             particles: 500,
             seed: 0,
             tactile: TactileUse::Used,

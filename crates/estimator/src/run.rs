@@ -127,6 +127,7 @@ fn track_smoothed(
         ..
     } = prepared;
     let filter_options = FilterOptions {
+        mode: options.mode,
         particles: options.particles,
         seed: options.seed,
         late: 0.0,

@@ -3,6 +3,8 @@
 
 use stickslip_dynamics::{Feet, Friction, Scene, Start};
 
+use crate::uncertainty::Uncertainty;
+
 /// Noise of the camera and of the pusher's tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -114,6 +116,8 @@ pub struct Setup {
     pub tactile: Tactile,
     /// Filter settings.
     pub filter: FilterSettings,
+    /// What the numbers above leave open.
+    pub uncertainty: Uncertainty,
     /// How the experiment begins; only simulations read it.
     pub start: Option<Start>,
 }

@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::StepInput;
 
+use crate::mode::Mode;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::options::{RunOptions, TactileUse};
@@ -26,6 +27,8 @@ const PARTICLE_BYTES: usize = 600;
 /// How a tracker works; the defaults are those of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerOptions {
+    /// Rules of the particle filter.
+    pub mode: Mode,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all random numbers.
@@ -52,6 +55,7 @@ impl TrackerOptions {
     /// Those of a run over a whole log, whose rows are never late.
     pub fn of(options: &RunOptions) -> Self {
         Self {
+            mode: options.mode,
             particles: options.particles,
             seed: options.seed,
             tactile: options.tactile,
@@ -172,6 +176,7 @@ impl<'o> Tracker<'o> {
 
     fn filter_options(&self) -> FilterOptions<'o> {
         FilterOptions {
+            mode: self.options.mode,
             particles: self.options.particles,
             seed: self.options.seed,
             late: self.options.late,

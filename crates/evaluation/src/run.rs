@@ -1,7 +1,7 @@
 //! One run of a [`Variant`] on an experiment with its scores: [`ScoredRun`].
 
 use stickslip::{
-    Estimate, Observer, Occlusion, Run, RunError, RunOptions, Tracking, run, run_observed,
+    Estimate, Mode, Observer, Occlusion, Run, RunError, RunOptions, Tracking, run, run_observed,
 };
 use stickslip_formats::Experiment;
 
@@ -11,6 +11,8 @@ use crate::variant::Variant;
 /// What all variants of a comparison have in common on one experiment and seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunConditions {
+    /// Rules of the particle filter.
+    pub mode: Mode,
     /// Number of particles.
     pub particles: usize,
     /// How the pusher is tracked: from the whole log, or causally, as live.
@@ -103,6 +105,7 @@ impl RunConditions {
     fn options(&self, variant: Variant) -> RunOptions {
         RunOptions {
             method: variant.method(),
+            mode: self.mode,
             particles: self.particles,
             seed: self.seed,
             tactile: variant.tactile(),

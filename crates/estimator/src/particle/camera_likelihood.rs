@@ -1,12 +1,13 @@
 //! What the camera's pose says of a particle: [`CameraLikelihood`].
 
-use stickslip_dynamics::Pose;
+use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::Block;
 
+use crate::mode::Mode;
 use crate::angle::nearest_zero;
-use crate::particle::chunk::{Column, load_pose};
+use crate::particle::chunk::{Column, load_chunk, load_pose};
 use crate::particle::columns::Columns;
-use crate::particle::observation::{LatencyCompensation, Observation};
+use crate::particle::observation::Observation;
 use crate::setup::{Camera, FilterSettings};
 
 /// Normal likelihood of a camera pose, its standard deviations widened by `likelihood_scale`.
@@ -16,7 +17,13 @@ pub(crate) struct CameraLikelihood {
     per_metre: f64,
     per_radian: f64,
     columns: Columns,
+    /// Likelihood of a pose that is wrong, of which there are some in contact mode; that of a perfect
+    /// one is 1.
+    wrong: Option<f64>,
 }
+
+/// Likelihood of a wrong pose, relative to that of a perfect one.
+const WRONG: f64 = 3e-7;
 
 impl CameraLikelihood {
     pub fn new(camera: &Camera, settings: &FilterSettings, columns: Columns) -> Self {
@@ -24,7 +31,13 @@ impl CameraLikelihood {
             per_metre: 1.0 / (settings.likelihood_scale * camera.position_std),
             per_radian: 1.0 / (settings.likelihood_scale * camera.orientation_std),
             columns,
+            wrong: (columns.mode() == Mode::Contact).then_some(WRONG),
         }
+    }
+
+    /// The same; from now on no pose is taken to be wrong, or some are again.
+    pub fn set_trust(&mut self, trusted: bool) {
+        self.wrong = (self.columns.mode() == Mode::Contact && !trusted).then_some(WRONG);
     }
 
     /// log-likelihood of the camera's pose given one chunk's particles, up to a constant; 0 where
@@ -39,11 +52,15 @@ impl CameraLikelihood {
         let Some(measured) = observation.pose else {
             return Column::ZERO;
         };
-        let shown = shown(self.columns, observation.latency, block, chunk);
+        let shown = shown(self.columns, observation, block, chunk);
         let dx = (shown.x - measured.x) * self.per_metre;
         let dy = (shown.y - measured.y) * self.per_metre;
         let turn = nearest_zero(shown.theta - measured.theta) * self.per_radian;
-        (dx * dx + dy * dy + turn * turn) * -0.5
+        let exponent = (dx * dx + dy * dy + turn * turn) * -0.5;
+        match self.wrong {
+            Some(wrong) => Lanes(exponent.0.map(|e| libm::log(libm::exp(e) + wrong))),
+            None => exponent,
+        }
     }
 }
 
@@ -51,11 +68,14 @@ impl CameraLikelihood {
 #[inline(always)]
 pub(crate) fn shown(
     columns: Columns,
-    latency: Option<LatencyCompensation>,
+    observation: &Observation,
     block: &Block<'_>,
     chunk: usize,
 ) -> Pose<Column> {
-    let Some(latency) = latency else {
+    if columns.mode() == Mode::Contact {
+        return shown_with_own_latency(columns, observation, block, chunk);
+    }
+    let Some(latency) = observation.latency else {
         return load_pose(block, Columns::POSE, chunk);
     };
     let earlier = load_pose(block, columns.past_pose(latency.earlier), chunk);
@@ -63,6 +83,40 @@ pub(crate) fn shown(
     let mut shown = earlier;
     for (shown, later) in shown.fields_mut().into_iter().zip(later.fields()) {
         *shown += (*later - *shown) * latency.fraction;
+    }
+    shown
+}
+
+/// The same where every particle has a latency of its own: its way through the kept poses, up to the
+/// time that the camera shows.
+#[inline(always)]
+fn shown_with_own_latency(
+    columns: Columns,
+    observation: &Observation,
+    block: &Block<'_>,
+    chunk: usize,
+) -> Pose<Column> {
+    let latency = load_chunk(block.column(columns.latency()), chunk, 0.0);
+    let time = Lanes::splat(observation.time) - latency;
+    let at = |slot: usize| load_pose(block, columns.past_pose(slot), chunk);
+    let Some((first, rest)) = observation.past.split_first() else {
+        return load_pose(block, Columns::POSE, chunk);
+    };
+    let mut earlier = (first.0, at(first.1));
+    let mut shown = earlier.1;
+    for (later_time, slot) in rest {
+        let later = at(*slot);
+        let fraction = (time - earlier.0) * (1.0 / (later_time - earlier.0));
+        let fraction = fraction.max(Lanes::ZERO).min(Lanes::splat(1.0));
+        for ((shown, to), from) in shown
+            .fields_mut()
+            .into_iter()
+            .zip(later.fields())
+            .zip(earlier.1.fields())
+        {
+            *shown += (*to - *from) * fraction;
+        }
+        earlier = (*later_time, later);
     }
     shown
 }

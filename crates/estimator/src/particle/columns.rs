@@ -1,5 +1,7 @@
 //! Which column of the particle set holds what: [`Columns`].
 
+use crate::mode::Mode;
+
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 
@@ -7,7 +9,13 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel.
-const SINGLE: usize = 4;
+const SINGLE: usize = 8;
+
+/// Columns of contact mode that do not belong to a fixel.
+const UNKNOWNS: usize = 8;
+
+/// Columns of contact mode for each fixel.
+const PER_FIXEL: usize = 2;
 
 /// A condition of every particle: one bit of a column that holds nothing but such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,9 +26,11 @@ pub struct Flag {
     pub bit: u32,
 }
 
-/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, past poses.
+/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, in contact mode
+/// what else is unknown, past poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
+    mode: Mode,
     fixels: usize,
     history: usize,
 }
@@ -49,8 +59,22 @@ impl Columns {
     pub const IDLE: Flag = Self::flag(2);
 
     /// For `fixels` fixels and `history` past poses.
-    pub fn new(fixels: usize, history: usize) -> Self {
-        Self { fixels, history }
+    pub fn new(mode: Mode, fixels: usize, history: usize) -> Self {
+        Self {
+            mode,
+            fixels,
+            history,
+        }
+    }
+
+    /// The same with `history` past poses.
+    pub fn with_history(self, history: usize) -> Self {
+        Self { history, ..self }
+    }
+
+    /// Rules of the filter.
+    pub fn mode(&self) -> Mode {
+        self.mode
     }
 
     /// Number of fixels.
@@ -65,6 +89,11 @@ impl Columns {
         }
     }
 
+    /// Whether friction parameter `k` (in the order of its columns) ever took part (contact mode).
+    pub fn felt(k: usize) -> Flag {
+        Self::flag(4 + k)
+    }
+
     /// c_j: whether fixel j touches.
     pub fn contact_fixel(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + fixel)
@@ -75,9 +104,43 @@ impl Columns {
         Self::flag(SINGLE + self.fixels + fixel)
     }
 
+    /// First column after the flags.
+    fn unknowns(&self) -> usize {
+        Self::FLAGS + (SINGLE + 2 * self.fixels).div_ceil(BITS)
+    }
+
+    /// Logarithms by which the four friction parameters differ at this place (contact mode).
+    pub fn variation(&self) -> usize {
+        self.unknowns()
+    }
+
+    /// Offset of the pusher's logged poses: x, y (m) (contact mode).
+    pub fn pusher_offset(&self) -> usize {
+        self.unknowns() + 4
+    }
+
+    /// Time by which the camera lags (s) (contact mode).
+    pub fn latency(&self) -> usize {
+        self.unknowns() + 6
+    }
+
+    /// log-likelihood of the tactile readings of the latest row (contact mode).
+    pub fn touch_log_likelihood(&self) -> usize {
+        self.unknowns() + 7
+    }
+
+    /// Probabilities that sensor `fixel` is stuck at 0, and at 1 (contact mode).
+    pub fn stuck(&self, fixel: usize) -> usize {
+        self.unknowns() + UNKNOWNS + PER_FIXEL * fixel
+    }
+
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
-        Self::FLAGS + (SINGLE + 2 * self.fixels).div_ceil(BITS) + 3 * slot
+        let unknowns = match self.mode {
+            Mode::Contact => UNKNOWNS + PER_FIXEL * self.fixels,
+            Mode::Paper => 0,
+        };
+        self.unknowns() + unknowns + 3 * slot
     }
 
     /// Number of columns.
@@ -98,7 +161,7 @@ mod tests {
 
     #[test]
     fn flags_of_many_fixels_lie_apart_and_before_the_past_poses() {
-        let columns = Columns::new(50, 1);
+        let columns = Columns::new(Mode::Contact, 50, 1);
         let of_fixels =
             (0..50).flat_map(|j| [columns.contact_fixel(j), columns.driven_contact_fixel(j)]);
         let flags: Vec<Flag> = of_fixels

@@ -2,10 +2,11 @@
 //! "The particle filter" (paper §III-D).
 
 use stickslip_dynamics::{Pose, StepInput};
-use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport};
+use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
 
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
+use crate::mode::Mode;
 use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
 use crate::particle::model::ContactModel;
@@ -47,11 +48,26 @@ pub(crate) struct ContactFilter<'o> {
     observation: Observation,
     latest: EstimateRow,
     collapses: u32,
+    /// Camera poses in a row that no particle explained (contact mode).
+    unexplained: u32,
+    /// The latest camera pose.
+    shown: Option<Pose>,
 }
+
+/// Camera poses in a row that no particle explains, after which they are believed (contact mode).
+const BELIEVED_AFTER: u32 = 4;
+
+/// Evidence of a row below which no particle explains it (contact mode).
+const UNEXPLAINED: f64 = -10.0;
+
+/// Multiples of the prior's mean latency that a camera may lag more than told (contact mode).
+const LATEST: f64 = 6.0;
 
 /// What a contact filter is made with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterOptions<'o> {
+    /// Rules of the filter.
+    pub mode: Mode,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all random numbers.
@@ -85,8 +101,12 @@ impl<'o> ContactFilter<'o> {
         (time, start): (f64, Pose),
         options: &FilterOptions<'o>,
     ) -> Result<Self, RunError> {
-        let history = PoseHistory::new(camera.latency + options.late, time);
-        let model = ContactModel::new(setup, camera, start, history.slots());
+        let unknown = match options.mode {
+            Mode::Contact => LATEST * setup.uncertainty.latency,
+            Mode::Paper => 0.0,
+        };
+        let history = PoseHistory::new(camera.latency + unknown + options.late, time);
+        let model = ContactModel::new(options.mode, setup, camera, start, history.slots());
         let model = model.observed(options.observer);
         let reference = Reference::new(start, setup.scene.nominal);
         let mut this = Self {
@@ -98,6 +118,8 @@ impl<'o> ContactFilter<'o> {
             observation: Observation::default(),
             latest: EstimateRow::default(),
             collapses: 0,
+            unexplained: 0,
+            shown: None,
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -107,8 +129,10 @@ impl<'o> ContactFilter<'o> {
 
     /// One row: the step that leads to it, then what was measured there.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        let measured = self.without_repeats(measured);
         self.plan_step(&measured, drive);
         self.observation.pose = measured.object;
+        self.look_back(measured.time);
         self.observation.latency = self.history.at(measured.time - self.latency);
         self.observation.tactile.clear();
         let tactile = measured.tactile.iter().copied();
@@ -117,8 +141,45 @@ impl<'o> ContactFilter<'o> {
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
         self.collapses += u32::from(report.collapsed());
+        self.judge_camera(&report);
         self.report(&report, measured.object.is_some());
         &self.latest
+    }
+
+    /// In contact mode, a pose equal to the one before is that frame again, not a new measurement.
+    fn without_repeats<'a>(&mut self, measured: Measured<'a>) -> Measured<'a> {
+        let mode = self.filter.model().columns().mode();
+        let repeated = mode == Mode::Contact && measured.object == self.shown;
+        self.shown = measured.object.or(self.shown);
+        Measured {
+            object: measured.object.filter(|_| !repeated),
+            ..measured
+        }
+    }
+
+    /// Where each particle finds its past poses.
+    fn look_back(&mut self, time: f64) {
+        self.observation.time = time;
+        self.observation.past.clear();
+        if self.filter.model().columns().mode() == Mode::Contact {
+            self.observation.past.extend(self.history.kept());
+        }
+    }
+
+    /// Counts the poses in a row that no particle explains; after some, they are no outliers.
+    fn judge_camera(&mut self, report: &StepReport) {
+        if self.observation.pose.is_none() {
+            return;
+        }
+        let before = self.unexplained;
+        self.unexplained = match report.weight_update {
+            WeightUpdate::Weighed { log_evidence } if log_evidence < UNEXPLAINED => before + 1,
+            _ => 0,
+        };
+        let trusted = self.unexplained >= BELIEVED_AFTER;
+        if trusted != (before >= BELIEVED_AFTER) {
+            self.filter.change_model(|model| model.trust_camera(trusted));
+        }
     }
 
     /// Writes the plan of the step to a row.
@@ -127,6 +188,8 @@ impl<'o> ContactFilter<'o> {
         plan.substeps.clear();
         plan.substeps.extend_from_slice(drive.substeps);
         plan.driven = drive.moves;
+        plan.tactile.clear();
+        plan.tactile.extend_from_slice(measured.tactile);
         plan.parameter_noise = match self
             .camera
             .is_dark(measured.time, measured.object.is_some())
@@ -148,6 +211,7 @@ impl<'o> ContactFilter<'o> {
     /// which the latency has not been taken yet. A pose that no particle explains changes nothing.
     pub fn weigh_late(&mut self, time: f64, pose: Pose) -> &EstimateRow {
         self.observation.pose = Some(pose);
+        self.look_back(time);
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();
         let _ = self.filter.observe(&self.plan, &self.observation);

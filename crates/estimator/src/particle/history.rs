@@ -57,6 +57,11 @@ impl PoseHistory {
         slot
     }
 
+    /// Times (s) and slots of the poses that are kept, in order of time.
+    pub fn kept(&self) -> impl Iterator<Item = (f64, usize)> {
+        self.kept.iter().copied()
+    }
+
     /// Between which poses `time` lies; before the first one, the first one counts. `None` where no
     /// history is kept.
     pub fn at(&self, time: f64) -> Option<LatencyCompensation> {

@@ -14,4 +14,5 @@ mod step_plan;
 mod summary;
 mod sums;
 mod tactile_likelihood;
+mod touch_channel;
 pub(crate) mod view;

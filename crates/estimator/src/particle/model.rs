@@ -4,9 +4,10 @@
 use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
+use crate::mode::Mode;
 use crate::angle::wrapped;
 use crate::particle::camera_likelihood::{CameraLikelihood, shown};
-use crate::particle::chunk::{Column, LANES, is_set, store_chunk};
+use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
@@ -14,6 +15,7 @@ use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::step_plan::StepPlan;
 use crate::particle::sums::Sums;
 use crate::particle::tactile_likelihood::TactileLikelihood;
+use crate::particle::touch_channel::TouchChannel;
 use crate::setup::{Camera, Setup};
 
 /// Best log-likelihood below which no particle explains the observation: the particles are
@@ -30,14 +32,22 @@ pub struct ContactModel<'o> {
     transition: Transition<'o>,
     camera: Camera,
     start: Pose,
+    /// Whether a camera pose that no particle explains draws them all anew.
+    resets: bool,
     camera_likelihood: CameraLikelihood,
     tactile_likelihood: TactileLikelihood,
 }
 
 impl<'o> ContactModel<'o> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
-    pub fn new(setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
-        let columns = Columns::new(setup.scene.fixels.len(), history);
+    pub fn new(
+        mode: Mode,
+        setup: &Setup,
+        camera: Camera,
+        start: Pose,
+        history: usize,
+    ) -> Self {
+        let columns = Columns::new(mode, setup.scene.fixels.len(), history);
         Self {
             transition: Transition {
                 dynamics: Dynamics::new(setup.scene.clone()),
@@ -47,6 +57,7 @@ impl<'o> ContactModel<'o> {
             },
             camera,
             start,
+            resets: mode == Mode::Paper,
             camera_likelihood: CameraLikelihood::new(&camera, &setup.filter, columns),
             tactile_likelihood: TactileLikelihood::new(&setup.tactile, columns),
         }
@@ -66,11 +77,20 @@ impl<'o> ContactModel<'o> {
 
     /// From now on each particle keeps `poses` past poses, at least as many as before.
     pub fn keep_history(&mut self, poses: usize) {
-        let columns = Columns::new(self.columns().fixels(), poses);
+        let columns = self.columns().with_history(poses);
         let setup = &self.transition.setup;
         self.camera_likelihood = CameraLikelihood::new(&self.camera, &setup.filter, columns);
         self.tactile_likelihood = TactileLikelihood::new(&setup.tactile, columns);
         self.transition.columns = columns;
+    }
+
+    /// From now on, poses that no particle explains draw them all anew, or count as wrong (contact
+    /// mode).
+    pub fn trust_camera(&mut self, trusted: bool) {
+        if self.columns().mode() == Mode::Contact {
+            self.resets = trusted;
+            self.camera_likelihood.set_trust(trusted);
+        }
     }
 
     /// A camera pose's worth of noise around `pose`.
@@ -80,6 +100,32 @@ impl<'o> ContactModel<'o> {
             x: pose.x + camera.position_std * x,
             y: pose.y + camera.position_std * y,
             theta: pose.theta + camera.orientation_std * theta,
+        }
+    }
+
+    /// What contact mode does not know, drawn from its priors.
+    fn draw_unknowns(&self, draw: Draw, particle: u32, block: &mut BlockMut<'_>, i: usize) {
+        let Transition { setup, columns, .. } = &self.transition;
+        let prior = &setup.uncertainty;
+        let normals = draw.normals::<11>(particle, 4);
+        let [friction, variation] = [&normals[..4], &normals[4..8]];
+        let limits = setup.filter.limits.fields();
+        for k in 0..4 {
+            let nominal = setup.scene.nominal.fields()[k];
+            let drawn = nominal * libm::exp(prior.friction.fields()[k] * friction[k]);
+            block.column_mut(Columns::FRICTION + k)[i] = drawn.clamp(limits[k].min, limits[k].max);
+            block.column_mut(columns.variation() + k)[i] =
+                prior.variation.fields()[k] * variation[k];
+        }
+        for axis in 0..2 {
+            block.column_mut(columns.pusher_offset() + axis)[i] =
+                prior.pusher_offset * normals[8 + axis];
+        }
+        let late = -libm::log(draw.uniform(particle, 15));
+        block.column_mut(columns.latency())[i] = self.camera.latency + prior.latency * late;
+        let start = TouchChannel::new(&setup.tactile).start();
+        for j in 0..columns.fixels() {
+            write(block, columns.stuck(j), i, [&start[0], &start[1]]);
         }
     }
 }
@@ -109,6 +155,9 @@ impl Model for ContactModel<'_> {
                 i,
                 self.transition.setup.scene.nominal.fields(),
             );
+            if self.columns().mode() == Mode::Contact {
+                self.draw_unknowns(draw, particle, block, i);
+            }
             for slot in 0..self.columns().history() {
                 write(block, self.columns().past_pose(slot), i, pose.fields());
             }
@@ -131,9 +180,18 @@ impl Model for ContactModel<'_> {
             #[inline(always)]
             |chunk| {
                 let camera = &self.camera_likelihood;
-                let tactile = &self.tactile_likelihood;
-                camera.log_likelihood(observation, block, chunk)
-                    + tactile.log_likelihood(&observation.tactile, block, chunk)
+                let touch = match self.columns().mode() {
+                    Mode::Paper => {
+                        let tactile = &self.tactile_likelihood;
+                        tactile.log_likelihood(&observation.tactile, block, chunk)
+                    }
+                    Mode::Contact if observation.tactile.is_empty() => Column::ZERO,
+                    Mode::Contact => {
+                        let column = self.columns().touch_log_likelihood();
+                        load_chunk(block.column(column), chunk, 0.0)
+                    }
+                };
+                camera.log_likelihood(observation, block, chunk) + touch
             },
         );
     }
@@ -169,7 +227,7 @@ impl Model for ContactModel<'_> {
     }
 
     fn collapsed(&self, best_log_likelihood: f64) -> bool {
-        best_log_likelihood < COLLAPSED
+        self.resets && best_log_likelihood < COLLAPSED
     }
 
     /// Moves every particle, its past included, so that what the camera sees is drawn around the
@@ -181,7 +239,7 @@ impl Model for ContactModel<'_> {
         for (i, particle) in block.particles() {
             let chunk = shown(
                 self.columns(),
-                observation.latency,
+                observation,
                 &block.as_block(),
                 i / LANES,
             );

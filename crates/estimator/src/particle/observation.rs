@@ -19,6 +19,11 @@ pub struct LatencyCompensation {
 pub struct Observation {
     /// Camera pose.
     pub pose: Option<Pose>,
+    /// Time of the row (s).
+    pub time: f64,
+    /// Times (s) and slots of the past poses that every particle keeps, in order of time (contact
+    /// mode).
+    pub past: Vec<(f64, usize)>,
     /// Which past pose of each particle the camera shows; `None` is the present one.
     pub latency: Option<LatencyCompensation>,
     /// Tactile readings, one per sensor.

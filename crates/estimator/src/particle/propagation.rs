@@ -2,14 +2,17 @@
 //! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, PusherMotion, StepInput,
+    StepWork, Twist, on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
-use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
+use crate::mode::Mode;
+use crate::particle::chunk::{Column, FlagsMut, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::observer::{Observer, SolvedStep};
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
+use crate::particle::touch_channel::TouchChannel;
 use crate::setup::{Limits, Setup};
 
 /// Chunks of particles in a block.
@@ -25,6 +28,15 @@ const MOVING: f64 = 1e-9;
 /// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of
 /// which three numbers are used.
 const FORCE_PAIR: u32 = 2;
+
+/// Gap, in units of what is not known of it, within which an idle contact may press or not.
+const NEAR: f64 = 2.0;
+
+/// Numbers for the variation of friction: behind those of all substeps.
+const VARIATION_PAIR: u32 = 1 << 20;
+
+/// Share of their spread by which the pusher's offset and the latency wander from row to row.
+const OFFSET_STEP: f64 = 0.05;
 
 /// Γ' of one setup: what moves the particles.
 #[derive(Clone, Debug)]
@@ -44,6 +56,10 @@ pub(crate) struct Transition<'o> {
 pub struct Propagation {
     work: StepWork<LANES>,
     particles: [Particles<LANES>; CHUNKS],
+    /// Friction of the object as a whole: that of this place differs from it in contact mode.
+    proposed: [Friction<Column>; CHUNKS],
+    /// Each particle's pusher (contact mode).
+    pushers: Vec<[Option<PusherMotion>; LANES]>,
     involved: [Involved; CHUNKS],
     normals: [[f64; BLOCK]; 4],
     level: Level,
@@ -88,6 +104,8 @@ impl Default for Propagation {
         Self {
             work: StepWork::default(),
             particles: [Particles::default(); CHUNKS],
+            proposed: [Friction::default(); CHUNKS],
+            pushers: Vec::new(),
             involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
             level: Level::new(),
@@ -110,6 +128,10 @@ impl Propagation {
             #[inline(always)]
             || self.load(transition, plan, draw, block),
         );
+        let mode = transition.columns.mode();
+        if mode == Mode::Contact {
+            self.draw_friction(transition, plan, draw, block);
+        }
         for (part, input) in plan.substeps.iter().enumerate() {
             let pair = FORCE_PAIR + 2 * part as u32;
             on_widest(
@@ -120,9 +142,14 @@ impl Propagation {
             if let Some(observer) = transition.observer {
                 observer.before_step(input, &self.particles[..chunks]);
             }
-            transition
-                .dynamics
-                .step_block(input, &mut self.particles[..chunks], &mut self.work);
+            match mode {
+                Mode::Paper => transition.dynamics.step_block(
+                    input,
+                    &mut self.particles[..chunks],
+                    &mut self.work,
+                ),
+                Mode::Contact => self.step_with_own_pushers(transition, input, block),
+            }
             on_widest(
                 level,
                 #[inline(always)]
@@ -137,6 +164,9 @@ impl Propagation {
             #[inline(always)]
             || self.store(transition, plan, block),
         );
+        if mode == Mode::Contact {
+            self.read_touch(transition, plan, block);
+        }
     }
 
     /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen
@@ -149,7 +179,8 @@ impl Propagation {
         draw: Draw,
         block: &BlockMut<'_>,
     ) {
-        let drawn = plan.parameter_noise == ParameterNoise::Drawn;
+        let paper = transition.columns.mode() == Mode::Paper;
+        let drawn = paper && plan.parameter_noise == ParameterNoise::Drawn;
         if drawn {
             self.draw_normals(draw, 0, block);
         }
@@ -194,6 +225,157 @@ impl Propagation {
                         load_chunk(&self.normals[k], chunk, 0.0) * std,
                         limits[k],
                     );
+                }
+            }
+            self.proposed[chunk] = self.particles[chunk].friction;
+        }
+    }
+
+    /// Contact mode: friction that nothing was felt of is drawn anew from its prior; what was felt takes
+    /// a random step that keeps the prior, while the camera looks. On top, friction differs from place
+    /// to place, by a logarithm that forgets itself along the way of the object.
+    fn draw_friction(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+    ) {
+        let Transition { setup, columns, .. } = transition;
+        let unsure = &setup.uncertainty;
+        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let rho = setup.scene.object.gyration_radius();
+        let (priors, stds) = (unsure.friction.fields(), unsure.variation.fields());
+        let (nominal, limits) = (setup.scene.nominal.fields(), setup.filter.limits.fields());
+        let drawn = plan.parameter_noise == ParameterNoise::Drawn;
+        let jitter = if drawn {
+            unsure.jitter * (h / NOISE_STEP).sqrt()
+        } else {
+            0.0
+        };
+
+        // the object's friction
+        self.draw_normals(draw, 0, block);
+        for (i, _) in block.particles() {
+            let (chunk, lane) = (i / LANES, i % LANES);
+            for (k, friction) in self.particles[chunk]
+                .friction
+                .fields_mut()
+                .into_iter()
+                .enumerate()
+            {
+                let step = if is_set(&block.as_block(), Columns::felt(k), i) {
+                    (jitter / *priors[k]).min(1.0)
+                } else {
+                    1.0
+                };
+                if *priors[k] > 0.0 && step > 0.0 {
+                    let log = libm::log(friction.0[lane] / nominal[k]);
+                    let log = (1.0 - step * step).sqrt() * log + step * priors[k] * self.normals[k][i];
+                    friction.0[lane] = (nominal[k] * libm::exp(log)).clamp(limits[k].min, limits[k].max);
+                }
+            }
+        }
+        for (proposed, particles) in self.proposed.iter_mut().zip(&self.particles) {
+            *proposed = particles.friction;
+        }
+
+        // that of this place
+        self.draw_normals(draw, VARIATION_PAIR, block);
+        for (i, _) in block.particles() {
+            let (chunk, lane) = (i / LANES, i % LANES);
+            let particles = &mut self.particles[chunk];
+            let Twist { vx, vy, omega } = particles.twist.map(|x| x.0[lane]);
+            let way = h * (vx * vx + vy * vy + rho * rho * omega * omega).sqrt();
+            let kept = libm::exp(-way / unsure.variation_length);
+            let fresh = (1.0 - kept * kept).sqrt();
+            for (k, friction) in particles.friction.fields_mut().into_iter().enumerate() {
+                let variation = &mut block.column_mut(columns.variation() + k)[i];
+                *variation = kept * *variation + fresh * stds[k] * self.normals[k][i];
+                let here = friction.0[lane] * libm::exp(*variation);
+                friction.0[lane] = here.clamp(limits[k].min, limits[k].max);
+            }
+        }
+
+        // where the pusher stands, and how late the camera is
+        if drawn {
+            self.draw_normals(draw, VARIATION_PAIR + 2, block);
+            let step = OFFSET_STEP;
+            for (i, _) in block.particles() {
+                for axis in 0..2 {
+                    let offset = &mut block.column_mut(columns.pusher_offset() + axis)[i];
+                    *offset = (1.0 - step * step).sqrt() * *offset
+                        + step * unsure.pusher_offset * self.normals[axis][i];
+                }
+                let told = setup.camera.map_or(0.0, |camera| camera.latency);
+                let latency = &mut block.column_mut(columns.latency())[i];
+                *latency = told + (*latency - told + step * unsure.latency * self.normals[2][i]).abs();
+            }
+        }
+    }
+
+    /// Contact mode: each particle's pusher stands beside the logged one.
+    fn step_with_own_pushers(
+        &mut self,
+        transition: &Transition<'_>,
+        input: &StepInput,
+        block: &BlockMut<'_>,
+    ) {
+        let chunks = block.len().div_ceil(LANES);
+        let offset = transition.columns.pusher_offset();
+        let (x, y) = (block.column(offset), block.column(offset + 1));
+        let last = block.len() - 1;
+        self.pushers.clear();
+        self.pushers.extend((0..chunks).map(|chunk| {
+            std::array::from_fn(|lane| {
+                let i = (chunk * LANES + lane).min(last);
+                input.pusher.map(|mut pusher| {
+                    pusher.pose.x += x[i];
+                    pusher.pose.y += y[i];
+                    pusher
+                })
+            })
+        }));
+        transition.dynamics.step_block_each(
+            input.h,
+            &self.pushers,
+            &mut self.particles[..chunks],
+            &mut self.work,
+        );
+    }
+
+    /// Contact mode: weighs the tactile readings at the end of the step.
+    fn read_touch(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let Transition { setup, columns, .. } = transition;
+        let channel = TouchChannel::new(&setup.tactile);
+        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
+        let threshold = setup.tactile.touch_force * last_h;
+        block.column_mut(columns.touch_log_likelihood()).fill(0.0);
+        for (j, reading) in plan.tactile.iter().enumerate() {
+            let Some(reading) = *reading else { continue };
+            for chunk in 0..block.len().div_ceil(LANES) {
+                let pressed = self.work.normal_impulses(chunk, Body::Fixel(j));
+                let gap = self.work.gaps(chunk, Body::Fixel(j));
+                for lane in 0..LANES.min(block.len() - chunk * LANES) {
+                    let i = chunk * LANES + lane;
+                    let gap = gap.0[lane] / setup.uncertainty.touch_gap;
+                    let touch = if is_set(&block.as_block(), Columns::IDLE, i) && gap < NEAR {
+                        f64::from(u8::from(reading))
+                    } else {
+                        touch(pressed.0[lane] / threshold, gap)
+                    };
+                    let stuck = [0, 1].map(|k| block.column(columns.stuck(j) + k)[i]);
+                    let (stuck, log_likelihood) = channel.read(stuck, h, touch, reading);
+                    for k in 0..2 {
+                        block.column_mut(columns.stuck(j) + k)[i] = stuck[k];
+                    }
+                    block.column_mut(columns.touch_log_likelihood())[i] += log_likelihood;
                 }
             }
         }
@@ -301,12 +483,22 @@ impl Propagation {
             store_columns(block, Columns::WARM_START, chunk, particles.warm.fields());
             let mut friction = Friction::default();
             load_columns(block, Columns::FRICTION, chunk, friction.fields_mut());
-            let proposed = particles.friction.fields().into_iter();
+            let proposed = self.proposed[chunk].fields().into_iter();
+            let mut phi = involved.phi();
+            if transition.columns.mode() == Mode::Contact {
+                let mut flags = FlagsMut::new(block, chunk);
+                for (k, took_part) in phi.fields_mut().into_iter().enumerate() {
+                    let felt = flags.get(Columns::felt(k));
+                    flags.set(Columns::felt(k), felt | *took_part);
+                    *took_part = *took_part | !felt;
+                }
+                flags.write();
+            }
             for ((kept, proposed), took_part) in friction
                 .fields_mut()
                 .into_iter()
                 .zip(proposed)
-                .zip(involved.phi().fields())
+                .zip(phi.fields())
             {
                 *kept = took_part.select(*proposed, *kept);
             }
@@ -341,6 +533,18 @@ impl Propagation {
                 );
             }
         }
+    }
+}
+
+/// Probability that a sensor feels a contact, from its impulse in units of the sensor's threshold,
+/// and its gap in units of what is not known of it. A contact that rests without pressing may or may
+/// not be felt.
+fn touch(impulse: f64, gap: f64) -> f64 {
+    let near = 0.5 * libm::exp(-0.5 * gap.max(0.0) * gap.max(0.0));
+    if impulse > 0.0 {
+        near.max(1.0 - 0.5 / (1.0 + impulse * impulse))
+    } else {
+        near
     }
 }
 

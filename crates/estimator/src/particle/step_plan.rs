@@ -24,6 +24,8 @@ pub struct StepPlan {
     pub parameter_noise: ParameterNoise,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
+    /// Tactile readings at the end of the step, one per sensor.
+    pub tactile: Vec<Option<bool>>,
     /// Values near the estimate, about which sums are taken.
     pub reference: Reference,
 }
@@ -36,6 +38,7 @@ impl StepPlan {
             driven: false,
             parameter_noise: ParameterNoise::Frozen,
             slot: 0,
+            tactile: Vec::new(),
             reference,
         }
     }

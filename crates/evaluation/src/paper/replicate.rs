@@ -1,6 +1,6 @@
 //! One of the paper's experiments with one seed: [`Replicate`].
 
-use stickslip::{Camera, Occlusion, RunError, Setup, Tracking};
+use stickslip::{Mode, Camera, Occlusion, RunError, Setup, Tracking};
 use stickslip_formats::{Experiment, read_scene, read_truth_json};
 
 use super::noise::Noise;
@@ -83,6 +83,7 @@ impl Replicate {
     #[must_use]
     pub fn conditions(&self, particles: usize, tracking: Tracking) -> RunConditions {
         RunConditions {
+            mode: Mode::Paper,
             particles,
             tracking,
             occlusion: self.occlusion,

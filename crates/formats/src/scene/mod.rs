@@ -13,7 +13,7 @@ mod start;
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip::{ASSUMED_STALL, Rule, Setup, Unit};
+use stickslip::{Uncertainty, ASSUMED_STALL, Rule, Setup, Unit};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
@@ -144,6 +144,7 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
             .map(sensing::filter)
             .transpose()?
             .unwrap_or_default(),
+        uncertainty: Uncertainty::default(),
         start: root
             .section_if("start")?
             .as_ref()
