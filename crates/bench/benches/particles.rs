@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Log, Occlusion, RunOptions, Setup, keep_threads_awake, run};
+use stickslip::{Log, Mode, Occlusion, RunOptions, Setup, keep_threads_awake, run};
 use stickslip_bench::Results;
 use stickslip_testkit::{data_root, recorded_cases};
 
@@ -74,6 +74,7 @@ fn part(log: &Log) -> Log {
 /// thousand times the others, which a small set meets in few frames and a large one in all.
 fn frame_time(setup: &Setup, log: &Log, particles: usize) -> Result<f64, stickslip::RunError> {
     let options = RunOptions {
+        mode: Mode::Paper,
         particles,
         ..RunOptions::default()
     };

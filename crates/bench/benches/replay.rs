@@ -9,7 +9,7 @@ use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use stickslip::{Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
+use stickslip::{Mode, Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
 use stickslip_bench::{BlockOf64, LANES, Results, StepStatistics, instruction_sets};
 use stickslip_dynamics::{Dynamics, Level, Particles, StepInput, StepWork};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
@@ -106,6 +106,7 @@ fn is_wanted(case: &RecordedCase) -> bool {
 fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
     let capture = Capture::default();
     let options = RunOptions {
+        mode: Mode::Paper,
         occlusion: case.occlusion,
         ..RunOptions::default()
     };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use stickslip::{Method, Occlusion, RunOptions, TactileUse, Tracking};
+use stickslip::{Method, Mode, Occlusion, RunOptions, TactileUse, Tracking};
 use stickslip_evaluation::Variant;
 
 use crate::arg_values::{Rows, ThreadArgs, particles, positive};
@@ -73,9 +73,6 @@ pub struct FilterArgs {
     /// How to estimate
     #[arg(long, value_enum, default_value_t = MethodName::Particle)]
     pub method: MethodName,
-    /// Rules of the particle filter
-    #[arg(long, value_enum, default_value_t = Mode::Paper)]
-    pub mode: Mode,
     /// Ignore the tactile readings
     #[arg(long)]
     pub no_tactile: bool,
@@ -154,6 +151,9 @@ pub struct SharedArgs {
     /// Hide the camera's object poses for SECONDS about the middle of the log
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub occlude_middle: Option<f64>,
+    /// Rules of the particle filter
+    #[arg(long, value_enum, default_value_t = ModeName::Contact)]
+    pub mode: ModeName,
     /// Track the pusher from the rows up to each one only, as live
     #[arg(long)]
     pub causal: bool,
@@ -178,12 +178,20 @@ pub enum MethodName {
 
 /// Rules of the particle filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Mode {
-    /// As published
-    Paper,
-    /// Proposals that meet the contacts; refused until they exist
-    #[value(hide = true)]
+pub enum ModeName {
+    /// Friction, offsets and latency are unknown, sensors may fail for a while ([uncertainty] of the scene)
     Contact,
+    /// As published by Zhang & Trinkle (ICRA 2012)
+    Paper,
+}
+
+impl From<ModeName> for Mode {
+    fn from(name: ModeName) -> Self {
+        match name {
+            ModeName::Contact => Self::Contact,
+            ModeName::Paper => Self::Paper,
+        }
+    }
 }
 
 impl SharedArgs {
@@ -227,6 +235,7 @@ impl FilterArgs {
     pub fn run_options(&self) -> RunOptions {
         RunOptions {
             method: self.method.into(),
+            mode: self.shared.mode.into(),
             particles: self.shared.particles,
             seed: self.seed,
             tactile: self.tactile(),

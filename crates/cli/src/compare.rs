@@ -67,7 +67,8 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
         show(text)?;
     }
     if let Some(path) = &args.report {
-        let played = pool.install(|| played::played(&comparison, &folders))?;
+        let played =
+            pool.install(|| played::played(&comparison, args.shared.mode.into(), &folders))?;
         let path = write_report(path.clone(), &page::report(&comparison, played))?;
         talk(format_args!("wrote {}", path.display()));
     }
@@ -169,6 +170,7 @@ fn jobs(folders: &[Folder], seeds: u64) -> Vec<Job> {
 /// Runs one job; a panic in it is an error of its folder.
 fn run(args: &CompareArgs, folder: &Folder, job: Job) -> Result<ShownScores> {
     let conditions = RunConditions {
+        mode: args.shared.mode.into(),
         particles: args.shared.particles,
         tracking: folder.tracking,
         occlusion: folder.occlusion,

@@ -14,7 +14,7 @@ use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{Experiment, write_estimate};
 use stickslip_report::{Block, CloudSample, Report, ReportedExperiment, Table, number};
 
-use crate::args::{FilterArgs, MethodName, Mode, Program};
+use crate::args::{FilterArgs, MethodName, Program};
 use crate::experiment::{check_occlusion, experiment_name, read_experiment, reference_name};
 use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
 use crate::origin::origin;
@@ -53,12 +53,6 @@ struct Summary<'a> {
 
 /// Runs the command.
 pub fn filter(args: &FilterArgs) -> Result<Verdict> {
-    if args.mode == Mode::Contact {
-        let text = "--mode contact does not exist yet; --mode paper is the only one";
-        return Err(Program::command()
-            .error(clap::error::ErrorKind::InvalidValue, text)
-            .into());
-    }
     let (experiment, verdict) = read_experiment(
         &args.scene,
         &args.log,

@@ -8,13 +8,13 @@ use crate::geometry::narrow_phase::NarrowPhase;
 use crate::geometry::placed::{Placed, may_touch};
 use crate::geometry::shape::Shape;
 use crate::geometry::transform::Transform;
-use crate::geometry::vec2::{Vec2, splat};
+use crate::geometry::vec2::Vec2;
 use crate::input::{Body, PusherMotion};
 use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
-use crate::prepared_scene::{PreparedScene, PusherContext, StepContext};
+use crate::prepared_scene::{PreparedScene, PusherContext, StepBodies, StepContext};
 use crate::scene::{Fixel, Scene};
 use crate::se2::{Twist, Wrench};
 
@@ -116,7 +116,7 @@ impl<const W: usize> Assembly<W> {
     pub fn collect(
         &mut self,
         prepared: &PreparedScene,
-        (context, pusher): (&StepContext, Option<&PusherContext<W>>),
+        bodies: StepBodies<'_, W>,
         particles: &Particles<W>,
         narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
@@ -124,6 +124,9 @@ impl<const W: usize> Assembly<W> {
         self.rows.clear();
         ncp.clear();
         let object = Transform::from(particles.pose);
+        let StepBodies {
+            context, pusher, ..
+        } = bodies;
         self.set_body(prepared, (context, pusher), (particles, &object), ncp);
         let scene = &prepared.scene;
 
@@ -150,12 +153,17 @@ impl<const W: usize> Assembly<W> {
         for (j, (Fixel { shape, .. }, transform)) in
             scene.fixels.iter().zip(&prepared.fixels).enumerate()
         {
-            let active = self.may_touch(scene, &object, shape, splat(transform.origin));
+            let mut transform: Transform<Lanes<W>> = transform.splat();
+            if let Some([x, y]) = bodies.fixel_offsets.get(j) {
+                transform.origin[0] += *x;
+                transform.origin[1] += *y;
+            }
+            let active = self.may_touch(scene, &object, shape, transform.origin);
             if active.any() {
                 let fixel = Other {
                     body: Body::Fixel(j),
                     shape,
-                    transform: transform.splat(),
+                    transform,
                     mu: particles.friction.mu_f,
                     motion: None,
                     active,

@@ -29,6 +29,16 @@ impl PusherMotion {
     }
 }
 
+/// Where pusher and fixels stand beside the poses that the input and the scene give, particle by
+/// particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Offsets<'a, const W: usize> {
+    /// Offset of the pusher (m), chunk by chunk.
+    pub pusher: &'a [[Lanes<W>; 2]],
+    /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
+    pub fixels: &'a [[Lanes<W>; 2]],
+}
+
 /// What drives one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepInput {

@@ -22,7 +22,7 @@ pub use geometry::part::Part;
 pub use geometry::placed::Placed;
 pub use geometry::shape::Shape;
 pub use geometry::shape_error::ShapeError;
-pub use input::{Body, PusherMotion, StepInput};
+pub use input::{Body, Offsets, PusherMotion, StepInput};
 pub use ncp::problem::{ContactPoint, Foot, Stall, StepProblem, StepSolution};
 pub use ncp::report::{Outcome, Report, Route, TOLERANCE};
 pub use ncp::rows::{ContactRow, FootRow, Ncp};

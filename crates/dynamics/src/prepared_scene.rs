@@ -4,7 +4,7 @@
 use stickslip_lanes::{Lanes, Mask};
 
 use crate::geometry::transform::Transform;
-use crate::input::PusherMotion;
+use crate::input::{Offsets, PusherMotion};
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
 
@@ -73,10 +73,26 @@ impl StepContext {
     }
 }
 
+/// What the particles of one chunk meet in a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepBodies<'a, const W: usize> {
+    pub context: &'a StepContext,
+    /// `None` while it is off the plane in every lane.
+    pub pusher: Option<&'a PusherContext<W>>,
+    /// Offsets of the fixels (m); none where they stand as the scene says.
+    pub fixel_offsets: &'a [[Lanes<W>; 2]],
+}
+
 /// The pusher of every chunk of particles in one step.
 pub(crate) trait Pushers<const W: usize> {
     /// That of one chunk; `None` while it is off the plane in every lane.
     fn of(&self, chunk: usize) -> Option<PusherContext<W>>;
+
+    /// Offsets of the fixels (m) for one chunk; none where they stand as the scene says.
+    #[inline(always)]
+    fn fixel_offsets(&self, _chunk: usize) -> &[[Lanes<W>; 2]] {
+        &[]
+    }
 }
 
 /// The same pusher for all particles; its lanes are made where they are used.
@@ -86,6 +102,15 @@ pub(crate) struct SharedPusher(Option<(PusherMotion, Transform, f64)>);
 /// One pusher for each particle, chunk by chunk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EachPusher<'a, const W: usize>(pub &'a [Option<PusherContext<W>>]);
+
+/// The same pusher for all particles, but beside its pose, and fixels beside theirs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OffsetPusher<'a, const W: usize> {
+    pub pusher: SharedPusher,
+    pub offsets: Offsets<'a, W>,
+    /// Number of fixels.
+    pub fixels: usize,
+}
 
 /// A pusher's motion and where it stands, lane by lane.
 #[derive(Clone, Copy, Debug)]
@@ -124,6 +149,24 @@ impl<const W: usize> Pushers<W> for EachPusher<'_, W> {
     #[inline(always)]
     fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
         self.0[chunk]
+    }
+}
+
+impl<const W: usize> Pushers<W> for OffsetPusher<'_, W> {
+    #[inline(always)]
+    fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
+        let mut context: PusherContext<W> = self.pusher.of(chunk)?;
+        let [x, y] = self.offsets.pusher[chunk];
+        context.motion.pose.x += x;
+        context.motion.pose.y += y;
+        context.transform.origin[0] += x;
+        context.transform.origin[1] += y;
+        Some(context)
+    }
+
+    #[inline(always)]
+    fn fixel_offsets(&self, chunk: usize) -> &[[Lanes<W>; 2]] {
+        &self.offsets.fixels[chunk * self.fixels..][..self.fixels]
     }
 }
 

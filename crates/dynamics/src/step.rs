@@ -11,14 +11,15 @@ use stickslip_lanes::{Lanes, Level, Mask, on_widest};
 use crate::assembly::Assembly;
 use crate::friction::Friction;
 use crate::geometry::narrow_phase::NarrowPhase;
-use crate::input::{Body, PusherMotion, StepInput};
+use crate::input::{Body, Offsets, PusherMotion, StepInput};
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::{Outcome, Report};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
 use crate::prepared_scene::{
-    EachPusher, PreparedScene, PusherContext, Pushers, SharedPusher, StepContext,
+    EachPusher, OffsetPusher, PreparedScene, PusherContext, Pushers, SharedPusher, StepBodies,
+    StepContext,
 };
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
@@ -203,6 +204,35 @@ impl Dynamics {
         work.pushers = contexts;
     }
 
+    /// The same for particles whose pusher and fixels stand beside the given poses, each by its own
+    /// `offsets`.
+    ///
+    /// # Panics
+    /// If there is not one offset of the pusher for each chunk of particles, and of each fixel.
+    pub fn step_block_offset<const W: usize>(
+        &self,
+        input: &StepInput,
+        offsets: Offsets<'_, W>,
+        particles: &mut [Particles<W>],
+        work: &mut StepWork<W>,
+    ) {
+        let (chunks, fixels) = (particles.len(), self.scene.fixels.len());
+        assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
+        assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
+        self.dispatch::<W>(
+            #[inline(always)]
+            || {
+                let pusher = SharedPusher::new(&self.scene, input.pusher.as_ref());
+                let pusher = OffsetPusher {
+                    pusher,
+                    offsets,
+                    fixels,
+                };
+                self.step_lanes(input.h, &pusher, particles, work);
+            },
+        );
+    }
+
     /// Runs a step of `W` particles side by side on the vector instructions that pay for it.
     #[inline(always)]
     fn dispatch<const W: usize>(&self, step: impl FnOnce()) {
@@ -369,7 +399,11 @@ impl<P: Pushers<W>, const W: usize> Source<W> for Problems<'_, P, W> {
     fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
         self.chunks[chunk].collect(
             self.scene,
-            (&self.context, self.pushers.of(self.first + chunk).as_ref()),
+            StepBodies {
+                context: &self.context,
+                pusher: self.pushers.of(self.first + chunk).as_ref(),
+                fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
+            },
             &self.particles[chunk],
             self.narrow,
             ncp,

@@ -7,6 +7,7 @@ use stickslip_dynamics::{Feet, Friction, Scene};
 
 use crate::range::{Rule, SetupError, Unit};
 use crate::setup::{Camera, FilterSettings, Limits, Setup, Tactile};
+use crate::uncertainty::Uncertainty;
 
 /// A number with its name, what it must be and its unit.
 type Number = (&'static str, f64, Rule, Unit);
@@ -21,7 +22,8 @@ impl Setup {
         let parts = scene(&self.scene).into_iter().chain(camera);
         let parts = parts
             .chain(tactile(&self.tactile))
-            .chain(filter(&self.filter));
+            .chain(filter(&self.filter))
+            .chain(uncertainty(&self.uncertainty));
         for (name, value, rule, unit) in parts {
             check(name, value, rule, unit)?;
         }
@@ -228,5 +230,42 @@ fn filter(filter: &FilterSettings) -> Vec<Number> {
             Unit::None,
         )
     }));
+    numbers
+}
+
+fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
+    use Rule::{NotNegative, Positive, Share};
+    let friction = unknown.friction.fields();
+    let names = [
+        "uncertainty.mu_s",
+        "uncertainty.mu_p",
+        "uncertainty.mu_f",
+        "uncertainty.d_tri",
+    ];
+    let plain = [
+        ("uncertainty.drift", unknown.drift),
+        ("uncertainty.variation", unknown.variation),
+        ("uncertainty.force_std", unknown.force_std),
+        ("uncertainty.roughness", unknown.roughness),
+    ];
+    let lengths = [
+        ("uncertainty.pusher_offset", unknown.pusher_offset),
+        ("uncertainty.fixel_position", unknown.fixel_position),
+    ];
+    let positive = [
+        ("uncertainty.variation_length", unknown.variation_length),
+        ("uncertainty.touch_gap", unknown.touch_gap),
+    ];
+    let friction = names
+        .into_iter()
+        .zip(friction)
+        .map(|(name, std)| (name, *std));
+    let mut numbers: Vec<Number> = friction
+        .chain(plain)
+        .map(|(name, value)| (name, value, NotNegative, Unit::None))
+        .collect();
+    numbers.extend(lengths.map(|(name, value)| (name, value, NotNegative, Unit::Metre)));
+    numbers.extend(positive.map(|(name, value)| (name, value, Positive, Unit::Metre)));
+    numbers.push(("uncertainty.latency", unknown.latency, Share, Unit::Second));
     numbers
 }

@@ -2,9 +2,9 @@
 
 use stickslip_dynamics::StepInput;
 
-use crate::mode::Mode;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
+use crate::mode::Mode;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
 use crate::particle::observer::Observer;

@@ -3,21 +3,28 @@
 
 use stickslip_dynamics::Friction;
 
-/// What the nominal numbers of a scene leave open. Paper mode takes them as they are.
+/// `[uncertainty]` of a scene file: what its other numbers leave open. Paper mode takes them as they
+/// are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Standard deviations of ln β, the priors of the friction parameters: 0.45 is 45 %.
     pub friction: Friction,
-    /// Standard deviations of the logarithm by which friction differs from place to place.
-    pub variation: Friction,
+    /// Random step of ln β per step of 1/30 s while the camera looks; it keeps the prior.
+    pub drift: f64,
+    /// Standard deviation of the logarithm by which friction differs from place to place.
+    pub variation: f64,
     /// Way over which that variation forgets itself (m).
     pub variation_length: f64,
-    /// Random step of ln β per step of 1/30 s while the camera looks, which keeps copies of a
-    /// particle apart.
-    pub jitter: f64,
+    /// Disturbing force per step of 1/30 s, as a share of μ_s m g on each axis, times the radius of
+    /// gyration for rotation.
+    pub force_std: f64,
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
+    /// Standard deviation of the error of each fixel's position, on each axis (m).
+    pub fixel_position: f64,
+    /// Standard deviation of the logarithm of a factor of these two offsets: rigs differ.
+    pub roughness: f64,
     /// Mean time by which the camera lags more than the scene says (s).
     pub latency: f64,
     /// Gap at which object and body may touch already, as far as shapes and poses are known (m).
@@ -33,17 +40,15 @@ impl Default for Uncertainty {
                 mu_f: 0.45,
                 d_tri: 0.25,
             },
-            variation: Friction {
-                mu_s: 0.1,
-                mu_p: 0.1,
-                mu_f: 0.1,
-                d_tri: 0.1,
-            },
+            drift: 0.05,
+            variation: 0.05,
             variation_length: 5e-3,
-            jitter: 0.01,
-            pusher_offset: 2e-4,
-            latency: 0.02,
-            touch_gap: 1e-4,
+            force_std: 0.25,
+            pusher_offset: 1.5e-4,
+            fixel_position: 7e-5,
+            roughness: 1.0,
+            latency: 0.03,
+            touch_gap: 3e-4,
         }
     }
 }

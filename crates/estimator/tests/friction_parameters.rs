@@ -8,8 +8,8 @@ use std::sync::Mutex;
 use common::{log, setup};
 use stickslip::dynamics::{Friction, Pose};
 use stickslip::{
-    FilterSettings, Limits, Log, Observer, Occlusion, ParticleView, RunOptions, Setup, SolvedStep,
-    run_observed,
+    FilterSettings, Limits, Log, Mode, Observer, Occlusion, ParticleView, RunOptions, Setup,
+    SolvedStep, run_observed,
 };
 
 /// The friction of every particle after every row.
@@ -38,6 +38,7 @@ fn friction_rows(setup: &Setup, log: &Log, occlusion: Occlusion) -> Vec<Vec<Fric
         ..setup.clone()
     };
     let options = RunOptions {
+        mode: Mode::Paper,
         particles: 64,
         occlusion,
         ..RunOptions::default()

@@ -5,8 +5,8 @@ use std::sync::Mutex;
 
 use stickslip::dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
-    Camera, FilterSettings, Log, Observer, Occlusion, ParticleView, Run, RunOptions, Setup,
-    SolvedStep, Tactile, run, run_observed,
+    Camera, FilterSettings, Log, Mode, Observer, Occlusion, ParticleView, Run, RunOptions, Setup,
+    SolvedStep, Tactile, Uncertainty, run, run_observed,
 };
 
 const ROWS: usize = 40;
@@ -97,6 +97,7 @@ fn setup() -> Setup {
         camera: Some(camera),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        uncertainty: Uncertainty::default(),
         start: None,
     }
 }
@@ -124,6 +125,7 @@ fn watched(options: &RunOptions) -> (Run, Vec<Moments>) {
 #[test]
 fn an_observer_sees_the_particles_that_the_estimate_is_made_of() {
     let options = RunOptions {
+        mode: Mode::Paper,
         particles: 100,
         occlusion: Occlusion::Rows { from: 30, to: None },
         ..RunOptions::default()
@@ -179,6 +181,7 @@ fn an_observer_sees_the_particles_that_the_estimate_is_made_of() {
 #[test]
 fn an_observer_changes_no_bit() {
     let options = RunOptions {
+        mode: Mode::Paper,
         particles: 100,
         ..RunOptions::default()
     };
@@ -189,6 +192,7 @@ fn an_observer_changes_no_bit() {
 #[test]
 fn methods_without_particles_show_none() {
     let options = RunOptions {
+        mode: Mode::Paper,
         method: stickslip::Method::Kalman,
         ..RunOptions::default()
     };

@@ -2,7 +2,8 @@
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
-    Camera, Estimate, FilterSettings, Log, Occlusion, RunOptions, Setup, Tactile, run,
+    Camera, Estimate, FilterSettings, Log, Mode, Occlusion, RunOptions, Setup, Tactile,
+    Uncertainty, run,
 };
 
 /// First row without the camera, just before the block meets the fixel.
@@ -64,6 +65,7 @@ fn setup(aside: f64) -> Setup {
         camera: Some(camera),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        uncertainty: Uncertainty::default(),
         start: None,
     }
 }
@@ -95,6 +97,7 @@ fn estimate(aside: f64, readings: impl Fn(usize) -> bool) -> Estimate {
         to: None,
     };
     let options = RunOptions {
+        mode: Mode::Paper,
         particles: 200,
         occlusion,
         ..RunOptions::default()

@@ -132,7 +132,7 @@ pub(crate) fn true_touches(
 #[cfg(test)]
 mod tests {
     use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pusher};
-    use stickslip::{FilterSettings, Log, Tactile};
+    use stickslip::{FilterSettings, Log, Tactile, Uncertainty};
     use stickslip_formats::{Truth, TruthFacts};
 
     use super::*;
@@ -172,6 +172,7 @@ mod tests {
             camera: None,
             tactile: Tactile::default(),
             filter: FilterSettings::default(),
+            uncertainty: Uncertainty::default(),
             start: None,
         }
     }

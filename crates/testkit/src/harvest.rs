@@ -5,7 +5,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
-use stickslip::{Observer, RunError, RunOptions, SolvedStep, run_observed};
+use stickslip::{Mode, Observer, RunError, RunOptions, SolvedStep, run_observed};
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution};
 
 use crate::recorded_case::RecordedCase;
@@ -67,6 +67,7 @@ pub fn harvest(case: &RecordedCase, options: &HarvestOptions) -> Result<Harvest,
         options.particles
     );
     let run_options = RunOptions {
+        mode: Mode::Paper,
         particles: options.particles,
         occlusion: case.occlusion,
         ..RunOptions::default()

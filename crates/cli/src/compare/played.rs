@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
+use stickslip::Mode;
 use stickslip_evaluation::{RunConditions, Variant};
 use stickslip_report::{ReportedExperiment, Section};
 
@@ -12,7 +13,7 @@ use crate::reported_run::reported_run;
 
 /// All of up to two experiments; of more, the one on which the particle filter fares as on the median
 /// one, and the one on which it fares worst.
-pub fn played(comparison: &Comparison, folders: &[Folder]) -> Result<Vec<Section>> {
+pub fn played(comparison: &Comparison, mode: Mode, folders: &[Folder]) -> Result<Vec<Section>> {
     let mut ranked: Vec<(&FolderResult, f64)> = comparison
         .folders
         .iter()
@@ -27,7 +28,7 @@ pub fn played(comparison: &Comparison, folders: &[Folder]) -> Result<Vec<Section
     let section = |(rank, (result, _)): (usize, &(&FolderResult, f64))| {
         let path = |folder: &&Folder| folder.path.display().to_string() == result.folder;
         let folder = folders.iter().find(path).expect("a result has its folder");
-        let section = section(folder, comparison.particles)?;
+        let section = section(folder, mode, comparison.particles)?;
         let place = format!(
             "number {} of {count} by the particle filter's WMSE",
             rank + 1
@@ -48,13 +49,14 @@ fn particle_score(result: &FolderResult) -> Option<f64> {
 }
 
 /// Every variant with the first seed.
-fn section(folder: &Folder, particles: usize) -> Result<Section> {
+fn section(folder: &Folder, mode: Mode, particles: usize) -> Result<Section> {
     let Folder {
         experiment,
         occlusion,
         ..
     } = folder;
     let conditions = RunConditions {
+        mode,
         particles,
         tracking: folder.tracking,
         occlusion: *occlusion,

@@ -3,8 +3,8 @@
 use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::Block;
 
-use crate::mode::Mode;
 use crate::angle::nearest_zero;
+use crate::mode::Mode;
 use crate::particle::chunk::{Column, load_chunk, load_pose};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;

@@ -11,11 +11,14 @@ const BITS: usize = 52;
 /// Flags that do not belong to a fixel.
 const SINGLE: usize = 8;
 
+/// Flags of each fixel.
+const FLAGS_PER_FIXEL: usize = 3;
+
 /// Columns of contact mode that do not belong to a fixel.
-const UNKNOWNS: usize = 8;
+const UNKNOWNS: usize = 9;
 
 /// Columns of contact mode for each fixel.
-const PER_FIXEL: usize = 2;
+const PER_FIXEL: usize = 4;
 
 /// A condition of every particle: one bit of a column that holds nothing but such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,9 +107,14 @@ impl Columns {
         Self::flag(SINGLE + self.fixels + fixel)
     }
 
+    /// Whether the object ever pressed on fixel j (contact mode).
+    pub fn met(&self, fixel: usize) -> Flag {
+        Self::flag(SINGLE + 2 * self.fixels + fixel)
+    }
+
     /// First column after the flags.
     fn unknowns(&self) -> usize {
-        Self::FLAGS + (SINGLE + 2 * self.fixels).div_ceil(BITS)
+        Self::FLAGS + (SINGLE + FLAGS_PER_FIXEL * self.fixels).div_ceil(BITS)
     }
 
     /// Logarithms by which the four friction parameters differ at this place (contact mode).
@@ -114,7 +122,12 @@ impl Columns {
         self.unknowns()
     }
 
-    /// Offset of the pusher's logged poses: x, y (m) (contact mode).
+    /// Logarithm by which the rig is rougher than told: a factor of all offsets (contact mode).
+    pub fn roughness(&self) -> usize {
+        self.unknowns() + 8
+    }
+
+    /// Offset of the pusher's logged poses, in standard deviations: x, y (contact mode).
     pub fn pusher_offset(&self) -> usize {
         self.unknowns() + 4
     }
@@ -132,6 +145,11 @@ impl Columns {
     /// Probabilities that sensor `fixel` is stuck at 0, and at 1 (contact mode).
     pub fn stuck(&self, fixel: usize) -> usize {
         self.unknowns() + UNKNOWNS + PER_FIXEL * fixel
+    }
+
+    /// Offset of fixel `fixel` from its pose, in standard deviations: x, y (contact mode).
+    pub fn fixel_offset(&self, fixel: usize) -> usize {
+        self.stuck(fixel) + 2
     }
 
     /// x of the past pose in ring slot `slot`; y and θ follow.

@@ -178,7 +178,8 @@ impl<'o> ContactFilter<'o> {
         };
         let trusted = self.unexplained >= BELIEVED_AFTER;
         if trusted != (before >= BELIEVED_AFTER) {
-            self.filter.change_model(|model| model.trust_camera(trusted));
+            self.filter
+                .change_model(|model| model.trust_camera(trusted));
         }
     }
 

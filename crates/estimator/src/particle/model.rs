@@ -4,8 +4,8 @@
 use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
-use crate::mode::Mode;
 use crate::angle::wrapped;
+use crate::mode::Mode;
 use crate::particle::camera_likelihood::{CameraLikelihood, shown};
 use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
@@ -40,13 +40,7 @@ pub struct ContactModel<'o> {
 
 impl<'o> ContactModel<'o> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
-    pub fn new(
-        mode: Mode,
-        setup: &Setup,
-        camera: Camera,
-        start: Pose,
-        history: usize,
-    ) -> Self {
+    pub fn new(mode: Mode, setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
         let columns = Columns::new(mode, setup.scene.fixels.len(), history);
         Self {
             transition: Transition {
@@ -114,18 +108,19 @@ impl<'o> ContactModel<'o> {
             let nominal = setup.scene.nominal.fields()[k];
             let drawn = nominal * libm::exp(prior.friction.fields()[k] * friction[k]);
             block.column_mut(Columns::FRICTION + k)[i] = drawn.clamp(limits[k].min, limits[k].max);
-            block.column_mut(columns.variation() + k)[i] =
-                prior.variation.fields()[k] * variation[k];
+            block.column_mut(columns.variation() + k)[i] = prior.variation * variation[k];
         }
         for axis in 0..2 {
-            block.column_mut(columns.pusher_offset() + axis)[i] =
-                prior.pusher_offset * normals[8 + axis];
+            block.column_mut(columns.pusher_offset() + axis)[i] = normals[8 + axis];
         }
+        block.column_mut(columns.roughness())[i] = prior.roughness * normals[10];
         let late = -libm::log(draw.uniform(particle, 15));
         block.column_mut(columns.latency())[i] = self.camera.latency + prior.latency * late;
         let start = TouchChannel::new(&setup.tactile).start();
         for j in 0..columns.fixels() {
             write(block, columns.stuck(j), i, [&start[0], &start[1]]);
+            let offset = draw.normals::<2>(particle, 16 + 2 * j as u32);
+            write(block, columns.fixel_offset(j), i, [&offset[0], &offset[1]]);
         }
     }
 }
@@ -237,12 +232,7 @@ impl Model for ContactModel<'_> {
             return;
         };
         for (i, particle) in block.particles() {
-            let chunk = shown(
-                self.columns(),
-                observation,
-                &block.as_block(),
-                i / LANES,
-            );
+            let chunk = shown(self.columns(), observation, &block.as_block(), i / LANES);
             let shown = chunk.map(|column| column.0[i % LANES]);
             let drawn = self.drawn_around(&measured, draw.normals::<3>(particle, 0));
             let shift = Pose {

@@ -2,8 +2,8 @@
 //! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, PusherMotion, StepInput,
-    StepWork, Twist, on_widest,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Offsets, Outcome, Particles, StepInput, StepWork,
+    Twist, on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
@@ -58,8 +58,9 @@ pub struct Propagation {
     particles: [Particles<LANES>; CHUNKS],
     /// Friction of the object as a whole: that of this place differs from it in contact mode.
     proposed: [Friction<Column>; CHUNKS],
-    /// Each particle's pusher (contact mode).
-    pushers: Vec<[Option<PusherMotion>; LANES]>,
+    /// Where each particle's pusher and fixels stand beside their poses (contact mode).
+    pusher_offsets: Vec<[Column; 2]>,
+    fixel_offsets: Vec<[Column; 2]>,
     involved: [Involved; CHUNKS],
     normals: [[f64; BLOCK]; 4],
     level: Level,
@@ -105,7 +106,8 @@ impl Default for Propagation {
             work: StepWork::default(),
             particles: [Particles::default(); CHUNKS],
             proposed: [Friction::default(); CHUNKS],
-            pushers: Vec::new(),
+            pusher_offsets: Vec::new(),
+            fixel_offsets: Vec::new(),
             involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
             level: Level::new(),
@@ -148,7 +150,7 @@ impl Propagation {
                     &mut self.particles[..chunks],
                     &mut self.work,
                 ),
-                Mode::Contact => self.step_with_own_pushers(transition, input, block),
+                Mode::Contact => self.step_with_offsets(transition, input, block),
             }
             on_widest(
                 level,
@@ -245,11 +247,11 @@ impl Propagation {
         let unsure = &setup.uncertainty;
         let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
         let rho = setup.scene.object.gyration_radius();
-        let (priors, stds) = (unsure.friction.fields(), unsure.variation.fields());
+        let priors = unsure.friction.fields();
         let (nominal, limits) = (setup.scene.nominal.fields(), setup.filter.limits.fields());
         let drawn = plan.parameter_noise == ParameterNoise::Drawn;
         let jitter = if drawn {
-            unsure.jitter * (h / NOISE_STEP).sqrt()
+            unsure.drift * (h / NOISE_STEP).sqrt()
         } else {
             0.0
         };
@@ -269,10 +271,16 @@ impl Propagation {
                 } else {
                     1.0
                 };
-                if *priors[k] > 0.0 && step > 0.0 {
-                    let log = libm::log(friction.0[lane] / nominal[k]);
-                    let log = (1.0 - step * step).sqrt() * log + step * priors[k] * self.normals[k][i];
-                    friction.0[lane] = (nominal[k] * libm::exp(log)).clamp(limits[k].min, limits[k].max);
+                if *priors[k] > 0.0 && step > 0.0 && *nominal[k] > 0.0 {
+                    let kept = match step < 1.0 {
+                        true => {
+                            (1.0 - step * step).sqrt() * libm::log(friction.0[lane] / nominal[k])
+                        }
+                        false => 0.0,
+                    };
+                    let log = kept + step * priors[k] * self.normals[k][i];
+                    friction.0[lane] =
+                        (nominal[k] * libm::exp(log)).clamp(limits[k].min, limits[k].max);
                 }
             }
         }
@@ -291,9 +299,26 @@ impl Propagation {
             let fresh = (1.0 - kept * kept).sqrt();
             for (k, friction) in particles.friction.fields_mut().into_iter().enumerate() {
                 let variation = &mut block.column_mut(columns.variation() + k)[i];
-                *variation = kept * *variation + fresh * stds[k] * self.normals[k][i];
+                *variation = kept * *variation + fresh * unsure.variation * self.normals[k][i];
                 let here = friction.0[lane] * libm::exp(*variation);
                 friction.0[lane] = here.clamp(limits[k].min, limits[k].max);
+            }
+        }
+
+        // where the fixels stand: drawn anew until one is met
+        for j in 0..columns.fixels() {
+            self.draw_normals(draw, VARIATION_PAIR + 4 + 2 * j as u32, block);
+            for (i, _) in block.particles() {
+                let met = is_set(&block.as_block(), columns.met(j), i);
+                let step = match (met, drawn) {
+                    (false, _) => 1.0,
+                    (true, true) => OFFSET_STEP,
+                    (true, false) => continue,
+                };
+                for axis in 0..2 {
+                    let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
+                    *offset = (1.0 - step * step).sqrt() * *offset + step * self.normals[axis][i];
+                }
             }
         }
 
@@ -304,44 +329,56 @@ impl Propagation {
             for (i, _) in block.particles() {
                 for axis in 0..2 {
                     let offset = &mut block.column_mut(columns.pusher_offset() + axis)[i];
-                    *offset = (1.0 - step * step).sqrt() * *offset
-                        + step * unsure.pusher_offset * self.normals[axis][i];
+                    *offset = (1.0 - step * step).sqrt() * *offset + step * self.normals[axis][i];
                 }
+                let roughness = &mut block.column_mut(columns.roughness())[i];
+                *roughness = (1.0 - step * step).sqrt() * *roughness
+                    + step * unsure.roughness * self.normals[3][i];
                 let told = setup.camera.map_or(0.0, |camera| camera.latency);
                 let latency = &mut block.column_mut(columns.latency())[i];
-                *latency = told + (*latency - told + step * unsure.latency * self.normals[2][i]).abs();
+                *latency =
+                    told + (*latency - told + step * unsure.latency * self.normals[2][i]).abs();
             }
         }
     }
 
-    /// Contact mode: each particle's pusher stands beside the logged one.
-    fn step_with_own_pushers(
+    /// Contact mode: each particle's pusher and fixels stand beside their poses.
+    fn step_with_offsets(
         &mut self,
         transition: &Transition<'_>,
         input: &StepInput,
         block: &BlockMut<'_>,
     ) {
+        let columns = &transition.columns;
         let chunks = block.len().div_ceil(LANES);
-        let offset = transition.columns.pusher_offset();
-        let (x, y) = (block.column(offset), block.column(offset + 1));
-        let last = block.len() - 1;
-        self.pushers.clear();
-        self.pushers.extend((0..chunks).map(|chunk| {
-            std::array::from_fn(|lane| {
-                let i = (chunk * LANES + lane).min(last);
-                input.pusher.map(|mut pusher| {
-                    pusher.pose.x += x[i];
-                    pusher.pose.y += y[i];
-                    pusher
-                })
-            })
-        }));
-        transition.dynamics.step_block_each(
-            input.h,
-            &self.pushers,
-            &mut self.particles[..chunks],
-            &mut self.work,
-        );
+        let unsure = &transition.setup.uncertainty;
+        let offset = |column: usize, chunk: usize, scale: Column| {
+            let mut offset = [Lanes::ZERO; 2];
+            load_columns(block, column, chunk, offset.each_mut());
+            offset.map(|offset| offset * scale)
+        };
+        self.pusher_offsets.clear();
+        self.fixel_offsets.clear();
+        for chunk in 0..chunks {
+            let mut rougher = Lanes::ZERO;
+            load_columns(block, columns.roughness(), chunk, [&mut rougher]);
+            let rougher = Lanes(rougher.0.map(libm::exp));
+            let scale = rougher * unsure.pusher_offset;
+            let pusher = offset(columns.pusher_offset(), chunk, scale);
+            self.pusher_offsets.push(pusher);
+            let fixels = 0..columns.fixels();
+            let scale = rougher * unsure.fixel_position;
+            let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
+            self.fixel_offsets.extend(fixels);
+        }
+        let offsets = Offsets {
+            pusher: &self.pusher_offsets,
+            fixels: &self.fixel_offsets,
+        };
+        let particles = &mut self.particles[..chunks];
+        let work = &mut self.work;
+        let dynamics = &transition.dynamics;
+        dynamics.step_block_offset(input, offsets, particles, work);
     }
 
     /// Contact mode: weighs the tactile readings at the end of the step.
@@ -403,11 +440,12 @@ impl Propagation {
     ) {
         self.draw_normals(draw, pair, block);
         let scene = &transition.setup.scene;
-        let share = transition.setup.filter.force_std
-            * scene.object.mass
-            * scene.gravity
-            * NOISE_STEP
-            * (h / NOISE_STEP).sqrt();
+        let per_step = match transition.columns.mode() {
+            Mode::Contact => transition.setup.uncertainty.force_std,
+            Mode::Paper => transition.setup.filter.force_std,
+        };
+        let share =
+            per_step * scene.object.mass * scene.gravity * NOISE_STEP * (h / NOISE_STEP).sqrt();
         let rho = scene.object.gyration_radius();
         for (chunk, particles) in self
             .particles
@@ -520,6 +558,13 @@ impl Propagation {
                     .gt(touch_impulse);
                 flags.set(transition.columns.contact_fixel(j), touches);
                 let against = transition.columns.driven_contact_fixel(j);
+                let met = transition.columns.met(j);
+                let met_before = flags.get(met);
+                let now = self
+                    .work
+                    .normal_impulses(chunk, Body::Fixel(j))
+                    .gt(Lanes::ZERO);
+                flags.set(met, met_before | now);
                 let before = flags.get(against);
                 flags.set(against, pressed & touches | !pressed & before);
             }

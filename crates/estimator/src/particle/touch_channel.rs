@@ -39,8 +39,7 @@ impl TouchChannel {
     pub fn read(&self, stuck: Stuck, h: f64, touch: f64, reading: bool) -> (Stuck, f64) {
         // what may have happened since the last reading
         let freed = 1.0 - libm::exp(-self.recovery * h);
-        let stuck: Stuck =
-            std::array::from_fn(|k| stuck[k] + freed * (self.share[k] - stuck[k]));
+        let stuck: Stuck = std::array::from_fn(|k| stuck[k] + freed * (self.share[k] - stuck[k]));
         let works = 1.0 - stuck[0] - stuck[1];
 
         // Bayes' rule

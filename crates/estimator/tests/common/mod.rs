@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test uses some")]
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
-use stickslip::{Camera, FilterSettings, Log, Setup, Tactile};
+use stickslip::{Camera, FilterSettings, Log, Setup, Tactile, Uncertainty};
 
 /// Frames per second (Hz).
 pub const RATE: f64 = 30.0;
@@ -53,6 +53,7 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
         }),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        uncertainty: Uncertainty::default(),
         start: None,
     }
 }

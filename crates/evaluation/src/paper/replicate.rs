@@ -1,6 +1,6 @@
 //! One of the paper's experiments with one seed: [`Replicate`].
 
-use stickslip::{Mode, Camera, Occlusion, RunError, Setup, Tracking};
+use stickslip::{Camera, Mode, Occlusion, RunError, Setup, Tracking};
 use stickslip_formats::{Experiment, read_scene, read_truth_json};
 
 use super::noise::Noise;

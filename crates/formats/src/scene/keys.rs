@@ -3,12 +3,21 @@
 use crate::nearest::nearest;
 
 /// The keys of each table of the format; the first one is the document itself.
-const TABLES: [(&str, &[&str]); 10] = [
+const TABLES: [(&str, &[&str]); 11] = [
     (
         "",
         &[
-            "gravity", "object", "support", "pusher", "fixels", "fixel", "camera", "tactile",
-            "filter", "start",
+            "gravity",
+            "object",
+            "support",
+            "pusher",
+            "fixels",
+            "fixel",
+            "camera",
+            "tactile",
+            "filter",
+            "uncertainty",
+            "start",
         ],
     ),
     ("object", &["mass", "inertia", "shape"]),
@@ -44,6 +53,24 @@ const TABLES: [(&str, &[&str]); 10] = [
             "mu_p",
             "mu_f",
             "d_tri",
+        ],
+    ),
+    (
+        "uncertainty",
+        &[
+            "mu_s",
+            "mu_p",
+            "mu_f",
+            "d_tri",
+            "drift",
+            "variation",
+            "variation_length",
+            "force_std",
+            "pusher_offset",
+            "fixel_position",
+            "roughness",
+            "latency",
+            "touch_gap",
         ],
     ),
     (

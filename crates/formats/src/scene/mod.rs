@@ -10,10 +10,11 @@ mod quantity;
 mod sensing;
 mod shapes;
 mod start;
+mod uncertainty;
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip::{Uncertainty, ASSUMED_STALL, Rule, Setup, Unit};
+use stickslip::{ASSUMED_STALL, Rule, Setup, Unit};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
@@ -144,7 +145,12 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
             .map(sensing::filter)
             .transpose()?
             .unwrap_or_default(),
-        uncertainty: Uncertainty::default(),
+        uncertainty: root
+            .section_if("uncertainty")?
+            .as_ref()
+            .map(uncertainty::uncertainty)
+            .transpose()?
+            .unwrap_or_default(),
         start: root
             .section_if("start")?
             .as_ref()

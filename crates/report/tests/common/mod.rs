@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
-use stickslip::{Estimate, EstimateRow, FilterSettings, Log, Setup, Spread, Tactile};
+use stickslip::{Estimate, EstimateRow, FilterSettings, Log, Setup, Spread, Tactile, Uncertainty};
 use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant};
 use stickslip_report::{Mark, ReportedExperiment, ReportedRun};
 
@@ -57,6 +57,7 @@ pub fn setup() -> Setup {
         camera: None,
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        uncertainty: Uncertainty::default(),
         start: None,
     }
 }

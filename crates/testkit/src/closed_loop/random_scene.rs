@@ -3,7 +3,8 @@
 use std::fmt;
 
 use stickslip::{
-    Camera, FilterSettings, Limits, Occlusion, RunOptions, Setup, Tactile, TactileUse, Tracking,
+    Camera, FilterSettings, Limits, Mode, Occlusion, RunOptions, Setup, Tactile, TactileUse,
+    Tracking, Uncertainty,
 };
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 
@@ -107,6 +108,7 @@ impl RandomScene {
                     ..Tactile::default()
                 },
                 filter: filter_settings(&mut rng, limits),
+                uncertainty: Uncertainty::default(),
                 start: None,
                 scene,
             },
@@ -277,6 +279,7 @@ fn filter_settings(rng: &mut SplitMix64, limits: Friction<Limits>) -> FilterSett
 
 fn options(rng: &mut SplitMix64, frames: usize, particles: usize) -> RunOptions {
     RunOptions {
+        mode: Mode::Paper,
         particles,
         seed: rng.word(),
         tactile: if rng.one_in(3) {

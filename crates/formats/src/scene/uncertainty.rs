@@ -1,0 +1,110 @@
+//! `[uncertainty]`, what the other numbers leave open.
+
+use stickslip::dynamics::Friction;
+use stickslip::{Rule, Uncertainty, Unit};
+
+use super::document::Table;
+use super::error::SceneError;
+use super::quantity::Quantity;
+
+const MU_S: Quantity = Quantity::new(
+    "mu_s",
+    "the relative standard deviation of the friction with the support",
+    Unit::None,
+    Rule::NotNegative,
+);
+const MU_P: Quantity = Quantity::new(
+    "mu_p",
+    "the relative standard deviation of the friction with the pusher",
+    Unit::None,
+    Rule::NotNegative,
+);
+const MU_F: Quantity = Quantity::new(
+    "mu_f",
+    "the relative standard deviation of the friction with the fixels",
+    Unit::None,
+    Rule::NotNegative,
+);
+const D_TRI: Quantity = Quantity::new(
+    "d_tri",
+    "the relative standard deviation of the tripod radius",
+    Unit::None,
+    Rule::NotNegative,
+);
+const DRIFT: Quantity = Quantity::new(
+    "drift",
+    "the relative change of the friction parameters per step of 1/30 s",
+    Unit::None,
+    Rule::NotNegative,
+);
+const VARIATION: Quantity = Quantity::new(
+    "variation",
+    "the relative standard deviation of friction from place to place",
+    Unit::None,
+    Rule::NotNegative,
+);
+const VARIATION_LENGTH: Quantity = Quantity::new(
+    "variation_length",
+    "the way over which friction varies",
+    Unit::Metre,
+    Rule::Positive,
+);
+const FORCE_STD: Quantity = Quantity::new(
+    "force_std",
+    "the disturbance per step of 1/30 s as a share of the friction impulse",
+    Unit::None,
+    Rule::NotNegative,
+);
+const PUSHER_OFFSET: Quantity = Quantity::new(
+    "pusher_offset",
+    "the standard deviation of the offset between the pusher's frame and the camera's",
+    Unit::Metre,
+    Rule::NotNegative,
+);
+const FIXEL_POSITION: Quantity = Quantity::new(
+    "fixel_position",
+    "the standard deviation of a fixel's position",
+    Unit::Metre,
+    Rule::NotNegative,
+);
+const ROUGHNESS: Quantity = Quantity::new(
+    "roughness",
+    "the relative standard deviation of a factor of both offsets",
+    Unit::None,
+    Rule::NotNegative,
+);
+const LATENCY: Quantity = Quantity::new(
+    "latency",
+    "the mean time, up to 1 s, by which the camera lags more than told",
+    Unit::Second,
+    Rule::Share,
+);
+const TOUCH_GAP: Quantity = Quantity::new(
+    "touch_gap",
+    "the gap at which bodies may touch already, as far as shapes and poses are known,",
+    Unit::Metre,
+    Rule::Positive,
+);
+
+/// `[uncertainty]`.
+pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> {
+    let default = Uncertainty::default();
+    let number = |quantity: &Quantity, default: f64| table.number_or(quantity, default);
+    Ok(Uncertainty {
+        friction: Friction {
+            mu_s: number(&MU_S, default.friction.mu_s)?,
+            mu_p: number(&MU_P, default.friction.mu_p)?,
+            mu_f: number(&MU_F, default.friction.mu_f)?,
+            d_tri: number(&D_TRI, default.friction.d_tri)?,
+        },
+        drift: number(&DRIFT, default.drift)?,
+        variation: number(&VARIATION, default.variation)?,
+        variation_length: number(&VARIATION_LENGTH, default.variation_length)?,
+        force_std: number(&FORCE_STD, default.force_std)?,
+        pusher_offset: number(&PUSHER_OFFSET, default.pusher_offset)?,
+        fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,
+        roughness: number(&ROUGHNESS, default.roughness)?,
+        latency: number(&LATENCY, default.latency)?,
+        touch_gap: number(&TOUCH_GAP, default.touch_gap)?,
+    })
+}
