@@ -4,7 +4,8 @@
 //! (docs/method.md (20), (21)). In the dark and at rest the set is resampled without them, until all
 //! its particles are copies of a few: its spread then shrinks though nothing has been learnt. So the
 //! last row that informs about a parameter has its estimate, and where there is none it was not
-//! observed.
+//! observed. Where particles begin with a prior (contact mode), a parameter whose spread is hardly
+//! narrower than that was not observed, either.
 
 use serde::Serialize;
 use stickslip::dynamics::Friction;
@@ -16,6 +17,9 @@ const TURNING: f64 = 0.03;
 
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
+
+/// Share of the prior's spread below which a parameter was observed.
+const NARROWER: f64 = 0.7;
 
 /// One friction parameter at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -82,11 +86,15 @@ impl LearnedParameter {
         let mut rows = estimate.rows.iter();
         let nominal = rows.find_map(value)?;
 
+        let prior = estimate.rows.iter().find_map(spread).unwrap_or(0.0);
+        let narrower = |std: f64| prior == 0.0 || std < NARROWER * prior;
+
         // a row informs that the camera saw, and that follows a step in which the parameter acted
         let informing = |row: &EstimateRow| {
             row.visual && (source.informs)(row) && spread(row).is_some_and(|std| std > 0.0)
         };
         let row = estimate.rows.iter().rposition(informing);
+        let row = row.filter(|row| spread(&estimate.rows[*row]).is_some_and(narrower));
         let at_row = row.map(|row| &estimate.rows[row]);
         Some(Self {
             name: source.name,

@@ -3,6 +3,7 @@
 //!
 //! Nothing here opens a file or reads a clock. The same arguments give the same bits.
 
+mod calibration;
 mod learned_friction;
 pub mod paper;
 mod run;
@@ -11,6 +12,7 @@ mod simulation;
 mod statistics;
 mod variant;
 
+pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally};
 pub use learned_friction::LearnedParameter;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};

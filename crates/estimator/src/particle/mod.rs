@@ -5,6 +5,7 @@ mod camera_likelihood;
 mod chunk;
 mod columns;
 pub(crate) mod contact_filter;
+mod contact_mode;
 mod history;
 mod model;
 mod observation;

@@ -2,24 +2,23 @@
 //! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Lanes, Level, Mask, Offsets, Outcome, Particles, StepInput, StepWork,
-    Twist, on_widest,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::mode::Mode;
-use crate::particle::chunk::{Column, FlagsMut, LANES, is_set, load_chunk, store_chunk};
+use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
+use crate::particle::contact_mode::note_felt;
 use crate::particle::observer::{Observer, SolvedStep};
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
-use crate::particle::touch_channel::TouchChannel;
 use crate::setup::{Limits, Setup};
 
 /// Chunks of particles in a block.
 const CHUNKS: usize = BLOCK / LANES;
 
 /// Time step to which the noise settings refer (s).
-const NOISE_STEP: f64 = 1.0 / 30.0;
+pub(super) const NOISE_STEP: f64 = 1.0 / 30.0;
 
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).
@@ -28,15 +27,6 @@ const MOVING: f64 = 1e-9;
 /// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of
 /// which three numbers are used.
 const FORCE_PAIR: u32 = 2;
-
-/// Gap, in units of what is not known of it, within which an idle contact may press or not.
-const NEAR: f64 = 2.0;
-
-/// Numbers for the variation of friction: behind those of all substeps.
-const VARIATION_PAIR: u32 = 1 << 20;
-
-/// Share of their spread by which the pusher's offset and the latency wander from row to row.
-const OFFSET_STEP: f64 = 0.05;
 
 /// Γ' of one setup: what moves the particles.
 #[derive(Clone, Debug)]
@@ -54,15 +44,15 @@ pub(crate) struct Transition<'o> {
 /// Working memory for the particles of one block.
 #[derive(Debug)]
 pub struct Propagation {
-    work: StepWork<LANES>,
-    particles: [Particles<LANES>; CHUNKS],
+    pub(super) work: StepWork<LANES>,
+    pub(super) particles: [Particles<LANES>; CHUNKS],
     /// Friction of the object as a whole: that of this place differs from it in contact mode.
-    proposed: [Friction<Column>; CHUNKS],
+    pub(super) proposed: [Friction<Column>; CHUNKS],
     /// Where each particle's pusher and fixels stand beside their poses (contact mode).
-    pusher_offsets: Vec<[Column; 2]>,
-    fixel_offsets: Vec<[Column; 2]>,
+    pub(super) pusher_offsets: Vec<[Column; 2]>,
+    pub(super) fixel_offsets: Vec<[Column; 2]>,
     involved: [Involved; CHUNKS],
-    normals: [[f64; BLOCK]; 4],
+    pub(super) normals: [[f64; BLOCK]; 4],
     level: Level,
 }
 
@@ -132,7 +122,7 @@ impl Propagation {
         );
         let mode = transition.columns.mode();
         if mode == Mode::Contact {
-            self.draw_friction(transition, plan, draw, block);
+            self.draw_unknowns(transition, plan, draw, block);
         }
         for (part, input) in plan.substeps.iter().enumerate() {
             let pair = FORCE_PAIR + 2 * part as u32;
@@ -233,194 +223,9 @@ impl Propagation {
         }
     }
 
-    /// Contact mode: friction that nothing was felt of is drawn anew from its prior; what was felt takes
-    /// a random step that keeps the prior, while the camera looks. On top, friction differs from place
-    /// to place, by a logarithm that forgets itself along the way of the object.
-    fn draw_friction(
-        &mut self,
-        transition: &Transition<'_>,
-        plan: &StepPlan,
-        draw: Draw,
-        block: &mut BlockMut<'_>,
-    ) {
-        let Transition { setup, columns, .. } = transition;
-        let unsure = &setup.uncertainty;
-        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
-        let rho = setup.scene.object.gyration_radius();
-        let priors = unsure.friction.fields();
-        let (nominal, limits) = (setup.scene.nominal.fields(), setup.filter.limits.fields());
-        let drawn = plan.parameter_noise == ParameterNoise::Drawn;
-        let jitter = if drawn {
-            unsure.drift * (h / NOISE_STEP).sqrt()
-        } else {
-            0.0
-        };
-
-        // the object's friction
-        self.draw_normals(draw, 0, block);
-        for (i, _) in block.particles() {
-            let (chunk, lane) = (i / LANES, i % LANES);
-            for (k, friction) in self.particles[chunk]
-                .friction
-                .fields_mut()
-                .into_iter()
-                .enumerate()
-            {
-                let step = if is_set(&block.as_block(), Columns::felt(k), i) {
-                    (jitter / *priors[k]).min(1.0)
-                } else {
-                    1.0
-                };
-                if *priors[k] > 0.0 && step > 0.0 && *nominal[k] > 0.0 {
-                    let kept = match step < 1.0 {
-                        true => {
-                            (1.0 - step * step).sqrt() * libm::log(friction.0[lane] / nominal[k])
-                        }
-                        false => 0.0,
-                    };
-                    let log = kept + step * priors[k] * self.normals[k][i];
-                    friction.0[lane] =
-                        (nominal[k] * libm::exp(log)).clamp(limits[k].min, limits[k].max);
-                }
-            }
-        }
-        for (proposed, particles) in self.proposed.iter_mut().zip(&self.particles) {
-            *proposed = particles.friction;
-        }
-
-        // that of this place
-        self.draw_normals(draw, VARIATION_PAIR, block);
-        for (i, _) in block.particles() {
-            let (chunk, lane) = (i / LANES, i % LANES);
-            let particles = &mut self.particles[chunk];
-            let Twist { vx, vy, omega } = particles.twist.map(|x| x.0[lane]);
-            let way = h * (vx * vx + vy * vy + rho * rho * omega * omega).sqrt();
-            let kept = libm::exp(-way / unsure.variation_length);
-            let fresh = (1.0 - kept * kept).sqrt();
-            for (k, friction) in particles.friction.fields_mut().into_iter().enumerate() {
-                let variation = &mut block.column_mut(columns.variation() + k)[i];
-                *variation = kept * *variation + fresh * unsure.variation * self.normals[k][i];
-                let here = friction.0[lane] * libm::exp(*variation);
-                friction.0[lane] = here.clamp(limits[k].min, limits[k].max);
-            }
-        }
-
-        // where the fixels stand: drawn anew until one is met
-        for j in 0..columns.fixels() {
-            self.draw_normals(draw, VARIATION_PAIR + 4 + 2 * j as u32, block);
-            for (i, _) in block.particles() {
-                let met = is_set(&block.as_block(), columns.met(j), i);
-                let step = match (met, drawn) {
-                    (false, _) => 1.0,
-                    (true, true) => OFFSET_STEP,
-                    (true, false) => continue,
-                };
-                for axis in 0..2 {
-                    let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
-                    *offset = (1.0 - step * step).sqrt() * *offset + step * self.normals[axis][i];
-                }
-            }
-        }
-
-        // where the pusher stands, and how late the camera is
-        if drawn {
-            self.draw_normals(draw, VARIATION_PAIR + 2, block);
-            let step = OFFSET_STEP;
-            for (i, _) in block.particles() {
-                for axis in 0..2 {
-                    let offset = &mut block.column_mut(columns.pusher_offset() + axis)[i];
-                    *offset = (1.0 - step * step).sqrt() * *offset + step * self.normals[axis][i];
-                }
-                let roughness = &mut block.column_mut(columns.roughness())[i];
-                *roughness = (1.0 - step * step).sqrt() * *roughness
-                    + step * unsure.roughness * self.normals[3][i];
-                let told = setup.camera.map_or(0.0, |camera| camera.latency);
-                let latency = &mut block.column_mut(columns.latency())[i];
-                *latency =
-                    told + (*latency - told + step * unsure.latency * self.normals[2][i]).abs();
-            }
-        }
-    }
-
-    /// Contact mode: each particle's pusher and fixels stand beside their poses.
-    fn step_with_offsets(
-        &mut self,
-        transition: &Transition<'_>,
-        input: &StepInput,
-        block: &BlockMut<'_>,
-    ) {
-        let columns = &transition.columns;
-        let chunks = block.len().div_ceil(LANES);
-        let unsure = &transition.setup.uncertainty;
-        let offset = |column: usize, chunk: usize, scale: Column| {
-            let mut offset = [Lanes::ZERO; 2];
-            load_columns(block, column, chunk, offset.each_mut());
-            offset.map(|offset| offset * scale)
-        };
-        self.pusher_offsets.clear();
-        self.fixel_offsets.clear();
-        for chunk in 0..chunks {
-            let mut rougher = Lanes::ZERO;
-            load_columns(block, columns.roughness(), chunk, [&mut rougher]);
-            let rougher = Lanes(rougher.0.map(libm::exp));
-            let scale = rougher * unsure.pusher_offset;
-            let pusher = offset(columns.pusher_offset(), chunk, scale);
-            self.pusher_offsets.push(pusher);
-            let fixels = 0..columns.fixels();
-            let scale = rougher * unsure.fixel_position;
-            let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
-            self.fixel_offsets.extend(fixels);
-        }
-        let offsets = Offsets {
-            pusher: &self.pusher_offsets,
-            fixels: &self.fixel_offsets,
-        };
-        let particles = &mut self.particles[..chunks];
-        let work = &mut self.work;
-        let dynamics = &transition.dynamics;
-        dynamics.step_block_offset(input, offsets, particles, work);
-    }
-
-    /// Contact mode: weighs the tactile readings at the end of the step.
-    fn read_touch(
-        &mut self,
-        transition: &Transition<'_>,
-        plan: &StepPlan,
-        block: &mut BlockMut<'_>,
-    ) {
-        let Transition { setup, columns, .. } = transition;
-        let channel = TouchChannel::new(&setup.tactile);
-        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
-        let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
-        let threshold = setup.tactile.touch_force * last_h;
-        block.column_mut(columns.touch_log_likelihood()).fill(0.0);
-        for (j, reading) in plan.tactile.iter().enumerate() {
-            let Some(reading) = *reading else { continue };
-            for chunk in 0..block.len().div_ceil(LANES) {
-                let pressed = self.work.normal_impulses(chunk, Body::Fixel(j));
-                let gap = self.work.gaps(chunk, Body::Fixel(j));
-                for lane in 0..LANES.min(block.len() - chunk * LANES) {
-                    let i = chunk * LANES + lane;
-                    let gap = gap.0[lane] / setup.uncertainty.touch_gap;
-                    let touch = if is_set(&block.as_block(), Columns::IDLE, i) && gap < NEAR {
-                        f64::from(u8::from(reading))
-                    } else {
-                        touch(pressed.0[lane] / threshold, gap)
-                    };
-                    let stuck = [0, 1].map(|k| block.column(columns.stuck(j) + k)[i]);
-                    let (stuck, log_likelihood) = channel.read(stuck, h, touch, reading);
-                    for k in 0..2 {
-                        block.column_mut(columns.stuck(j) + k)[i] = stuck[k];
-                    }
-                    block.column_mut(columns.touch_log_likelihood())[i] += log_likelihood;
-                }
-            }
-        }
-    }
-
     /// Fills the columns of normals with the pairs `pair` and `pair + 1`.
     #[inline(always)]
-    fn draw_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+    pub(super) fn draw_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
         let (len, first) = (block.len(), block.first_particle());
         let [a, b, c, d] = &mut self.normals;
         draw.normal_columns(first, pair, &mut a[..len], &mut b[..len]);
@@ -524,13 +329,7 @@ impl Propagation {
             let proposed = self.proposed[chunk].fields().into_iter();
             let mut phi = involved.phi();
             if transition.columns.mode() == Mode::Contact {
-                let mut flags = FlagsMut::new(block, chunk);
-                for (k, took_part) in phi.fields_mut().into_iter().enumerate() {
-                    let felt = flags.get(Columns::felt(k));
-                    flags.set(Columns::felt(k), felt | *took_part);
-                    *took_part = *took_part | !felt;
-                }
-                flags.write();
+                note_felt(&mut phi, block, chunk);
             }
             for ((kept, proposed), took_part) in friction
                 .fields_mut()
@@ -548,23 +347,19 @@ impl Propagation {
                 .work
                 .normal_impulses(chunk, Body::Pusher)
                 .gt(Lanes::ZERO);
-            flags.set(Columns::CONTACT_PUSHER, pusher);
+            let close = self.close(transition, chunk, Body::Pusher);
+            flags.set(Columns::CONTACT_PUSHER, pusher | close);
             let pressed = moving(&particles.twist, rho) | pusher;
             flags.set(Columns::IDLE, !(pressed & driven));
             for j in 0..transition.setup.scene.fixels.len() {
-                let touches = self
-                    .work
-                    .normal_impulses(chunk, Body::Fixel(j))
-                    .gt(touch_impulse);
-                flags.set(transition.columns.contact_fixel(j), touches);
+                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j));
+                let touches = impulse.gt(touch_impulse);
+                let close = self.close(transition, chunk, Body::Fixel(j));
+                flags.set(transition.columns.contact_fixel(j), touches | close);
                 let against = transition.columns.driven_contact_fixel(j);
                 let met = transition.columns.met(j);
                 let met_before = flags.get(met);
-                let now = self
-                    .work
-                    .normal_impulses(chunk, Body::Fixel(j))
-                    .gt(Lanes::ZERO);
-                flags.set(met, met_before | now);
+                flags.set(met, met_before | impulse.gt(Lanes::ZERO));
                 let before = flags.get(against);
                 flags.set(against, pressed & touches | !pressed & before);
             }
@@ -578,18 +373,6 @@ impl Propagation {
                 );
             }
         }
-    }
-}
-
-/// Probability that a sensor feels a contact, from its impulse in units of the sensor's threshold,
-/// and its gap in units of what is not known of it. A contact that rests without pressing may or may
-/// not be felt.
-fn touch(impulse: f64, gap: f64) -> f64 {
-    let near = 0.5 * libm::exp(-0.5 * gap.max(0.0) * gap.max(0.0));
-    if impulse > 0.0 {
-        near.max(1.0 - 0.5 / (1.0 + impulse * impulse))
-    } else {
-        near
     }
 }
 
@@ -610,7 +393,7 @@ fn disturbed(value: Column, w: Column, limits: &Limits) -> Column {
 
 /// Reads one chunk of neighbouring columns; lanes past the last particle repeat it.
 #[inline(always)]
-fn load_columns<const N: usize>(
+pub(super) fn load_columns<const N: usize>(
     block: &BlockMut<'_>,
     first_column: usize,
     chunk: usize,

@@ -1,0 +1,273 @@
+//! What contact mode adds to a step (docs/method.md, "Contact mode"): every particle has its own
+//! friction, offsets and latency, and its own view of the tactile sensors.
+
+use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist};
+use stickslip_filter::{BlockMut, Draw};
+
+use crate::mode::Mode;
+use crate::particle::chunk::{Column, FlagsMut, LANES, is_set};
+use crate::particle::columns::Columns;
+use crate::particle::propagation::{NOISE_STEP, Propagation, Transition, load_columns};
+use crate::particle::step_plan::{ParameterNoise, StepPlan};
+use crate::particle::touch_channel::{TouchChannel, felt};
+
+/// Numbers for what is unknown: behind those of all substeps.
+const VARIATION_PAIR: u32 = 1 << 20;
+const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
+const FIXEL_PAIR: u32 = OFFSET_PAIR + 2;
+
+/// Share of their spread by which offsets and latency wander from row to row while the camera looks:
+/// copies of a particle are to differ.
+const OFFSET_STEP: f64 = 0.05;
+
+/// Gap, in units of what is not known of it, within which an idle contact may press or not.
+const NEAR: f64 = 2.0;
+
+/// Gap up to which bodies count as touching in the estimate (m).
+const TOUCHING: f64 = 1e-4;
+
+impl Propagation {
+    /// Draws what is unknown for one step.
+    pub(super) fn draw_unknowns(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+    ) {
+        self.draw_normals(draw, 0, block);
+        self.draw_friction(transition, plan, block);
+        self.draw_normals(draw, VARIATION_PAIR, block);
+        self.vary_friction(transition, plan, block);
+        for j in 0..transition.columns.fixels() {
+            self.draw_normals(draw, FIXEL_PAIR + 2 * j as u32, block);
+            self.draw_fixel_offset(transition, plan, j, block);
+        }
+        if plan.parameter_noise == ParameterNoise::Drawn {
+            self.draw_normals(draw, OFFSET_PAIR, block);
+            self.draw_offsets(transition, block);
+        }
+    }
+
+    /// The object's friction: what nothing was felt of is drawn anew from its prior; what was felt
+    /// takes a random step that keeps the prior, while the camera looks.
+    fn draw_friction(
+        &mut self,
+        Transition { setup, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &BlockMut<'_>,
+    ) {
+        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let drift = match plan.parameter_noise {
+            ParameterNoise::Drawn => setup.uncertainty.drift * (h / NOISE_STEP).sqrt(),
+            ParameterNoise::Frozen => 0.0,
+        };
+        let priors = setup.uncertainty.friction.fields();
+        let (nominal, limits) = (setup.scene.nominal.fields(), setup.filter.limits.fields());
+        for (i, _) in block.particles() {
+            let friction = &mut self.particles[i / LANES].friction;
+            for (k, value) in friction.fields_mut().into_iter().enumerate() {
+                let value = &mut value.0[i % LANES];
+                let (prior, nominal) = (*priors[k], *nominal[k]);
+                if prior <= 0.0 || nominal <= 0.0 {
+                    continue;
+                }
+                let step = match is_set(&block.as_block(), Columns::felt(k), i) {
+                    true => (drift / prior).min(1.0),
+                    false => 1.0,
+                };
+                if step == 0.0 {
+                    continue;
+                }
+                let before = match step < 1.0 {
+                    true => libm::log(*value / nominal),
+                    false => 0.0,
+                };
+                let log = wandered(before, step, prior * self.normals[k][i]);
+                *value = (nominal * libm::exp(log)).clamp(limits[k].min, limits[k].max);
+            }
+        }
+        for (proposed, particles) in self.proposed.iter_mut().zip(&self.particles) {
+            *proposed = particles.friction;
+        }
+    }
+
+    /// Friction at this place: it differs from the object's by a logarithm that forgets itself along
+    /// the way.
+    fn vary_friction(
+        &mut self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let unsure = &setup.uncertainty;
+        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let rho = setup.scene.object.gyration_radius();
+        let limits = setup.filter.limits.fields();
+        for (i, _) in block.particles() {
+            let lane = i % LANES;
+            let particles = &mut self.particles[i / LANES];
+            let Twist { vx, vy, omega } = particles.twist.map(|x| x.0[lane]);
+            let way = h * (vx * vx + vy * vy + rho * rho * omega * omega).sqrt();
+            let kept = libm::exp(-way / unsure.variation_length);
+            let fresh = (1.0 - kept * kept).sqrt();
+            for (k, friction) in particles.friction.fields_mut().into_iter().enumerate() {
+                let variation = &mut block.column_mut(columns.variation() + k)[i];
+                *variation = kept * *variation + fresh * unsure.variation * self.normals[k][i];
+                let here = friction.0[lane] * libm::exp(*variation);
+                friction.0[lane] = here.clamp(limits[k].min, limits[k].max);
+            }
+        }
+    }
+
+    /// Where fixel j stands: drawn anew until it is met.
+    fn draw_fixel_offset(
+        &self,
+        Transition { columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        j: usize,
+        block: &mut BlockMut<'_>,
+    ) {
+        for (i, _) in block.particles() {
+            let met = is_set(&block.as_block(), columns.met(j), i);
+            let step = match (met, plan.parameter_noise) {
+                (false, _) => 1.0,
+                (true, ParameterNoise::Drawn) => OFFSET_STEP,
+                (true, ParameterNoise::Frozen) => continue,
+            };
+            for axis in 0..2 {
+                let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
+                *offset = wandered(*offset, step, self.normals[axis][i]);
+            }
+        }
+    }
+
+    /// Where the pusher stands, how rough the rig is, how late the camera.
+    fn draw_offsets(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        block: &mut BlockMut<'_>,
+    ) {
+        let unsure = &setup.uncertainty;
+        let told = setup.camera.map_or(0.0, |camera| camera.latency);
+        for (i, _) in block.particles() {
+            let [x, y, late, rough] = self.normals.each_ref().map(|column| column[i]);
+            for (axis, normal) in [x, y].into_iter().enumerate() {
+                let offset = &mut block.column_mut(columns.pusher_offset() + axis)[i];
+                *offset = wandered(*offset, OFFSET_STEP, normal);
+            }
+            let roughness = &mut block.column_mut(columns.roughness())[i];
+            *roughness = wandered(*roughness, OFFSET_STEP, unsure.roughness * rough);
+            let latency = &mut block.column_mut(columns.latency())[i];
+            *latency = told + (*latency - told + OFFSET_STEP * unsure.latency * late).abs();
+        }
+    }
+
+    /// Makes the step; each particle's pusher and fixels stand beside their poses.
+    pub(super) fn step_with_offsets(
+        &mut self,
+        transition: &Transition<'_>,
+        input: &StepInput,
+        block: &BlockMut<'_>,
+    ) {
+        let columns = &transition.columns;
+        let unsure = &transition.setup.uncertainty;
+        let chunks = block.len().div_ceil(LANES);
+        let offset = |column: usize, chunk: usize, scale: Column| {
+            let mut offset = [Lanes::ZERO; 2];
+            load_columns(block, column, chunk, offset.each_mut());
+            offset.map(|offset| offset * scale)
+        };
+        self.pusher_offsets.clear();
+        self.fixel_offsets.clear();
+        for chunk in 0..chunks {
+            let mut roughness = Lanes::ZERO;
+            load_columns(block, columns.roughness(), chunk, [&mut roughness]);
+            let rougher = Lanes(roughness.0.map(libm::exp));
+            let scale = rougher * unsure.pusher_offset;
+            let pusher = offset(columns.pusher_offset(), chunk, scale);
+            self.pusher_offsets.push(pusher);
+            let scale = rougher * unsure.fixel_position;
+            let fixels = 0..columns.fixels();
+            let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
+            self.fixel_offsets.extend(fixels);
+        }
+        let offsets = Offsets {
+            pusher: &self.pusher_offsets,
+            fixels: &self.fixel_offsets,
+        };
+        let particles = &mut self.particles[..chunks];
+        let dynamics = &transition.dynamics;
+        dynamics.step_block_offset(input, offsets, particles, &mut self.work);
+    }
+
+    /// Where bodies are so close that they count as touching; nowhere in paper mode.
+    #[inline(always)]
+    pub(super) fn close(
+        &self,
+        transition: &Transition<'_>,
+        chunk: usize,
+        body: Body,
+    ) -> Mask<LANES> {
+        match transition.columns.mode() {
+            Mode::Contact => !self.work.gaps(chunk, body).gt(Lanes::splat(TOUCHING)),
+            Mode::Paper => Mask::splat(false),
+        }
+    }
+
+    /// Weighs the tactile readings at the end of the step.
+    pub(super) fn read_touch(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let Transition { setup, columns, .. } = transition;
+        let channel = TouchChannel::new(&setup.tactile);
+        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
+        let threshold = setup.tactile.touch_force * last_h;
+        block.column_mut(columns.touch_log_likelihood()).fill(0.0);
+        for (j, reading) in plan.tactile.iter().enumerate() {
+            let Some(reading) = *reading else { continue };
+            for chunk in 0..block.len().div_ceil(LANES) {
+                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j));
+                let gap = self.work.gaps(chunk, Body::Fixel(j));
+                for i in chunk * LANES..block.len().min((chunk + 1) * LANES) {
+                    let gap = gap.0[i % LANES] / setup.uncertainty.touch_gap;
+                    let idle = is_set(&block.as_block(), Columns::IDLE, i);
+                    let touch = if idle && gap < NEAR {
+                        f64::from(u8::from(reading))
+                    } else {
+                        felt(impulse.0[i % LANES] / threshold, gap)
+                    };
+                    let stuck = [0, 1].map(|k| block.column(columns.stuck(j) + k)[i]);
+                    let (stuck, log_likelihood) = channel.read(stuck, h, touch, reading);
+                    for (k, stuck) in stuck.into_iter().enumerate() {
+                        block.column_mut(columns.stuck(j) + k)[i] = stuck;
+                    }
+                    block.column_mut(columns.touch_log_likelihood())[i] += log_likelihood;
+                }
+            }
+        }
+    }
+}
+
+/// One step of a random walk in a normal distribution that it keeps: `fresh` is drawn from that
+/// distribution, `step` is the share of it.
+fn wandered(before: f64, step: f64, fresh: f64) -> f64 {
+    (1.0 - step * step).sqrt() * before + step * fresh
+}
+
+/// Notes in a chunk's flags which parameters took part, and keeps besides them those that never did:
+/// they are drawn anew.
+#[inline(always)]
+pub(super) fn note_felt(phi: &mut Friction<Mask<LANES>>, block: &mut BlockMut<'_>, chunk: usize) {
+    let mut flags = FlagsMut::new(block, chunk);
+    for (k, took_part) in phi.fields_mut().into_iter().enumerate() {
+        let felt = flags.get(Columns::felt(k));
+        flags.set(Columns::felt(k), felt | *took_part);
+        *took_part = *took_part | !felt;
+    }
+    flags.write();
+}
