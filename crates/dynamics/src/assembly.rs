@@ -308,7 +308,7 @@ impl<const W: usize> Assembly<W> {
 
     /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`] that
     /// press, and where the pusher stands. What is unsolved would be a bad start: compliant impulses
-    /// are a million times too large.
+    /// are a million times too large; and so would be what grows from step to step.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Unknowns<W>, solved: Mask<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
@@ -326,10 +326,11 @@ impl<const W: usize> Assembly<W> {
             Some((_, [x, y])) => [x * way, y * way],
             None => [Lanes::ZERO; 2],
         };
+        let kept = solved & p.is_bounded();
         warm.contacts = [ContactImpulse::default(); REMEMBERED];
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
-            let pressed = solved & p_n.gt(Lanes::ZERO);
+            let pressed = kept & p_n.gt(Lanes::ZERO);
             for (k, slot) in warm.contacts.iter_mut().enumerate() {
                 let here: Mask<W> = pressed & !(filled - k as f64).abs().gt(Lanes::ZERO);
                 slot.key = here.select(Lanes::splat(row.key), slot.key);
