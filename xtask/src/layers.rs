@@ -16,7 +16,7 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
         &["scene", "input", "particles", "start"],
         &["ncp/"],
         &["solver/"],
-        &["feet", "prepared_scene", "assembly"],
+        &["feet", "prepared_scene", "assembly", "stated_problem"],
         &["step", "rollout"],
     ],
 )];

@@ -2,6 +2,8 @@
 //! log of 600 frames, alone and beside as many busy processes as there are processors, on one
 //! thread and on two in turn: wall time and the latency of a frame. `... -- N` takes N particles.
 
+mod common;
+
 use std::error::Error;
 use std::io;
 use std::process::{Child, Command};
@@ -9,9 +11,11 @@ use std::thread::{available_parallelism, sleep};
 use std::time::{Duration, Instant};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use stickslip::{Occlusion, RunError, RunOptions, keep_threads_awake, quantile, run};
+use stickslip::{RunError, RunOptions, keep_threads_awake, quantile, run};
 use stickslip_bench::Results;
-use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
+use stickslip_testkit::RecordedCase;
+
+use common::recorded_case;
 
 /// The log.
 const LOG: &str = "slide-pent-disc-104";
@@ -35,12 +39,7 @@ struct Times {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = data_root().ok_or("no recorded experiments: point STICKSLIP_DATA at them")?;
-    let cases = recorded_cases(&root.join("mujoco").join(LOG))?;
-    let case = cases
-        .iter()
-        .find(|case| case.occlusion == Occlusion::None)
-        .ok_or("no case without an occlusion")?;
+    let case = recorded_case(LOG)?;
     let mut options = RunOptions::default();
     if let Some(particles) = std::env::args().find_map(|arg| arg.parse().ok()) {
         options.particles = particles;
@@ -52,10 +51,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut alone, mut beside) = Default::default();
     for round in 0..=ROUNDS {
         let count = round > 0;
-        measure(&pools, case, &options, count.then_some(&mut alone))?;
+        measure(&pools, &case, &options, count.then_some(&mut alone))?;
         let _company = Company::new()?;
         sleep(SETTLING);
-        measure(&pools, case, &options, count.then_some(&mut beside))?;
+        measure(&pools, &case, &options, count.then_some(&mut beside))?;
     }
     write(options.particles, &alone, &beside)
 }

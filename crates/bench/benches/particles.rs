@@ -2,12 +2,15 @@
 //! 250,000, on one thread and on two; `... -- --million` goes on to 1,000,000. The frames are those
 //! of a recorded log around its first contacts.
 
+mod common;
+
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Log, Mode, Occlusion, RunOptions, Setup, keep_threads_awake, run};
+use stickslip::{Log, Mode, RunOptions, Setup, keep_threads_awake, run};
 use stickslip_bench::Results;
-use stickslip_testkit::{data_root, recorded_cases};
+
+use common::recorded_case;
 
 /// The log, and the rows of it that are run: the pusher arrives at row 71, the first fixel touches
 /// at row 165.
@@ -21,12 +24,7 @@ const WARM_UP: usize = 20;
 const LEAST_WORK: usize = 2_000_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = data_root().ok_or("no recorded experiments: point STICKSLIP_DATA at them")?;
-    let cases = recorded_cases(&root.join("mujoco").join(LOG))?;
-    let case = cases
-        .iter()
-        .find(|case| case.occlusion == Occlusion::None)
-        .ok_or("no case without an occlusion")?;
+    let case = recorded_case(LOG)?;
     let log = part(&case.log);
     let mut counts = vec![100, 500, 1_000, 10_000, 100_000, 250_000];
     counts.extend(

@@ -4,6 +4,10 @@
 //! `... -- NAME` takes the logs with NAME in their names. 500 particles, camera hidden where the
 //! log's `truth.json` says so. Only the solver's step is timed, one block of 64 particles at a
 //! time, on one thread; every step starts from what the filter had, noise and warm start included.
+//!
+//! A block hides what one particle costs, so each particle's step is also timed alone, as a chunk of
+//! one lane: that costs more than its share of a block. A thread that has to wait for a processor
+//! looks slow; so the shortest of [`ALONE_ROUNDS`] times counts.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
@@ -11,11 +15,14 @@ use std::time::Instant;
 
 use stickslip::{Mode, Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
 use stickslip_bench::{BlockOf64, LANES, Results, StepStatistics, instruction_sets};
-use stickslip_dynamics::{Dynamics, Level, Particles, StepInput, StepWork};
+use stickslip_dynamics::{Dynamics, Particles, StepInput, StepWork};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
 /// Rounds that are counted.
 const ROUNDS: usize = 3;
+
+/// Times that each particle's step is made alone.
+const ALONE_ROUNDS: usize = 3;
 
 /// One block before a step.
 #[derive(Debug)]
@@ -51,6 +58,8 @@ impl Observer for Capture {
 struct Cost {
     /// Time per particle-step of every block, rounds together (ns).
     blocks: Vec<f64>,
+    /// Time of every particle-step made alone (ns).
+    alone: Vec<f32>,
     /// All time (ns) and all particle-steps, rounds together.
     total: [f64; 2],
     statistics: StepStatistics,
@@ -68,7 +77,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let steps = capture(case)?;
         let mut medians = Vec::new();
         for ((_, level), cost) in sets.iter().zip(&mut costs) {
-            medians.push(replay(case, &steps, *level, cost));
+            let dynamics = Dynamics::new(case.setup.scene.clone()).with_level(*level);
+            medians.push(replay(&dynamics, &steps, cost));
+            cost.alone.extend(replay_alone(&dynamics, &steps));
         }
         let name = case
             .folder
@@ -119,8 +130,7 @@ fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
 }
 
 /// Adds to `cost`; returns the mean time per particle-step of the median round (ns).
-fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost) -> Option<f64> {
-    let dynamics = Dynamics::new(case.setup.scene.clone()).with_level(level);
+fn replay(dynamics: &Dynamics, steps: &[Captured], cost: &mut Cost) -> Option<f64> {
     let mut work = StepWork::default();
     let mut rounds = Vec::new();
     for round in 0..=ROUNDS {
@@ -148,6 +158,27 @@ fn replay(case: &RecordedCase, steps: &[Captured], level: Level, cost: &mut Cost
     quantile(&rounds, 0.5)
 }
 
+/// Time of every particle-step, made alone (ns).
+fn replay_alone(dynamics: &Dynamics, steps: &[Captured]) -> Vec<f32> {
+    let mut work = StepWork::<1>::default();
+    let mut times = Vec::new();
+    for step in steps {
+        for chunk in &step.particles[..step.chunks] {
+            for lane in 0..LANES {
+                let friction = chunk.friction.map(|x| x.0[lane]);
+                let took = (0..ALONE_ROUNDS).map(|_| {
+                    let mut particle = [chunk.get(lane)];
+                    let start = Instant::now();
+                    dynamics.step(&step.input, &[friction], &mut particle, &mut work);
+                    start.elapsed().as_nanos() as f32
+                });
+                times.push(took.fold(f32::INFINITY, f32::min));
+            }
+        }
+    }
+    times
+}
+
 fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> {
     let name = format!("replay / {name} / all logs");
     results.write(
@@ -165,6 +196,16 @@ fn write(name: &str, cost: &Cost, results: &mut Results) -> std::io::Result<()> 
         quantile(&cost.blocks, 0.99),
         "ns/particle-step",
     )?;
+    let alone: Vec<f64> = cost.alone.iter().map(|&x| f64::from(x)).collect();
+    for (what, share) in [
+        ("median", 0.5),
+        ("p99", 0.99),
+        ("p99.99", 0.9999),
+        ("slowest", 1.0),
+    ] {
+        let time = quantile(&alone, share);
+        results.write(&format!("{name} / {what} of steps alone"), time, "ns")?;
+    }
     results.write(
         &format!("{name} / iterations"),
         cost.statistics.mean_iterations(),

@@ -7,10 +7,10 @@ mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::Command;
 use std::sync::LazyLock;
 
-use common::{Experiment, SLIDE, empty_folder, json, stickslip};
+use common::{Experiment, SLIDE, empty_folder, json, stickslip, succeeds};
 use stickslip_formats::{Topics, read_log_mcap};
 
 /// Rows of the experiment that are rendered: the object moves.
@@ -29,44 +29,38 @@ static RENDERED: LazyLock<PathBuf> = LazyLock::new(|| {
         });
     }
     let out = case.folder.join("out");
-    let run = stickslip()
-        .args([
-            "render",
-            &case.folder.display().to_string(),
-            "--board-frames",
-            "8",
-            "--cover",
-            "24",
-            "--repeat",
-            "0.1",
-            "--out",
-        ])
-        .arg(&out)
-        .output()
-        .unwrap();
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
+    succeeds(
+        stickslip()
+            .args([
+                "render",
+                &case.folder.display().to_string(),
+                "--board-frames",
+                "8",
+                "--cover",
+                "24",
+                "--repeat",
+                "0.1",
+                "--out",
+            ])
+            .arg(&out),
     );
-    done(&calibrate(&out.join("board"), &out));
+    succeeds(&mut calibrate(&out.join("board"), &out));
     out
 });
 
-fn calibrate(frames: &Path, out: &Path) -> Output {
-    stickslip()
+fn calibrate(frames: &Path, out: &Path) -> Command {
+    let mut command = stickslip();
+    command
         .arg("calibrate")
         .arg(frames)
         .arg("--board")
         .arg(out.join("board.toml"))
         .arg("--out")
-        .arg(out.join("calibration.toml"))
-        .output()
-        .unwrap()
+        .arg(out.join("calibration.toml"));
+    command
 }
 
-fn track(frames: &Path, tags: &Path, out: &Path, more: &[&str]) -> Output {
+fn track(frames: &Path, tags: &Path, out: &Path, more: &[&str]) -> Command {
     let calibration = RENDERED.join("calibration.toml");
     let mut command = stickslip();
     command
@@ -78,20 +72,14 @@ fn track(frames: &Path, tags: &Path, out: &Path, more: &[&str]) -> Output {
         .arg(tags)
         .arg("--out")
         .arg(out);
-    command.args(more).output().unwrap()
-}
-
-fn done(run: &Output) {
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
-    );
+    command.args(more);
+    command
 }
 
 /// The run must fail, and say these words.
-fn assert_refused(run: &Output, words: &[&str]) {
+#[track_caller]
+fn assert_refused(command: &mut Command, words: &[&str]) {
+    let run = command.output().unwrap();
     let told = String::from_utf8_lossy(&run.stderr).into_owned();
     assert_eq!(run.status.code(), Some(1), "{told}");
     assert!(
@@ -122,7 +110,7 @@ fn track_finds_what_was_rendered() {
     let out = RENDERED.join("tracked");
     let sensors = RENDERED.join("../log.csv").display().to_string();
     let tags = RENDERED.join("tags.toml");
-    done(&track(
+    succeeds(&mut track(
         &RENDERED.join("frames"),
         &tags,
         &out,
@@ -192,13 +180,13 @@ fn track_takes_any_folder_of_images_at_a_rate() {
     let (frames, out) = (two_frames("camera/rate"), RENDERED.join("rate"));
     let tags = RENDERED.join("tags.toml");
     assert_refused(
-        &track(&frames, &tags, &out, &[]),
+        &mut track(&frames, &tags, &out, &[]),
         &[
             "no frames.csv",
             "help: write frames.csv (time,file), or give the frames per second",
         ],
     );
-    done(&track(&frames, &tags, &out, &["--rate", "50"]));
+    succeeds(&mut track(&frames, &tags, &out, &["--rate", "50"]));
     let log = cells(&out.join("log.csv"));
     assert_eq!(
         log.iter()
@@ -209,7 +197,7 @@ fn track_takes_any_folder_of_images_at_a_rate() {
     );
     let both = ["--rate", "30"];
     assert_refused(
-        &track(&RENDERED.join("frames"), &tags, &out, &both),
+        &mut track(&RENDERED.join("frames"), &tags, &out, &both),
         &[
             "frames.csv gives times, and --rate 30 others",
             "leave --rate out",
@@ -224,7 +212,7 @@ fn track_names_an_image_that_cannot_be_read() {
     let good = fs::read(frames.join("000001.png")).unwrap();
     fs::write(frames.join("000001.png"), &good[..good.len() / 2]).unwrap();
     assert_refused(
-        &track(&frames, &tags, &out, &["--rate", "30"]),
+        &mut track(&frames, &tags, &out, &["--rate", "30"]),
         &[
             "000001.png: the PNG image cannot be decoded",
             "Record or copy it anew",
@@ -232,7 +220,7 @@ fn track_names_an_image_that_cannot_be_read() {
     );
     fs::write(frames.join("000001.png"), "not an image").unwrap();
     assert_refused(
-        &track(&frames, &tags, &out, &["--rate", "30"]),
+        &mut track(&frames, &tags, &out, &["--rate", "30"]),
         &[
             "000001.png: its first bytes are those of no image",
             "Convert it to PNG",
@@ -244,7 +232,7 @@ fn track_names_an_image_that_cannot_be_read() {
     )
     .unwrap();
     assert_refused(
-        &track(&frames, &tags, &out, &[]),
+        &mut track(&frames, &tags, &out, &[]),
         &["gone.png: cannot be read"],
     );
     assert!(!out.exists());
@@ -256,30 +244,29 @@ fn track_names_a_wrong_tag_a_wrong_size_and_no_tag() {
     let text = fs::read_to_string(RENDERED.join("tags.toml")).unwrap();
     let tags = frames.join("tags.toml");
     fs::write(&tags, text.replace("tag = 1\n", "tag = 9\n")).unwrap();
-    let run = track(&frames, &tags, &out, &["--rate", "30"]);
+    let mut run = track(&frames, &tags, &out, &["--rate", "30"]);
     assert_refused(
-        &run,
+        &mut run,
         &[
             "the pusher's tag, number 9, is in none of the 2 frames; found are: 0 (2 times), 1 (2 times)",
             "Correct pusher.tag",
         ],
     );
 
-    let run = track(
+    let mut run = track(
         &RENDERED.join("board"),
         &RENDERED.join("tags.toml"),
         &out,
         &["--rate", "30"],
     );
     assert_refused(
-        &run,
+        &mut run,
         &["the object's tag, number 0, is in none of the 8 frames; found are: 100"],
     );
 
     // a tag said to be a tenth larger than it is
     fs::write(&tags, text.replace("size = 0.024", "size = 0.0264")).unwrap();
-    let run = track(&frames, &tags, &out, &["--rate", "30"]);
-    done(&run);
+    let run = succeeds(&mut track(&frames, &tags, &out, &["--rate", "30"]));
     let told = String::from_utf8_lossy(&run.stderr);
     assert!(
         told.contains("warning: the pusher's tag is seen 24.0 mm large")
@@ -294,7 +281,7 @@ fn track_names_a_wrong_tag_a_wrong_size_and_no_tag() {
     )
     .unwrap();
     assert_refused(
-        &track(&empty, &tags, &out, &["--rate", "30"]),
+        &mut track(&empty, &tags, &out, &["--rate", "30"]),
         &["no tag of the family 36h11 is in any of the 1 frames"],
     );
     fs::write(
@@ -303,7 +290,7 @@ fn track_names_a_wrong_tag_a_wrong_size_and_no_tag() {
     )
     .unwrap();
     assert_refused(
-        &track(&empty, &tags, &out, &["--rate", "30"]),
+        &mut track(&empty, &tags, &out, &["--rate", "30"]),
         &["a.pgm: the image has 64 x 48 pixels, the camera was calibrated at 640 x 480"],
     );
 }
@@ -312,14 +299,14 @@ fn track_names_a_wrong_tag_a_wrong_size_and_no_tag() {
 fn track_refuses_sensors_of_other_times() {
     let tags = RENDERED.join("tags.toml");
     let sensors = Experiment::copy(SLIDE, "camera/sensors").log();
-    let run = track(
+    let mut run = track(
         &RENDERED.join("frames"),
         &tags,
         &RENDERED.join("sensors"),
         &["--sensors", &sensors],
     );
     assert_refused(
-        &run,
+        &mut run,
         &[
             "log.csv: row 0 is at 0 s, frame 0 at 3.33333",
             "one row for each frame",
@@ -337,22 +324,22 @@ fn calibrate_says_what_is_wrong_with_board_and_frames() {
     };
     let board = RENDERED.join("board");
     assert_refused(
-        &with("gap = 0.008", "gap = 0.001", &board),
+        &mut with("gap = 0.008", "gap = 0.001", &board),
         &["board.toml:", "`gap` is 0.001 m", "eighth of tag_size"],
     );
     assert_refused(
-        &with("first_tag = 100", "first_tag = 200", &board),
+        &mut with("first_tag = 100", "first_tag = 200", &board),
         &[
             "the board, which has 200 to 234; found: 100, ",
             "Correct first_tag",
         ],
     );
     assert_refused(
-        &with("", "", &two_frames("camera/few")),
+        &mut with("", "", &two_frames("camera/few")),
         &["none of the tags found is on the board", "found: 0, 1"],
     );
     assert_refused(
-        &with("", "", &empty_folder("camera/none")),
+        &mut with("", "", &empty_folder("camera/none")),
         &["there is no image in it", "help: give a folder with png"],
     );
     let run = stickslip()
@@ -364,7 +351,7 @@ fn calibrate_says_what_is_wrong_with_board_and_frames() {
         .output()
         .unwrap();
     assert_refused(
-        &run,
+        &mut run,
         &["--flat x.png: there is no such frame; they go from 000.png to 007.png"],
     );
     assert!(!out.join("calibration.toml").exists());

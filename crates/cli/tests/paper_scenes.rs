@@ -8,7 +8,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::{empty_folder, stickslip};
+use common::{empty_folder, stickslip, succeeds};
 
 /// The truth of one simulated scene.
 struct Truth {
@@ -24,23 +24,17 @@ struct Truth {
 impl Truth {
     fn of(name: &str, seed: u64) -> Self {
         let out = empty_folder(&format!("paper_scenes/{name}-{seed}"));
-        let run = stickslip()
-            .args([
-                "simulate",
-                "--paper",
-                name,
-                "--seed",
-                &seed.to_string(),
-                "--out",
-            ])
-            .arg(&out)
-            .output()
-            .unwrap();
-        assert_eq!(
-            run.status.code(),
-            Some(0),
-            "{}",
-            String::from_utf8_lossy(&run.stderr)
+        succeeds(
+            stickslip()
+                .args([
+                    "simulate",
+                    "--paper",
+                    name,
+                    "--seed",
+                    &seed.to_string(),
+                    "--out",
+                ])
+                .arg(&out),
         );
         Self::read(&out)
     }
@@ -188,16 +182,10 @@ fn given_friction_goes_the_other_way_in_the_added_scenes() {
             env!("CARGO_MANIFEST_DIR")
         );
         let out = empty_folder(&format!("paper_scenes/given-{name}"));
-        let run = stickslip()
-            .args(["simulate", &scene, "--physics", "model", "--out"])
-            .arg(&out)
-            .output()
-            .unwrap();
-        assert_eq!(
-            run.status.code(),
-            Some(0),
-            "{}",
-            String::from_utf8_lossy(&run.stderr)
+        succeeds(
+            stickslip()
+                .args(["simulate", &scene, "--physics", "model", "--out"])
+                .arg(&out),
         );
         let rows = fs::read_to_string(out.join("truth.csv")).unwrap();
         let last = rows.lines().last().unwrap().split(',').nth(3).unwrap();

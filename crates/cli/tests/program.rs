@@ -7,7 +7,7 @@ mod common;
 use std::fs;
 use std::process::{Command, Output, Stdio};
 
-use common::{Experiment, STOP, json, stickslip};
+use common::{Experiment, STOP, json, stickslip, succeeds};
 
 /// Few particles: these tests look at the program, not at the filter.
 const FEW: [&str; 2] = ["--particles", "16"];
@@ -18,25 +18,19 @@ fn filter_prints_scores_and_writes_only_the_estimate() {
     let out = case.folder.join("out");
     fs::create_dir(&out).unwrap();
     fs::write(out.join("notes.txt"), "mine").unwrap();
-    let run = stickslip()
-        .args([
-            "filter",
-            &case.log(),
-            "--scene",
-            &case.scene(),
-            "--occlude",
-            "153",
-            "--out",
-        ])
-        .arg(&out)
-        .args(FEW)
-        .output()
-        .unwrap();
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
+    let run = succeeds(
+        stickslip()
+            .args([
+                "filter",
+                &case.log(),
+                "--scene",
+                &case.scene(),
+                "--occlude",
+                "153",
+                "--out",
+            ])
+            .arg(&out)
+            .args(FEW),
     );
     let (told, talk) = (
         String::from_utf8(run.stdout).unwrap(),

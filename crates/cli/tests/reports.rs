@@ -6,7 +6,7 @@ mod common;
 
 use std::fs;
 
-use common::{Experiment, STOP, stickslip};
+use common::{Experiment, STOP, stickslip, succeeds};
 
 /// Few particles: these tests look at the program, not at the filter.
 const FEW: [&str; 2] = ["--particles", "16"];
@@ -90,18 +90,7 @@ fn compare_of_nothing_but_broken_folders_fails() {
 #[test]
 fn demo_prints_tables_and_writes_a_report_and_figures() {
     let folder = common::empty_folder("demo");
-    let run = stickslip()
-        .arg("demo")
-        .args(FEW)
-        .current_dir(&folder)
-        .output()
-        .unwrap();
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
-    );
+    let run = succeeds(stickslip().arg("demo").args(FEW).current_dir(&folder));
     let told = String::from_utf8(run.stdout).unwrap();
     let lines = [
         "particle filter without touch",
@@ -168,17 +157,7 @@ fn filter_writes_a_report_and_the_same_estimate() {
         command
     };
     assert_eq!(filter(&plain).output().unwrap().status.code(), Some(0));
-    let run = filter(&watched)
-        .arg("--report")
-        .arg(&page)
-        .output()
-        .unwrap();
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
-    );
+    succeeds(filter(&watched).arg("--report").arg(&page));
     let estimate = |folder: &std::path::Path| fs::read(folder.join("estimate.csv")).unwrap();
     assert!(
         estimate(&plain) == estimate(&watched),
@@ -208,19 +187,13 @@ fn filter_writes_a_report_and_the_same_estimate() {
 fn compare_writes_a_report_of_all_folders() {
     let case = Experiment::copy(STOP, "compare_report");
     let page = case.folder.join("report.html");
-    let run = stickslip()
-        .arg("compare")
-        .arg(&case.folder)
-        .arg("--report")
-        .arg(&page)
-        .args(FEW)
-        .output()
-        .unwrap();
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
+    succeeds(
+        stickslip()
+            .arg("compare")
+            .arg(&case.folder)
+            .arg("--report")
+            .arg(&page)
+            .args(FEW),
     );
     let page = fs::read_to_string(page).unwrap();
     for text in [

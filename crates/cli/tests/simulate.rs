@@ -7,9 +7,9 @@ mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::Command;
 
-use common::{empty_folder, json, stickslip};
+use common::{empty_folder, json, stickslip, succeeds};
 
 const SCENE: &str = "gravity = 9.81
 object = { mass = 0.5, inertia = 2.1e-4, shape = [{ polygon = [[-0.025, -0.025], [0.025, -0.025], [0.025, 0.025], [-0.025, 0.025]] }] }
@@ -32,7 +32,7 @@ fn folder(name: &str, scene: &str) -> PathBuf {
     folder
 }
 
-fn simulate(folder: &Path, out: &str, options: &[&str]) -> Output {
+fn simulate(folder: &Path, out: &str, options: &[&str]) -> Command {
     let mut command = stickslip();
     command
         .arg("simulate")
@@ -40,29 +40,18 @@ fn simulate(folder: &Path, out: &str, options: &[&str]) -> Output {
         .arg("--out")
         .arg(folder.join(out))
         .args(options);
-    command.output().unwrap()
+    command
 }
 
 fn facts(folder: &Path, out: &str) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(folder.join(out).join("truth.json")).unwrap()).unwrap()
 }
 
-#[track_caller]
-fn assert_done(run: &Output) {
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
-    );
-}
-
 #[test]
 fn simulated_experiments_are_read_by_filter_and_by_check() {
     let folder = folder("simulate_read", SCENE);
     for physics in ["testbed", "model"] {
-        let run = simulate(&folder, physics, &["--physics", physics]);
-        assert_done(&run);
+        let run = succeeds(&mut simulate(&folder, physics, &["--physics", physics]));
         let told = String::from_utf8(run.stdout).unwrap();
         assert!(
             told.contains("121 rows, 4.0 s")
@@ -105,7 +94,7 @@ fn simulated_experiments_are_read_by_filter_and_by_check() {
 fn simulation_gives_the_same_bytes_for_the_same_seed_only() {
     let folder = folder("simulate_seed", SCENE);
     for (out, seed) in [("a", "7"), ("b", "7"), ("c", "8")] {
-        assert_done(&simulate(&folder, out, &["--seed", seed]));
+        succeeds(&mut simulate(&folder, out, &["--seed", seed]));
     }
     let bytes = |out: &str| {
         ["log.csv", "truth.csv", "truth.json"]
@@ -124,7 +113,7 @@ fn rate_and_truth_are_taken_where_they_are_given() {
     )
     .unwrap();
     let known = folder.join("known.json").display().to_string();
-    assert_done(&simulate(
+    succeeds(&mut simulate(
         &folder,
         "given",
         &["--truth", &known, "--rate", "60", "--physics", "model"],
@@ -147,7 +136,11 @@ fn rate_and_truth_are_taken_where_they_are_given() {
         1 + 241
     );
 
-    assert_done(&simulate(&folder, "drawn", &["--friction-error", "0.4"]));
+    succeeds(&mut simulate(
+        &folder,
+        "drawn",
+        &["--friction-error", "0.4"],
+    ));
     let drawn = facts(&folder, "drawn");
     let miss = |key: &str, nominal: f64| (drawn[key].as_f64().unwrap() / nominal - 1.0).abs();
     assert!(
@@ -159,7 +152,7 @@ fn rate_and_truth_are_taken_where_they_are_given() {
 #[test]
 fn camera_that_the_scene_has_not_measures_exactly() {
     let folder = folder("simulate_exact", &SCENE.replace("camera = {", "# {"));
-    assert_done(&simulate(&folder, "out", &[]));
+    succeeds(&mut simulate(&folder, "out", &[]));
     let column = |file: &str, k: usize| -> Vec<String> {
         let text = fs::read_to_string(folder.join("out").join(file)).unwrap();
         text.lines()
@@ -174,7 +167,9 @@ fn camera_that_the_scene_has_not_measures_exactly() {
 #[test]
 fn what_cannot_be_simulated_is_refused_with_the_next_step() {
     let refused = |name: &str, scene: &str, options: &[&str], code: i32, words: &[&str]| {
-        let run = simulate(&folder(name, scene), "out", options);
+        let run = simulate(&folder(name, scene), "out", options)
+            .output()
+            .unwrap();
         let talk = String::from_utf8(run.stderr).unwrap();
         assert_eq!(run.status.code(), Some(code), "{talk}");
         assert!(words.iter().all(|word| talk.contains(word)), "{talk}");
@@ -239,14 +234,11 @@ fn what_cannot_be_simulated_is_refused_with_the_next_step() {
 #[test]
 fn scene_or_paper_experiment_is_needed_and_not_both() {
     let folder = folder("simulate_paper", SCENE);
-    let run = |arguments: &[&str]| {
-        stickslip()
-            .arg("simulate")
-            .args(arguments)
-            .arg("--out")
-            .arg(folder.join("out"))
-            .output()
-            .unwrap()
+    let simulate = |arguments: &[&str]| {
+        let mut command = stickslip();
+        command.arg("simulate").args(arguments);
+        command.arg("--out").arg(folder.join("out"));
+        command
     };
     let scene = folder.join("scene.toml").display().to_string();
     let bad: [&[&str]; 4] = [
@@ -256,10 +248,10 @@ fn scene_or_paper_experiment_is_needed_and_not_both() {
         &["--paper", "A", "--friction-error", "0.1"],
     ];
     for arguments in bad {
-        assert_eq!(run(arguments).status.code(), Some(2), "{arguments:?}");
+        let run = simulate(arguments).output().unwrap();
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}");
     }
-    let paper = run(&["--paper", "b"]);
-    assert_done(&paper);
+    let paper = succeeds(&mut simulate(&["--paper", "b"]));
     assert!(
         String::from_utf8(paper.stdout)
             .unwrap()
@@ -272,7 +264,7 @@ fn log_that_is_there_is_not_written_over() {
     for name in ["log.csv", "log.mcap"] {
         let folder = folder(&format!("simulate_recorded/{name}"), SCENE);
         fs::write(folder.join(name), "recorded\n").unwrap();
-        let run = simulate(&folder, ".", &[]);
+        let run = simulate(&folder, ".", &[]).output().unwrap();
         let talk = String::from_utf8(run.stderr).unwrap();
         assert!(
             run.status.code() == Some(1) && talk.contains(name) && talk.contains("--out"),

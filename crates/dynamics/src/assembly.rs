@@ -10,7 +10,6 @@ use crate::geometry::shape::Shape;
 use crate::geometry::transform::Transform;
 use crate::geometry::vec2::Vec2;
 use crate::input::{Body, PusherMotion};
-use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
@@ -29,36 +28,36 @@ const PRESSING: f64 = 0.5;
 /// Which contact each row of a chunk's problems stands for.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly<const W: usize> {
-    rows: Vec<Row<W>>,
+    pub(crate) rows: Vec<Row<W>>,
     /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
-    scaling: Scaling<W>,
+    pub(crate) scaling: Scaling<W>,
 }
 
 /// What one row stands for.
 #[derive(Clone, Copy, Debug)]
-struct Row<const W: usize> {
-    body: Body,
+pub(crate) struct Row<const W: usize> {
+    pub(crate) body: Body,
     /// Names the contact from one step to the next.
     key: f64,
     /// The lanes that have the contact.
-    present: Mask<W>,
+    pub(crate) present: Mask<W>,
     /// Its gap (m).
-    gap: Lanes<W>,
+    pub(crate) gap: Lanes<W>,
 }
 
 /// What turns SI units into those of rows, and back.
 #[derive(Clone, Copy, Debug, Default)]
-struct Scaling<const W: usize> {
-    mass: f64,
-    inertia: f64,
-    h: f64,
+pub(crate) struct Scaling<const W: usize> {
+    pub(crate) mass: f64,
+    pub(crate) inertia: f64,
+    pub(crate) h: f64,
     /// 1/ρ.
     inv_rho: f64,
     /// 1/h.
     rate: f64,
     /// F_stall h (N s) and the direction in which the pusher gives way, lane by lane.
-    stall: Option<(f64, [Lanes<W>; 2])>,
+    pub(crate) stall: Option<(f64, [Lanes<W>; 2])>,
 }
 
 /// The other body of a pair during one step.
@@ -330,7 +329,7 @@ impl<const W: usize> Assembly<W> {
 
     /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`] that
     /// press, and where the pusher stands. What is unsolved would be a bad start: compliant impulses
-    /// are a million times too large.
+    /// are a million times too large; and so would be what grows from step to step.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Unknowns<W>, solved: Mask<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
@@ -348,10 +347,11 @@ impl<const W: usize> Assembly<W> {
             Some((_, [x, y])) => [x * way, y * way],
             None => [Lanes::ZERO; 2],
         };
+        let kept = solved & p.is_bounded();
         warm.contacts = [ContactImpulse::default(); REMEMBERED];
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
-            let pressed = solved & p_n.gt(Lanes::ZERO);
+            let pressed = kept & p_n.gt(Lanes::ZERO);
             for (k, slot) in warm.contacts.iter_mut().enumerate() {
                 let here: Mask<W> = pressed & !(filled - k as f64).abs().gt(Lanes::ZERO);
                 slot.key = here.select(Lanes::splat(row.key), slot.key);
@@ -359,74 +359,6 @@ impl<const W: usize> Assembly<W> {
                 slot.tangential = here.select(*p_t, slot.tangential);
             }
             filled += pressed.zero_unless(Lanes::splat(1.0));
-        }
-    }
-
-    /// The body of each contact of one lane, in the order of its problem.
-    pub fn bodies(&self, lane: usize) -> Vec<Body> {
-        self.rows
-            .iter()
-            .filter(|row| row.present.lane(lane))
-            .map(|row| row.body)
-            .collect()
-    }
-
-    /// One lane's problem in SI units; the applied impulse is part of its twist.
-    pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
-        let Scaling {
-            mass,
-            inertia,
-            h,
-            stall,
-            ..
-        } = self.scaling;
-        let rho = (inertia / mass).sqrt();
-        let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
-        let foot = |row: &FootRow<W>| Foot {
-            arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho],
-            bound: row.bound.0[lane] * mass,
-        };
-        let rows = self
-            .rows
-            .iter()
-            .zip(&ncp.contacts)
-            .filter(|(row, _)| row.present.lane(lane));
-        let contacts = rows.map(|(row, numbers)| {
-            let gap = row.gap.0[lane];
-            let ([nx, ny, normal], [.., tangential]) =
-                (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
-            let (approach, slip) = (
-                gap / h - numbers.gap_offset.0[lane],
-                -numbers.slip_offset.0[lane],
-            );
-            ContactPoint {
-                normal: [nx, ny],
-                arm: [
-                    (tangential * nx + normal * ny) * rho,
-                    (tangential * ny - normal * nx) * rho,
-                ],
-                gap,
-                mu: numbers.mu.0[lane],
-                surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
-                on_pusher: row.body == Body::Pusher,
-            }
-        });
-        StepProblem {
-            mass,
-            inertia,
-            h,
-            twist: Twist {
-                vx,
-                vy,
-                omega: scaled / rho,
-            },
-            applied: Wrench::default(),
-            contacts: contacts.collect(),
-            feet: ncp.feet.each_ref().map(foot),
-            stall: stall.map(|(impulse, direction)| Stall {
-                impulse,
-                direction: direction.map(|d| d.0[lane]),
-            }),
         }
     }
 }

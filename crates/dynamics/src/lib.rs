@@ -13,6 +13,7 @@ mod scene;
 mod se2;
 mod solver;
 mod start;
+mod stated_problem;
 mod step;
 
 pub use friction::Friction;

@@ -19,7 +19,7 @@ const TURNING: f64 = 0.03;
 const TOUCHING: f64 = 0.5;
 
 /// Share of the prior's spread below which a parameter was observed.
-const NARROWER: f64 = 0.7;
+const NARROWER: f64 = 0.5;
 
 /// One friction parameter at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -13,6 +13,14 @@ fn setup() -> Setup {
     .expect("a scene")
 }
 
+/// Its camera shows everything later (s).
+fn setup_with_latency(latency: f64) -> Setup {
+    let mut setup = setup();
+    let camera = setup.camera.as_mut().expect("the scene has a camera");
+    camera.latency = latency;
+    setup
+}
+
 /// Along a line at constant speed, turning steadily.
 fn moving(time: f64) -> Pose {
     Pose::new(0.02 * time, 0.1 - 0.01 * time, 3.0 + 0.5 * time)
@@ -82,12 +90,8 @@ fn reference_is_the_truth_between_its_rows_and_ends_with_it() {
 
 #[test]
 fn reference_of_a_log_without_truth_is_its_own_poses_as_the_camera_delays_them() {
-    let mut setup = setup();
     let latency = 0.16;
-    setup
-        .camera
-        .iter_mut()
-        .for_each(|camera| camera.latency = latency);
+    let setup = setup_with_latency(latency);
     let experiment = Experiment::new(setup, log(5), None, TruthFacts::default())
         .expect("as many sensors as fixels");
     let reference = Reference::of(&experiment);
@@ -146,12 +150,8 @@ fn score_of_a_constant_error_is_its_size() {
 /// later rows, and beyond the last one it is not known.
 #[test]
 fn pose_at_a_time_is_that_of_the_rows_that_show_it() {
-    let mut setup = setup();
     let latency = 0.16;
-    setup
-        .camera
-        .iter_mut()
-        .for_each(|camera| camera.latency = latency);
+    let setup = setup_with_latency(latency);
     let mut log = log(31);
     for (time, pose) in log.time.iter().zip(&mut log.object) {
         *pose = Some(moving(time - latency));

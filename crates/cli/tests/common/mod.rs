@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// The embedded experiment that jams.
 pub const STOP: &str = "stop-square50-bar-000";
@@ -16,8 +16,9 @@ pub fn stickslip() -> Command {
     Command::new(env!("CARGO_BIN_EXE_stickslip"))
 }
 
-/// What the program prints as JSON; it must succeed.
-pub fn json(command: &mut Command) -> serde_json::Value {
+/// Runs the program; it must succeed.
+#[track_caller]
+pub fn succeeds(command: &mut Command) -> Output {
     let run = command.output().unwrap();
     assert_eq!(
         run.status.code(),
@@ -25,7 +26,13 @@ pub fn json(command: &mut Command) -> serde_json::Value {
         "{}",
         String::from_utf8_lossy(&run.stderr)
     );
-    serde_json::from_slice(&run.stdout).unwrap()
+    run
+}
+
+/// What the program prints as JSON; it must succeed.
+#[track_caller]
+pub fn json(command: &mut Command) -> serde_json::Value {
+    serde_json::from_slice(&succeeds(command).stdout).unwrap()
 }
 
 /// An empty folder of this test run.

@@ -3,11 +3,16 @@
 use std::iter::Zip;
 use std::slice;
 
-use stickslip_lanes::Lanes;
+use stickslip_lanes::{Lanes, Mask};
 
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::rows::{Ncp, ROOM, Triple};
 use crate::se2::Twist;
+
+/// Largest normal impulse of a start (m/s). Bodies that squeeze an object press on it with impulses
+/// that cancel each other and that nothing determines: carried from step to step, they would grow
+/// until their rounding exceeds the certificate's tolerance.
+const LARGEST: f64 = 1e4;
 
 /// Unknowns z = (v⁺, p_n, p_t, p_k, y) of an [`Ncp`], all in m/s.
 #[derive(Clone, Debug)]
@@ -72,6 +77,16 @@ impl<const W: usize> Unknowns<W> {
     #[inline(always)]
     pub fn contacts(&self) -> Zip<slice::Iter<'_, Lanes<W>>, slice::Iter<'_, Lanes<W>>> {
         self.normal.iter().zip(&self.tangential)
+    }
+
+    /// Where no normal impulse exceeds [`LARGEST`].
+    #[inline(always)]
+    pub fn is_bounded(&self) -> Mask<W> {
+        let mut largest = Lanes::ZERO;
+        for p_n in &self.normal {
+            largest = largest.max(*p_n);
+        }
+        !largest.gt(Lanes::splat(LARGEST))
     }
 
     /// Copies all lanes; memory is reused.

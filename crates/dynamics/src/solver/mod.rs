@@ -20,6 +20,8 @@ mod newton;
 mod newton_block;
 mod piece_search;
 mod plane_region;
+mod redundant_line;
+mod redundant_plane;
 mod refiner;
 mod scalar_ncp;
 mod smoothed_map;

@@ -94,6 +94,17 @@ impl ModeConditions {
         })
     }
 
+    /// Both sides of the generators' equations: V meets one to the slack.
+    pub fn both_sides<const N: usize>(&self, chosen: &[Generator; N]) -> Vec<Inequality> {
+        let sides = |Equation { row, value }: Equation| {
+            [1.0, -1.0].map(|sign| Inequality {
+                row: row.map(|x| sign * x),
+                offset: -sign * value,
+            })
+        };
+        self.equations(chosen).into_iter().flat_map(sides).collect()
+    }
+
     /// The point V with the chosen generators' impulses `alpha` and feet that slide.
     pub fn candidate(&self, chosen: &[Generator], alpha: &[f64], v: Vector<4>) -> Candidate {
         let mut candidate = Candidate {

@@ -5,7 +5,7 @@ use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::{Inequality, ModeConditions};
 use crate::solver::piece_search::{ModePath, Sample};
 use crate::solver::scalar_ncp::Candidate;
-use crate::solver::subspace::{Equation, dual_basis, least_squares, null_vector};
+use crate::solver::subspace::{Equation, dual_basis, independence, least_squares, null_vector};
 use crate::solver::vector::{Vector, add_scaled, dot, velocity};
 
 /// V = origin + x d, where the equations of three generators hold.
@@ -24,15 +24,33 @@ impl Line {
         })
     }
 
+    /// Of the three equations among four that depend on each other least.
+    pub fn of_dependent(equations: &[Equation; 4]) -> Option<Self> {
+        let three = |skip: usize| [0, 1, 2].map(|k| equations[k + usize::from(k >= skip)]);
+        let independence = |skip: &usize| independence(&three(*skip).map(|e| e.row));
+        let skip = (0..4).max_by(|a, b| independence(a).total_cmp(&independence(b)))?;
+        Self::new(&three(skip))
+    }
+
+    /// V at x.
+    pub fn at(&self, x: f64) -> Vector<4> {
+        add_scaled(&self.origin, x, &self.d)
+    }
+
+    /// Removes from an interval of x what violates an inequality by more than `slack`.
+    pub fn clip(&self, interval: &mut Interval, inequality: &Inequality, slack: f64) {
+        let Inequality { row, offset } = inequality;
+        interval.clip(dot(row, &self.d), dot(row, &self.origin) + offset + slack);
+    }
+
     /// The part of it where a mode's inequalities hold.
-    pub fn interval(&self, conditions: &ModeConditions, chosen: &[Generator; 3]) -> Interval {
+    pub fn interval(&self, conditions: &ModeConditions, chosen: &[Generator]) -> Interval {
         let mut interval = Interval {
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         };
-        for Inequality { row, offset } in conditions.inequalities(chosen) {
-            let at_origin = dot(&row, &self.origin) + offset + conditions.slack;
-            interval.clip(dot(&row, &self.d), at_origin);
+        for inequality in conditions.inequalities(chosen) {
+            self.clip(&mut interval, &inequality, conditions.slack);
         }
         interval
     }
@@ -42,7 +60,7 @@ impl Line {
 pub struct LineBalance {
     m: Vector<4>,
     /// Of the three generators and m.
-    dual: [Vector<4>; 4],
+    pub dual: [Vector<4>; 4],
 }
 
 impl LineBalance {
@@ -98,7 +116,7 @@ impl<'a> ModeLine<'a> {
 
 impl ModePath for ModeLine<'_> {
     fn sample(&mut self, x: f64) -> Sample {
-        let v = add_scaled(&self.line.origin, x, &self.line.d);
+        let v = self.line.at(x);
         let along_m = self.conditions.range_along(&self.balance.dual[3], &v, &v);
         Sample {
             x,

@@ -6,10 +6,11 @@
 //! at most four linearly independent generators suffice. Each generator demands that its own row of
 //! V vanish (gap velocity, slip velocity where both edges of a contact are used, y for the stall
 //! pair), so a subset of four leaves a point, of three a line, of two a curve v(λ) = T⁻¹(…), of one
-//! again a point. Most subsets are discarded by V alone: the half-spaces of open gaps, opposed
-//! slips and y ≥ 0 leave nothing of the plane, line or point. The other lines and curves are
-//! searched by halving, with bounds that hold rigorously on every piece: pieces without a solution
-//! are discarded, what remains is refined. Where nothing remains, there is no solution.
+//! again a point. Parallel walls, and points of one face, ask the same of V twice: four generators
+//! then leave a line, three a plane. Most subsets are discarded by V alone: the half-spaces of open
+//! gaps, opposed slips and y ≥ 0 leave nothing of the plane, line or point. The others are searched
+//! by halving, with bounds that hold rigorously on every piece: pieces without a solution are
+//! discarded, what remains is refined. Where nothing remains, there is no solution.
 
 use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
@@ -20,6 +21,8 @@ use crate::solver::mode_curve::ModeCurve;
 use crate::solver::mode_line::{Line, LineBalance, ModeLine};
 use crate::solver::piece_search::{Finding, ModePath, Thoroughness, search_pieces};
 use crate::solver::plane_region::{PlaneRegion, complement};
+use crate::solver::redundant_line::RedundantLine;
+use crate::solver::redundant_plane::RedundantPlane;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares};
 use crate::solver::support_friction::SupportFriction;
@@ -228,7 +231,7 @@ impl ModeSearch {
             [one] => self.single(one, certifier),
             [first, second] => self.curve(&[*first, *second], thoroughness, certifier),
             [a, b, c] => self.line(&[*a, *b, *c], thoroughness, certifier),
-            [a, b, c, d] => self.point(&[*a, *b, *c, *d], certifier),
+            [a, b, c, d] => self.point(&[*a, *b, *c, *d], thoroughness, certifier),
             _ => Finding::Excluded,
         }
     }
@@ -266,7 +269,12 @@ impl ModeSearch {
     }
 
     /// Four generators: V is a point.
-    fn point(&self, chosen: &[Generator; 4], certifier: &mut Certifier<'_>) -> Finding {
+    fn point(
+        &self,
+        chosen: &[Generator; 4],
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> Finding {
         let conditions = &self.conditions;
         let Some(dual) = dual_basis(&chosen.map(|c| c.g)) else {
             return Finding::Excluded;
@@ -274,7 +282,11 @@ impl ModeSearch {
         let equations = conditions.equations(chosen);
         let (rows, values) = (equations.map(|e| e.row), equations.map(|e| e.value));
         let Some(v) = solve_dense(rows, values, DEPENDENT) else {
-            return self.degenerate(chosen, certifier);
+            let Some(line) = Line::of_dependent(&equations) else {
+                return self.degenerate(chosen, certifier);
+            };
+            let mut path = RedundantLine::new(conditions, chosen, line, dual);
+            return search_path(path.interval(), &mut path, thoroughness, certifier);
         };
         if conditions.violates(chosen, &v, 0.0) {
             return Finding::Excluded;
@@ -287,7 +299,11 @@ impl ModeSearch {
         Finding::of_candidate(certifier.certifies(&conditions.candidate(chosen, &alpha, v)))
     }
 
-    /// Dependent rows: excluded where they contradict each other, else unclear.
+    /// Rows that leave neither a line nor a plane: excluded where they contradict each other, else
+    /// unclear.
+    ///
+    /// What the best V misses is a combination of the rows that vanishes. So it bounds from below by
+    /// how much every V misses one of the equations.
     fn degenerate<const N: usize>(
         &self,
         chosen: &[Generator; N],
@@ -295,10 +311,9 @@ impl ModeSearch {
     ) -> Finding {
         let equations = self.conditions.equations(chosen);
         let v = least_squares(&equations);
-        let miss = equations.iter().fold(0.0f64, |largest, e| {
-            largest.max((dot(&e.row, &v) - e.value).abs())
-        });
-        if miss > 10.0 * self.conditions.slack {
+        let miss = equations.map(|e| dot(&e.row, &v) - e.value);
+        let sum: f64 = miss.iter().map(|x| x.abs()).sum();
+        if dot(&miss, &miss) > self.conditions.slack * sum {
             return Finding::Excluded;
         }
         Finding::of_candidate(certifier.certifies(&self.conditions.candidate(chosen, &[0.0; N], v)))
@@ -315,7 +330,10 @@ impl ModeSearch {
             return Finding::Excluded;
         };
         let Some(line) = Line::new(&self.conditions.equations(chosen)) else {
-            return self.degenerate(chosen, certifier);
+            return match RedundantPlane::new(&self.conditions, chosen, balance.dual) {
+                Some(plane) => plane.search(thoroughness, certifier),
+                None => self.degenerate(chosen, certifier),
+            };
         };
         let mut path = ModeLine::new(&self.conditions, chosen, line, balance);
         search_path(path.interval(), &mut path, thoroughness, certifier)

@@ -7,13 +7,13 @@ use crate::solver::vector::Vector;
 
 /// Widths of pieces below which their middles are tried (m/s, relative where above 1). Where an
 /// object creeps, only the middle of a narrow piece is near the solution.
-const WIDTHS: [f64; 3] = [1e-5, 1e-8, 1e-11];
+pub const WIDTHS: [f64; 3] = [1e-5, 1e-8, 1e-11];
 
 /// The root of a piece is sought again once the piece is by so much narrower.
 const NARROWER: f64 = 1e-3;
 
 /// Width at which a piece is not halved any more.
-const NARROWEST: f64 = 1e-12;
+pub const NARROWEST: f64 = 1e-12;
 
 /// Miss up to which a point is a root (m/s).
 const ROOT: f64 = 1e-11;

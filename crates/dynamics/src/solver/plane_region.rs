@@ -1,5 +1,6 @@
 //! The part of a plane of V = (v, y) where linear inequalities hold: [`PlaneRegion`].
 
+use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::Inequality;
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
@@ -40,7 +41,11 @@ impl PlaneRegion {
     /// Removes the points where row·V + offset < −slack.
     pub fn clip(&mut self, Inequality { row, offset }: &Inequality, slack: f64) {
         let constant = dot(row, &self.origin) + offset + slack;
-        let slope = self.axes.map(|axis| dot(row, &axis));
+        self.cut(self.axes.map(|axis| dot(row, &axis)), constant);
+    }
+
+    /// Removes the points where slope·(a, b) + constant < 0.
+    fn cut(&mut self, slope: [f64; 2], constant: f64) {
         let value = |[a, b]: [f64; 2]| constant + slope[0] * a + slope[1] * b;
         if self.corners.iter().all(|corner| value(*corner) >= 0.0) {
             return;
@@ -63,6 +68,57 @@ impl PlaneRegion {
     /// Whether no point is left.
     pub fn is_empty(&self) -> bool {
         self.corners.is_empty()
+    }
+
+    /// Its corners.
+    pub fn corners(&self) -> impl Iterator<Item = Vector<4>> + '_ {
+        self.corners.iter().map(|corner| self.at(*corner))
+    }
+
+    /// The middle of the box about it, which need not be within it.
+    pub fn middle(&self) -> Vector<4> {
+        self.at([0, 1].map(|k| self.side(k).midpoint()))
+    }
+
+    /// The longer side of that box.
+    pub fn width(&self) -> f64 {
+        let length = |k: usize| self.side(k).high - self.side(k).low;
+        length(0).max(length(1))
+    }
+
+    /// Its two parts on either side of the middle of the longer side.
+    pub fn halves(&self) -> [Self; 2] {
+        let sides = [0, 1].map(|k| self.side(k));
+        let lengths = sides.map(|side| side.high - side.low);
+        let longer = usize::from(lengths[1] > lengths[0]);
+        let middle = sides[longer].midpoint();
+        [1.0, -1.0].map(|sign| {
+            let mut slope = [0.0; 2];
+            slope[longer] = sign;
+            let mut half = self.clone();
+            half.cut(slope, -sign * middle);
+            half
+        })
+    }
+
+    /// Range of one coordinate.
+    fn side(&self, k: usize) -> Interval {
+        let empty = Interval {
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+        };
+        self.corners.iter().fold(empty, |side, corner| Interval {
+            low: side.low.min(corner[k]),
+            high: side.high.max(corner[k]),
+        })
+    }
+
+    fn at(&self, [a, b]: [f64; 2]) -> Vector<4> {
+        add_scaled(
+            &add_scaled(&self.origin, a, &self.axes[0]),
+            b,
+            &self.axes[1],
+        )
     }
 }
 
@@ -122,6 +178,38 @@ mod tests {
         assert!(!region.is_empty());
         region.clip(&at_least([-1.0, -1.0, 0.0, 0.0], 0.5), 0.4);
         assert!(region.is_empty());
+    }
+
+    /// Halves of halves cover the region, each half as wide as the one before or less.
+    #[test]
+    fn halves_cover_the_region() {
+        let unit = |k: usize| {
+            let mut row = [0.0; 4];
+            row[k] = 1.0;
+            row
+        };
+        let equations = [0, 1].map(|k| Equation {
+            row: unit(k),
+            value: 0.0,
+        });
+        let mut region = PlaneRegion::new(&equations).expect("two directions");
+        for k in [2, 3] {
+            for sign in [1.0, -1.0] {
+                let inequality = Inequality {
+                    row: unit(k).map(|x| -sign * x),
+                    offset: k as f64,
+                };
+                region.clip(&inequality, 0.0);
+            }
+        }
+        // a rectangle of 4 by 6
+        assert_eq!(region.width(), 6.0);
+        let [low, high] = region.halves();
+        assert_eq!((low.width(), high.width()), (4.0, 4.0));
+        let corners: Vec<_> = low.corners().chain(high.corners()).collect();
+        for (x, y) in [(2.0, 3.0), (-2.0, 3.0), (2.0, -3.0), (-2.0, -3.0)] {
+            assert!(corners.contains(&[0.0, 0.0, x, y]), "{corners:?}");
+        }
     }
 
     #[test]

@@ -18,6 +18,23 @@ pub struct Equation {
 
 /// A unit vector orthogonal to three vectors; `None` where they are dependent.
 pub fn null_vector(rows: &[Vector<4>; 3]) -> Option<Vector<4>> {
+    let d = cross(rows);
+    let size = norm(&d);
+    (size > 1e-12 * scale(rows)).then(|| d.map(|x| x / size))
+}
+
+/// How far three vectors are from depending on each other: 0 where they do, 1 where they are
+/// orthogonal.
+pub fn independence(rows: &[Vector<4>; 3]) -> f64 {
+    norm(&cross(rows)) / scale(rows)
+}
+
+fn scale(rows: &[Vector<4>; 3]) -> f64 {
+    rows.iter().map(norm).product()
+}
+
+/// The vector orthogonal to three vectors, as long as the volume that they span.
+fn cross(rows: &[Vector<4>; 3]) -> Vector<4> {
     let minor = |skip: usize| {
         let pick = |r: &Vector<4>| -> [f64; 3] {
             std::array::from_fn(|j| r[if j < skip { j } else { j + 1 }])
@@ -26,10 +43,7 @@ pub fn null_vector(rows: &[Vector<4>; 3]) -> Option<Vector<4>> {
         a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
             + a[2] * (b[0] * c[1] - b[1] * c[0])
     };
-    let d = [minor(0), -minor(1), minor(2), -minor(3)];
-    let size = norm(&d);
-    let scale: f64 = rows.iter().map(norm).product();
-    (size > 1e-12 * scale).then(|| d.map(|x| x / size))
+    [minor(0), -minor(1), minor(2), -minor(3)]
 }
 
 /// Rows w_j with w_j·g_k = 1 where j = k, else 0; `None` where the vectors are dependent.

@@ -45,6 +45,13 @@ struct Slip {
     speed: f64,
 }
 
+/// A slip, and how far it is from balancing a load.
+struct Trial {
+    slip: Slip,
+    cost: f64,
+    moved: Moved,
+}
+
 /// What is known of the motion before the object slides.
 enum Motion {
     /// It rests.
@@ -122,7 +129,7 @@ impl SupportFriction {
         }
         // the foot gives way along the impulse
         let off = [impulse[0], impulse[1], 0.0];
-        let cost = |v: &Vector<3>| self.cost(load, v);
+        let cost = |v: &Vector<3>| cost(load, v, &self.surface.friction(v));
         Motion::Slips(Slip::of(&leave(cost, &v, &off)))
     }
 
@@ -215,37 +222,41 @@ impl SupportFriction {
 
     /// Follows a slip to where it balances the load, by damped Newton steps.
     fn slide(&mut self, load: &Vector<3>, start: Slip, steps: u32, systems: &mut u32) -> Moved {
-        let mut slip = start;
-        let mut moved = self.moved(load, slip.velocity(), *systems);
+        let mut now = self.trial(load, start);
         for _ in 0..steps {
-            if moved.is_balanced(load) {
+            if now.moved.is_balanced(load) {
                 break;
             }
             *systems += 1;
-            let Some(step) = self.newton_step(load, &slip) else {
+            let Some(step) = self.newton_step(load, &now.slip) else {
                 break;
             };
-            let cost = self.cost(load, &slip.velocity());
-            let rounding = ROUNDING * slip.speed * norm(load);
+            let rounding = ROUNDING * now.slip.speed * norm(load);
             let next = first_share(
-                |share| slip.after(&step, share),
+                |share| self.trial(load, now.slip.after(&step, share)),
                 |next| {
-                    let v = next.velocity();
-                    let then = self.cost(load, &v);
-                    let falls = then < cost
-                        || then <= cost + rounding
-                            && self.moved(load, v, 0).residual < 0.9 * moved.residual;
-                    next.speed > 0.0 && falls
+                    let nearer = next.moved.residual < 0.9 * now.moved.residual;
+                    let falls = nearer && next.cost <= now.cost + rounding;
+                    next.slip.speed > 0.0 && (next.cost < now.cost || falls)
                 },
             );
-            let Some(next) = next else {
-                break;
-            };
-            slip = next;
-            moved = self.moved(load, slip.velocity(), *systems);
+            let Some(next) = next else { break };
+            now = next;
         }
-        self.last = Some(slip);
-        moved
+        self.last = Some(now.slip);
+        now.moved.systems = *systems;
+        now.moved
+    }
+
+    /// The object slips like this, no loaded foot standing.
+    fn trial(&self, load: &Vector<3>, slip: Slip) -> Trial {
+        let v = slip.velocity();
+        let friction = self.surface.friction(&v);
+        Trial {
+            slip,
+            cost: cost(load, &v, &friction),
+            moved: Moved::new(load, v, &friction, 0),
+        }
     }
 
     /// Changes of direction and speed, as e' + speed' e, to where the linearised friction balances the
@@ -266,16 +277,11 @@ impl SupportFriction {
         }
         solve_dense(regular(matrix), left, 0.0)
     }
+}
 
-    /// ½|v − load|² + Σ bound |J v|, less its value at rest.
-    fn cost(&self, load: &Vector<3>, v: &Vector<3>) -> f64 {
-        dot(v, v) * 0.5 - dot(v, load) + self.surface.friction(v).loss
-    }
-
-    /// The object in motion, no loaded foot standing.
-    fn moved(&self, load: &Vector<3>, v: Vector<3>, systems: u32) -> Moved {
-        Moved::new(load, v, &self.surface.friction(&v), systems)
-    }
+/// ½|v − load|² + Σ bound |J v|, less its value at rest.
+fn cost(load: &Vector<3>, v: &Vector<3>, friction: &SlipFriction) -> f64 {
+    dot(v, v) * 0.5 - dot(v, load) + friction.loss
 }
 
 impl Moved {
