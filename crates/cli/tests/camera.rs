@@ -342,16 +342,13 @@ fn calibrate_says_what_is_wrong_with_board_and_frames() {
         &mut with("", "", &empty_folder("camera/none")),
         &["there is no image in it", "help: give a folder with png"],
     );
-    let run = stickslip()
-        .arg("calibrate")
-        .arg(&board)
-        .arg("--board")
-        .arg(RENDERED.join("board.toml"))
-        .args(["--flat", "x.png"])
-        .output()
-        .unwrap();
     assert_refused(
-        &mut run,
+        stickslip()
+            .arg("calibrate")
+            .arg(&board)
+            .arg("--board")
+            .arg(RENDERED.join("board.toml"))
+            .args(["--flat", "x.png"]),
         &["--flat x.png: there is no such frame; they go from 000.png to 007.png"],
     );
     assert!(!out.join("calibration.toml").exists());

@@ -3,16 +3,16 @@
 //! Talts et al. 2018.
 
 use stickslip::dynamics::{Friction, Pose};
-use stickslip::{Mode, Setup, Tracking, wrapped};
+use stickslip::{
+    Camera, Estimate, Mode, Occlusion, RunOptions, Setup, TactileUse, Tracking, run, wrapped,
+};
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
 
 use crate::learned_friction::LearnedParameter;
 use crate::paper::PaperExperiment;
 use crate::run::{RunConditions, ScoredRun};
-use crate::simulation::{
-    PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
-};
+use crate::simulation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};
 use crate::variant::Variant;
 
 /// Standard deviations on either side of the mean that hold 90 % of a normal distribution.
@@ -41,11 +41,21 @@ pub struct CalibrationRun {
     pub placed: [Option<Placed>; 7],
 }
 
+/// What moves the object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TruthSource {
+    /// One particle of the filter's own, noise included: of such truths, true beliefs hold as much as
+    /// they say.
+    Particle,
+    /// A simulation by the filter's dynamics without noise, or by the testbed.
+    Simulated(Physics),
+}
+
 /// What is simulated, and how it is estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationOptions {
     /// What moves the object.
-    pub physics: Physics,
+    pub source: TruthSource,
     /// Rules of the particle filter.
     pub mode: Mode,
     /// Whether it feels and not only sees.
@@ -65,8 +75,11 @@ impl CalibrationRun {
     pub fn new(paper: PaperExperiment, seed: u64, options: &CalibrationOptions) -> Option<Self> {
         let scene = paper.scene();
         let setup = read_scene(scene.scene, scene.name).expect("the embedded scene is one");
-        let friction = drawn(&setup, seed);
-        let experiment = simulated(&setup, &friction, seed, options.physics).ok()?;
+        let truth = match options.source {
+            TruthSource::Particle => sampled(&setup, seed, options.mode),
+            TruthSource::Simulated(physics) => simulated(&setup, seed, physics),
+        }?;
+        let experiment = &truth.experiment;
         experiment.facts.occlude_from?;
         let conditions = RunConditions {
             mode: options.mode,
@@ -79,12 +92,19 @@ impl CalibrationRun {
             true => Variant::Particle,
             false => Variant::ParticleNoTouch,
         };
-        let run = ScoredRun::new(variant, &experiment, &conditions, None);
+        let run = ScoredRun::new(variant, experiment, &conditions, None);
         let run = run.expect("the embedded scene can be run");
         Some(Self {
-            placed: placed(&experiment, &run, &friction)?,
+            placed: placed(&truth, &run)?,
         })
     }
+}
+
+/// An experiment with all that is true of it.
+struct KnownExperiment {
+    experiment: Experiment,
+    friction: Friction,
+    end: Pose,
 }
 
 /// Friction from the prior of a setup.
@@ -103,13 +123,9 @@ fn drawn(setup: &Setup, seed: u64) -> Friction {
     friction
 }
 
-/// The experiment with a true friction; of the testbed's feet nobody knows the radius of a tripod.
-fn simulated(
-    setup: &Setup,
-    friction: &Friction,
-    seed: u64,
-    physics: Physics,
-) -> Result<Experiment, SimulationError> {
+/// An experiment simulated with friction from the prior; `None` where the drawn rig cannot be.
+fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperiment> {
+    let friction = drawn(setup, seed);
     let known = TruthFacts {
         mu_s: Some(friction.mu_s),
         mu_p: Some(friction.mu_p),
@@ -124,20 +140,81 @@ fn simulated(
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,
     };
-    let simulation = Simulation::run(setup, &known, &options)?;
-    Ok(simulation.into_experiment(setup.clone()))
+    let simulation = Simulation::run(setup, &known, &options).ok()?;
+    let end = *simulation.truth.pose.last()?;
+    Some(KnownExperiment {
+        experiment: simulation.into_experiment(setup.clone()),
+        friction,
+        end,
+    })
+}
+
+/// An experiment in which the object moves as a particle of the filter does that sees and feels
+/// nothing, under the pusher of a simulation.
+fn sampled(setup: &Setup, seed: u64, mode: Mode) -> Option<KnownExperiment> {
+    let mut experiment = simulated(setup, seed, Physics::Model)?.experiment;
+    let options = RunOptions {
+        mode,
+        particles: 1,
+        seed: seed + OTHER_SEEDS,
+        tactile: TactileUse::Ignored,
+        occlusion: Occlusion::Rows { from: 1, to: None },
+        ..RunOptions::default()
+    };
+    let particle = run(setup, &experiment.log, &options, &mut |_| ()).ok()?;
+    let last = particle.estimate.rows.last()?;
+    let (friction, end) = (last.friction?, last.pose?);
+    measure(&mut experiment, &particle.estimate, setup.camera?, seed);
+    Some(KnownExperiment {
+        experiment,
+        friction,
+        end,
+    })
+}
+
+/// Seeds of truths lie apart from those of filters.
+const OTHER_SEEDS: u64 = 1 << 32;
+
+/// Frames from the blackout to the first contact with a fixel.
+const LEAD: usize = 5;
+
+/// Writes what camera and sensors read of the motion of `particle`, with the errors that the filter
+/// reckons with.
+fn measure(experiment: &mut Experiment, particle: &Estimate, camera: Camera, seed: u64) {
+    let streams = Streams::new(seed + OTHER_SEEDS).of(Purpose::Measure);
+    let setup = &experiment.setup;
+    let wider = setup.filter.likelihood_scale;
+    let late = -setup.uncertainty.latency * libm::log(streams.uniform(0, 0, 0));
+    let (log, tactile) = (&mut experiment.log, setup.tactile);
+    for (row, estimate) in particle.rows.iter().enumerate().skip(1) {
+        let noise = streams.normals::<3>(row as u64, 0, 2);
+        let shown = (log.time[row] - camera.latency - late).max(log.time[0]);
+        log.object[row] = particle.pose_at(shown).map(|pose| Pose {
+            x: pose.x + wider * camera.position_std * noise[0],
+            y: pose.y + wider * camera.position_std * noise[1],
+            theta: pose.theta + wider * camera.orientation_std * noise[2],
+        });
+        let contacts = estimate.contact_fixels.iter().flatten();
+        for (j, (sensor, contact)) in log.tactile.iter_mut().zip(contacts).enumerate() {
+            let errs = streams.uniform(row as u64, 1 + j as u32, 0);
+            sensor[row] = Some(match *contact > 0.5 {
+                true => errs > tactile.false_negative,
+                false => errs < tactile.false_positive,
+            });
+        }
+    }
+    let touched = |row: &usize| {
+        let contacts = particle.rows[*row].contact_fixels.iter().flatten();
+        contacts.into_iter().any(|contact| *contact > 0.5)
+    };
+    let first = (0..particle.rows.len()).find(touched);
+    experiment.facts.occlude_from = first.map(|row| row.saturating_sub(LEAD).max(1));
 }
 
 /// Where the truth lies at the end of a run.
-fn placed(
-    experiment: &Experiment,
-    run: &ScoredRun,
-    friction: &Friction,
-) -> Option<[Option<Placed>; 7]> {
-    let truth = experiment.truth.as_ref()?;
-    let row = run.estimate.rows.last()?;
+fn placed(known: &KnownExperiment, run: &ScoredRun) -> Option<[Option<Placed>; 7]> {
+    let (end, row) = (&known.end, run.estimate.rows.last()?);
     let (mean, spread) = (row.pose?, row.spread?);
-    let end: &Pose = truth.pose.last()?;
     let turned = mean.theta + wrapped(end.theta - mean.theta);
     let pose = [
         (end.x, mean.x, spread.pose.x),
@@ -146,18 +223,19 @@ fn placed(
     ];
     let mut all = [None; 7];
     for (to, (truth, mean, std)) in all.iter_mut().zip(pose) {
+        let prior = mean;
         *to = Some(Placed {
             truth,
             mean,
             std,
-            prior: mean,
+            prior,
         });
     }
-    let nominal = &experiment.setup.scene.nominal;
+    let nominal = &known.experiment.setup.scene.nominal;
     for parameter in LearnedParameter::all(&run.estimate) {
         let place = QUANTITIES.iter().position(|name| *name == parameter.name)?;
         all[place] = parameter.observed.then_some(Placed {
-            truth: parameter.among(friction)?,
+            truth: parameter.among(&known.friction)?,
             mean: parameter.mean,
             std: parameter.std,
             prior: parameter.among(nominal)?,

@@ -12,7 +12,7 @@ mod simulation;
 mod statistics;
 mod variant;
 
-pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally};
+pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally, TruthSource};
 pub use learned_friction::LearnedParameter;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};

@@ -1,10 +1,13 @@
 //! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]]`: where the truth
-//! lies in the filter's belief, over simulated experiments whose friction is drawn from the prior, in
-//! the filter's own physics and in the testbed's, with touch and without, in both modes.
+//! lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by the
+//! filter's own noisy dynamics, by these without noise and by the testbed, with touch and without, in
+//! both modes.
 
 use stickslip::Mode;
 use stickslip_evaluation::paper::PaperExperiment;
-use stickslip_evaluation::{CalibrationOptions, CalibrationRun, Physics, QUANTITIES, Tally};
+use stickslip_evaluation::{
+    CalibrationOptions, CalibrationRun, Physics, QUANTITIES, Tally, TruthSource,
+};
 
 fn main() -> Result<(), std::num::ParseIntError> {
     let numbers: Result<Vec<usize>, _> = std::env::args().skip(1).map(|n| n.parse()).collect();
@@ -14,17 +17,28 @@ fn main() -> Result<(), std::num::ParseIntError> {
     println!(
         "{runs} runs each, {particles} particles; coverage of 90 % intervals at the end of the run"
     );
-    for physics in [Physics::Model, Physics::Testbed] {
+    let sources = [
+        (
+            TruthSource::Particle,
+            "filter's own physics, noise included",
+        ),
+        (
+            TruthSource::Simulated(Physics::Model),
+            "its dynamics without noise",
+        ),
+        (TruthSource::Simulated(Physics::Testbed), "testbed"),
+    ];
+    for (source, truth) in sources {
         for (mode, name) in [(Mode::Contact, "contact"), (Mode::Paper, "paper")] {
             for touch in [true, false] {
                 let options = CalibrationOptions {
-                    physics,
+                    source,
                     mode,
                     touch,
                     particles,
                 };
                 let sensors = if touch { "touch" } else { "no touch" };
-                println!("\n{} physics, {name} mode, {sensors}", physics.name());
+                println!("\n{truth}: {name} mode, {sensors}");
                 show(&simulate(runs, &options));
             }
         }
