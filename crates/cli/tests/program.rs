@@ -216,16 +216,13 @@ fn bad_arguments_exit_with_2() {
             "{arguments:?}"
         );
     }
-    let contact = stickslip()
-        .args(["filter", &log, "--scene", &scene, "--mode", "contact"])
+    let mode = stickslip()
+        .args(["filter", &log, "--scene", &scene, "--mode", "both"])
         .output()
         .unwrap();
-    assert_eq!(contact.status.code(), Some(2));
-    assert!(
-        String::from_utf8(contact.stderr)
-            .unwrap()
-            .contains("does not exist yet")
-    );
+    assert_eq!(mode.status.code(), Some(2));
+    let told = String::from_utf8(mode.stderr).unwrap();
+    assert!(told.contains("contact, paper"), "{told}");
 }
 
 #[test]

@@ -52,3 +52,13 @@ impl Default for Uncertainty {
         }
     }
 }
+
+/// Multiples of its mean that the unknown part of the camera's latency may reach.
+const LATEST: f64 = 6.0;
+
+impl Uncertainty {
+    /// Longest time by which the camera may lag more than the scene says (s).
+    pub(crate) fn most_latency(&self) -> f64 {
+        LATEST * self.latency
+    }
+}

@@ -99,24 +99,25 @@ fn shown_with_own_latency(
     let latency = load_chunk(block.column(columns.latency()), chunk, 0.0);
     let time = Lanes::splat(observation.time) - latency;
     let at = |slot: usize| load_pose(block, columns.past_pose(slot), chunk);
-    let Some((first, rest)) = observation.past.split_first() else {
+    let Some((last, before)) = observation.past.split_last() else {
         return load_pose(block, Columns::POSE, chunk);
     };
-    let mut earlier = (first.0, at(first.1));
-    let mut shown = earlier.1;
-    for (later_time, slot) in rest {
-        let later = at(*slot);
-        let fraction = (time - earlier.0) * (1.0 / (later_time - earlier.0));
-        let fraction = fraction.max(Lanes::ZERO).min(Lanes::splat(1.0));
+    // back from the latest pose: what lies before the time shown adds exactly nothing
+    let mut later = (last.0, at(last.1));
+    let mut shown = later.1;
+    for (earlier_time, slot) in before.iter().rev() {
+        let earlier = at(*slot);
+        let back = (Lanes::splat(later.0) - time) * (1.0 / (later.0 - earlier_time));
+        let back = back.max(Lanes::ZERO).min(Lanes::splat(1.0));
         for ((shown, to), from) in shown
             .fields_mut()
             .into_iter()
-            .zip(later.fields())
-            .zip(earlier.1.fields())
+            .zip(later.1.fields())
+            .zip(earlier.fields())
         {
-            *shown += (*to - *from) * fraction;
+            *shown += (*from - *to) * back;
         }
-        earlier = (*later_time, later);
+        later = (*earlier_time, earlier);
     }
     shown
 }

@@ -60,9 +60,6 @@ const BELIEVED_AFTER: u32 = 4;
 /// Evidence of a row below which no particle explains it (contact mode).
 const UNEXPLAINED: f64 = -10.0;
 
-/// Multiples of the prior's mean latency that a camera may lag more than told (contact mode).
-const LATEST: f64 = 6.0;
-
 /// What a contact filter is made with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterOptions<'o> {
@@ -102,7 +99,7 @@ impl<'o> ContactFilter<'o> {
         options: &FilterOptions<'o>,
     ) -> Result<Self, RunError> {
         let unknown = match options.mode {
-            Mode::Contact => LATEST * setup.uncertainty.latency,
+            Mode::Contact => setup.uncertainty.most_latency(),
             Mode::Paper => 0.0,
         };
         let history = PoseHistory::new(camera.latency + unknown + options.late, time);
@@ -174,6 +171,7 @@ impl<'o> ContactFilter<'o> {
         let before = self.unexplained;
         self.unexplained = match report.weight_update {
             WeightUpdate::Weighed { log_evidence } if log_evidence < UNEXPLAINED => before + 1,
+            WeightUpdate::Collapsed { .. } => before,
             _ => 0,
         };
         let trusted = self.unexplained >= BELIEVED_AFTER;

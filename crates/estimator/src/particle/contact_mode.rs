@@ -159,7 +159,8 @@ impl Propagation {
             let roughness = &mut block.column_mut(columns.roughness())[i];
             *roughness = wandered(*roughness, OFFSET_STEP, unsure.roughness * rough);
             let latency = &mut block.column_mut(columns.latency())[i];
-            *latency = told + (*latency - told + OFFSET_STEP * unsure.latency * late).abs();
+            let more = (*latency - told + OFFSET_STEP * unsure.latency * late).abs();
+            *latency = told + more.min(unsure.most_latency());
         }
     }
 

@@ -115,7 +115,8 @@ impl<'o> ContactModel<'o> {
         }
         block.column_mut(columns.roughness())[i] = prior.roughness * normals[10];
         let late = -libm::log(draw.uniform(particle, 15));
-        block.column_mut(columns.latency())[i] = self.camera.latency + prior.latency * late;
+        block.column_mut(columns.latency())[i] =
+            self.camera.latency + (prior.latency * late).min(prior.most_latency());
         let start = TouchChannel::new(&setup.tactile).start();
         for j in 0..columns.fixels() {
             write(block, columns.stuck(j), i, [&start[0], &start[1]]);
