@@ -6,7 +6,7 @@ use crate::setup::Tactile;
 pub(crate) type Stuck = [f64; 2];
 
 /// A sensor that works, or is stuck at one reading for a while; which, is not known, but inferred
-/// from its readings, particle by particle (docs/method.md, "Touch").
+/// from its readings, particle by particle (docs/method.md, "Contact mode").
 ///
 /// Readings of a sensor that misses a touch now will miss it in the next frame, too: they count
 /// once, not frame by frame.

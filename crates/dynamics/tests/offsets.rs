@@ -1,0 +1,107 @@
+//! A pusher and fixels beside their poses are a pusher and fixels at other poses.
+
+use stickslip_dynamics::{
+    Dynamics, Feet, Fixel, Friction, Lanes, Object, Offsets, Part, Particle, Particles, Pose,
+    Pusher, PusherMotion, Scene, Shape, StepInput, StepWork, Twist,
+};
+
+const FRICTION: Friction = Friction {
+    mu_s: 0.28,
+    mu_p: 0.3,
+    mu_f: 0.25,
+    d_tri: 0.02,
+};
+
+/// A square, pushed by a disc against two discs; `shift` moves these (m).
+fn scene(shift: [[f64; 2]; 2]) -> Scene {
+    let disc = |radius| {
+        let centre = [0.0, 0.0];
+        Shape::new(vec![Part::Disc { radius, centre }]).expect("a disc")
+    };
+    let vertices = vec![
+        [-0.025, -0.025],
+        [0.025, -0.025],
+        [0.025, 0.025],
+        [-0.025, 0.025],
+    ];
+    let places = [[0.033, 0.015], [0.033, -0.015]];
+    let fixel = |([x, y], [dx, dy]): ([f64; 2], [f64; 2])| Fixel {
+        pose: Pose::new(x + dx, y + dy, 0.0),
+        shape: disc(0.005),
+    };
+    Scene {
+        gravity: 9.81,
+        object: Object {
+            mass: 0.5,
+            inertia: 2.1e-4,
+            shape: Shape::new(vec![Part::Polygon { vertices }]).expect("a square"),
+        },
+        feet: Feet::Tripod { angle: 0.0 },
+        pusher: Pusher {
+            shape: disc(0.005),
+            stall_force: Some(20.0),
+        },
+        fixels: places.into_iter().zip(shift).map(fixel).collect(),
+        nominal: FRICTION,
+    }
+}
+
+fn push(step: usize, [dx, dy]: [f64; 2]) -> StepInput {
+    let x = -0.0302 + 0.0007 * step as f64;
+    StepInput {
+        h: 1.0 / 30.0,
+        pusher: Some(PusherMotion {
+            pose: Pose::new(x + dx, 0.004 + dy, 0.0),
+            twist: Twist {
+                vx: 0.021,
+                ..Twist::default()
+            },
+            direction: [1.0, 0.0],
+        }),
+    }
+}
+
+#[test]
+fn each_lane_steps_as_in_a_scene_of_its_own() {
+    const LANES: usize = 4;
+    let lane = |i: usize, k: usize| 1e-4 * ((7 * i + 3 * k) % 5) as f64 - 2e-4;
+    let pusher = |i: usize| [lane(i, 0), lane(i, 1)];
+    let fixels = |i: usize| [[lane(i, 2), lane(i, 3)], [lane(i, 4), lane(i, 5)]];
+
+    // all lanes at once, with offsets
+    let dynamics = Dynamics::new(scene([[0.0; 2]; 2]));
+    let mut chunk = Particles::<LANES>::default();
+    (0..LANES).for_each(|i| chunk.set(i, &Particle::default(), &FRICTION));
+    let mut chunk = [chunk];
+    let columns = |of: &dyn Fn(usize) -> [f64; 2]| {
+        [0, 1].map(|axis| Lanes(std::array::from_fn(|i| of(i)[axis])))
+    };
+    let pushers = [columns(&pusher)];
+    let places = [columns(&|i| fixels(i)[0]), columns(&|i| fixels(i)[1])];
+    let mut work = StepWork::default();
+
+    // each lane alone, where everything stands at its own pose
+    let mut alone: Vec<Particle> = vec![Particle::default(); LANES];
+    let mut own_work = StepWork::<1>::default();
+    for step in 0..30 {
+        let offsets = Offsets {
+            pusher: &pushers,
+            fixels: &places,
+        };
+        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
+        for (i, particle) in alone.iter_mut().enumerate() {
+            let mut one = [*particle];
+            Dynamics::new(scene(fixels(i))).step(
+                &push(step, pusher(i)),
+                &[FRICTION],
+                &mut one,
+                &mut own_work,
+            );
+            *particle = one[0];
+            assert_eq!(chunk[0].get(i).pose, particle.pose, "lane {i}, step {step}");
+        }
+    }
+    let moved: Vec<f64> = alone.iter().map(|particle| particle.pose.x).collect();
+    assert!(moved.iter().all(|x| *x > 1e-3), "{moved:?}");
+    assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
+}

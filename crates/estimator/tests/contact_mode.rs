@@ -1,0 +1,114 @@
+//! What contact mode does that paper mode does not, on experiments whose truth is known by
+//! construction.
+
+mod common;
+
+use common::{RATE, log, setup};
+use stickslip::dynamics::Pose;
+use stickslip::{Estimate, Log, Mode, RunOptions, Setup, run};
+
+/// Speed of the pusher (m/s), and where it meets the disc (s).
+const SPEED: f64 = 0.02;
+const MEETS: f64 = 1.0;
+
+/// A pusher that drives the disc through its middle from [`MEETS`] to 3 s.
+fn pusher(time: f64) -> Option<Pose> {
+    Some(Pose::new(
+        -0.035 + SPEED * (time.min(3.0) - MEETS),
+        0.0,
+        0.0,
+    ))
+}
+
+/// Where the disc then is.
+fn truth(time: f64) -> Pose {
+    Pose::new(SPEED * (time.clamp(MEETS, 3.0) - MEETS), 0.0, 0.0)
+}
+
+fn pushed(latency: f64) -> Log {
+    log(150, |time| Some(truth(time - latency)), pusher)
+}
+
+fn estimate(setup: &Setup, log: &Log, mode: Mode) -> Estimate {
+    let options = RunOptions {
+        mode,
+        particles: 400,
+        ..RunOptions::default()
+    };
+    run(setup, log, &options, &mut |_| ())
+        .expect("a run")
+        .estimate
+}
+
+/// Largest distance from the truth over the rows from `from` (s) to `to` (s), in m.
+fn farthest(estimate: &Estimate, from: f64, to: f64) -> f64 {
+    let rows = estimate.time.iter().zip(&estimate.rows);
+    let errors = rows.filter(|(time, _)| (from..to).contains(*time));
+    errors
+        .filter_map(|(time, row)| Some((row.pose?.x - truth(*time).x).hypot(row.pose?.y)))
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn friction_that_nothing_was_felt_of_keeps_its_prior() {
+    let setup = setup(&[[0.2, 0.0]]);
+    let estimate = estimate(&setup, &pushed(0.0), Mode::Contact);
+    let last = estimate.rows.last().expect("rows");
+    let (mean, std) = (
+        last.friction.expect("friction").mu_f,
+        last.spread
+            .and_then(|spread| spread.friction)
+            .expect("a spread")
+            .mu_f,
+    );
+    // a log-normal variable of median m and deviation s has mean m e^(s²/2) and this deviation; the
+    // upper limit of 1 cuts little of it
+    let (median, s): (f64, f64) = (0.33, 0.45);
+    let expected = median * (s * s / 2.0).exp();
+    let deviation = expected * ((s * s).exp() - 1.0).sqrt();
+    assert!((mean / expected - 1.0).abs() < 0.1, "{mean}, {expected}");
+    assert!((std / deviation - 1.0).abs() < 0.2, "{std}, {deviation}");
+}
+
+#[test]
+fn a_pose_that_is_wrong_now_and_then_moves_nothing() {
+    let setup = setup(&[]);
+    let mut log = pushed(0.0);
+    for row in (20..150).step_by(17) {
+        log.object[row] = Some(Pose::new(0.015, -0.02, 1.0));
+    }
+    let contact = farthest(&estimate(&setup, &log, Mode::Contact), 0.5, 5.0);
+    let paper = farthest(&estimate(&setup, &log, Mode::Paper), 0.5, 5.0);
+    assert!(contact < 6e-4, "{contact}");
+    assert!(paper > 5e-3, "{paper}: the log has no outliers");
+}
+
+#[test]
+fn a_camera_that_lags_more_than_told_does_not_drag_the_estimate() {
+    let setup = setup(&[]);
+    let late = pushed(0.08);
+    // while the disc moves, the camera is 1.6 mm behind
+    let contact = farthest(&estimate(&setup, &late, Mode::Contact), 2.0, 3.0);
+    let paper = farthest(&estimate(&setup, &late, Mode::Paper), 2.0, 3.0);
+    assert!(contact < 6e-4, "{contact}");
+    assert!(paper > contact, "{paper}, {contact}");
+}
+
+#[test]
+fn a_camera_that_moves_for_good_is_followed() {
+    let setup = setup(&[]);
+    let mut log = pushed(0.0);
+    let elsewhere = Pose::new(0.1, 0.05, 0.5);
+    log.object[120..].fill(Some(elsewhere));
+    // equal poses are one frame again and again: let them differ
+    for (row, pose) in log.object.iter_mut().enumerate().skip(120) {
+        *pose = pose.map(|pose| Pose::new(pose.x + 1e-6 * row as f64, pose.y, pose.theta));
+    }
+    let estimate = estimate(&setup, &log, Mode::Contact);
+    let row = 120 + (0.3 * RATE) as usize;
+    let pose = estimate.rows[row].pose.expect("a pose");
+    assert!(
+        (pose.x - 0.1).abs() < 2e-3 && (pose.y - 0.05).abs() < 2e-3,
+        "{pose:?}"
+    );
+}
