@@ -79,7 +79,7 @@ impl<const W: usize> Unknowns<W> {
         self.normal.iter().zip(&self.tangential)
     }
 
-    /// Where no normal impulse exceeds [`LARGEST`].
+    /// Where no normal impulse exceeds `LARGEST`.
     #[inline(always)]
     pub fn is_bounded(&self) -> Mask<W> {
         let mut largest = Lanes::ZERO;
