@@ -35,9 +35,19 @@ impl CameraLikelihood {
         }
     }
 
-    /// The same; from now on no pose is taken to be wrong, or some are again.
+    /// From now on no pose is taken to be wrong, or some are again (contact mode).
     pub fn set_trust(&mut self, trusted: bool) {
         self.wrong = (self.columns.mode() == Mode::Contact && !trusted).then_some(WRONG);
+    }
+
+    /// Whether no pose is taken to be wrong, as always in paper mode.
+    pub fn trusts(&self) -> bool {
+        self.wrong.is_none()
+    }
+
+    /// From now on the particles have these columns.
+    pub fn set_columns(&mut self, columns: Columns) {
+        self.columns = columns;
     }
 
     /// log-likelihood of the camera's pose given one chunk's particles, up to a constant; 0 where

@@ -57,9 +57,6 @@ pub(crate) struct ContactFilter<'o> {
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
 const BELIEVED_AFTER: u32 = 4;
 
-/// Least time that particles remember beyond the camera's lag (s) (contact mode).
-const LATE: f64 = 0.2;
-
 /// Evidence of a row below which no particle explains it (contact mode).
 const UNEXPLAINED: f64 = -10.0;
 
@@ -105,12 +102,7 @@ impl<'o> ContactFilter<'o> {
             Mode::Contact => setup.uncertainty.most_latency(),
             Mode::Paper => 0.0,
         };
-        // as long for a whole log as for a tracker that waits for late rows: the same bits
-        let late = match options.mode {
-            Mode::Contact => options.late.max(LATE),
-            Mode::Paper => options.late,
-        };
-        let history = PoseHistory::new(camera.latency + unknown + late, time);
+        let history = PoseHistory::new(camera.latency + unknown + options.late, time);
         let model = ContactModel::new(options.mode, setup, camera, start, history.slots());
         let model = model.observed(options.observer);
         let reference = Reference::new(start, setup.scene.nominal);

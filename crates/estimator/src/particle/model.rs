@@ -32,8 +32,6 @@ pub struct ContactModel<'o> {
     transition: Transition<'o>,
     camera: Camera,
     start: Pose,
-    /// Whether a camera pose that no particle explains draws them all anew.
-    resets: bool,
     camera_likelihood: CameraLikelihood,
     tactile_likelihood: TactileLikelihood,
 }
@@ -51,7 +49,6 @@ impl<'o> ContactModel<'o> {
             },
             camera,
             start,
-            resets: mode == Mode::Paper,
             camera_likelihood: CameraLikelihood::new(&camera, &setup.filter, columns),
             tactile_likelihood: TactileLikelihood::new(&setup.tactile, columns),
         }
@@ -73,7 +70,7 @@ impl<'o> ContactModel<'o> {
     pub fn keep_history(&mut self, poses: usize) {
         let columns = self.columns().with_history(poses);
         let setup = &self.transition.setup;
-        self.camera_likelihood = CameraLikelihood::new(&self.camera, &setup.filter, columns);
+        self.camera_likelihood.set_columns(columns);
         self.tactile_likelihood = TactileLikelihood::new(&setup.tactile, columns);
         self.transition.columns = columns;
     }
@@ -81,10 +78,7 @@ impl<'o> ContactModel<'o> {
     /// From now on, poses that no particle explains draw them all anew, or count as wrong (contact
     /// mode).
     pub fn trust_camera(&mut self, trusted: bool) {
-        if self.columns().mode() == Mode::Contact {
-            self.resets = trusted;
-            self.camera_likelihood.set_trust(trusted);
-        }
+        self.camera_likelihood.set_trust(trusted);
     }
 
     /// A camera pose's worth of noise around `pose`.
@@ -223,7 +217,7 @@ impl Model for ContactModel<'_> {
     }
 
     fn collapsed(&self, best_log_likelihood: f64) -> bool {
-        self.resets && best_log_likelihood < COLLAPSED
+        self.camera_likelihood.trusts() && best_log_likelihood < COLLAPSED
     }
 
     /// Moves every particle, its past included, so that what the camera sees is drawn around the
