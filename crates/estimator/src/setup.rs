@@ -136,6 +136,20 @@ impl Setup {
         self.scene.object.gyration_radius()
     }
 
+    /// Friction from its prior, by four standard normal numbers (docs/method.md (33)).
+    pub fn drawn_friction(&self, normals: [f64; 4]) -> Friction {
+        let (stds, limits) = (
+            self.uncertainty.friction.fields(),
+            self.filter.limits.fields(),
+        );
+        let mut friction = self.scene.nominal;
+        for (k, value) in friction.fields_mut().into_iter().enumerate() {
+            let drawn = *value * libm::exp(stds[k] * normals[k]);
+            *value = drawn.clamp(limits[k].min, limits[k].max);
+        }
+        friction
+    }
+
     /// Whether the tripod radius is a parameter (false where the feet are known).
     pub fn has_tripod(&self) -> bool {
         matches!(self.scene.feet, Feet::Tripod { .. })

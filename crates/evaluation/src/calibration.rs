@@ -107,25 +107,10 @@ struct KnownExperiment {
     end: Pose,
 }
 
-/// Friction from the prior of a setup.
-fn drawn(setup: &Setup, seed: u64) -> Friction {
-    let streams = Streams::new(seed).of(Purpose::General);
-    let normals = streams.normals::<4>(0, 0, 0);
-    let (stds, limits) = (
-        setup.uncertainty.friction.fields(),
-        setup.filter.limits.fields(),
-    );
-    let mut friction = setup.scene.nominal;
-    for (k, value) in friction.fields_mut().into_iter().enumerate() {
-        *value *= libm::exp(stds[k] * normals[k]);
-        *value = value.clamp(limits[k].min, limits[k].max);
-    }
-    friction
-}
-
 /// An experiment simulated with friction from the prior; `None` where the drawn rig cannot be.
 fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperiment> {
-    let friction = drawn(setup, seed);
+    let streams = Streams::new(seed).of(Purpose::General);
+    let friction = setup.drawn_friction(streams.normals(0, 0, 0));
     let known = TruthFacts {
         mu_s: Some(friction.mu_s),
         mu_p: Some(friction.mu_p),

@@ -47,6 +47,7 @@ impl Propagation {
             self.draw_normals(draw, OFFSET_PAIR, block);
             self.draw_offsets(transition, block);
         }
+        self.load_offsets(transition, block);
     }
 
     /// The object's friction: what nothing was felt of is drawn anew from its prior; what was felt
@@ -57,7 +58,7 @@ impl Propagation {
         plan: &StepPlan,
         block: &BlockMut<'_>,
     ) {
-        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let h = plan.duration();
         let drift = match plan.parameter_noise {
             ParameterNoise::Drawn => setup.uncertainty.drift * (h / NOISE_STEP).sqrt(),
             ParameterNoise::Frozen => 0.0,
@@ -101,7 +102,7 @@ impl Propagation {
         block: &mut BlockMut<'_>,
     ) {
         let unsure = &setup.uncertainty;
-        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let h = plan.duration();
         let rho = setup.scene.object.gyration_radius();
         let limits = setup.filter.limits.fields();
         for (i, _) in block.particles() {
@@ -164,16 +165,13 @@ impl Propagation {
         }
     }
 
-    /// Makes the step; each particle's pusher and fixels stand beside their poses.
-    pub(super) fn step_with_offsets(
+    /// Where each particle's pusher and fixels stand beside their poses, in all substeps.
+    fn load_offsets(
         &mut self,
-        transition: &Transition<'_>,
-        input: &StepInput,
+        Transition { setup, columns, .. }: &Transition<'_>,
         block: &BlockMut<'_>,
     ) {
-        let columns = &transition.columns;
-        let unsure = &transition.setup.uncertainty;
-        let chunks = block.len().div_ceil(LANES);
+        let unsure = &setup.uncertainty;
         let offset = |column: usize, chunk: usize, scale: Column| {
             let mut offset = [Lanes::ZERO; 2];
             load_columns(block, column, chunk, offset.each_mut());
@@ -181,7 +179,7 @@ impl Propagation {
         };
         self.pusher_offsets.clear();
         self.fixel_offsets.clear();
-        for chunk in 0..chunks {
+        for chunk in 0..block.len().div_ceil(LANES) {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
             let rougher = Lanes(roughness.0.map(libm::exp));
@@ -193,6 +191,15 @@ impl Propagation {
             let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
             self.fixel_offsets.extend(fixels);
         }
+    }
+
+    /// Makes one substep of the first `chunks` chunks.
+    pub(super) fn step_with_offsets(
+        &mut self,
+        transition: &Transition<'_>,
+        input: &StepInput,
+        chunks: usize,
+    ) {
         let offsets = Offsets {
             pusher: &self.pusher_offsets,
             fixels: &self.fixel_offsets,
@@ -225,7 +232,7 @@ impl Propagation {
     ) {
         let Transition { setup, columns, .. } = transition;
         let channel = TouchChannel::new(&setup.tactile);
-        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let h = plan.duration();
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let threshold = setup.tactile.touch_force * last_h;
         block.column_mut(columns.touch_log_likelihood()).fill(0.0);

@@ -96,13 +96,10 @@ impl<'o> ContactModel<'o> {
         let Transition { setup, columns, .. } = &self.transition;
         let prior = &setup.uncertainty;
         let normals = draw.normals::<11>(particle, 4);
-        let [friction, variation] = [&normals[..4], &normals[4..8]];
-        let limits = setup.filter.limits.fields();
+        let friction = setup.drawn_friction([0, 1, 2, 3].map(|k| normals[k]));
+        write(block, Columns::FRICTION, i, friction.fields());
         for k in 0..4 {
-            let nominal = setup.scene.nominal.fields()[k];
-            let drawn = nominal * libm::exp(prior.friction.fields()[k] * friction[k]);
-            block.column_mut(Columns::FRICTION + k)[i] = drawn.clamp(limits[k].min, limits[k].max);
-            block.column_mut(columns.variation() + k)[i] = prior.variation * variation[k];
+            block.column_mut(columns.variation() + k)[i] = prior.variation * normals[4 + k];
         }
         for axis in 0..2 {
             block.column_mut(columns.pusher_offset() + axis)[i] = normals[8 + axis];

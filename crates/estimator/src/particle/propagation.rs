@@ -140,7 +140,7 @@ impl Propagation {
                     &mut self.particles[..chunks],
                     &mut self.work,
                 ),
-                Mode::Contact => self.step_with_offsets(transition, input, block),
+                Mode::Contact => self.step_with_offsets(transition, input, chunks),
             }
             on_widest(
                 level,
@@ -176,7 +176,7 @@ impl Propagation {
         if drawn {
             self.draw_normals(draw, 0, block);
         }
-        let h: f64 = plan.substeps.iter().map(|step| step.h).sum();
+        let h = plan.duration();
         let most_lag = transition.setup.most_pusher_lag();
         let settings = &transition.setup.filter;
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();

@@ -31,6 +31,11 @@ pub struct StepPlan {
 }
 
 impl StepPlan {
+    /// Length of the step (s).
+    pub(crate) fn duration(&self) -> f64 {
+        self.substeps.iter().map(|step| step.h).sum()
+    }
+
     /// No step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {
