@@ -29,7 +29,7 @@ const CHANCE_AND_THREADS: &[&str] = &["rand", "rand_distr", "rand_core", "rayon"
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, then
 /// lanes, which know of nobody; testbed, rendering and vision stand beside the estimator, and
 /// evaluation brings all together.
-pub const CRATES: [Rules; 14] = [
+pub const CRATES: [Rules; 15] = [
     Rules {
         must_not_use: CHANCE_AND_THREADS,
         ..Rules::of("crates/lanes", &[])
@@ -91,6 +91,15 @@ pub const CRATES: [Rules; 14] = [
             "crates/vision",
             "crates/evaluation",
             "crates/report",
+        ],
+    ),
+    Rules::of(
+        "crates/python",
+        &[
+            "crates/dynamics",
+            "crates/estimator",
+            "crates/formats",
+            "crates/evaluation",
         ],
     ),
     Rules::of(

@@ -72,10 +72,14 @@ const BANS: [Ban; 4] = [
     },
 ];
 
-/// Every Rust file against the rules.
+/// Every Rust file against the rules; of Python files only the length.
 pub fn check(tree: &Tree) -> Vec<Finding> {
+    let python = tree
+        .texts(".py")
+        .flat_map(|(path, text)| too_long(text).map(|wrong| finding(path, wrong)));
     tree.texts(".rs")
         .flat_map(|(path, text)| check_file(path, text))
+        .chain(python)
         .collect()
 }
 
@@ -83,13 +87,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
 type Wrong = (usize, String, &'static str);
 
 fn check_file(path: &str, text: &str) -> Vec<Finding> {
-    let lines = text.lines().count();
-    let mut wrong = Vec::new();
-    if lines > LONGEST_FILE {
-        let rule = format!("{lines} lines; a file has at most {LONGEST_FILE}");
-        let next = "split it: one noun per file, named after it";
-        wrong.push((LONGEST_FILE + 1, rule, next));
-    }
+    let mut wrong: Vec<Wrong> = too_long(text).into_iter().collect();
     if !UNSAFE_ALLOWED.iter().any(|(allowed, _)| *allowed == path) {
         wrong.extend(unsafe_code(&code_only(text)));
     }
@@ -100,13 +98,28 @@ fn check_file(path: &str, text: &str) -> Vec<Finding> {
             wrong.extend(own_face(file, &code));
         }
     }
-    let finding = |(line, rule, next): Wrong| Finding {
+    wrong
+        .into_iter()
+        .map(|wrong| finding(path, wrong))
+        .collect()
+}
+
+fn finding(path: &str, (line, rule, next): Wrong) -> Finding {
+    Finding {
         file: path.to_string(),
         line,
         rule,
         next: next.to_string(),
-    };
-    wrong.into_iter().map(finding).collect()
+    }
+}
+
+fn too_long(text: &str) -> Option<Wrong> {
+    let lines = text.lines().count();
+    (lines > LONGEST_FILE).then(|| {
+        let rule = format!("{lines} lines; a file has at most {LONGEST_FILE}");
+        let next = "split it: one noun per file, named after it";
+        (LONGEST_FILE + 1, rule, next)
+    })
 }
 
 fn unsafe_code(code: &str) -> Vec<Wrong> {

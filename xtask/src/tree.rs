@@ -8,7 +8,7 @@ use std::path::Path;
 const SKIPPED: [&str; 3] = [".git", "target", "out"];
 
 /// Endings of the files whose text is looked at.
-const TEXT: [&str; 3] = ["rs", "toml", "md"];
+const TEXT: [&str; 4] = ["rs", "toml", "md", "py"];
 
 /// Paths from the root with `/` between names; the text where it is looked at.
 #[derive(Clone, Debug, Default)]

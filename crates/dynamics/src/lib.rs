@@ -29,7 +29,7 @@ pub use ncp::report::{Outcome, Report, Route, TOLERANCE};
 pub use ncp::rows::{ContactRow, FootRow, Ncp};
 pub use ncp::unknowns::Unknowns;
 pub use particles::{ContactImpulse, Particle, Particles, WarmStart};
-pub use rollout::{Rollout, RolloutError, RolloutStart};
+pub use rollout::{ROLLOUT_BLOCK, Rollout, RolloutArrays, RolloutError, RolloutStart, RolloutWork};
 pub use scene::{Feet, Fixel, Object, Pusher, Scene};
 pub use se2::{Pose, Twist, Wrench};
 pub use solver::chain::{Solver, solve, solve_from};

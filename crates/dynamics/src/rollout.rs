@@ -1,4 +1,5 @@
-//! Many pushes at once, each over many steps: [`Dynamics::rollout`].
+//! Many pushes at once, each over many steps: [`Dynamics::rollout`], and [`Dynamics::rollout_into`] for
+//! callers who keep the numbers in arrays of their own.
 
 use crate::friction::Friction;
 use crate::input::PusherMotion;
@@ -12,6 +13,13 @@ const LANES: usize = 8;
 
 /// Chunks of trajectories that make their steps together.
 const CHUNKS: usize = 8;
+
+/// Trajectories that make their steps together: who shares a rollout among threads gives each
+/// multiples of it.
+pub const ROLLOUT_BLOCK: usize = LANES * CHUNKS;
+
+/// Working memory of rollouts, made once.
+pub type RolloutWork = StepWork<LANES>;
 
 /// Where a trajectory starts, and the friction that governs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +43,19 @@ pub struct Rollout {
     pub twists: Vec<Twist>,
     /// Steps without a certified solution, (N,).
     pub unsolved: Vec<u32>,
+}
+
+/// The arrays of N trajectories as a caller keeps them. Trajectories count from 0 in the order of
+/// the starts, rows from 0, the start, to T.
+pub trait RolloutArrays {
+    /// Pose of the pusher of `trajectory` at `row`.
+    fn pusher(&self, trajectory: usize, row: usize) -> Pose;
+
+    /// Keeps where the object of `trajectory` is at `row`, and how it moves.
+    fn keep(&mut self, trajectory: usize, row: usize, pose: Pose, twist: Twist);
+
+    /// Keeps how many steps of `trajectory` have no certified solution.
+    fn keep_unsolved(&mut self, trajectory: usize, steps: u32);
 }
 
 /// Why a rollout was refused.
@@ -107,41 +128,61 @@ impl Dynamics {
         starts: &[RolloutStart],
         pushers: &[Pose],
     ) -> Result<Rollout, RolloutError> {
-        let rows = check(h, starts, pushers)?;
-        let mut rollout = Rollout {
-            steps: rows - 1,
-            poses: vec![Pose::default(); pushers.len()],
-            twists: vec![Twist::default(); pushers.len()],
-            unsolved: vec![0; starts.len()],
-        };
-        let mut work = StepWork::default();
-        for first in (0..starts.len()).step_by(LANES * CHUNKS) {
-            let last = starts.len().min(first + LANES * CHUNKS);
-            let of = first * rows..last * rows;
-            let mut block = Block {
-                rows,
-                pushers: &pushers[of.clone()],
-                poses: &mut rollout.poses[of.clone()],
-                twists: &mut rollout.twists[of],
-                unsolved: &mut rollout.unsolved[first..last],
-            };
-            block.simulate(self, h, &starts[first..last], &mut work);
+        let rows = pushers.len() / starts.len().max(1);
+        if rows * starts.len() != pushers.len() || (rows < 2 && !starts.is_empty()) {
+            return Err(RolloutError::Shape {
+                starts: starts.len(),
+                poses: pushers.len(),
+            });
         }
-        Ok(rollout)
+        let steps = rows.max(1) - 1;
+        let mut columns = Columns {
+            pushers,
+            rollout: Rollout {
+                steps,
+                poses: vec![Pose::default(); pushers.len()],
+                twists: vec![Twist::default(); pushers.len()],
+                unsolved: vec![0; starts.len()],
+            },
+        };
+        self.rollout_into(h, steps, starts, &mut columns, &mut RolloutWork::default())?;
+        Ok(columns.rollout)
+    }
+
+    /// The same with T = `steps`, for trajectories in arrays of the caller's; `work` may be used again.
+    ///
+    /// # Errors
+    /// Where a number is out of range; nothing is kept then.
+    pub fn rollout_into(
+        &self,
+        h: f64,
+        steps: usize,
+        starts: &[RolloutStart],
+        arrays: &mut impl RolloutArrays,
+        work: &mut RolloutWork,
+    ) -> Result<(), RolloutError> {
+        check(h, steps, starts, arrays)?;
+        for (block, starts) in starts.chunks(ROLLOUT_BLOCK).enumerate() {
+            let mut block = Block {
+                first: block * ROLLOUT_BLOCK,
+                starts,
+                arrays,
+            };
+            block.simulate(self, h, steps, work);
+        }
+        Ok(())
     }
 }
 
-/// Poses per trajectory, T + 1; refuses what cannot be simulated.
-fn check(h: f64, starts: &[RolloutStart], pushers: &[Pose]) -> Result<usize, RolloutError> {
+/// Refuses what cannot be simulated.
+fn check(
+    h: f64,
+    steps: usize,
+    starts: &[RolloutStart],
+    arrays: &impl RolloutArrays,
+) -> Result<(), RolloutError> {
     if !(h.is_finite() && h > 0.0) {
         return Err(RolloutError::Step { h });
-    }
-    let rows = pushers.len() / starts.len().max(1);
-    if rows * starts.len() != pushers.len() || (rows < 2 && !starts.is_empty()) {
-        return Err(RolloutError::Shape {
-            starts: starts.len(),
-            poses: pushers.len(),
-        });
     }
     let not_finite = |what, index, trajectory| {
         Err(RolloutError::NotFinite {
@@ -150,12 +191,43 @@ fn check(h: f64, starts: &[RolloutStart], pushers: &[Pose]) -> Result<usize, Rol
             trajectory,
         })
     };
-    if let Some(trajectory) = starts.iter().position(|start| !start.is_finite()) {
-        return not_finite("start", 0, trajectory);
+    for (trajectory, start) in starts.iter().enumerate() {
+        if !start.is_finite() {
+            return not_finite("start", 0, trajectory);
+        }
+        let bad = (0..=steps).find(|row| !arrays.pusher(trajectory, *row).is_finite());
+        if let Some(row) = bad {
+            return not_finite("pusher pose", row, trajectory);
+        }
     }
-    match pushers.iter().position(|pose| !pose.is_finite()) {
-        Some(at) => not_finite("pusher pose", at % rows, at / rows),
-        None => Ok(rows.max(1)),
+    Ok(())
+}
+
+/// Trajectory after trajectory, as [`Dynamics::rollout`] takes and gives them.
+struct Columns<'a> {
+    pushers: &'a [Pose],
+    rollout: Rollout,
+}
+
+impl Columns<'_> {
+    fn at(&self, trajectory: usize, row: usize) -> usize {
+        trajectory * (self.rollout.steps + 1) + row
+    }
+}
+
+impl RolloutArrays for Columns<'_> {
+    fn pusher(&self, trajectory: usize, row: usize) -> Pose {
+        self.pushers[self.at(trajectory, row)]
+    }
+
+    fn keep(&mut self, trajectory: usize, row: usize, pose: Pose, twist: Twist) {
+        let at = self.at(trajectory, row);
+        self.rollout.poses[at] = pose;
+        self.rollout.twists[at] = twist;
+    }
+
+    fn keep_unsolved(&mut self, trajectory: usize, steps: u32) {
+        self.rollout.unsolved[trajectory] = steps;
     }
 }
 
@@ -168,28 +240,21 @@ impl RolloutStart {
 }
 
 /// Some trajectories, which make their steps together.
-struct Block<'a> {
-    /// Poses per trajectory.
-    rows: usize,
-    pushers: &'a [Pose],
-    poses: &'a mut [Pose],
-    twists: &'a mut [Twist],
-    unsolved: &'a mut [u32],
+struct Block<'a, A> {
+    /// The first one.
+    first: usize,
+    starts: &'a [RolloutStart],
+    arrays: &'a mut A,
 }
 
-impl Block<'_> {
-    fn simulate(
-        &mut self,
-        dynamics: &Dynamics,
-        h: f64,
-        starts: &[RolloutStart],
-        work: &mut StepWork<LANES>,
-    ) {
+impl<A: RolloutArrays> Block<'_, A> {
+    fn simulate(&mut self, dynamics: &Dynamics, h: f64, steps: usize, work: &mut RolloutWork) {
         // lanes past the last trajectory repeat it, without a pusher
-        let chunks = starts.len().div_ceil(LANES);
+        let count = self.starts.len();
+        let chunks = count.div_ceil(LANES);
         let mut particles = [Particles::default(); CHUNKS];
         for i in 0..chunks * LANES {
-            let start = &starts[i.min(starts.len() - 1)];
+            let start = &self.starts[i.min(count - 1)];
             let particle = Particle {
                 pose: start.pose,
                 twist: start.twist,
@@ -197,39 +262,79 @@ impl Block<'_> {
             };
             particles[i / LANES].set(i % LANES, &particle, &start.friction);
         }
-        self.write(0, &particles);
+        self.keep(0, &particles);
 
-        let mut directions: Vec<[f64; 2]> = (0..starts.len())
-            .map(|i| first_direction(&self.pushers[i * self.rows..(i + 1) * self.rows]))
-            .collect();
+        let mut directions = [[0.0; 2]; ROLLOUT_BLOCK];
+        for (i, first) in directions[..count].iter_mut().enumerate() {
+            *first = self.first_direction(i, steps);
+        }
+        let mut unsolved = [0; ROLLOUT_BLOCK];
         let mut pushers = [[None; LANES]; CHUNKS];
-        for step in 0..self.rows - 1 {
+        for step in 0..steps {
             // the pusher of each trajectory, straight from pose to pose
-            for (i, direction) in directions.iter_mut().enumerate() {
-                let at = i * self.rows + step;
-                let motion = motion(self.pushers[at], self.pushers[at + 1], h, *direction);
+            for (i, direction) in directions[..count].iter_mut().enumerate() {
+                let motion = motion(
+                    self.pusher(i, step),
+                    self.pusher(i, step + 1),
+                    h,
+                    *direction,
+                );
                 *direction = motion.direction;
                 pushers[i / LANES][i % LANES] = Some(motion);
             }
 
-            dynamics.step_block_each(h, &pushers[..chunks], &mut particles[..chunks], work);
+            step_chunks(
+                dynamics,
+                h,
+                &pushers[..chunks],
+                &mut particles[..chunks],
+                work,
+            );
 
-            self.write(step + 1, &particles);
+            self.keep(step + 1, &particles);
             let reports = work.reports().as_flattened();
-            for (unsolved, report) in self.unsolved.iter_mut().zip(reports) {
+            for (unsolved, report) in unsolved[..count].iter_mut().zip(reports) {
                 *unsolved += u32::from(report.outcome != Outcome::Solved);
             }
         }
-    }
-
-    /// Writes where the object is at row `row` of each trajectory.
-    fn write(&mut self, row: usize, particles: &[Particles<LANES>]) {
-        for i in 0..self.unsolved.len() {
-            let particle = &particles[i / LANES];
-            self.poses[i * self.rows + row] = particle.pose.map(|x| x.0[i % LANES]);
-            self.twists[i * self.rows + row] = particle.twist.map(|x| x.0[i % LANES]);
+        for (i, steps) in unsolved[..count].iter().enumerate() {
+            self.arrays.keep_unsolved(self.first + i, *steps);
         }
     }
+
+    fn pusher(&self, i: usize, row: usize) -> Pose {
+        self.arrays.pusher(self.first + i, row)
+    }
+
+    /// Keeps where the object is at row `row` of each trajectory.
+    fn keep(&mut self, row: usize, particles: &[Particles<LANES>]) {
+        for i in 0..self.starts.len() {
+            let particle = &particles[i / LANES];
+            let pose = particle.pose.map(|x| x.0[i % LANES]);
+            let twist = particle.twist.map(|x| x.0[i % LANES]);
+            self.arrays.keep(self.first + i, row, pose, twist);
+        }
+    }
+
+    /// The direction of a pusher's first translation; any where it never moves.
+    fn first_direction(&self, i: usize, steps: usize) -> [f64; 2] {
+        let mut moves = (0..steps).map(|row| (self.pusher(i, row), self.pusher(i, row + 1)));
+        moves
+            .find_map(|(from, to)| direction(from, to))
+            .unwrap_or([1.0, 0.0])
+    }
+}
+
+/// [`Dynamics::step_block_each`], compiled here once and not with every caller's arrays.
+#[inline(never)]
+fn step_chunks(
+    dynamics: &Dynamics,
+    h: f64,
+    pushers: &[[Option<PusherMotion>; LANES]],
+    particles: &mut [Particles<LANES>],
+    work: &mut RolloutWork,
+) {
+    dynamics.step_block_each(h, pushers, particles, work);
 }
 
 /// The pusher from `from` to `to` in `h` seconds; `last` is its last direction of translation.
@@ -246,12 +351,4 @@ fn direction(from: Pose, to: Pose) -> Option<[f64; 2]> {
     let (x, y) = (to.x - from.x, to.y - from.y);
     let length = libm::hypot(x, y);
     (length > 0.0).then(|| [x / length, y / length])
-}
-
-/// The direction of a pusher's first translation; any where it never moves.
-fn first_direction(poses: &[Pose]) -> [f64; 2] {
-    let mut pairs = poses.windows(2);
-    pairs
-        .find_map(|pair| direction(pair[0], pair[1]))
-        .unwrap_or([1.0, 0.0])
 }

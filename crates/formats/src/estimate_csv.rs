@@ -100,7 +100,8 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
     Ok(estimate)
 }
 
-fn header(fixels: usize) -> Vec<String> {
+/// The names of the columns, in the order of the file.
+pub(crate) fn header(fixels: usize) -> Vec<String> {
     let contacts = (1..=fixels).map(|k| format!("contact_{k}"));
     BEFORE_FIXELS
         .map(str::to_owned)

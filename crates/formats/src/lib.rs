@@ -1,5 +1,6 @@
 //! The files of an experiment, bytes to types and back: `scene.toml`, `log.csv`, `estimate.csv`,
-//! `truth.csv`, `truth.json` and `frames.csv`; logs as MCAP recordings of ROS 2 messages too.
+//! `truth.csv`, `truth.json` and `frames.csv`; logs as MCAP recordings of ROS 2 messages too; logs,
+//! estimates and truths as columns of numbers.
 //!
 //! Nothing here opens a file: readers take text, bytes or an [`std::io::Read`] with the name to
 //! show in errors, writers an [`std::io::Write`]. Every refusal names the file, the line, the place
@@ -8,12 +9,15 @@
 
 mod csv_error;
 mod csv_table;
+mod estimate_columns;
 mod estimate_csv;
 mod experiment;
 mod frames_csv;
+mod log_columns;
 mod log_csv;
 mod log_mcap;
 mod log_warning;
+mod named_columns;
 mod nearest;
 mod number;
 mod scene;
@@ -21,15 +25,18 @@ mod truth_csv;
 mod truth_json;
 
 pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
+pub use estimate_columns::{estimate_columns, estimate_of_columns};
 pub use estimate_csv::{read_estimate, write_estimate};
 pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
+pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
     McapError, McapPlace, McapProblem, McapWriteError, Topic, TopicError, TopicMapping, Topics,
     read_log_mcap, write_log_mcap,
 };
 pub use log_warning::LogWarning;
+pub use named_columns::{ColumnError, NamedColumns};
 pub use scene::{SceneError, SceneProblem, read_scene};
-pub use truth_csv::{Truth, read_truth_csv, write_truth_csv};
+pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

@@ -15,10 +15,10 @@ use crate::csv_table::{CsvTable, Row};
 use crate::log_warning::LogWarning;
 use crate::number;
 
-const OBJECT: [&str; 3] = ["object_x", "object_y", "object_theta"];
-const PUSHER: [&str; 3] = ["pusher_x", "pusher_y", "pusher_theta"];
-const FORCE: [&str; 2] = ["pusher_force_x", "pusher_force_y"];
-const TACTILE: &str = "tactile_";
+pub(crate) const OBJECT: [&str; 3] = ["object_x", "object_y", "object_theta"];
+pub(crate) const PUSHER: [&str; 3] = ["pusher_x", "pusher_y", "pusher_theta"];
+pub(crate) const FORCE: [&str; 2] = ["pusher_force_x", "pusher_force_y"];
+pub(crate) const TACTILE: &str = "tactile_";
 
 /// A log has more tactile sensors than its scene has fixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -220,7 +220,8 @@ fn pose(row: &Row<'_>, columns: [usize; 3]) -> Result<Option<Pose>, LogError> {
     Ok(Some(Pose::new(numbers[0], numbers[1], numbers[2])))
 }
 
-fn header(log: &Log) -> Vec<String> {
+/// The names of the columns, in the order of the file.
+pub(crate) fn header(log: &Log) -> Vec<String> {
     let tactile = (1..=log.tactile.len()).map(|k| format!("{TACTILE}{k}"));
     let force = FORCE.into_iter().filter(|_| !log.force.is_empty());
     let poses = ["time"].into_iter().chain(OBJECT).chain(PUSHER);

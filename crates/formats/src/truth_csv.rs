@@ -8,6 +8,7 @@ use stickslip_dynamics::{Pose, Twist};
 
 use crate::csv_error::CsvError;
 use crate::csv_table::{CsvTable, Row};
+use crate::named_columns::{ColumnError, NamedColumns};
 use crate::number;
 
 const POSE: [&str; 4] = ["time", "x", "y", "theta"];
@@ -83,7 +84,7 @@ pub fn read_truth_csv(reader: impl Read, name: &str) -> Result<Truth, CsvError> 
 /// # Panics
 /// If columns that are not empty differ in length.
 pub fn write_truth_csv(mut writer: impl Write, truth: &Truth) -> std::io::Result<()> {
-    let columns = columns(truth);
+    let columns = truth_columns(truth);
     assert!(
         columns
             .iter()
@@ -101,8 +102,9 @@ pub fn write_truth_csv(mut writer: impl Write, truth: &Truth) -> std::io::Result
     })
 }
 
-/// The columns that are not empty, with their names.
-fn columns(truth: &Truth) -> Vec<(String, Vec<f64>)> {
+/// The columns of `truth.csv` that are not empty, with their names.
+#[must_use]
+pub fn truth_columns(truth: &Truth) -> Vec<(String, Vec<f64>)> {
     let Truth {
         time,
         pose,
@@ -193,6 +195,23 @@ impl Columns {
         }
         Ok(())
     }
+}
+
+/// The motion that such columns hold: times and poses; other columns are not looked at.
+///
+/// # Errors
+/// `time`, `x`, `y` or `theta` is missing, time does not rise, or a number is NaN or infinite.
+pub fn truth_of_columns(columns: &NamedColumns<'_>) -> Result<Truth, ColumnError> {
+    let time = columns.time()?;
+    let [x, y, theta] = columns.require_all(["x", "y", "theta"])?.finite()?;
+    let poses = x.iter().zip(y).zip(theta);
+    Ok(Truth {
+        time: time.to_vec(),
+        pose: poses
+            .map(|((x, y), theta)| Pose::new(*x, *y, *theta))
+            .collect(),
+        ..Truth::default()
+    })
 }
 
 /// Indices of columns, where all of them are there.

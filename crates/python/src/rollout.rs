@@ -1,0 +1,192 @@
+//! Many pushes at once, on NumPy arrays: [`rollout`].
+
+use numpy::{
+    PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray1, PyReadwriteArray3, PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use stickslip_dynamics::{
+    Dynamics, Friction, Pose, ROLLOUT_BLOCK, RolloutArrays, RolloutError, RolloutStart,
+    RolloutWork, Twist,
+};
+
+use crate::error::refused;
+use crate::scene::Scene;
+use crate::threads::{on_threads, processors};
+
+/// Numbers of a pose or twist, as arrays hold them.
+type Numbers = [f64; 3];
+
+/// Arrays of a rollout, in C order; the results are written into the last three.
+///
+/// states (N, 6), friction (N, 4), pushers (N, T + 1, 3) or (1, T + 1, 3) for all, poses and twists
+/// (N, T + 1, 3), unsolved (N,).
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Arrays<'py> {
+    states: PyReadonlyArray2<'py, f64>,
+    friction: PyReadonlyArray2<'py, f64>,
+    pushers: PyReadonlyArray3<'py, f64>,
+    poses: PyReadwriteArray3<'py, f64>,
+    twists: PyReadwriteArray3<'py, f64>,
+    unsolved: PyReadwriteArray1<'py, u32>,
+}
+
+/// Simulates the trajectories into the given arrays.
+#[pyfunction]
+#[pyo3(signature = (scene, h, arrays, threads = None))]
+pub fn rollout(
+    py: Python<'_>,
+    scene: &Bound<'_, Scene>,
+    h: f64,
+    mut arrays: Arrays<'_>,
+    threads: Option<usize>,
+) -> PyResult<()> {
+    let steps = arrays.check()?;
+    let rows = steps + 1;
+    let dynamics = &scene.get().dynamics;
+    let states = arrays.states.as_slice()?.as_chunks::<6>().0;
+    let friction = arrays.friction.as_slice()?.as_chunks::<4>().0;
+    let pushers = arrays.pushers.as_slice()?.as_chunks::<3>().0;
+    let poses = arrays.poses.as_slice_mut()?.as_chunks_mut::<3>().0;
+    let twists = arrays.twists.as_slice_mut()?.as_chunks_mut::<3>().0;
+    let unsolved = arrays.unsolved.as_slice_mut()?;
+
+    // blocks of trajectories, each with its part of every array
+    let shared = pushers.len() == rows;
+    let blocks = states
+        .par_chunks(ROLLOUT_BLOCK)
+        .zip(friction.par_chunks(ROLLOUT_BLOCK))
+        .zip(poses.par_chunks_mut(ROLLOUT_BLOCK * rows))
+        .zip(twists.par_chunks_mut(ROLLOUT_BLOCK * rows))
+        .zip(unsolved.par_chunks_mut(ROLLOUT_BLOCK))
+        .enumerate();
+    let simulate = |work: &mut RolloutWork,
+                    (block, ((((states, friction), poses), twists), unsolved))| {
+        let first = block * ROLLOUT_BLOCK;
+        let mut block = Block {
+            rows,
+            pushers: if shared {
+                pushers
+            } else {
+                &pushers[first * rows..]
+            },
+            shared,
+            poses,
+            twists,
+            unsolved,
+        };
+        block
+            .simulate(dynamics, h, states, friction, work)
+            .map_err(|error| placed(error, first))
+    };
+    let work = || {
+        blocks
+            .map_init(RolloutWork::default, simulate)
+            .collect::<Vec<_>>()
+    };
+    let useful = states.len().div_ceil(ROLLOUT_BLOCK);
+    let results = py.detach(|| on_threads(threads, processors(), useful, work))?;
+    results
+        .into_iter()
+        .collect::<Result<(), _>>()
+        .map_err(refused)
+}
+
+impl Arrays<'_> {
+    /// T, where the arrays go together; the package makes them so.
+    fn check(&self) -> PyResult<usize> {
+        let (states, pushers) = (self.states.shape(), self.pushers.shape());
+        let (count, rows) = (states[0], pushers[1]);
+        let of = [count, rows, 3];
+        let right = states[1] == 6
+            && self.friction.shape() == [count, 4]
+            && pushers[2] == 3
+            && [1, count].contains(&pushers[0])
+            && self.poses.shape() == of
+            && self.twists.shape() == of
+            && self.unsolved.shape() == [count];
+        if right && rows > 1 {
+            Ok(rows - 1)
+        } else {
+            Err(refused("the arrays of a rollout do not go together"))
+        }
+    }
+}
+
+/// An error of a block whose first trajectory has this number.
+fn placed(error: RolloutError, first: usize) -> RolloutError {
+    match error {
+        RolloutError::NotFinite {
+            what,
+            index,
+            trajectory,
+        } => RolloutError::NotFinite {
+            what,
+            index,
+            trajectory: first + trajectory,
+        },
+        other => other,
+    }
+}
+
+/// Some trajectories' parts of the arrays.
+struct Block<'a> {
+    rows: usize,
+    pushers: &'a [Numbers],
+    /// Whether all trajectories have the same pusher.
+    shared: bool,
+    poses: &'a mut [Numbers],
+    twists: &'a mut [Numbers],
+    unsolved: &'a mut [u32],
+}
+
+impl Block<'_> {
+    fn simulate(
+        &mut self,
+        dynamics: &Dynamics,
+        h: f64,
+        states: &[[f64; 6]],
+        friction: &[[f64; 4]],
+        work: &mut RolloutWork,
+    ) -> Result<(), RolloutError> {
+        let start = |(state, friction): (&[f64; 6], &[f64; 4])| {
+            let [x, y, theta, vx, vy, omega] = *state;
+            let [mu_s, mu_p, mu_f, d_tri] = *friction;
+            RolloutStart {
+                pose: Pose::new(x, y, theta),
+                twist: Twist { vx, vy, omega },
+                friction: Friction {
+                    mu_s,
+                    mu_p,
+                    mu_f,
+                    d_tri,
+                },
+            }
+        };
+        let starts: Vec<RolloutStart> = states.iter().zip(friction).map(start).collect();
+        dynamics.rollout_into(h, self.rows - 1, &starts, self, work)
+    }
+}
+
+impl RolloutArrays for Block<'_> {
+    fn pusher(&self, trajectory: usize, row: usize) -> Pose {
+        let first = if self.shared {
+            0
+        } else {
+            trajectory * self.rows
+        };
+        let [x, y, theta] = self.pushers[first + row];
+        Pose::new(x, y, theta)
+    }
+
+    fn keep(&mut self, trajectory: usize, row: usize, pose: Pose, twist: Twist) {
+        let at = trajectory * self.rows + row;
+        self.poses[at] = [pose.x, pose.y, pose.theta];
+        self.twists[at] = [twist.vx, twist.vy, twist.omega];
+    }
+
+    fn keep_unsolved(&mut self, trajectory: usize, steps: u32) {
+        self.unsolved[trajectory] = steps;
+    }
+}

@@ -1,0 +1,89 @@
+//! How a log is run, as Python says it: [`RunArguments`].
+
+use pyo3::prelude::*;
+use stickslip::{Method, Mode, Occlusion, RunOptions, TactileUse, Tracking};
+
+use crate::error::refused;
+
+/// The items of a dict of options.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct RunArguments {
+    method: String,
+    mode: String,
+    particles: usize,
+    seed: u64,
+    tactile: bool,
+    causal: bool,
+    substeps: Option<u32>,
+    occlude: Option<(usize, Option<usize>)>,
+    occlude_middle: Option<f64>,
+    pub threads: Option<usize>,
+}
+
+impl RunArguments {
+    /// The library's options.
+    pub fn options(&self) -> PyResult<RunOptions> {
+        if self.particles == 0 {
+            return Err(refused("0 particles are asked for; it must be 1 or more"));
+        }
+        Ok(RunOptions {
+            method: method(&self.method)?,
+            mode: mode(&self.mode)?,
+            particles: self.particles,
+            seed: self.seed,
+            tactile: touch(self.tactile),
+            tracking: if self.causal {
+                Tracking::Causal
+            } else {
+                Tracking::Smoothed
+            },
+            substeps: self.substeps,
+            occlusion: self.occlusion()?,
+        })
+    }
+
+    /// What is hidden.
+    pub fn occlusion(&self) -> PyResult<Occlusion> {
+        match (self.occlude, self.occlude_middle) {
+            (None, None) => Ok(Occlusion::None),
+            (Some((from, to)), None) => Ok(Occlusion::Rows { from, to }),
+            (None, Some(seconds)) => Ok(Occlusion::Middle { seconds }),
+            (Some(_), Some(_)) => Err(refused(
+                "occlude and occlude_middle are both given; a log is hidden in one way. Leave one out",
+            )),
+        }
+    }
+}
+
+/// The method of a name.
+pub fn method(name: &str) -> PyResult<Method> {
+    match name {
+        "particle" => Ok(Method::Particle),
+        "kalman" => Ok(Method::Kalman),
+        "nominal" => Ok(Method::Nominal),
+        _ => Err(refused(format!(
+            "method is `{name}`; it must be `particle`, `kalman` or `nominal`"
+        ))),
+    }
+}
+
+/// The mode of a name.
+pub fn mode(name: &str) -> PyResult<Mode> {
+    match name {
+        "contact" => Ok(Mode::Contact),
+        "paper" => Ok(Mode::Paper),
+        _ => Err(refused(format!(
+            "mode is `{name}`; it must be `contact` or `paper`"
+        ))),
+    }
+}
+
+/// Whether touch counts.
+pub fn touch(used: bool) -> TactileUse {
+    if used {
+        TactileUse::Used
+    } else {
+        TactileUse::Ignored
+    }
+}

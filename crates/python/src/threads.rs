@@ -1,0 +1,65 @@
+//! The threads that work runs on: [`on_threads`].
+
+use std::num::NonZero;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::available_parallelism;
+
+use pyo3::PyResult;
+use pyo3::exceptions::PyRuntimeError;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::error::refused;
+
+/// Threads that are kept for the next call.
+struct Kept {
+    /// The process that they run in: a fork has none of its parent's threads.
+    process: u32,
+    threads: usize,
+    pool: Arc<ThreadPool>,
+}
+
+static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+
+/// Runs `work` on as many threads as are asked for or else on `default`, at most `useful`.
+pub fn on_threads<T: Send>(
+    asked: Option<usize>,
+    default: usize,
+    useful: usize,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    if asked == Some(0) {
+        return Err(refused(
+            "0 threads are asked for; it must be 1 or more, or None for as many as help",
+        ));
+    }
+    let threads = asked.unwrap_or(default).min(useful).max(1);
+    Ok(pool(threads)?.install(work))
+}
+
+/// Processors of this machine.
+pub fn processors() -> usize {
+    available_parallelism().map_or(1, NonZero::get)
+}
+
+fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
+    let process = std::process::id();
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    match &*kept {
+        Some(kept) if kept.process == process && kept.threads == threads => {
+            return Ok(Arc::clone(&kept.pool));
+        }
+        _ => {}
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = Arc::new(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
+    let before = kept.replace(Kept {
+        process,
+        threads,
+        pool: Arc::clone(&pool),
+    });
+    // the threads of a parent process cannot be told to stop
+    if let Some(before) = before.filter(|before| before.process != process) {
+        std::mem::forget(before);
+    }
+    Ok(pool)
+}

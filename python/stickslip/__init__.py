@@ -1,0 +1,44 @@
+"""Tracks a pushed object through contact and camera blackouts, and simulates pushes by the thousand.
+
+All numbers are in SI units (m, rad, s, kg, N); angles are counter-clockwise and not wrapped. A log is a
+dict of columns as in ``log.csv`` (or the path of such a file, or a data frame), an estimate a dict of
+columns as in ``estimate.csv``; NaN stands where a file has an empty cell. The same input and seed give
+the same bits on any number of threads, and those of the program ``stickslip``.
+
+>>> import stickslip
+>>> scene = stickslip.load_scene("my/scene.toml")  # doctest: +SKIP
+>>> estimate = stickslip.filter("my/log.csv", scene, occlude=60)  # doctest: +SKIP
+>>> estimate["x"], estimate["std_x"]  # doctest: +SKIP
+"""
+
+from stickslip._columns import Columns, Log
+from stickslip._files import load_log, load_scene, load_truth
+from stickslip._filter import FilterOptions, filter, particles, samples
+from stickslip._native import Error, Scene, __version__
+from stickslip._rollout import Rollout, rollout
+from stickslip._score import score
+from stickslip._simulate import Simulation, simulate
+from stickslip._tracker import Row, Tracker, rows
+
+__all__ = [
+    "Columns",
+    "Error",
+    "FilterOptions",
+    "Log",
+    "Rollout",
+    "Row",
+    "Scene",
+    "Simulation",
+    "Tracker",
+    "__version__",
+    "filter",
+    "load_log",
+    "load_scene",
+    "load_truth",
+    "particles",
+    "rollout",
+    "rows",
+    "samples",
+    "score",
+    "simulate",
+]

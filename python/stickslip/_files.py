@@ -1,0 +1,59 @@
+"""Reads scenes, logs and truths from files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stickslip import _native
+from stickslip._columns import Columns, columns_of
+from stickslip._native import Error, Scene
+
+
+def load_scene(path: str | os.PathLike[str]) -> Scene:
+    """Reads a scene file.
+
+    Raises :class:`stickslip.Error` with file, line, place, value found, rule and next step where it
+    cannot be used, and OSError where it cannot be read.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise Error(f"{path}: the scene is not UTF-8 text ({error.reason}). Save it as plain text") from error
+    return Scene(text, str(path))
+
+
+def load_log(path: str | os.PathLike[str]) -> Columns:
+    """Reads ``log.csv``, or ``log.mcap`` by the file's ending.
+
+    Returns the columns of ``log.csv``, each (rows,): ``time`` (s), ``object_x``, ``object_y`` (m),
+    ``object_theta`` (rad), the same of the ``pusher``, ``tactile_1``, ... (0 or 1) and
+    ``pusher_force_x``, ``pusher_force_y`` (N) where the log has them; NaN where nothing was measured.
+    """
+    path = Path(path)
+    return _native.read_log(path.read_bytes(), str(path))
+
+
+def load_truth(path: str | os.PathLike[str]) -> Columns:
+    """Reads ``truth.csv``: ``time`` (s), ``x``, ``y`` (m), ``theta`` (rad) and what else it has, each (rows,)."""
+    path = Path(path)
+    with path.open(encoding="utf-8") as file:
+        names = file.readline().strip().split(",")
+        try:
+            table = np.loadtxt(file, delimiter=",", ndmin=2)
+        except ValueError as error:
+            raise Error(f"{path}: {error}") from error
+    if table.shape[1] != len(names):
+        raise Error(f"{path}: the header names {len(names)} columns and the rows have {table.shape[1]} cells")
+    return {name: np.ascontiguousarray(table[:, k]) for k, name in enumerate(names)}
+
+
+def log_of(log: Any) -> Columns:
+    """The columns of a log that is given by its path, as a mapping or as a data frame."""
+    if isinstance(log, str | os.PathLike):
+        return load_log(log)
+    return columns_of(log, "the log")

@@ -1,0 +1,71 @@
+"""The library behind the package; what it takes is checked, not converted."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+class Error(ValueError):
+    """An input that cannot be used: what was found, the rule, and what to do."""
+
+@final
+class Scene:
+    """What is known before an experiment: scene, sensors and filter settings, as scene.toml holds them."""
+
+    def __new__(cls, text: str, name: str = "scene.toml") -> Scene:
+        """Reads the text of a scene file; ``name`` is shown in errors."""
+    @property
+    def text(self) -> str:
+        """The file's text."""
+    @property
+    def name(self) -> str:
+        """The name shown in errors."""
+    @property
+    def fixels(self) -> int:
+        """Number of fixels."""
+    @property
+    def friction(self) -> dict[str, float]:
+        """Nominal mu_s, mu_p, mu_f, d_tri (m); d_tri is NaN where the feet are known."""
+    @property
+    def virtual_radius(self) -> float:
+        """Weight of an angle in scores: the object's radius of gyration (m)."""
+
+class RunArguments(TypedDict):
+    method: str
+    mode: str
+    particles: int
+    seed: int
+    tactile: bool
+    causal: bool
+    substeps: int | None
+    occlude: tuple[int, int | None] | None
+    occlude_middle: float | None
+    threads: int | None
+
+@final
+class Tracker:
+    def __new__(cls, scene: Scene, options: Mapping[str, Any]) -> Tracker: ...
+    def push(self, row: Mapping[str, Any]) -> dict[str, float]: ...
+    def estimate(self) -> dict[str, float]: ...
+    @property
+    def collapses(self) -> int: ...
+
+def read_log(data: bytes, name: str) -> dict[str, NDArray[np.float64]]: ...
+def write_log(columns: dict[str, NDArray[np.float64]]) -> bytes: ...
+def filter(
+    log: dict[str, NDArray[np.float64]], scene: Scene, options: RunArguments
+) -> dict[str, NDArray[np.float64]]: ...
+def particles(
+    log: dict[str, NDArray[np.float64]],
+    scene: Scene,
+    options: RunArguments,
+    rows: Sequence[int] | None = None,
+) -> tuple[NDArray[np.int64], dict[str, NDArray[np.float64]]]: ...
+def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> None: ...
+def simulate(
+    scene: Scene, options: Mapping[str, Any]
+) -> tuple[dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]], str]: ...
+def score(estimate: dict[str, NDArray[np.float64]], on: Mapping[str, Any]) -> dict[str, float]: ...

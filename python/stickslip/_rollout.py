@@ -1,0 +1,115 @@
+"""Many pushes at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip import _native
+from stickslip._native import Error, Scene
+
+_FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
+
+
+class Rollout(TypedDict):
+    """N trajectories of T steps."""
+
+    #: Poses of the object (N, T + 1, 3): x, y (m), theta (rad); the start first.
+    pose: NDArray[np.float64]
+    #: Twists of the object (N, T + 1, 3): vx, vy (m/s), omega (rad/s).
+    twist: NDArray[np.float64]
+    #: Steps without a certified solution (N,).
+    unsolved: NDArray[np.uint32]
+
+
+def rollout(
+    scene: Scene,
+    states: ArrayLike,
+    pusher: ArrayLike,
+    friction: Mapping[str, ArrayLike] | None = None,
+    *,
+    h: float = 1.0 / 30.0,
+    threads: int | None = None,
+    out: Rollout | None = None,
+) -> Rollout:
+    """Simulates N pushes over T steps of ``h`` seconds by the certified contact dynamics.
+
+    ``states``: where the object starts, (N, 6): x, y (m), theta (rad), vx, vy (m/s), omega (rad/s), or
+    (N, 3): poses, at rest. ``pusher``: poses of the pusher where steps begin and end, (N, T + 1, 3), or
+    (T + 1, 3) for all: x, y (m), theta (rad); it moves straight from one to the next, and gives way where
+    the scene has a stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a number or
+    (N,); the scene's where it has none. ``out``: arrays of an earlier rollout of the same shape, to be
+    written over.
+
+    The interpreter's lock is released; C-ordered float64 arrays are read as they lie, and results are
+    written straight into the arrays that are returned. A trajectory depends on nothing but its own start,
+    friction and pusher: the same bits for any N and any number of threads.
+
+    Raises :class:`stickslip.Error` where shapes do not go together or a number is out of range.
+    """
+    start = _array(states, "states")
+    if start.ndim != 2 or start.shape[1] not in (3, 6):
+        raise Error(f"states has the shape {start.shape}; it must be (N, 6), or (N, 3) for poses at rest")
+    count = len(start)
+    if start.shape[1] == 3:
+        start = np.hstack([start, np.zeros((count, 3))])
+    pushers = _array(pusher, "pusher")
+    if pushers.ndim == 2:
+        pushers = pushers[np.newaxis]
+    if pushers.ndim != 3 or pushers.shape[2] != 3 or len(pushers) not in (1, count) or pushers.shape[1] < 2:
+        raise Error(
+            f"pusher has the shape {np.shape(pusher)}; it must be ({count}, T + 1, 3), or (T + 1, 3) for all, "
+            "with T at least 1"
+        )
+    result = _results(out, (count, pushers.shape[1], 3))
+    arrays = {
+        "states": start,
+        "friction": _frictions(scene, friction or {}, count),
+        "pushers": pushers,
+        "poses": result["pose"],
+        "twists": result["twist"],
+        "unsolved": result["unsolved"],
+    }
+    _native.rollout(scene, h, arrays, threads)
+    return result
+
+
+def _array(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    try:
+        return np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise Error(f"{name} holds something that is no number ({error})") from error
+
+
+def _frictions(scene: Scene, given: Mapping[str, ArrayLike], count: int) -> NDArray[np.float64]:
+    """Friction of each trajectory (N, 4)."""
+    nominal = scene.friction
+    unknown = sorted(set(given) - set(_FRICTION))
+    if unknown:
+        raise Error(f"friction has a `{unknown[0]}`; it may have {', '.join(_FRICTION)}")
+    if "d_tri" in given and np.isnan(nominal["d_tri"]):
+        raise Error("friction has a `d_tri`, but the scene's feet are known; leave it out")
+    friction = np.empty((count, len(_FRICTION)))
+    for k, name in enumerate(_FRICTION):
+        values = _array(given[name], name) if name in given else np.nan_to_num(nominal[name])
+        if np.shape(values) not in ((), (1,), (count,)):
+            raise Error(f"friction: `{name}` has the shape {np.shape(values)}; it must be a number or ({count},)")
+        if not np.all((values >= 0) & np.isfinite(values)):
+            raise Error(f"friction: `{name}` has a value that is negative or not finite")
+        friction[:, k] = values
+    return friction
+
+
+def _results(out: Rollout | None, shape: tuple[int, int, int]) -> Rollout:
+    if out is None:
+        return {
+            "pose": np.empty(shape),
+            "twist": np.empty(shape),
+            "unsolved": np.empty(shape[0], dtype=np.uint32),
+        }
+    if out["pose"].shape != shape or out["twist"].shape != shape or out["unsolved"].shape != shape[:1]:
+        raise Error(f"out is of another shape than this rollout's {shape}")
+    return out

@@ -1,0 +1,76 @@
+"""Experiments with known truth."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from stickslip import _native
+from stickslip._columns import Columns
+from stickslip._native import Error, Scene
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A simulated experiment."""
+
+    #: What was simulated.
+    scene: Scene
+    #: Columns of ``log.csv``: what was measured.
+    log: Columns
+    #: Columns of ``truth.csv``: ``time``, ``x``, ``y``, ``theta``, twists, forces; exact.
+    truth: Columns
+    #: What ``truth.json`` holds: true friction, first contacts, ``occlude_from``.
+    facts: dict[str, Any]
+
+    def write(self, folder: str | os.PathLike[str]) -> None:
+        """Writes ``scene.toml``, ``log.csv``, ``truth.csv`` and ``truth.json``; the folder must be new or empty."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise Error(f"{folder} is not empty; give a new folder, so that nothing recorded is lost")
+        (folder / "scene.toml").write_text(self.scene.text, encoding="utf-8")
+        (folder / "log.csv").write_bytes(_native.write_log(self.log))
+        (folder / "truth.json").write_text(json.dumps(self.facts, indent=2) + "\n", encoding="utf-8")
+        rows = np.column_stack(list(self.truth.values()))
+        text = "\n".join(",".join(repr(float(value)) for value in row) for row in rows)
+        (folder / "truth.csv").write_text(",".join(self.truth) + "\n" + text + "\n", encoding="utf-8")
+
+
+def simulate(
+    scene: Scene,
+    *,
+    physics: Literal["testbed", "model"] = "testbed",
+    seed: int = 0,
+    rate: float = 30.0,
+    friction: Mapping[str, float] | None = None,
+) -> Simulation:
+    """Simulates the experiment that the scene's ``[start]`` describes.
+
+    ``physics``: ``testbed``, a rig with compliant contacts, uneven friction and a drive that lags, or
+    ``model``, the filter's own contact dynamics without noise. ``rate``: frames per second (Hz).
+    ``friction``: true ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); the scene's where it has none.
+    """
+    true = dict(friction or {})
+    unknown = sorted(set(true) - {"mu_s", "mu_p", "mu_f", "d_tri"})
+    if unknown:
+        raise Error(f"friction has a `{unknown[0]}`; it may have mu_s, mu_p, mu_f, d_tri")
+    log, truth, facts = _native.simulate(
+        scene,
+        {
+            "physics": physics,
+            "seed": seed,
+            "rate": rate,
+            "mu_s": true.get("mu_s"),
+            "mu_p": true.get("mu_p"),
+            "mu_f": true.get("mu_f"),
+            "d_tri": true.get("d_tri"),
+        },
+    )
+    return Simulation(scene, log, truth, json.loads(facts))

@@ -1,0 +1,115 @@
+"""One row at a time, as a robot needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+
+from stickslip import _native
+from stickslip._columns import Log
+from stickslip._files import log_of
+from stickslip._native import Scene
+
+
+class Row(TypedDict):
+    """What one instant brings; None where nothing was measured."""
+
+    #: Time (s).
+    time: float
+    #: Pose of the object (m, m, rad), as the camera measured it.
+    object: Sequence[float] | None
+    #: Pose of the pusher (m, m, rad).
+    pusher: Sequence[float] | None
+    #: Readings of the sensors on the fixels over the interval that ends here.
+    tactile: Sequence[bool | None]
+    #: Force of the pusher on the object, world frame (N).
+    force: Sequence[float] | None
+
+
+class Tracker:
+    """The particle filter, one row at a time, on the caller's thread.
+
+    It gives the bits of ``stickslip.filter(..., causal=True)``. ``late``: how far behind the latest row a
+    row may come and still count (s); the particles remember their poses for as long.
+
+    >>> tracker = stickslip.Tracker(scene, particles=500)  # doctest: +SKIP
+    >>> estimate = tracker.push(0.033, object=(0.1, 0.0, 0.0), pusher=(0.07, 0.0, 0.0))  # doctest: +SKIP
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        mode: Literal["contact", "paper"] = "contact",
+        particles: int = 500,
+        seed: int = 0,
+        tactile: bool = True,
+        substeps: int | None = None,
+        late: float = 0.2,
+    ) -> None:
+        self._tracker = _native.Tracker(
+            scene,
+            {
+                "mode": mode,
+                "particles": particles,
+                "seed": seed,
+                "tactile": tactile,
+                "substeps": substeps,
+                "late": late,
+            },
+        )
+
+    def push(
+        self,
+        time: float,
+        object: Sequence[float] | None = None,
+        pusher: Sequence[float] | None = None,
+        tactile: Sequence[bool | None] = (),
+        force: Sequence[float] | None = None,
+    ) -> dict[str, float]:
+        """Takes what was measured at ``time`` (s): poses of object and pusher (m, m, rad), readings of the
+        tactile sensors, sensor k on fixel k, and the force of the pusher on the object (N), None where
+        there is none.
+
+        Returns the estimate at the latest row under the names of ``estimate.csv`` (see
+        :func:`stickslip.filter`); NaN before the first object pose. A row without an object pose is blacked
+        out; a row that is not later than the latest one is late, and its object pose counts for its time.
+
+        Raises :class:`stickslip.Error` where the row cannot be used; the tracker then is as it was before.
+        """
+        row = {"time": time, "object": object, "pusher": pusher, "tactile": list(tactile), "force": force}
+        return self._tracker.push(row)
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """The estimate at the latest row."""
+        return self._tracker.estimate()
+
+    @property
+    def collapses(self) -> int:
+        """Rows at which no particle explained the camera and all were drawn anew around its pose."""
+        return self._tracker.collapses
+
+
+def rows(log: Log) -> Iterator[Row]:
+    """The rows of a log, one after the other: ``for row in rows(log): tracker.push(**row)``."""
+    columns = log_of(log)
+    sensors = [f"tactile_{k}" for k in range(1, len(columns) + 1) if f"tactile_{k}" in columns]
+
+    def group(row: int, *names: str) -> tuple[float, ...] | None:
+        values = tuple(float(columns[name][row]) for name in names if name in columns)
+        return None if not values or np.isnan(values).all() else values
+
+    def reading(value: Any) -> bool | None:
+        return None if np.isnan(value) else bool(value)
+
+    for row, time in enumerate(columns["time"]):
+        yield {
+            "time": float(time),
+            "object": group(row, "object_x", "object_y", "object_theta"),
+            "pusher": group(row, "pusher_x", "pusher_y", "pusher_theta"),
+            "tactile": [reading(columns[sensor][row]) for sensor in sensors],
+            "force": group(row, "pusher_force_x", "pusher_force_y"),
+        }

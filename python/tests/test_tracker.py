@@ -1,0 +1,39 @@
+"""Row by row is the causal filter."""
+
+import numpy as np
+import pytest
+
+import stickslip
+
+
+def test_a_tracker_has_the_bits_of_the_causal_filter(demo, scene):
+    log = stickslip.load_log(demo / "log.csv")
+    log = {name: column[:160] for name, column in log.items()}
+    for name in ("object_x", "object_y", "object_theta"):
+        log[name][80:] = np.nan
+    whole = stickslip.filter(log, scene, causal=True, particles=100, seed=3)
+    tracker = stickslip.Tracker(scene, particles=100, seed=3, late=0.0)
+    for row, measured in enumerate(stickslip.rows(log)):
+        estimate = tracker.push(**measured)
+        assert list(estimate) == list(whole)
+        for name, value in estimate.items():
+            np.testing.assert_array_equal(value, whole[name][row], err_msg=f"{name}, row {row}")
+    np.testing.assert_equal(tracker.estimate, estimate)
+    assert tracker.collapses == 0
+
+
+def test_rows_that_cannot_be_used_are_refused_and_change_nothing(demo, scene):
+    tracker = stickslip.Tracker(scene, particles=64)
+    before = tracker.push(0.0, object=(0.0, 0.0, 0.0), pusher=(-0.1, 0.0, 0.0))
+    for row, words in [
+        ({"time": float("nan")}, "time is NaN"),
+        ({"time": 0.03, "object": (float("nan"), 0, 0)}, "all three must be finite"),
+        ({"time": 0.03, "tactile": [True] * 9}, "9 tactile readings"),
+        ({"time": 60.0}, "start a new tracker"),
+        ({"time": -1.0, "object": (0, 0, 0)}, "remembers 0.2 s"),
+    ]:
+        with pytest.raises(stickslip.Error, match=words):
+            tracker.push(**row)
+    np.testing.assert_equal(tracker.estimate, before)
+    with pytest.raises(stickslip.Error, match="mode is `x`"):
+        stickslip.Tracker(scene, mode="x")
