@@ -12,6 +12,7 @@ the same bits on any number of threads, and those of the program ``stickslip``.
 """
 
 from stickslip._columns import Columns, Log
+from stickslip._compare import compare
 from stickslip._files import load_log, load_scene, load_truth
 from stickslip._filter import FilterOptions, filter, particles, samples
 from stickslip._native import Error, Scene, __version__
@@ -31,6 +32,7 @@ __all__ = [
     "Simulation",
     "Tracker",
     "__version__",
+    "compare",
     "filter",
     "load_log",
     "load_scene",

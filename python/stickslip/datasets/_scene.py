@@ -1,0 +1,80 @@
+"""Texts of scene files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip._native import Error, Scene
+
+
+def uniform_plate(polygon: ArrayLike, mass: float) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """A plate of equal thickness: its polygon (K, 2) moved so that the centre of mass is the origin, where that
+    centre was, (2,), and the moment of inertia about it (kg m^2), for a ``polygon`` in m, counter-clockwise."""
+    a = np.asarray(polygon, dtype=np.float64)
+    if a.ndim != 2 or a.shape[1] != 2 or len(a) < 3:
+        raise Error(f"the polygon has the shape {a.shape}; it must be (K, 2) with K at least 3")
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    area = 0.5 * cross.sum()
+    if not area > 0:
+        raise Error(f"the polygon's area is {area} m^2; give its corners counter-clockwise")
+    centre = ((a + b) * cross[:, None]).sum(axis=0) / (6 * area)
+    a, b = a - centre, b - centre
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    second = (cross * ((a * a) + (a * b) + (b * b)).sum(axis=1)).sum() / 12
+    return a, centre, float(mass * second / area)
+
+
+def scene_text(
+    shape: Sequence[str] | str,
+    *,
+    mass: float,
+    inertia: float,
+    pusher_radius: float,
+    friction: float = 0.3,
+    pusher_friction: float = 0.3,
+    tripod_radius: float | None = None,
+    position_std: float = 5e-4,
+    orientation_std: float = 5e-3,
+    latency: float = 0.0,
+) -> str:
+    """The text of a ``scene.toml`` for an object pushed by a round finger, without fixels.
+
+    ``shape``: convex parts in TOML, such as ``"{ disc = { radius = 0.03 } }"``, or rows of corners as from
+    :func:`uniform_plate`, in the frame of the centre of mass. Friction values and ``tripod_radius`` (m; the
+    radius of gyration by default) are first guesses: the filter adapts them, ``stickslip fit`` learns them.
+    """
+    parts = [shape] if isinstance(shape, str) else list(shape)
+    if parts and not isinstance(parts[0], str):
+        corners = ", ".join(f"[{x!r}, {y!r}]" for x, y in np.asarray(parts, dtype=np.float64).tolist())
+        parts = [f"{{ polygon = [{corners}] }}"]
+    radius = float(np.sqrt(inertia / mass)) if tripod_radius is None else tripod_radius
+    text = f"""\
+gravity = 9.81
+
+[object]
+mass = {mass!r}
+inertia = {inertia!r}
+shape = [ {", ".join(parts)} ]
+
+[support]
+friction = {friction!r}
+tripod_radius = {radius!r}
+
+[pusher]
+shape = [ {{ disc = {{ radius = {pusher_radius!r} }} }} ]
+friction = {pusher_friction!r}
+
+[fixels]
+friction = 0.25
+
+[camera]
+position_std = {position_std!r}
+orientation_std = {orientation_std!r}
+latency = {latency!r}
+"""
+    Scene(text)
+    return text

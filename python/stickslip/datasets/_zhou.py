@@ -1,0 +1,110 @@
+"""The recordings of J. Zhou and M. T. Mason (CMU)."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip._columns import Columns
+from stickslip._native import Error
+from stickslip.datasets._folder import write_experiment
+from stickslip.datasets._streams import Stream, unwrapped
+
+#: Time without rows above which the hand was lifted (s).
+_LIFTED = 0.5
+
+
+def import_two_finger(
+    file: str | os.PathLike[str],
+    scene: str,
+    out: str | os.PathLike[str],
+    *,
+    scale: float = 1.0,
+    shift: tuple[float, float] = (0.0, 0.0),
+    centre: tuple[float, float] = (0.0, -0.3175),
+    single_pushes: bool = False,
+) -> list[Path]:
+    """Writes the experiment folder of one run of PlanarManipulationToolBox's ``robot_exp_logs`` (ISRR 2017), or,
+    with ``single_pushes``, of each of its pushes as ``out-1``, ``out-2``, ...
+
+    ``file``: rows of time (s), the object's x, y (mm), theta (rad), the hand's, and the edge that is pushed,
+    without a header. The first row, a stale message, is dropped; object poses of zeros are lost ones and
+    become empty; angles are unwrapped. Where the hand was lifted there are no rows; they are filled at 30 Hz
+    with empty cells, so that it is not swept through the object. Object positions p become ``centre`` +
+    ``scale`` (p - ``centre``) + ``shift`` (m), where camera and robot disagree.
+    """
+    table = _table(Path(file), 8)[1:]
+    if not len(table):
+        raise Error(f"{file} has one row; the first is dropped, so a run needs more")
+    lost = (table[:, 1:4] == 0).all(axis=1)
+    poses = table[:, 1:7] * np.array([1e-3, 1e-3, 1.0, 1e-3, 1e-3, 1.0])
+    middle = np.asarray(centre)
+    poses[:, :2] = middle + scale * (poses[:, :2] - middle) + np.asarray(shift)
+    poses[~lost, 2] = unwrapped(poses[~lost, 2], 2 * np.pi)
+    poses[:, 5] = unwrapped(poses[:, 5], 2 * np.pi)
+    poses[lost, :3] = np.nan
+    time = table[:, 0] - table[0, 0]
+    breaks = np.flatnonzero(np.diff(time) > _LIFTED) + 1
+    if not single_pushes:
+        return [_write(out, scene, *_filled(time, poses, breaks), file)]
+    parts = zip(np.split(time, breaks), np.split(poses, breaks), strict=True)
+    return [
+        _write(f"{os.fspath(out)}-{push}", scene, times - times[0], part, file)
+        for push, (times, part) in enumerate(parts, start=1)
+    ]
+
+
+def read_alternating(file: str | os.PathLike[str]) -> Stream:
+    """The stream of a file of MLab_EXP whose odd lines are times (s) and whose even lines are numbers.
+
+    Of ``exp3`` and ``exp4``, ``pos*.txt`` and ``robot*.txt`` hold x, y, z (mm) and a quaternion w, x, y, z:
+    make poses of them with :func:`planar` (and the calibration of the tracked body), and a log with
+    :func:`log_of_streams`; ``force*.txt`` holds forces (N) in the sensor's frame.
+    """
+    lines = Path(file).read_text(encoding="utf-8").split("\n")
+    lines = [line for line in lines if line.strip()]
+    try:
+        rows = [[float(at), *map(float, numbers.split())] for at, numbers in zip(lines[::2], lines[1::2], strict=True)]
+    except ValueError as error:
+        raise Error(f"{file}: its lines must be a time and numbers in turn ({error})") from error
+    if len({len(row) for row in rows}) > 1:
+        raise Error(f"{file}: its rows differ in length; is it cut off?")
+    return Stream.of(rows, str(file))
+
+
+def _table(file: Path, columns: int) -> NDArray[np.float64]:
+    try:
+        table = np.loadtxt(file, delimiter=",", ndmin=2)
+    except ValueError as error:
+        raise Error(f"{file}: {error}") from error
+    if table.shape[1] != columns:
+        raise Error(f"{file} has {table.shape[1]} columns; a run has {columns}")
+    return table
+
+
+def _filled(
+    time: NDArray[np.float64], poses: NDArray[np.float64], breaks: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rows of NaN at 30 Hz where the hand was lifted."""
+    times, rows = [time[: breaks[0]] if len(breaks) else time], [poses[: breaks[0]] if len(breaks) else poses]
+    for begin, end in zip(breaks, [*breaks[1:], len(time)], strict=True):
+        lifted = np.arange(time[begin - 1] + 1 / 30, time[begin] - 1 / 60, 1 / 30)
+        times += [lifted, time[begin:end]]
+        rows += [np.full((len(lifted), 6), np.nan), poses[begin:end]]
+    return np.concatenate(times), np.concatenate(rows)
+
+
+def _write(
+    out: str | os.PathLike[str],
+    scene: str,
+    time: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    file: str | os.PathLike[str],
+) -> Path:
+    names = [f"{body}_{name}" for body in ("object", "pusher") for name in ("x", "y", "theta")]
+    log: Columns = {"time": np.ascontiguousarray(time)}
+    log |= {name: np.ascontiguousarray(poses[:, k]) for k, name in enumerate(names)}
+    return write_experiment(out, scene, log, {"source": Path(file).name, "note": "no ground truth"})

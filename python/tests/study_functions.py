@@ -1,0 +1,28 @@
+"""Functions that workers of other processes import in tests of studies."""
+
+import os
+import signal
+from pathlib import Path
+
+
+def square(x, **_):
+    """A result, or an error for 13."""
+    if x == 13:
+        raise ValueError("13 is unlucky")
+    return {"square": x * x}
+
+
+def die_once(x, folder):
+    """Kills its worker the first time that 3 comes."""
+    mark = Path(folder) / "died"
+    if x == 3 and not mark.exists():
+        mark.write_text("")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"square": x * x}
+
+
+def die(x):
+    """Kills its worker whenever 3 comes."""
+    if x == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {"square": x * x}
