@@ -62,11 +62,12 @@ pub struct DemoArgs {
 /// Arguments of `stickslip filter`.
 #[derive(Debug, Args)]
 pub struct FilterArgs {
-    /// The recorded experiment (log.csv, or an MCAP recording of ROS 2 messages, log.mcap)
+    /// The recorded experiment: log.csv, an MCAP recording of ROS 2 messages, the folder of a bag,
+    /// or a folder with any of these
     pub log: PathBuf,
-    /// What is known before the experiment (scene.toml)
+    /// What is known before the experiment [default: scene.toml in the log's folder or beside it]
     #[arg(long)]
-    pub scene: PathBuf,
+    pub scene: Option<PathBuf>,
     /// Topics of an MCAP log
     #[command(flatten)]
     pub topics: TopicArgs,
@@ -102,8 +103,8 @@ pub struct FilterArgs {
 /// Arguments of `stickslip compare`.
 #[derive(Debug, Args)]
 pub struct CompareArgs {
-    /// Experiment folders (scene.toml, log.csv or log.mcap, and what is known of the truth), or
-    /// folders of such folders
+    /// Experiment folders (scene.toml, log.csv, log.mcap or a bag, and what is known of the truth),
+    /// or folders of such folders
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
     /// Run the particle filter with the seeds 0 to K - 1 and take the median of each score
@@ -126,10 +127,12 @@ pub struct CompareArgs {
 /// Arguments of `stickslip check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// What is known before the experiment (scene.toml)
-    pub scene: PathBuf,
-    /// The recorded experiment (log.csv, or an MCAP recording of ROS 2 messages, log.mcap)
-    pub log: PathBuf,
+    /// What is known before the experiment (scene.toml); without LOG, the log, or a folder with both
+    #[arg(value_name = "SCENE")]
+    pub scene_or_log: PathBuf,
+    /// The recorded experiment: log.csv, an MCAP recording of ROS 2 messages, the folder of a bag,
+    /// or a folder with any of these
+    pub log: Option<PathBuf>,
     /// Topics of an MCAP log
     #[command(flatten)]
     pub topics: TopicArgs,

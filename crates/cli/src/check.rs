@@ -8,7 +8,8 @@ use serde::Serialize;
 use stickslip::diagnosis::{Finding, Severity, diagnose};
 
 use crate::args::{CheckArgs, Program};
-use crate::experiment::{read_log_file, read_scene_file};
+use crate::experiment::{read_scene_and_log, scene_beside};
+use crate::log_files::LogFiles;
 use crate::output::show_result;
 use crate::verdict::Verdict;
 
@@ -31,8 +32,13 @@ struct Report {
 
 /// Runs the command.
 pub fn check(args: &CheckArgs) -> Result<Verdict> {
-    let setup = read_scene_file(&args.scene)?;
-    let (log, verdict) = read_log_file(&args.log, &args.topics.topics(Program::command())?)?;
+    // one path is a log with its scene beside it, or a folder of both
+    let (scene, log) = match &args.log {
+        Some(log) => (args.scene_or_log.clone(), log),
+        None => (scene_beside(&args.scene_or_log)?, &args.scene_or_log),
+    };
+    let topics = args.topics.topics(Program::command())?;
+    let (setup, log, verdict) = read_scene_and_log(&scene, &LogFiles::find(log)?, &topics)?;
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
     show_result(args.json, &report, || report.to_string())?;

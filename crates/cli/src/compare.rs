@@ -18,8 +18,9 @@ use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::{Experiment, Topics};
 
 use crate::args::{CompareArgs, Program};
-use crate::experiment::{check_occlusion, log_path, read_folder};
+use crate::experiment::{check_occlusion, read_folder};
 use crate::files::{ready_file, write_report};
+use crate::log_files::log_path;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;

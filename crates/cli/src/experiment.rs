@@ -2,18 +2,18 @@
 //! program.
 
 use std::fs::{self, File};
-use std::io::{self, BufReader, ErrorKind, Read, Seek};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
-    Experiment, McapError, McapProblem, Topics, Truth, TruthFacts, read_log, read_log_mcap,
-    read_scene, read_truth_csv, read_truth_json,
+    BagOptions, Experiment, Topics, Truth, TruthFacts, read_log, read_mounts, read_scene,
+    read_truth_csv, read_truth_json,
 };
 
 use crate::failure::hinted;
-use crate::output::talk;
+use crate::log_files::{LogFiles, log_path};
 use crate::verdict::Verdict;
 
 /// The texts of an experiment's files.
@@ -51,10 +51,13 @@ pub fn read_experiment(
     topics: &Topics,
     truth: Option<&Path>,
 ) -> Result<(Experiment, Verdict)> {
-    let setup = read_scene_file(scene)?;
-    let (log_data, verdict) = read_log_file(log, topics)?;
-    let folder = log.parent().unwrap_or(Path::new(""));
-    let beside = |name: &str| Some(folder.join(name)).filter(|path| path.is_file());
+    let (setup, log_data, verdict) = read_scene_and_log(scene, &LogFiles::find(log)?, topics)?;
+    let own = Some(log).filter(|log| log.is_dir());
+    let folders: Vec<&Path> = own.into_iter().chain(log.parent()).collect();
+    let beside = |name: &str| {
+        let mut paths = folders.iter().map(|folder| folder.join(name));
+        paths.find(|path| path.is_file())
+    };
     let truth = truth
         .map(Path::to_path_buf)
         .or(beside("truth.csv"))
@@ -76,16 +79,6 @@ pub fn read_folder(
     topics: &Topics,
 ) -> Result<(Experiment, Verdict)> {
     read_experiment(&folder.join(scene_name), &log_path(folder), topics, None)
-}
-
-/// The log of a folder: log.csv, else log.mcap.
-pub fn log_path(folder: &Path) -> PathBuf {
-    let [csv, mcap] = ["log.csv", "log.mcap"].map(|name| folder.join(name));
-    if !csv.is_file() && mcap.is_file() {
-        mcap
-    } else {
-        csv
-    }
 }
 
 /// An occlusion that hides no pose is a slip of the pen.
@@ -136,100 +129,49 @@ pub fn read_scene_file(path: &Path) -> Result<Setup> {
     )?)
 }
 
-/// Reads a log, CSV or MCAP by the file's ending; its warnings go to standard error. The verdict
-/// says whether all of it could be read.
-pub fn read_log_file(path: &Path, topics: &Topics) -> Result<(Log, Verdict)> {
-    let name = path.display().to_string();
-    let mut file = open(path, "log")?;
-    let kind = kind_of(&mut file).map_err(|error| unreadable(path, "log", &error))?;
-    let ends_as_mcap = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"));
-    let (log, warnings) = match kind {
-        Kind::Sqlite => {
-            let help =
-                "record with `ros2 bag record -s mcap`, or rewrite the bag with `ros2 bag convert`";
-            return Err(hinted(
-                format!("{name}: this is a bag in SQLite; logs are CSV or MCAP"),
-                help,
-            ));
-        }
-        Kind::Zstd => {
-            let help = format!("unpack it with `zstd -d {name}`");
-            return Err(hinted(
-                format!("{name}: the whole file is packed with zstd"),
-                help,
-            ));
-        }
-        Kind::Mcap | Kind::Other if ends_as_mcap => {
-            read_log_mcap(BufReader::new(file), &name, topics).map_err(topic_hint)?
-        }
-        Kind::Mcap => {
-            let help = "let its name end in .mcap";
-            return Err(hinted(
-                format!("{name}: this is an MCAP recording by another name"),
-                help,
-            ));
-        }
-        Kind::Other if topics.is_default() => read_log(file, &name)?,
-        Kind::Other => {
-            return Err(hinted(
-                format!("{name}: --topic is for MCAP logs, whose names end in .mcap"),
-                "leave --topic out",
-            ));
-        }
-    };
-    for warning in &warnings {
-        talk(format_args!("warning: {warning}"));
-    }
-    let lost = warnings.iter().any(|warning| warning.is_loss());
-    Ok((
-        log,
-        if lost {
-            Verdict::InputLost
-        } else {
-            Verdict::Done
-        },
-    ))
-}
-
-/// What a file is by its first bytes.
-enum Kind {
-    Mcap,
-    /// A bag of ROS 2 as it was recorded before MCAP.
-    Sqlite,
-    Zstd,
-    Other,
-}
-
-fn kind_of(file: &mut File) -> io::Result<Kind> {
-    let mut start = Vec::new();
-    file.take(16).read_to_end(&mut start)?;
-    file.rewind()?;
-    Ok(match start.as_slice() {
-        [0x89, b'M', b'C', b'A', b'P', ..] => Kind::Mcap,
-        [b'S', b'Q', b'L', b'i', b't', b'e', b' ', ..] => Kind::Sqlite,
-        [0x28, 0xb5, 0x2f, 0xfd, ..] => Kind::Zstd,
-        _ => Kind::Other,
+/// Reads what else a scene file says of how a log is recorded: where tags sit and from which force
+/// a sensor is touched; `topics` are those of the command line.
+fn bag_options(path: &Path, setup: &Setup, topics: &Topics) -> Result<BagOptions> {
+    Ok(BagOptions {
+        topics: topics.clone(),
+        mounts: read_mounts(&text_of(path, "scene")?, &path.display().to_string())?,
+        touch_force: setup.tactile.touch_force,
     })
 }
 
-/// How to say on the command line which topic is meant.
-fn topic_hint(error: McapError) -> anyhow::Error {
-    match *error.problem {
-        McapProblem::MissingTopic { topic, .. } => hinted(
-            error.to_string(),
-            format!("name it with --topic {topic}=TOPIC"),
-        ),
-        McapProblem::SensorNumber { missing } => hinted(
-            error.to_string(),
-            format!("name it with --topic fixel_{missing}=TOPIC"),
-        ),
-        McapProblem::Frame { wrench: true, .. } => {
-            hinted(error.to_string(), "leave forces out with --topic wrench=")
-        }
-        _ => error.into(),
-    }
+/// Reads a scene and a log with it. The verdict says whether all of the log could be read.
+pub fn read_scene_and_log(
+    scene: &Path,
+    log: &LogFiles,
+    topics: &Topics,
+) -> Result<(Setup, Log, Verdict)> {
+    let setup = read_scene_file(scene)?;
+    let (log, verdict) = log.read(&bag_options(scene, &setup, topics)?)?;
+    Ok((setup, log, verdict))
+}
+
+/// The scene of a log that is given without one: `scene.toml` in the folder that is given, else
+/// beside the log.
+pub fn scene_beside(given: &Path) -> Result<PathBuf> {
+    let path = std::path::absolute(given).unwrap_or(given.to_owned());
+    let above: Vec<&Path> = path
+        .ancestors()
+        .skip(usize::from(!path.is_dir()))
+        .take(2)
+        .collect();
+    let found = above
+        .iter()
+        .map(|folder| folder.join("scene.toml"))
+        .find(|scene| scene.is_file());
+    found.ok_or_else(|| {
+        hinted(
+            format!(
+                "{}: there is no scene.toml in it or beside it",
+                given.display()
+            ),
+            "give the scene with --scene; docs/guide/formats.md says how to write one",
+        )
+    })
 }
 
 fn read_truth_file(path: &Path) -> Result<Truth> {
@@ -252,18 +194,18 @@ pub fn text_of(path: &Path, what: &str) -> Result<String> {
     fs::read_to_string(path).map_err(|error| unreadable(path, what, &error))
 }
 
-fn open(path: &Path, what: &str) -> Result<File> {
+/// Opens a file that is called `what` in errors.
+pub fn open(path: &Path, what: &str) -> Result<File> {
     match File::open(path) {
         Ok(_) if path.is_dir() => Err(unreadable(path, what, &ErrorKind::IsADirectory.into())),
         opened => opened.map_err(|error| unreadable(path, what, &error)),
     }
 }
 
-fn unreadable(path: &Path, what: &str, error: &io::Error) -> anyhow::Error {
-    let help = if path.join("metadata.yaml").is_file() {
-        "this is the folder of a bag: give the .mcap file in it".to_owned()
-    } else if path.is_dir() {
-        format!("give the {what} file itself; whole folders are for `stickslip compare`")
+/// The error about a file that cannot be read.
+pub fn unreadable(path: &Path, what: &str, error: &io::Error) -> anyhow::Error {
+    let help = if path.is_dir() {
+        format!("give the {what} file itself")
     } else {
         format!("give the path of the {what} file")
     };

@@ -15,8 +15,11 @@ use stickslip_formats::{Experiment, write_estimate};
 use stickslip_report::{Block, CloudSample, Report, ReportedExperiment, Table, number};
 
 use crate::args::{FilterArgs, MethodName, Program};
-use crate::experiment::{check_occlusion, experiment_name, read_experiment, reference_name};
+use crate::experiment::{
+    check_occlusion, experiment_name, read_experiment, reference_name, scene_beside,
+};
 use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::log_files::LogFiles;
 use crate::origin::origin;
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
@@ -53,14 +56,18 @@ struct Summary<'a> {
 
 /// Runs the command.
 pub fn filter(args: &FilterArgs) -> Result<Verdict> {
+    let scene = match &args.scene {
+        Some(scene) => scene.clone(),
+        None => scene_beside(&args.log)?,
+    };
     let (experiment, verdict) = read_experiment(
-        &args.scene,
+        &scene,
         &args.log,
         &args.topics.topics(Program::command())?,
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
-    check_places(args)?;
+    check_places(args, &scene)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
@@ -85,7 +92,10 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let reported = args
         .report
         .as_deref()
-        .map(|path| report(args, &experiment, &scored, &warnings, sample, path))
+        .map(|path| {
+            let inputs = (args, scene.as_path());
+            report(inputs, &experiment, &scored, &warnings, sample, path)
+        })
         .transpose()?;
     for path in written.into_iter().chain(reported) {
         talk(format_args!("wrote {}", path.display()));
@@ -94,9 +104,10 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
 }
 
 /// Refuses places for results that cannot be written, before the run.
-fn check_places(args: &FilterArgs) -> Result<()> {
-    let inputs = [Some(&args.log), Some(&args.scene), args.truth.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+fn check_places(args: &FilterArgs, scene: &Path) -> Result<()> {
+    let logs = LogFiles::find(&args.log)?.paths;
+    let inputs = logs.iter().chain(&args.truth).map(PathBuf::as_path);
+    let inputs: Vec<&Path> = inputs.chain([scene]).collect();
     if let Some(folder) = &args.out {
         ready_folder(folder)?;
         refuse_inputs(&folder.join(ESTIMATE), &inputs)?;
@@ -137,7 +148,7 @@ fn timed_run(
 
 /// Writes a report about the run.
 fn report(
-    args: &FilterArgs,
+    (args, scene): (&FilterArgs, &Path),
     experiment: &Experiment,
     scored: &ScoredRun,
     warnings: &[String],
@@ -158,7 +169,7 @@ fn report(
         sections: vec![reported.section()],
         origin: origin([
             ("log", args.log.display().to_string()),
-            ("scene", args.scene.display().to_string()),
+            ("scene", scene.display().to_string()),
             ("scored against", reference_name(experiment).to_owned()),
             ("particles", args.shared.particles.to_string()),
             ("seed", args.seed.to_string()),

@@ -20,6 +20,7 @@ mod failure;
 mod files;
 mod filter;
 mod frames;
+mod log_files;
 mod origin;
 mod output;
 mod progress;

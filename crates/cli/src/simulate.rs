@@ -17,9 +17,10 @@ use stickslip_formats::{
 use stickslip_report::Table;
 use stickslip_testbed::true_friction;
 
-use crate::experiment::{log_path, read_facts_file, text_of};
+use crate::experiment::{read_facts_file, text_of};
 use crate::failure::hinted;
 use crate::files::write_out;
+use crate::log_files::log_path;
 use crate::output::{show, talk};
 use crate::simulation_args::SimulateArgs;
 use crate::verdict::Verdict;

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use stickslip::{Log, quantile};
-use stickslip_formats::{Topics, write_log, write_log_mcap};
+use stickslip_formats::{BagOptions, Topics, write_log, write_log_mcap};
 use stickslip_report::{Table, number};
 use stickslip_vision::{
     BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera,
@@ -14,10 +14,11 @@ use stickslip_vision::{
 };
 
 use crate::camera_args::TrackArgs;
-use crate::experiment::{read_log_file, text_of};
+use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::files::{ready_folder, write_out};
 use crate::frames::FrameFolder;
+use crate::log_files::LogFiles;
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
@@ -136,7 +137,7 @@ fn with_sensors(args: &TrackArgs, log: Log) -> Result<(Log, Verdict)> {
     let Some(path) = &args.sensors else {
         return Ok((log, Verdict::Done));
     };
-    let (sensors, verdict) = read_log_file(path, &Topics::default())?;
+    let (sensors, verdict) = LogFiles::find(path)?.read(&BagOptions::default())?;
     let differ = || {
         (0..log.len().max(sensors.len()))
             .find(|row| differs(log.time.get(*row), sensors.time.get(*row)))

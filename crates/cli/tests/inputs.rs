@@ -30,17 +30,47 @@ fn other_kinds_of_recordings_are_named() {
     let bag = write("bag_0.db3", b"SQLite format 3\0 and more");
     assert!(refusal(&case, &bag).contains("ros2 bag convert"));
     let packed = write("bag.mcap.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);
-    assert!(refusal(&case, &packed).contains("zstd -d"));
+    assert!(refusal(&case, &packed).contains("nothing could be read"));
+    let table = write("log.csv.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);
+    assert!(refusal(&case, &table).contains("zstd -d"));
     let misnamed = write("bag.bin", b"\x89MCAP0\r\n");
     assert!(refusal(&case, &misnamed).contains("let its name end in .mcap"));
-    let folder = case.folder.join("bag");
-    fs::create_dir(&folder).unwrap();
-    fs::write(
-        folder.join("metadata.yaml"),
-        "rosbag2_bagfile_information:\n",
-    )
-    .unwrap();
-    assert!(refusal(&case, &folder.display().to_string()).contains("give the .mcap file in it"));
+    let bag = case.folder.join("bag");
+    fs::create_dir(&bag).unwrap();
+    let told = |metadata: &str| {
+        fs::write(bag.join("metadata.yaml"), metadata).unwrap();
+        refusal(&case, &bag.display().to_string())
+    };
+    let of = |storage: &str, files: &str| {
+        format!(
+            "rosbag2_bagfile_information:\n  storage_identifier: {storage}\n  relative_file_paths: {files}\n"
+        )
+    };
+    for (metadata, words) in [
+        (
+            "rosbag2_bagfile_information:\n".to_owned(),
+            "this is no metadata of a bag: ",
+        ),
+        (
+            of("mcap", "[../log.csv]"),
+            "relative_file_paths has `../log.csv`; a bag's files lie in its folder",
+        ),
+        (
+            of("mcap", "[a.mcap, b.mcap]"),
+            "none of the bag's files is there: a.mcap, b.mcap",
+        ),
+        (
+            of("sqlite3", "[a.db3]"),
+            "this is a bag in SQLite (.db3); bags are read as MCAP",
+        ),
+        (
+            of("sqlite3", "[a.db3]"),
+            "bag_mcap, storage_id: mcap, all: true}]` into convert.yaml, then `ros2 bag convert -i",
+        ),
+    ] {
+        let told = told(&metadata);
+        assert!(told.contains(words), "{told}");
+    }
 }
 
 #[test]

@@ -193,7 +193,7 @@ fn bad_arguments_exit_with_2() {
     let (log, scene) = (case.log(), case.scene());
     let bad: [&[&str]; 7] = [
         &[],
-        &["filter", &log],
+        &["filter"],
         &["filter", &log, "--scene", &scene, "--method", "magic"],
         &["filter", &log, "--scene", &scene, "--occlude", "9:3"],
         &["filter", &log, "--scene", &scene, "--particles", "0"],

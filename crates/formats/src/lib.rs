@@ -7,6 +7,7 @@
 //! in the line, the value found, the rule and what to do. Input is never repaired: a file is read
 //! as it stands or refused.
 
+mod bag_metadata;
 mod csv_error;
 mod csv_table;
 mod estimate_columns;
@@ -17,6 +18,7 @@ mod log_columns;
 mod log_csv;
 mod log_mcap;
 mod log_warning;
+mod mounts;
 mod named_columns;
 mod nearest;
 mod number;
@@ -24,6 +26,7 @@ mod scene;
 mod truth_csv;
 mod truth_json;
 
+pub use bag_metadata::{BagMetadata, BagMetadataError, read_bag_metadata};
 pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_columns::{estimate_columns, estimate_of_columns};
 pub use estimate_csv::{read_estimate, write_estimate};
@@ -32,11 +35,12 @@ pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
-    McapError, McapPlace, McapProblem, McapWriteError, Topic, TopicError, TopicMapping, Topics,
-    read_log_mcap, write_log_mcap,
+    BagOptions, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place, Topic,
+    TopicError, TopicMapping, Topics, read_bag, read_log_mcap, write_log_mcap,
 };
 pub use log_warning::LogWarning;
+pub use mounts::Mounts;
 pub use named_columns::{ColumnError, NamedColumns};
-pub use scene::{SceneError, SceneProblem, read_scene};
+pub use scene::{SceneError, SceneProblem, read_mounts, read_scene};
 pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

@@ -37,6 +37,17 @@ pub enum LogWarning {
         /// Largest tilt (rad).
         largest: f64,
     },
+    /// Frames whose pose is not known at some stamps, since other transforms between them are not.
+    Unlinked {
+        /// Display name of the bag.
+        file: String,
+        /// Topic and frames.
+        place: String,
+        /// How many stamps.
+        count: usize,
+        /// Of how many.
+        of: usize,
+    },
     /// A topic whose messages are all at other times than the poses; its cells are empty.
     Elsewhere {
         /// Display name of the file.
@@ -87,6 +98,15 @@ impl fmt::Display for LogWarning {
                 f,
                 "{file}: {topic}: {count} of {of} poses are tilted by more than 5 deg, the most by {:.1} deg; only their turn about z is read. Look whether the z-axis points up from the table",
                 largest.to_degrees()
+            ),
+            Self::Unlinked {
+                file,
+                place,
+                count,
+                of,
+            } => write!(
+                f,
+                "{file}: {place}: at {count} of {of} stamps the transforms between are not known within 0.2 s; these poses are left out. Record all transforms by one clock"
             ),
             Self::Elsewhere {
                 file,

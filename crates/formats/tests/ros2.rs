@@ -13,7 +13,9 @@ use std::process::Command;
 
 use stickslip::Log;
 use stickslip_dynamics::Pose;
-use stickslip_formats::{Topics, read_log, read_log_mcap, write_log_mcap};
+use stickslip_formats::{
+    BagOptions, Mounts, Topics, read_bag, read_bag_metadata, read_log, write_log_mcap,
+};
 
 /// Recorded experiments; the last one has forces, and poses of a real camera.
 const LOGS: [&str; 3] = [
@@ -196,6 +198,42 @@ fn others_read_what_is_written() {
     }
 }
 
+/// The log of a bag's folder, by the names that its metadata has.
+fn read_folder(bag: &Path, options: &BagOptions) -> Log {
+    let metadata = fs::read_to_string(bag.join("metadata.yaml")).unwrap();
+    let metadata = read_bag_metadata(&metadata, "metadata.yaml").unwrap();
+    assert_eq!(metadata.storage_identifier, "mcap");
+    let files = metadata.relative_file_paths.into_iter();
+    let files = files.map(|name| (name.clone(), File::open(bag.join(name)).unwrap()));
+    let (log, warnings) = read_bag(files, options).unwrap();
+    assert_eq!(warnings, []);
+    log
+}
+
+/// Asserts that a bag's log is that of the table, but for a pusher that is missing for a moment, and
+/// is bridged; poses are the same within `tolerance`, angles to a full turn.
+#[track_caller]
+fn assert_same(read: &Log, log: &Log, tolerance: f64) {
+    assert_eq!((read.len(), &read.tactile), (log.len(), &log.tactile));
+    let mut times = read.time.iter().zip(&log.time);
+    assert!(times.all(|(read, log)| (read - log).abs() <= 0.5e-9));
+    let mut objects = read.object.iter().zip(&log.object);
+    assert!(objects.all(|(read, log)| read.is_some() == log.is_some()));
+    for (read, log) in [(&read.object, &log.object), (&read.pusher, &log.pusher)] {
+        for (read, log) in read.iter().zip(log) {
+            let Some(log) = log else { continue };
+            let read = read.unwrap();
+            let turn = (read.theta - log.theta) / TAU;
+            let angle = (turn - turn.round()).abs();
+            let aside = (read.x - log.x).abs() + (read.y - log.y).abs();
+            assert!(
+                aside <= tolerance && angle <= tolerance.max(1e-12),
+                "{read:?} {log:?}"
+            );
+        }
+    }
+}
+
 #[test]
 #[ignore = "needs Python packages; .ci/run installs them and runs this"]
 fn what_others_write_is_read() {
@@ -204,41 +242,52 @@ fn what_others_write_is_read() {
         let bag = folder(&format!("read/{name}")).join("bag");
         peer(&[Path::new("record"), &csv, &bag]);
         let bytes = fs::read(bag.join("bag.mcap")).unwrap();
+        let zstd = [0x28, 0xb5, 0x2f, 0xfd];
         assert!(
-            bytes
-                .windows(4)
-                .any(|window| window == [0x28, 0xb5, 0x2f, 0xfd]),
+            bytes.windows(4).any(|window| window == zstd),
             "not packed with zstd"
         );
-        let (read, warnings) = read_log_mcap(&bytes[..], "bag.mcap", &Topics::default()).unwrap();
-        assert_eq!(warnings, []);
-        assert_eq!(
-            (read.len(), &read.tactile, &read.force),
-            (log.len(), &log.tactile, &log.force)
-        );
-        assert!(
-            read.time
-                .iter()
-                .zip(&log.time)
-                .all(|(read, log)| (read - log).abs() <= 0.5e-9)
-        );
-        assert!(
-            read.object
-                .iter()
-                .zip(&log.object)
-                .all(|(read, log)| read.is_some() == log.is_some())
-        );
-        for (read, log) in [(&read.object, &log.object), (&read.pusher, &log.pusher)] {
-            for (read, log) in read.iter().zip(log) {
-                // a pusher that is missing for a moment is bridged
-                let Some(log) = log else { continue };
-                let read = read.unwrap();
-                let turn = (read.theta - log.theta) / TAU;
-                assert!(
-                    (read.x, read.y) == (log.x, log.y) && (turn - turn.round()).abs() < 1e-12,
-                    "{read:?} {log:?}"
-                );
-            }
-        }
+        let read = read_folder(&bag, &BagOptions::default());
+        assert_eq!(read.force, log.force);
+        assert_same(&read, &log, 0.0);
+    }
+}
+
+#[test]
+#[ignore = "needs Python packages; .ci/run installs them and runs this"]
+fn other_messages_of_others_are_read() {
+    for name in LOGS {
+        let (csv, log) = recorded(name);
+        let bag = folder(&format!("kinds/{name}")).join("bag");
+        peer(&[Path::new("kinds"), &csv, &bag]);
+        assert_same(&read_folder(&bag, &BagOptions::default()), &log, 0.0);
+    }
+}
+
+#[test]
+#[ignore = "needs Python packages; .ci/run installs them and runs this"]
+fn transforms_of_others_are_read_through_camera_and_tags() {
+    let mappings = [
+        "object=/tf:table.tag_7",
+        "object=/tf:table.tag36h11:8",
+        "pusher=/tf:table.flange",
+    ];
+    let tags = [
+        ("tag_7", Pose::new(0.012, -0.004, 1.5)),
+        ("tag36h11:8", Pose::new(-0.02, 0.01, -0.5)),
+    ];
+    let options = BagOptions {
+        topics: Topics::new(mappings.map(|text| text.parse().unwrap())).unwrap(),
+        mounts: Mounts {
+            object: tags.map(|(name, pose)| (name.to_owned(), pose)).into(),
+            ..Mounts::default()
+        },
+        ..BagOptions::default()
+    };
+    for name in LOGS {
+        let (csv, log) = recorded(name);
+        let bag = folder(&format!("frames/{name}")).join("bag");
+        peer(&[Path::new("frames"), &csv, &bag]);
+        assert_same(&read_folder(&bag, &options), &log, 1e-12);
     }
 }

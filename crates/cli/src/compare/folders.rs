@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 
-use crate::experiment::log_path;
 use crate::failure::hinted;
+use crate::log_files::{is_bag, log_path};
 
 /// The experiment folders among `given`: a folder that is none itself stands for those below it, in
 /// the order of their names.
@@ -36,7 +36,7 @@ pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
 
 /// A folder with a log or a scene means to be an experiment, even if the other is missing.
 fn is_experiment(folder: &Path, scene_name: &str) -> bool {
-    log_path(folder).is_file() || folder.join(scene_name).is_file()
+    folder.join(scene_name).is_file() || is_bag(folder) || log_path(folder).is_file()
 }
 
 fn experiments_below(folder: &Path, scene_name: &str) -> Vec<PathBuf> {

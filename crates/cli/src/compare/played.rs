@@ -8,7 +8,8 @@ use stickslip_report::{ReportedExperiment, Section};
 
 use super::Folder;
 use super::results::{Comparison, FolderResult};
-use crate::experiment::{experiment_name, log_path};
+use crate::experiment::experiment_name;
+use crate::log_files::log_path;
 use crate::reported_run::reported_run;
 
 /// All of up to two experiments; of more, the one on which the particle filter fares as on the median

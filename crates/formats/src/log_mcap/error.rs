@@ -103,8 +103,64 @@ pub enum McapProblem {
     WrongType {
         /// The type that is there; empty where none is told.
         found: String,
-        /// The type that is needed.
-        expected: &'static str,
+        /// The types that will do.
+        expected: String,
+    },
+    /// Transforms without saying whose.
+    #[error("it carries transforms between frames. Say which two, as object=/tf:table.tag_7")]
+    FramesNeeded,
+    /// Frames that no transforms join.
+    #[error(
+        "no transforms lead from `{child}` to `{parent}`. Name two frames that are joined; the recording has {}",
+        if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
+    )]
+    NoChain {
+        /// The frame whose poses are wanted.
+        child: String,
+        /// The frame that they are wanted in.
+        parent: String,
+        /// All frames.
+        found: Vec<String>,
+    },
+    /// A frame below two others.
+    #[error(
+        "the frame `{frame}` is below `{}` and `{}`; a frame has one parent. Record one publisher of it",
+        .parents[0], .parents[1]
+    )]
+    TwoParents {
+        /// The frame.
+        frame: String,
+        /// Its parents.
+        parents: [String; 2],
+    },
+    /// A way between frames on which nothing moves.
+    #[error("from {frames}, all transforms are static. Name the frame of a body that was tracked")]
+    NothingMoves {
+        /// The frames.
+        frames: String,
+    },
+    /// A static transform that changes.
+    #[error(
+        "the static transform of `{frame}` is not that of message {first}; it must stay as it is. Publish what moves on /tf"
+    )]
+    StaticMoved {
+        /// The frame.
+        frame: String,
+        /// Number of the message with the other transform.
+        first: usize,
+    },
+    /// A tag of which nobody said where it sits.
+    #[error(
+        "`{frame}` is not among the tags of the {body} in the scene, which has {}. Say there where it sits: [{body}] tags = {{ \"{frame}\" = [x, y, theta] }}",
+        if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
+    )]
+    UnknownTag {
+        /// The frame.
+        frame: String,
+        /// What carries it.
+        body: Topic,
+        /// The tags that the scene has.
+        found: Vec<String>,
     },
     /// A message encoding that is not CDR.
     #[error(

@@ -13,9 +13,13 @@ pub(crate) const SECOND: i64 = 1_000_000_000;
 const PADDING: usize = 8;
 
 /// A ROS 2 message type.
-pub(crate) trait Message: Serialize + DeserializeOwned {
+pub(crate) trait Message: DeserializeOwned {
     /// Name of the type.
     const TYPE: &'static str;
+}
+
+/// One that is written.
+pub(crate) trait WrittenMessage: Message + Serialize {
     /// Its definition with those of the types in it, in `ros2msg`.
     const SCHEMA: &'static str;
 }
@@ -92,11 +96,17 @@ macro_rules! header {
 
 impl Message for Bool {
     const TYPE: &'static str = "std_msgs/msg/Bool";
+}
+
+impl WrittenMessage for Bool {
     const SCHEMA: &'static str = "bool data\n";
 }
 
 impl Message for PoseStamped {
     const TYPE: &'static str = "geometry_msgs/msg/PoseStamped";
+}
+
+impl WrittenMessage for PoseStamped {
     const SCHEMA: &'static str = concat!(
         "std_msgs/Header header\ngeometry_msgs/Pose pose\n",
         header!(),
@@ -111,6 +121,9 @@ impl Message for PoseStamped {
 
 impl Message for WrenchStamped {
     const TYPE: &'static str = "geometry_msgs/msg/WrenchStamped";
+}
+
+impl WrittenMessage for WrenchStamped {
     const SCHEMA: &'static str = concat!(
         "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n",
         header!(),
@@ -136,7 +149,7 @@ impl Time {
 }
 
 /// A message as little-endian CDR, behind the four bytes that say so.
-pub(crate) fn encode<M: Message>(message: &M) -> Vec<u8> {
+pub(crate) fn encode<M: WrittenMessage>(message: &M) -> Vec<u8> {
     let body = cdr_encoding::to_vec::<M, LittleEndian>(message);
     // numbers, flags and strings have one encoding each, and a vector takes any length
     let Ok(body) = body else {

@@ -1,75 +1,130 @@
-//! From a recording to a log: [`read_log_mcap`].
+//! From a bag to a log: [`read_bag`], [`read_log_mcap`].
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
+use std::iter::once;
 
-use stickslip::Log;
+use stickslip::{Log, Tactile};
 use stickslip_dynamics::Pose;
 
+use crate::log_mcap::body::{BodyPoses, TaggedBody, joined};
 use crate::log_mcap::error::{McapError, McapProblem};
 use crate::log_mcap::message::SECOND;
+use crate::log_mcap::place::Place;
+use crate::log_mcap::planar::Tilt;
 use crate::log_mcap::recording::Recording;
 use crate::log_mcap::rows::Rows;
-use crate::log_mcap::series::{CommonFrame, Series, Source, Tilt, Timed, seconds_text};
+use crate::log_mcap::series::{Series, Timed, seconds_text};
+use crate::log_mcap::source::{CommonFrame, Source};
 use crate::log_mcap::topics::{Topic, Topics};
+use crate::log_mcap::transforms::Transforms;
 use crate::log_warning::LogWarning;
+use crate::mounts::Mounts;
 use crate::nearest::nearest;
 
-/// Reads a log from an MCAP recording of ROS 2 messages; `name` is shown in errors and warnings.
+/// How a bag is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BagOptions {
+    /// Which topic is which.
+    pub topics: Topics,
+    /// How tags sit on object and pusher, where these are read from transforms.
+    pub mounts: Mounts,
+    /// Force from which a sensor that gives forces is touched (N).
+    pub touch_force: f64,
+}
+
+impl Default for BagOptions {
+    fn default() -> Self {
+        Self {
+            topics: Topics::default(),
+            mounts: Mounts::default(),
+            touch_force: Tactile::default().touch_force,
+        }
+    }
+}
+
+/// Reads a log from one MCAP recording of ROS 2 messages; `name` is shown in errors and warnings.
+/// No tags, and sensors by the default force: else as [`read_bag`].
 ///
-/// Poses are `geometry_msgs/msg/PoseStamped`, forces `geometry_msgs/msg/WrenchStamped`, tactile
-/// readings `std_msgs/msg/Bool`. Time (s) is `header.stamp`, of tactile readings the log time. A
-/// row stands at every stamp of the object, and at those of the pusher that are more than 1 ms from
-/// one. The pusher is interpolated between poses at most 0.2 s apart. A tactile cell is 1 if any
-/// reading in the interval that ends at its row is true, 0 if there are only false ones, without
-/// any the last one if it is at most 0.5 s old; a force cell is the interval's mean. The first
-/// row's interval is as long as the second's. θ = 2 atan2(q_z, q_w), unwrapped.
+/// # Errors
+/// Those of [`read_bag`].
+pub fn read_log_mcap(
+    file: impl Read,
+    name: &str,
+    topics: &Topics,
+) -> Result<(Log, Vec<LogWarning>), McapError> {
+    let options = BagOptions {
+        topics: topics.clone(),
+        ..BagOptions::default()
+    };
+    read_bag(once((name.to_owned(), file)), &options)
+}
+
+/// Reads a log from the MCAP files of a bag of ROS 2 messages, each with the name to show in errors
+/// and warnings.
 ///
-/// The file is read piece by piece; memory is taken for one chunk of at most 256 MiB, and for the
-/// messages of the needed topics.
+/// Poses are `geometry_msgs/msg/PoseStamped`, `PoseWithCovarianceStamped` (its covariance is not
+/// used), `TransformStamped` or `nav_msgs/msg/Odometry`, or the way between two frames of
+/// `tf2_msgs/msg/TFMessage`; forces are `geometry_msgs/msg/WrenchStamped`, tactile readings
+/// `std_msgs/msg/Bool` or a force that is compared with a threshold. Time (s) is `header.stamp`, of
+/// Bool the log time; messages may come in any order.
 ///
-/// A recording that is cut off or damaged is read up to there, with a warning for which
+/// A row stands at every stamp of the object and, where there is none for longer than the camera's
+/// period, at stamps of the pusher, about one per period or per 0.05 s. The pusher is interpolated between poses at
+/// most 0.2 s apart, and so are transforms on the way between two frames. A tactile cell is 1 if any
+/// reading in the interval that ends at its row is true, 0 if there are only false ones, without any
+/// the last one if it is at most 0.5 s old; a force cell is the interval's mean. The first row's
+/// interval is as long as the second's. θ = 2 atan2(q_z, q_w), unwrapped.
+///
+/// Files are read piece by piece; memory is taken for one chunk of at most 256 MiB, and for the
+/// messages of the needed topics. Files, chunks and messages may be packed with zstd.
+///
+/// A file that is cut off or damaged is read up to there, with a warning for which
 /// [`LogWarning::is_loss`] holds.
 ///
 /// # Errors
 /// The bytes are no MCAP file or cannot be read; the topic of object or pusher, or one that is mapped, is missing;
 /// sensors are not numbered without gaps; a topic has messages of another type or encoding; a
 /// number is not finite, an orientation no rotation; two messages of a topic have one stamp; frames
-/// differ; there is no pose at all.
-pub fn read_log_mcap(
-    file: impl Read,
-    name: &str,
-    topics: &Topics,
+/// differ or are not joined; a tag's place on its body is not told; there is no pose at all.
+pub fn read_bag<R: Read>(
+    files: impl IntoIterator<Item = (String, R)>,
+    options: &BagOptions,
 ) -> Result<(Log, Vec<LogWarning>), McapError> {
-    let whole = |problem| McapError {
-        file: name.to_owned(),
-        place: None,
-        problem: Box::new(problem),
-    };
-
-    // the messages, up to where the recording is damaged, and whether all topics are there
-    let recording = Recording::read(file, topics).map_err(whole)?;
+    // the messages, up to where files are damaged, and whether all topics are there
+    let mut recording = Recording::default();
+    let mut names = Vec::new();
+    for (name, file) in files {
+        names.push(name);
+        let added = recording.add(file, &options.topics);
+        added.map_err(|problem| whole(&names, problem))?;
+    }
     let reader = Reader {
-        file: name,
-        topics,
+        files: &names,
+        options,
         recording: &recording,
     };
     let mut warnings = reader.damage();
-    let sensors = reader.check_topics().map_err(whole)?;
+    let sensors = reader
+        .check_topics()
+        .map_err(|problem| reader.whole(problem))?;
 
     // poses make the rows
     let mut frame = CommonFrame::default();
-    let mut poses = |topic| reader.poses(topic, &mut frame, &mut warnings);
+    let mut transforms = BTreeMap::new();
+    let mut poses = |topic| reader.poses(topic, (&mut frame, &mut transforms), &mut warnings);
     let (object, pusher) = (poses(Topic::Object)?, poses(Topic::Pusher)?);
     let rows = Rows::new(&object, &pusher);
-    let time = reader.times(&rows).map_err(whole)?;
+    let time = reader
+        .times(&rows)
+        .map_err(|problem| reader.whole(problem))?;
 
     // sensors fill cells in them
     let mut tactile = Vec::new();
     for topic in (1..=sensors).map(Topic::Fixel) {
         let touches = reader
             .source(topic)
-            .map_or(Ok(Vec::new()), |source| source.touches())?;
+            .map_or(Ok(Vec::new()), |source| source.touches(options.touch_force))?;
         tactile.push(rows.touches(&touches));
         warnings.extend(reader.elsewhere(topic, &touches, &rows));
     }
@@ -81,32 +136,47 @@ pub fn read_log_mcap(
         }
         None => Vec::new(),
     };
-    Ok((
-        Log {
-            time,
-            object: rows.object,
-            pusher: rows.pusher,
-            tactile,
-            force,
-        },
-        warnings,
-    ))
+    let log = Log {
+        time,
+        object: rows.object,
+        pusher: rows.pusher,
+        tactile,
+        force,
+    };
+    Ok((log, warnings))
 }
 
-/// A recording with its name and those of its topics.
+/// An error of the whole bag, told of its latest file.
+fn whole(files: &[String], problem: McapProblem) -> McapError {
+    McapError {
+        file: files.last().cloned().unwrap_or_default(),
+        place: None,
+        problem: Box::new(problem),
+    }
+}
+
+/// A bag with the names of its files and how it is read.
 struct Reader<'a> {
-    file: &'a str,
-    topics: &'a Topics,
+    files: &'a [String],
+    options: &'a BagOptions,
     recording: &'a Recording,
 }
 
+/// Transforms by the topic that they are on.
+type ByTopic<'a> = BTreeMap<String, Transforms<'a>>;
+
 impl<'a> Reader<'a> {
-    /// The warning about where the recording ends too early.
+    /// An error of the whole bag.
+    fn whole(&self, problem: McapProblem) -> McapError {
+        whole(&self.files[..self.files.len().min(1)], problem)
+    }
+
+    /// The warnings about where files end too early.
     fn damage(&self) -> Vec<LogWarning> {
         let damage = self.recording.damage.iter();
         damage
             .map(|damage| LogWarning::CutOff {
-                file: self.file.to_owned(),
+                file: self.files[damage.file].clone(),
                 at: damage.at,
                 size: damage.size,
                 why: damage.why.clone(),
@@ -116,21 +186,22 @@ impl<'a> Reader<'a> {
 
     /// All needed topics are there; the number of sensors.
     fn check_topics(&self) -> Result<usize, McapProblem> {
-        let fixels: BTreeSet<usize> = self
-            .recording
-            .topics
-            .keys()
-            .filter_map(fixel)
-            .chain(self.topics.mapped_fixels())
+        let topics = &self.options.topics;
+        let recorded = self.recording.topics.keys();
+        let fixels: BTreeSet<usize> = recorded
+            .filter_map(|name| fixel(topics.carries(name)?))
+            .chain(topics.mapped_fixels())
             .collect();
         let mapped = fixels
             .iter()
             .map(|k| Topic::Fixel(*k))
             .chain([Topic::Wrench])
-            .filter(|topic| self.topics.is_mapped(*topic));
+            .filter(|topic| topics.is_mapped(*topic));
         for topic in [Topic::Object, Topic::Pusher].into_iter().chain(mapped) {
-            if !self.recording.topics.contains_key(&topic) {
-                return Err(self.missing(topic));
+            for place in topics.places(topic) {
+                if !self.recording.topics.contains_key(&place.topic) {
+                    return Err(self.missing(topic, place.topic));
+                }
             }
         }
         match (1..).zip(&fixels).find(|(expected, k)| expected != *k) {
@@ -139,9 +210,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn missing(&self, topic: Topic) -> McapProblem {
-        let (name, found) = (self.name(topic), &self.recording.names);
-        if let Some(damage) = self.recording.damage.as_ref().filter(|_| found.is_empty()) {
+    fn missing(&self, topic: Topic, name: String) -> McapProblem {
+        let found = &self.recording.names;
+        let damage = self.recording.damage.first();
+        if let Some(damage) = damage.filter(|_| found.is_empty()) {
             return McapProblem::Unreadable {
                 why: damage.why.clone(),
             };
@@ -149,15 +221,12 @@ impl<'a> Reader<'a> {
         let free = found
             .iter()
             .map(String::as_str)
-            .filter(|name| self.topics.carries(name).is_none());
+            .filter(|name| self.options.topics.carries(name).is_none());
         let hint = nearest(&name, free).filter(|(_, distance)| *distance <= name.len() / 2);
         let hint = hint.map_or(String::new(), |(nearest, _)| {
             format!(", the nearest is `{nearest}`")
         });
-        let damage = self
-            .recording
-            .damage
-            .as_ref()
+        let damage = damage
             .map(|damage| format!(", and the recording is cut off after {} bytes", damage.at));
         let hint = hint + &damage.unwrap_or_default();
         McapProblem::MissingTopic {
@@ -169,39 +238,94 @@ impl<'a> Reader<'a> {
     }
 
     fn name(&self, topic: Topic) -> String {
-        self.topics.name(topic).unwrap_or_default()
+        self.options.topics.name(topic).unwrap_or_default()
     }
 
+    /// A topic that is read as a whole, if it is there.
     fn source(&self, topic: Topic) -> Option<Source<'a>> {
-        let content = self.recording.topics.get(&topic)?;
+        let place = self.options.topics.places(topic).into_iter().next()?;
+        self.source_of(&place.topic)
+    }
+
+    fn source_of(&self, name: &str) -> Option<Source<'a>> {
+        let (name, content) = self.recording.topics.get_key_value(name)?;
         Some(Source {
-            file: self.file,
-            name: self.name(topic),
+            files: self.files,
+            name,
             content,
         })
     }
 
+    /// The poses of a body, from all of its places.
     fn poses(
         &self,
         topic: Topic,
-        frame: &mut CommonFrame,
+        (frame, transforms): (&mut CommonFrame, &mut ByTopic<'a>),
         warnings: &mut Vec<LogWarning>,
     ) -> Result<Series<Pose>, McapError> {
-        let Some(source) = self.source(topic) else {
-            return Ok(Vec::new());
+        let places = self.options.topics.places(topic);
+        let mounts = &self.options.mounts;
+        let body = TaggedBody {
+            body: topic,
+            mounts: if topic == Topic::Object {
+                &mounts.object
+            } else {
+                &mounts.pusher
+            },
+            frames: places.len(),
         };
-        let (poses, Tilt { count, largest }) = source.poses(frame)?;
-        if count > 0 {
-            let (file, topic) = (self.file.to_owned(), source.name);
-            warnings.push(LogWarning::Tilted {
-                file,
-                topic,
-                count,
-                of: poses.len(),
-                largest,
-            });
+        let mut all = Vec::new();
+        for place in &places {
+            let Some(source) = self.source_of(&place.topic) else {
+                continue;
+            };
+            let read = match &place.frames {
+                None => BodyPoses::of_topic(&source, frame)?,
+                Some(frames) => {
+                    let checked = frame.check(&frames.parent, &place.topic, false);
+                    checked.map_err(|problem| source.error(None, problem))?;
+                    let known = self.transforms(transforms, place, source)?;
+                    BodyPoses::of_frames(&source, known, frames, &body)?
+                }
+            };
+            warnings.extend(self.pose_warnings(place, &read));
+            all.push(read.poses);
         }
-        Ok(poses)
+        Ok(joined(all))
+    }
+
+    /// The transforms of a topic, read once.
+    fn transforms<'t>(
+        &self,
+        known: &'t mut ByTopic<'a>,
+        place: &Place,
+        source: Source<'a>,
+    ) -> Result<&'t Transforms<'a>, McapError> {
+        if !known.contains_key(&place.topic) {
+            let fixed = place.static_topic().and_then(|name| self.source_of(&name));
+            known.insert(place.topic.clone(), Transforms::read(source, fixed)?);
+        }
+        Ok(&known[&place.topic])
+    }
+
+    /// The warnings about the poses at a place.
+    fn pose_warnings(&self, place: &Place, read: &BodyPoses) -> Vec<LogWarning> {
+        let file = || self.files.first().cloned().unwrap_or_default();
+        let Tilt { count, largest } = read.tilt;
+        let tilted = (count > 0).then(|| LogWarning::Tilted {
+            file: file(),
+            topic: place.to_string(),
+            count,
+            of: read.poses.len(),
+            largest,
+        });
+        let unlinked = (read.unlinked > 0).then(|| LogWarning::Unlinked {
+            file: file(),
+            place: place.to_string(),
+            count: read.unlinked,
+            of: read.poses.len() + read.unlinked,
+        });
+        tilted.into_iter().chain(unlinked).collect()
     }
 
     /// Times of the rows (s).
@@ -234,7 +358,10 @@ impl<'a> Reader<'a> {
         );
         let apart = last < begin.saturating_sub(SECOND) || first > end;
         let text = |from, to| format!("{} to {} s", seconds_text(from), seconds_text(to));
-        let (file, topic) = (self.file.to_owned(), self.name(topic));
+        let (file, topic) = (
+            self.files.first().cloned().unwrap_or_default(),
+            self.name(topic),
+        );
         apart.then(|| LogWarning::Elsewhere {
             file,
             topic,
@@ -244,9 +371,9 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn fixel(topic: &Topic) -> Option<usize> {
+fn fixel(topic: Topic) -> Option<usize> {
     if let Topic::Fixel(k) = topic {
-        Some(*k)
+        Some(k)
     } else {
         None
     }

@@ -1,18 +1,18 @@
-//! An MCAP file as messages by topic, as far as it can be read: [`Recording`].
+//! MCAP files as messages by topic, as far as they can be read: [`Recording`].
 //!
 //! A file is read record by record, and only messages of the needed topics are kept. Whole chunks are
 //! unpacked here and not by the library's reader: that one trusts the lengths in them. An attachment is
 //! never looked at.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{self, Read, copy, sink};
+use std::io::{self, ErrorKind, Read, copy, sink};
 
 use mcap::read::{ChannelAccumulator, parse_record};
 use mcap::records::{ChunkHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::log_mcap::error::McapProblem;
-use crate::log_mcap::topics::{Topic, Topics};
+use crate::log_mcap::topics::Topics;
 
 /// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large image
 /// takes 50. No more than this of a file is in memory at a time.
@@ -21,21 +21,30 @@ const CHUNK_LIMIT: u64 = 1 << 28;
 /// Largest size of a message of a needed topic (bytes); poses, forces and touches take 200.
 const MESSAGE_LIMIT: usize = 1 << 16;
 
+/// How what zstd packed begins; plain CDR and MCAP begin otherwise.
+const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+
 /// Most bytes that are taken from a file at once: a record may claim more than there is.
 const LARGEST_READ: usize = 1 << 20;
 
 /// A message as it is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RawMessage {
+    /// Which file it is in, from 0.
+    pub file: usize,
+    /// Number among those of its topic in the file, from 1.
+    pub number: usize,
     /// Log time (ns).
     pub log_time: u64,
     /// What it says.
     pub data: Vec<u8>,
 }
 
-/// Where a recording ends before its end.
+/// Where a file ends before its end.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Damage {
+    /// Which file, from 0.
+    pub file: usize,
     /// Bytes that were read.
     pub at: u64,
     /// Bytes of the file.
@@ -67,10 +76,12 @@ pub(crate) struct Content {
 pub(crate) struct Recording {
     /// Names of all topics.
     pub names: BTreeSet<String>,
-    /// The needed ones.
-    pub topics: BTreeMap<Topic, Content>,
-    /// Where it was cut off.
-    pub damage: Option<Damage>,
+    /// The needed ones by name.
+    pub topics: BTreeMap<String, Content>,
+    /// Where its files were cut off.
+    pub damage: Vec<Damage>,
+    /// How many files were read.
+    files: usize,
 }
 
 /// Why reading stopped.
@@ -85,31 +96,72 @@ impl From<mcap::McapError> for Stop {
     }
 }
 
-/// A recording while it is read.
+/// A file while it is read.
 struct Progress<'t> {
     wanted: &'t Topics,
     links: ChannelAccumulator<'static>,
-    recording: Recording,
+    recording: &'t mut Recording,
+    /// Messages so far by topic.
+    numbers: BTreeMap<String, usize>,
 }
 
 impl Recording {
-    /// Reads the topics that `wanted` names, up to the first damage.
-    pub(crate) fn read(file: impl Read, wanted: &Topics) -> Result<Self, McapProblem> {
+    /// Adds what a file holds of the topics that `wanted` names, up to the first damage. The whole
+    /// file may be packed with zstd.
+    pub(crate) fn add(&mut self, file: impl Read, wanted: &Topics) -> Result<(), McapProblem> {
+        let mut start = Vec::new();
+        let mut file = file;
+        let read = (&mut file)
+            .take(mcap::MAGIC.len() as u64)
+            .read_to_end(&mut start);
+        read.map_err(|error| unreadable(&error))?;
+        let packed = start.starts_with(&ZSTD);
+        let whole = start.as_slice().chain(file);
+        if !packed {
+            return self.add_unpacked(whole, wanted);
+        }
+        let unpacked = zstd::stream::read::Decoder::new(whole);
+        self.add_unpacked(unpacked.map_err(|error| unreadable(&error))?, wanted)
+    }
+
+    fn add_unpacked(&mut self, file: impl Read, wanted: &Topics) -> Result<(), McapProblem> {
         let mut file = Counted { file, bytes: 0 };
+        let number = self.files;
+        self.files += 1;
         let mut magic = Vec::new();
         let start = (&mut file)
             .take(mcap::MAGIC.len() as u64)
             .read_to_end(&mut magic);
-        start.map_err(|error| unreadable(&error))?;
-        if magic != mcap::MAGIC {
-            let hex = magic.iter().map(|byte| format!("{byte:02X}"));
-            let found = hex.collect::<Vec<_>>().join(" ");
-            return Err(McapProblem::NotMcap { found });
+        let why = match start {
+            Ok(_) if magic == mcap::MAGIC => None,
+            // what a killed recorder began, behind files that are whole
+            Ok(_) if number > 0 && mcap::MAGIC.starts_with(&magic) => {
+                Some("it ends at once".to_owned())
+            }
+            Ok(_) => {
+                let hex = magic.iter().map(|byte| format!("{byte:02X}"));
+                let found = hex.collect::<Vec<_>>().join(" ");
+                return Err(McapProblem::NotMcap { found });
+            }
+            Err(error) => match damaged(&error) {
+                Stop::Damage(why) => Some(why),
+                Stop::Refused(problem) => return Err(problem),
+            },
+        };
+        if let Some(why) = why {
+            self.damage.push(Damage {
+                file: number,
+                at: 0,
+                size: file.bytes,
+                why,
+            });
+            return Ok(());
         }
         let mut progress = Progress {
             wanted,
             links: ChannelAccumulator::default(),
-            recording: Self::default(),
+            recording: self,
+            numbers: BTreeMap::new(),
         };
         let mut at = mcap::MAGIC.len() as u64;
         let mut in_summary = false;
@@ -124,17 +176,22 @@ impl Recording {
             at += 9 + body.len() as u64;
             Ok(())
         });
-        let mut recording = progress.recording;
         match read {
-            Ok(()) => {}
+            Ok(()) => Ok(()),
             Err(Stop::Damage(why)) => {
-                copy(&mut file, &mut sink()).map_err(|error| unreadable(&error))?;
+                // how much is lost; what cannot be read any more is not counted
+                let _ = copy(&mut file, &mut sink());
                 let size = file.bytes;
-                recording.damage = Some(Damage { at, size, why });
+                self.damage.push(Damage {
+                    file: number,
+                    at,
+                    size,
+                    why,
+                });
+                Ok(())
             }
-            Err(Stop::Refused(problem)) => return Err(problem),
+            Err(Stop::Refused(problem)) => Err(problem),
         }
-        Ok(recording)
     }
 }
 
@@ -155,6 +212,14 @@ impl<R: Read> Read for Counted<R> {
 fn unreadable(error: &io::Error) -> McapProblem {
     McapProblem::Unreadable {
         why: error.to_string(),
+    }
+}
+
+/// Why a file cannot be read on: what unpacks it says so by these two kinds.
+fn damaged(error: &io::Error) -> Stop {
+    match error.kind() {
+        ErrorKind::UnexpectedEof | ErrorKind::Other => Stop::Damage(error.to_string()),
+        _ => Stop::Refused(unreadable(error)),
     }
 }
 
@@ -191,23 +256,18 @@ impl Progress<'_> {
                     .links
                     .get(header.channel_id)
                     .ok_or_else(|| damage("a message is of no channel"))?;
-                if let Some(content) = self
-                    .wanted
-                    .carries(&channel.topic)
-                    .and_then(|topic| self.recording.topics.get_mut(&topic))
-                {
-                    if data.len() > MESSAGE_LIMIT {
-                        return Err(Stop::Refused(McapProblem::LargeMessage {
-                            topic: channel.topic.clone(),
-                            size: data.len(),
-                            limit: MESSAGE_LIMIT,
-                        }));
-                    }
-                    content.messages.push(RawMessage {
-                        log_time: header.log_time,
-                        data: data.into_owned(),
-                    });
-                }
+                let Some(content) = self.recording.topics.get_mut(&channel.topic) else {
+                    return Ok(());
+                };
+                let data = message_data(&channel.topic, &data)?;
+                let number = self.numbers.entry(channel.topic.clone()).or_default();
+                *number += 1;
+                content.messages.push(RawMessage {
+                    file: self.recording.files - 1,
+                    number: *number,
+                    log_time: header.log_time,
+                    data,
+                });
             }
             _ => {}
         }
@@ -220,7 +280,7 @@ impl Progress<'_> {
             .get(id)
             .ok_or_else(|| damage("a channel is lost"))?;
         self.recording.names.insert(channel.topic.clone());
-        if let Some(topic) = self.wanted.carries(&channel.topic) {
+        if self.wanted.wants(&channel.topic) {
             let schema = channel
                 .schema
                 .as_ref()
@@ -229,14 +289,40 @@ impl Progress<'_> {
                 schema,
                 encoding: channel.message_encoding.clone(),
             };
-            self.recording
-                .topics
-                .entry(topic)
-                .or_default()
-                .kinds
-                .insert(kind);
+            let content = self.recording.topics.entry(channel.topic.clone());
+            content.or_default().kinds.insert(kind);
         }
         Ok(())
+    }
+}
+
+/// What a message of a needed topic says; it may be packed with zstd by itself.
+fn message_data(topic: &str, data: &[u8]) -> Result<Vec<u8>, Stop> {
+    let too_large = |size| {
+        Stop::Refused(McapProblem::LargeMessage {
+            topic: topic.to_owned(),
+            size,
+            limit: MESSAGE_LIMIT,
+        })
+    };
+    if data.len() > MESSAGE_LIMIT {
+        return Err(too_large(data.len()));
+    }
+    if !data.starts_with(&ZSTD) {
+        return Ok(data.to_vec());
+    }
+    let mut unpacked = Vec::new();
+    let read = zstd::stream::read::Decoder::new(data).and_then(|packed| {
+        packed
+            .take(MESSAGE_LIMIT as u64 + 1)
+            .read_to_end(&mut unpacked)
+    });
+    match read {
+        Ok(size) if size > MESSAGE_LIMIT => Err(too_large(size)),
+        Ok(_) => Ok(unpacked),
+        Err(error) => Err(Stop::Damage(format!(
+            "a message cannot be unpacked: {error}"
+        ))),
     }
 }
 
@@ -258,7 +344,7 @@ fn records(file: &mut dyn Read, take: &mut Take<'_>) -> Result<(), Stop> {
         match event? {
             LinearReadEvent::ReadRequest(need) => {
                 let read = file.read(reader.insert(need.min(LARGEST_READ)));
-                let read = read.map_err(|error| Stop::Refused(unreadable(&error)))?;
+                let read = read.map_err(|error| damaged(&error))?;
                 reader.notify_read(read);
             }
             LinearReadEvent::Record { opcode, data } => take(opcode, data)?,

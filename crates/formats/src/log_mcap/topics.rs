@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
 
+use crate::log_mcap::place::Place;
 use crate::nearest::nearest;
 
 /// What a topic carries.
@@ -19,19 +20,20 @@ pub enum Topic {
     Fixel(usize),
 }
 
-/// A topic under another name than its own; as text `object=/vicon/box/pose`.
+/// A topic under another name than its own; as text `object=/vicon/box/pose`, or
+/// `object=/tf:table.tag_7` for a frame among transforms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TopicMapping {
     /// What it carries.
     pub topic: Topic,
-    /// Its name in the recording; empty for a wrench that is not to be read or written.
-    pub name: String,
+    /// Where that is in the recording; `None` for a wrench that is not to be read or written.
+    pub place: Option<Place>,
 }
 
-/// The names of all topics: `/object/pose`, `/pusher/pose`, `/pusher/wrench`, `/fixel_<k>/contact`,
-/// or what they are mapped to.
+/// Where all topics are: at `/object/pose`, `/pusher/pose`, `/pusher/wrench`,
+/// `/fixel_<k>/contact`, or where they are mapped to. A body may have several frames.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Topics(BTreeMap<Topic, String>);
+pub struct Topics(BTreeMap<Topic, Vec<Place>>);
 
 /// Why a mapping was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -50,11 +52,21 @@ pub enum TopicError {
         /// A key that is one.
         nearest: String,
     },
+    /// What follows a colon is not two frames.
+    #[error("`{0}` does not name two frames; write TOPIC:PARENT.CHILD, as /tf:table.tag_7")]
+    NoFrames(String),
+    /// Frames where none can be.
+    #[error(
+        "{0} has no frames; only object and pusher are read from transforms. Give a topic without `:`"
+    )]
+    Frameless(Topic),
     /// No name for a topic that must be there.
     #[error("{0} has no name; only the wrench can be left out. Write the topic after the `=`")]
     Nameless(Topic),
     /// One key, two names.
-    #[error("{topic} is mapped to `{first}` and to `{second}`; map it once")]
+    #[error(
+        "{topic} is mapped to `{first}` and to `{second}`; map it once, or to different frames of transforms"
+    )]
     Twice {
         /// The key.
         topic: Topic,
@@ -140,12 +152,19 @@ impl FromStr for TopicMapping {
             .split_once('=')
             .ok_or_else(|| TopicError::NoTopic(text.to_owned()))?;
         let topic: Topic = key.parse()?;
-        if name.is_empty() && topic != Topic::Wrench {
-            return Err(TopicError::Nameless(topic));
+        if name.is_empty() {
+            return match topic {
+                Topic::Wrench => Ok(Self { topic, place: None }),
+                _ => Err(TopicError::Nameless(topic)),
+            };
+        }
+        let place: Place = name.parse()?;
+        if place.frames.is_some() && !matches!(topic, Topic::Object | Topic::Pusher) {
+            return Err(TopicError::Frameless(topic));
         }
         Ok(Self {
             topic,
-            name: name.to_owned(),
+            place: Some(place),
         })
     }
 }
@@ -154,7 +173,7 @@ impl Topics {
     /// All topics under their own names but for those that are mapped.
     ///
     /// # Errors
-    /// A topic is mapped twice, or two to one name.
+    /// A topic is mapped twice, but for several frames of one body, or two to one place.
     ///
     /// ```
     /// use stickslip_formats::{Topic, Topics};
@@ -164,36 +183,42 @@ impl Topics {
     /// # Ok::<(), stickslip_formats::TopicError>(())
     /// ```
     pub fn new(mappings: impl IntoIterator<Item = TopicMapping>) -> Result<Self, TopicError> {
-        let mut names = BTreeMap::new();
-        for TopicMapping { topic, name } in mappings {
-            if let Some((first, _)) = names
-                .iter()
-                .find(|(other, taken)| **other != topic && **taken == name)
-            {
-                return Err(TopicError::Shared {
-                    first: *first,
-                    second: topic,
-                    name,
-                });
+        let mut places: BTreeMap<Topic, Vec<Place>> = BTreeMap::new();
+        for TopicMapping { topic, place } in mappings {
+            if let Some(place) = &place {
+                refuse_shared(&places, topic, place)?;
             }
-            if let Some(first) = names.insert(topic, name.clone()) {
+            let (mapped, own) = (
+                places.contains_key(&topic),
+                places.entry(topic).or_default(),
+            );
+            let is_frame = |place: &Place| place.frames.is_some();
+            let joins = place.as_ref().is_some_and(|place| {
+                own.iter().chain([place]).all(is_frame) && !own.contains(place)
+            });
+            if mapped && !joins {
+                let shown = |place: Option<&Place>| place.map_or(String::new(), Place::to_string);
                 return Err(TopicError::Twice {
                     topic,
-                    first,
-                    second: name,
+                    first: shown(own.first()),
+                    second: shown(place.as_ref()),
                 });
             }
+            own.extend(place);
         }
-        Ok(Self(names))
+        Ok(Self(places))
     }
 
-    /// Name of a topic; `None` for a wrench that is left out.
+    /// Name of a topic, with its first frames where it has some; `None` for a wrench that is left out.
     #[must_use]
     pub fn name(&self, topic: Topic) -> Option<String> {
-        self.0.get(&topic).cloned().map_or_else(
-            || Some(topic.default_name()),
-            |name| Some(name).filter(|name| !name.is_empty()),
-        )
+        self.places(topic).first().map(Place::to_string)
+    }
+
+    /// Where a topic is; nowhere if it is left out.
+    pub(crate) fn places(&self, topic: Topic) -> Vec<Place> {
+        let own = || vec![Place::topic(topic.default_name())];
+        self.0.get(&topic).cloned().unwrap_or_else(own)
     }
 
     /// Whether nothing is mapped.
@@ -204,14 +229,29 @@ impl Topics {
 
     /// Whether the topic is mapped to a name, and so must be there.
     pub(crate) fn is_mapped(&self, topic: Topic) -> bool {
-        self.0.get(&topic).is_some_and(|name| !name.is_empty())
+        self.0.get(&topic).is_some_and(|places| !places.is_empty())
+    }
+
+    /// Whether a topic of a recording is needed.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        let mut mapped = self.0.values().flatten();
+        let is_here =
+            |place: &Place| place.topic == name || place.static_topic().as_deref() == Some(name);
+        mapped.any(is_here) || self.carries(name).is_some()
     }
 
     /// What a topic of a recording carries, if anything. A name that something is mapped to carries
-    /// that and no other.
+    /// that and no other; one with frames carries nothing by itself.
     pub(crate) fn carries(&self, name: &str) -> Option<Topic> {
-        if let Some((topic, _)) = self.0.iter().find(|(_, mapped)| *mapped == name) {
-            return Some(*topic);
+        let at = |(topic, place): (&Topic, &Place)| {
+            (place.topic == name).then_some(Some(*topic).filter(|_| place.frames.is_none()))
+        };
+        let mapped = self
+            .0
+            .iter()
+            .flat_map(|(topic, places)| places.iter().map(move |place| (topic, place)));
+        if let Some(topic) = mapped.filter_map(at).next() {
+            return topic;
         }
         let fixel = fixel_number(name, "/fixel_", "/contact").map(Topic::Fixel);
         let known = [Topic::Object, Topic::Pusher, Topic::Wrench]
@@ -231,6 +271,27 @@ impl Topics {
                 None
             }
         })
+    }
+}
+
+/// Refuses a place that another key has, and a topic read as a whole and by frames.
+fn refuse_shared(
+    places: &BTreeMap<Topic, Vec<Place>>,
+    topic: Topic,
+    place: &Place,
+) -> Result<(), TopicError> {
+    let clashes = |other: &Place| {
+        let either_whole = other.frames.is_none() || place.frames.is_none();
+        other.topic == place.topic && (either_whole || other.frames == place.frames)
+    };
+    let mut others = places.iter().filter(|(other, _)| **other != topic);
+    match others.find(|(_, taken)| taken.iter().any(clashes)) {
+        Some((first, _)) => Err(TopicError::Shared {
+            first: *first,
+            second: topic,
+            name: place.to_string(),
+        }),
+        None => Ok(()),
     }
 }
 
@@ -273,6 +334,20 @@ mod tests {
     }
 
     #[test]
+    fn a_body_may_have_several_frames() {
+        let topics = topics(&["object=/tf:table.tag_7", "object=/tf:table.tag36h11:8"]).unwrap();
+        let places = topics.places(Topic::Object);
+        assert_eq!(
+            places.iter().map(Place::to_string).collect::<Vec<_>>(),
+            ["/tf:table.tag_7", "/tf:table.tag36h11:8"]
+        );
+        assert_eq!(topics.carries("/tf"), None);
+        for (name, wanted) in [("/tf", true), ("/tf_static", true), ("/object/pose", false)] {
+            assert_eq!(topics.wants(name), wanted, "{name}");
+        }
+    }
+
+    #[test]
     fn mappings_are_refused_with_words() {
         for (mappings, words) in [
             (&["object"][..], "`object` has no `=`; write KEY=TOPIC"),
@@ -292,6 +367,27 @@ mod tests {
             (
                 &["object=/a", "pusher=/a"],
                 "object and pusher are both mapped to `/a`",
+            ),
+            (
+                &["object=/tf:table"],
+                "`/tf:table` does not name two frames",
+            ),
+            (&["fixel_1=/tf:table.tip"], "fixel_1 has no frames"),
+            (
+                &["object=/tf:table.a", "pusher=/tf:table.a"],
+                "object and pusher are both mapped to `/tf:table.a`",
+            ),
+            (
+                &["object=/tf:table.a", "pusher=/tf"],
+                "object and pusher are both mapped to `/tf`",
+            ),
+            (
+                &["object=/tf:table.a", "object=/tf:table.a"],
+                "object is mapped to `/tf:table.a` and to `/tf:table.a`",
+            ),
+            (
+                &["wrench=", "wrench=/ft"],
+                "wrench is mapped to `` and to `/ft`",
             ),
         ] {
             let message = topics(mappings).unwrap_err().to_string();

@@ -10,9 +10,10 @@ use stickslip_dynamics::Pose;
 
 use crate::log_csv::assert_equal_columns;
 use crate::log_mcap::message::{
-    Bool, Header, Message, PoseStamped, Quaternion, SECOND, Time, Vector3, WrenchStamped, encode,
+    Bool, Header, PoseStamped, Quaternion, SECOND, Time, Vector3, WrenchStamped, WrittenMessage,
+    encode,
 };
-use crate::log_mcap::series::ENCODING;
+use crate::log_mcap::source::ENCODING;
 use crate::log_mcap::topics::{Topic, Topics};
 
 /// Frame of all poses and forces.
@@ -42,6 +43,11 @@ pub enum McapWriteError {
         /// Its time (s).
         time: f64,
     },
+    /// A topic with frames.
+    #[error(
+        "{0} is mapped to frames of transforms, and poses are written as PoseStamped. Map it to a topic"
+    )]
+    Frames(Topic),
     /// The writer failed.
     #[error("the recording cannot be written: {0}")]
     Output(#[source] Box<dyn std::error::Error + Send + Sync>),
@@ -157,13 +163,15 @@ impl<W: Write + Seek> Recorder<W> {
     }
 
     /// A topic of the recording; `None` for one that is left out.
-    fn channel<M: Message>(
+    fn channel<M: WrittenMessage>(
         &mut self,
         topics: &Topics,
         topic: Topic,
     ) -> Result<Option<u16>, McapWriteError> {
-        let Some(name) = topics.name(topic) else {
-            return Ok(None);
+        let name = match topics.places(topic).first() {
+            None => return Ok(None),
+            Some(place) if place.frames.is_some() => return Err(McapWriteError::Frames(topic)),
+            Some(place) => place.topic.clone(),
         };
         let schema = self
             .0
@@ -174,7 +182,7 @@ impl<W: Write + Seek> Recorder<W> {
         ))
     }
 
-    fn write<M: Message>(
+    fn write<M: WrittenMessage>(
         &mut self,
         channel: Option<u16>,
         stamp: i64,

@@ -196,6 +196,23 @@ impl<'a> Node<'a> {
         Ok(table)
     }
 
+    /// The entries of a table whose keys are free; `what` completes "Give ...".
+    pub(super) fn entries(&self, what: &str) -> Result<Vec<(String, Node<'a>)>> {
+        let DeValue::Table(entries) = self.value.get_ref() else {
+            return Err(self.wrong_type("a table", what));
+        };
+        let node =
+            |key: &Spanned<std::borrow::Cow<'a, str>>, value: &'a Spanned<DeValue<'a>>| Node {
+                source: self.source,
+                path: format!("{}.{}", self.path, key.get_ref()),
+                value,
+            };
+        let named = entries
+            .iter()
+            .map(|(key, value)| (key.get_ref().to_string(), node(key, value)));
+        Ok(named.collect())
+    }
+
     /// Whether it is a list.
     pub(super) fn is_list(&self) -> bool {
         matches!(self.value.get_ref(), DeValue::Array(_))

@@ -20,12 +20,12 @@ const TABLES: [(&str, &[&str]); 11] = [
             "start",
         ],
     ),
-    ("object", &["mass", "inertia", "shape"]),
+    ("object", &["mass", "inertia", "shape", "tags"]),
     (
         "support",
         &["friction", "tripod_radius", "tripod_angle", "feet"],
     ),
-    ("pusher", &["shape", "friction", "stall_force"]),
+    ("pusher", &["shape", "friction", "stall_force", "tags"]),
     ("fixels", &["friction"]),
     ("fixel", &["position", "angle", "shape"]),
     (

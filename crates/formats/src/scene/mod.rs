@@ -10,6 +10,7 @@ mod quantity;
 mod sensing;
 mod shapes;
 mod start;
+mod tags;
 mod uncertainty;
 
 use std::f64::consts::FRAC_PI_2;
@@ -17,6 +18,8 @@ use std::f64::consts::FRAC_PI_2;
 use stickslip::{ASSUMED_STALL, Rule, Setup, Unit};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
+
+use crate::mounts::Mounts;
 
 use document::{Node, Source, Table};
 pub use error::{SceneError, SceneProblem};
@@ -103,9 +106,33 @@ const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", Unit::Radian
 /// );
 /// ```
 pub fn read_scene(text: &str, name: &str) -> Result<Setup> {
+    parsed(text, name, |root| {
+        let setup = setup(root)?;
+        tags::mounts(root)?;
+        Ok(setup)
+    })
+}
+
+/// Reads from a scene file how tags sit on object and pusher; `name` is shown in errors.
+///
+/// # Errors
+/// Those of [`read_scene`] about syntax, keys and tags.
+///
+/// ```
+/// let scene = "[object]\ntags = { tag_7 = [0.01, 0.0, 1.57] }\n[pusher]\n";
+/// let mounts = stickslip_formats::read_mounts(scene, "scene.toml")?;
+/// assert_eq!(mounts.object["tag_7"].x, 0.01);
+/// # Ok::<(), stickslip_formats::SceneError>(())
+/// ```
+pub fn read_mounts(text: &str, name: &str) -> Result<Mounts> {
+    parsed(text, name, tags::mounts)
+}
+
+/// What `read` makes of the document.
+fn parsed<T>(text: &str, name: &str, read: impl FnOnce(&Table<'_>) -> Result<T>) -> Result<T> {
     let source = Source { name, text };
     let document = DeTable::parse(text).map_err(|error| syntax_error(source, &error))?;
-    setup(&Table::root(source, &document)?)
+    read(&Table::root(source, &document)?)
 }
 
 fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> SceneError {

@@ -16,6 +16,7 @@ pub const MS: i64 = 1_000_000;
 
 pub const POSE: &str = "geometry_msgs/msg/PoseStamped";
 pub const WRENCH: &str = "geometry_msgs/msg/WrenchStamped";
+pub const TF: &str = "tf2_msgs/msg/TFMessage";
 pub const BOOL: &str = "std_msgs/msg/Bool";
 
 /// One message.
@@ -71,9 +72,54 @@ impl Cdr {
                 .unwrap()
                 .to_le_bytes(),
         );
-        self.number(u32::try_from(frame.len() + 1).unwrap().to_le_bytes());
-        self.bytes.extend(frame.as_bytes());
+        self.text(frame);
+    }
+
+    fn text(&mut self, text: &str) {
+        self.number(u32::try_from(text.len() + 1).unwrap().to_le_bytes());
+        self.bytes.extend(text.as_bytes());
         self.bytes.push(0);
+    }
+}
+
+/// A transform: stamp, parent, child, translation and quaternion (x, y, z, w).
+pub type Transform<'a> = (i64, &'a str, &'a str, [f64; 7]);
+
+/// A line with transforms on `/tf` or `/tf_static`, 3 ms late.
+pub fn transforms(topic: &str, transforms: &[Transform<'_>]) -> Line {
+    let mut cdr = Cdr::new(Order::Little);
+    cdr.number(u32::try_from(transforms.len()).unwrap().to_le_bytes());
+    for (stamp, parent, child, numbers) in transforms {
+        cdr.header(*stamp, parent);
+        cdr.text(child);
+        for number in numbers {
+            cdr.number(number.to_le_bytes());
+        }
+    }
+    let latest = transforms.iter().map(|transform| transform.0).max();
+    Line {
+        topic: topic.to_owned(),
+        kind: TF,
+        encoding: "cdr",
+        log_time: (latest.unwrap_or(0) + 3 * MS).max(0),
+        data: cdr.bytes,
+    }
+}
+
+/// A line with a pose at (x, 0) of a type that says more than its pose: `extra` numbers follow, and
+/// a text comes before it where `child` is one.
+pub fn longer(kind: &'static str, stamp: i64, x: f64, child: Option<&str>, extra: usize) -> Line {
+    let mut cdr = Cdr::new(Order::Little);
+    cdr.header(stamp, "world");
+    child.into_iter().for_each(|child| cdr.text(child));
+    for number in [x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] {
+        cdr.number(number.to_le_bytes());
+    }
+    (0..extra).for_each(|_| cdr.number(7.0_f64.to_le_bytes()));
+    Line {
+        kind,
+        data: cdr.bytes,
+        ..object(stamp, x)
     }
 }
 

@@ -2,6 +2,9 @@
 
     peer.py decode RECORDING        every message as a line `program topic log-time stamp frame numbers`, by two programs
     peer.py record LOG.csv FOLDER   a log as a bag, packed with zstd, topic after topic and the latest messages first
+    peer.py kinds LOG.csv FOLDER    the same with other messages: PoseWithCovarianceStamped, Odometry, WrenchStamped as a touch
+    peer.py frames LOG.csv FOLDER   the same with both bodies on /tf only: the object by two tags in front of a camera, each
+                                    hidden now and then, the pusher by a robot's flange
 
 Times are integers in nanoseconds; numbers are written as Python does, so that they read back to the same bits.
 """
@@ -11,6 +14,7 @@ import math
 import sys
 from pathlib import Path
 
+import numpy as np
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
@@ -76,36 +80,140 @@ class Bag:
         pose = types["geometry_msgs/msg/Pose"](position=position, orientation=turn)
         return types["geometry_msgs/msg/PoseStamped"](header=self.header(time), pose=pose)
 
+    def pose_with_covariance(self, time, x, y, theta):
+        types = self.types
+        pose = types["geometry_msgs/msg/PoseWithCovariance"](pose=self.pose(time, x, y, theta).pose, covariance=np.arange(36.0))
+        return types["geometry_msgs/msg/PoseWithCovarianceStamped"](header=self.header(time), pose=pose)
+
+    def odometry(self, time, x, y, theta):
+        types = self.types
+        vector = types["geometry_msgs/msg/Vector3"](x=1.0, y=2.0, z=3.0)
+        twist = types["geometry_msgs/msg/TwistWithCovariance"](
+            twist=types["geometry_msgs/msg/Twist"](linear=vector, angular=vector), covariance=np.arange(36.0)
+        )
+        pose = self.pose_with_covariance(time, x, y, theta).pose
+        return types["nav_msgs/msg/Odometry"](header=self.header(time), child_frame_id="hand", pose=pose, twist=twist)
+
+    def transforms(self, time, *links):
+        """A message on /tf of links (parent, child, 4 x 4 matrix)."""
+        types = self.types
+        stamp = self.header(time).stamp
+        messages = []
+        for parent, child, m in links:
+            x, y, z, w = quaternion(m[:3, :3])
+            transform = types["geometry_msgs/msg/Transform"](
+                translation=types["geometry_msgs/msg/Vector3"](x=m[0, 3], y=m[1, 3], z=m[2, 3]),
+                rotation=types["geometry_msgs/msg/Quaternion"](x=x, y=y, z=z, w=w),
+            )
+            header = types["std_msgs/msg/Header"](stamp=stamp, frame_id=parent)
+            messages.append(types["geometry_msgs/msg/TransformStamped"](header=header, child_frame_id=child, transform=transform))
+        return types["tf2_msgs/msg/TFMessage"](transforms=messages)
+
     def wrench(self, time, x, y):
         vector = self.types["geometry_msgs/msg/Vector3"]
         wrench = self.types["geometry_msgs/msg/Wrench"](force=vector(x=x, y=y, z=0.0), torque=vector(x=0.0, y=0.0, z=0.0))
         return self.types["geometry_msgs/msg/WrenchStamped"](header=self.header(time), wrench=wrench)
 
 
-def record(log, folder):
-    rows = list(csv.DictReader(open(log)))
-    times = [round(float(row["time"]) * SECOND) for row in rows]
+def motion(x, y, z, yaw, over=0.0):
+    """A rigid motion as a 4 x 4 matrix: to a point, turned about z and then over its own x-axis."""
+    c, s, co, so = math.cos(yaw), math.sin(yaw), math.cos(over), math.sin(over)
+    return np.array([[c, -s * co, s * so, x], [s, c * co, -c * so, y], [0.0, so, co, z], [0.0, 0.0, 0.0, 1.0]])
 
-    def cells(columns):
+
+def quaternion(r):
+    """The unit quaternion (x, y, z, w) of a rotation, as an eigenvector (Bar-Itzhack)."""
+    k = np.array(
+        [
+            [r[0, 0] - r[1, 1] - r[2, 2], r[1, 0] + r[0, 1], r[2, 0] + r[0, 2], r[2, 1] - r[1, 2]],
+            [r[1, 0] + r[0, 1], r[1, 1] - r[0, 0] - r[2, 2], r[2, 1] + r[1, 2], r[0, 2] - r[2, 0]],
+            [r[2, 0] + r[0, 2], r[2, 1] + r[1, 2], r[2, 2] - r[0, 0] - r[1, 1], r[1, 0] - r[0, 1]],
+            [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], r[0, 0] + r[1, 1] + r[2, 2]],
+        ]
+    )
+    return np.linalg.eigh(k)[1][:, 3]
+
+
+class Log:
+    """A table of measurements."""
+
+    def __init__(self, path):
+        self.rows = list(csv.DictReader(open(path)))
+        self.times = [round(float(row["time"]) * SECOND) for row in self.rows]
+
+    def cells(self, *columns):
         """Times and numbers of the rows in which these are filled."""
-        filled = [(time, [row[column] for column in columns]) for time, row in zip(times, rows) if row[columns[0]]]
+        filled = [(time, [row[column] for column in columns]) for time, row in zip(self.times, self.rows) if row[columns[0]]]
         return [(time, [float(cell) for cell in numbers]) for time, numbers in filled]
 
+    def poses(self, body):
+        return self.cells(*[f"{body}_{axis}" for axis in ["x", "y", "theta"]])
+
+    def sensors(self):
+        return [(k, self.cells(f"tactile_{k}")) for k in range(1, 1 + sum(column.startswith("tactile_") for column in self.rows[0]))]
+
+
+def writing(folder):
     writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
     writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
-    with writer:
+    return writer
+
+
+def record(path, folder):
+    log = Log(path)
+    with writing(folder) as writer:
         bag = Bag(writer)
         for body in ["object", "pusher"]:
-            poses = cells([f"{body}_{axis}" for axis in ["x", "y", "theta"]])
-            bag.topic(f"/{body}/pose", "geometry_msgs/msg/PoseStamped", [(time, bag.pose(time, *pose)) for time, pose in poses])
-        for k in range(1, 1 + sum(column.startswith("tactile_") for column in rows[0])):
-            touches = cells([f"tactile_{k}"])
-            boolean = bag.types["std_msgs/msg/Bool"]
-            bag.topic(f"/fixel_{k}/contact", "std_msgs/msg/Bool", [(time, boolean(data=bool(on))) for time, [on] in touches])
-        if "pusher_force_x" in rows[0]:
-            forces = cells(["pusher_force_x", "pusher_force_y"])
+            poses = [(time, bag.pose(time, *pose)) for time, pose in log.poses(body)]
+            bag.topic(f"/{body}/pose", "geometry_msgs/msg/PoseStamped", poses)
+        write_touches(bag, log)
+        if "pusher_force_x" in log.rows[0]:
+            forces = log.cells("pusher_force_x", "pusher_force_y")
             bag.topic("/pusher/wrench", "geometry_msgs/msg/WrenchStamped", [(time, bag.wrench(time, *force)) for time, force in forces])
 
 
+def write_touches(bag, log):
+    boolean = bag.types["std_msgs/msg/Bool"]
+    for k, touches in log.sensors():
+        bag.topic(f"/fixel_{k}/contact", "std_msgs/msg/Bool", [(time, boolean(data=bool(on))) for time, [on] in touches])
+
+
+def kinds(path, folder):
+    log = Log(path)
+    with writing(folder) as writer:
+        bag = Bag(writer)
+        objects = [(time, bag.pose_with_covariance(time, *pose)) for time, pose in log.poses("object")]
+        bag.topic("/object/pose", "geometry_msgs/msg/PoseWithCovarianceStamped", objects)
+        pushers = [(time, bag.odometry(time, *pose)) for time, pose in log.poses("pusher")]
+        bag.topic("/pusher/pose", "nav_msgs/msg/Odometry", pushers)
+        for k, touches in log.sensors():
+            forces = [(time, bag.wrench(time, 0.0, -0.06 if on else 0.04)) for time, [on] in touches]
+            bag.topic(f"/fixel_{k}/contact", "geometry_msgs/msg/WrenchStamped", forces)
+
+
+def frames(path, folder):
+    log = Log(path)
+    camera = motion(0.3, -0.1, 0.9, 0.7, over=math.pi)
+    base = motion(-0.5, 0.2, 0.0, -1.1)
+    # the second tag looks down, as detectors of tags have it
+    tags = {"tag_7": (0, motion(0.012, -0.004, 0.02, 1.5)), "tag36h11:8": (1, motion(-0.02, 0.01, 0.02, -0.5, over=math.pi))}
+    with writing(folder) as writer:
+        bag = Bag(writer)
+        messages = []
+        for row, (time, (x, y, theta)) in enumerate(log.poses("object")):
+            body = motion(x, y, 0.0, theta)
+            seen = [(name, body @ mount) for name, (k, mount) in tags.items() if row % 9 != 3 + k]
+            links = [("camera", name, np.linalg.inv(camera) @ tag) for name, tag in seen]
+            messages.append((time, bag.transforms(time, *links)))
+        for time, (x, y, theta) in log.poses("pusher"):
+            flange = np.linalg.inv(base) @ motion(x, y, 0.3, theta)
+            messages.append((time, bag.transforms(time, ("base", "flange", flange), ("flange", "finger", motion(0.0, 0.0, 0.1, row)))))
+        bag.topic("/tf", "tf2_msgs/msg/TFMessage", messages)
+        still = bag.transforms(0, ("table", "camera", camera), ("table", "base", base))
+        bag.topic("/tf_static", "tf2_msgs/msg/TFMessage", [(log.times[0], still)])
+        write_touches(bag, log)
+
+
 if __name__ == "__main__":
-    {"decode": decode, "record": record}[sys.argv[1]](*sys.argv[2:])
+    commands = {"decode": decode, "record": record, "kinds": kinds, "frames": frames}
+    commands[sys.argv[1]](*sys.argv[2:])

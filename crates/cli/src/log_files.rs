@@ -1,0 +1,281 @@
+//! The files that a path to a log stands for: [`LogFiles`].
+
+use std::fs::{self, File};
+use std::io::{self, BufReader, Read, Seek};
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use stickslip::Log;
+use stickslip_formats::{
+    BagOptions, LogWarning, McapError, McapProblem, read_bag, read_bag_metadata, read_log,
+};
+
+use crate::experiment::{open, text_of, unreadable};
+use crate::failure::hinted;
+use crate::output::talk;
+use crate::verdict::Verdict;
+
+/// What lists the files of a bag in its folder.
+const METADATA: &str = "metadata.yaml";
+
+/// A log's files: a table, or the recordings of a bag.
+pub struct LogFiles {
+    /// What was given.
+    shown: PathBuf,
+    /// Files that are there; one or more.
+    pub paths: Vec<PathBuf>,
+    /// Files that should be there.
+    missing: Vec<PathBuf>,
+    is_bag: bool,
+}
+
+/// What a file is by its first bytes.
+enum Kind {
+    Mcap,
+    /// A bag of ROS 2 as it was recorded before MCAP.
+    Sqlite,
+    Zstd,
+    Other,
+}
+
+/// The log of a folder: log.csv, log.mcap, the bag that the folder is, or the only bag in it.
+pub fn log_path(folder: &Path) -> PathBuf {
+    let [csv, mcap] = ["log.csv", "log.mcap"].map(|name| folder.join(name));
+    let found = [&csv, &mcap].into_iter().find(|path| path.is_file());
+    if let Some(found) = found {
+        return found.clone();
+    }
+    if is_bag(folder) {
+        return folder.to_owned();
+    }
+    match folder_entries(folder)
+        .into_iter()
+        .filter(|path| is_bag(path))
+        .collect::<Vec<_>>()
+        .as_slice()
+    {
+        [only] => only.clone(),
+        _ => csv,
+    }
+}
+
+/// Whether a folder is one of `ros2 bag record`.
+pub fn is_bag(folder: &Path) -> bool {
+    folder.join(METADATA).is_file() || !recordings_in(folder).is_empty()
+}
+
+impl LogFiles {
+    /// The files of a log, a bag's folder or an experiment's folder.
+    pub fn find(path: &Path) -> Result<Self> {
+        let path = &if path.is_dir() {
+            log_path(path)
+        } else {
+            path.to_owned()
+        };
+        if !path.is_dir() {
+            let name = path.to_string_lossy().to_lowercase();
+            return Ok(Self {
+                shown: path.clone(),
+                paths: vec![path.clone()],
+                missing: Vec::new(),
+                is_bag: [".mcap", ".mcap.zstd"]
+                    .iter()
+                    .any(|end| name.ends_with(end)),
+            });
+        }
+        let metadata = path.join(METADATA);
+        let listed = if metadata.is_file() {
+            let text = text_of(&metadata, "metadata")?;
+            let bag = read_bag_metadata(&text, &metadata.display().to_string())?;
+            if bag.storage_identifier != "mcap" {
+                return Err(not_mcap(path, &bag.storage_identifier));
+            }
+            let files = bag.relative_file_paths.iter();
+            files.map(|file| in_folder(path, Path::new(file))).collect()
+        } else {
+            talk(format_args!(
+                "warning: {}: without {METADATA}, as a recorder leaves a bag that was not stopped; its .mcap files are read",
+                path.display()
+            ));
+            recordings_in(path)
+        };
+        let (paths, missing): (Vec<PathBuf>, _) =
+            listed.into_iter().partition(|file| file.is_file());
+        match paths.is_empty() {
+            true => Err(hinted(
+                format!(
+                    "{}: none of the bag's files is there: {}",
+                    path.display(),
+                    names(&missing)
+                ),
+                "copy the whole folder",
+            )),
+            false => Ok(Self {
+                shown: path.clone(),
+                paths,
+                missing,
+                is_bag: true,
+            }),
+        }
+    }
+
+    /// Reads them; warnings go to standard error. The verdict says whether all could be read.
+    pub fn read(&self, options: &BagOptions) -> Result<(Log, Verdict)> {
+        let mut files = Vec::new();
+        for path in &self.paths {
+            files.push((
+                path.display().to_string(),
+                BufReader::new(self.opened(path)?),
+            ));
+        }
+        let (log, warnings) = if self.is_bag {
+            read_bag(files, options).map_err(topic_hint)?
+        } else if options.topics.is_default() {
+            let (name, file) = files.remove(0);
+            read_log(file, &name)?
+        } else {
+            return Err(hinted(
+                format!(
+                    "{}: --topic is for MCAP logs, whose names end in .mcap",
+                    self.shown.display()
+                ),
+                "leave --topic out",
+            ));
+        };
+        for warning in &warnings {
+            talk(format_args!("warning: {warning}"));
+        }
+        if !self.missing.is_empty() {
+            talk(format_args!(
+                "warning: {}: {} is not there; what it held is lost",
+                self.shown.display(),
+                names(&self.missing)
+            ));
+        }
+        let lost = !self.missing.is_empty() || warnings.iter().any(LogWarning::is_loss);
+        let verdict = if lost {
+            Verdict::InputLost
+        } else {
+            Verdict::Done
+        };
+        Ok((log, verdict))
+    }
+
+    /// A file that is of the kind that its name says.
+    fn opened(&self, path: &Path) -> Result<File> {
+        let name = path.display();
+        let mut file = open(path, "log")?;
+        let kind = kind_of(&mut file).map_err(|error| unreadable(path, "log", &error))?;
+        match kind {
+            Kind::Sqlite => Err(not_mcap(path, "sqlite3")),
+            Kind::Zstd if !self.is_bag => Err(hinted(
+                format!("{name}: the whole file is packed with zstd"),
+                format!("unpack it with `zstd -d {name}`"),
+            )),
+            Kind::Mcap if !self.is_bag => Err(hinted(
+                format!("{name}: this is an MCAP recording by another name"),
+                "let its name end in .mcap",
+            )),
+            _ => Ok(file),
+        }
+    }
+}
+
+/// A file of a bag; bags of early versions list it behind the name of their folder.
+fn in_folder(folder: &Path, file: &Path) -> PathBuf {
+    let listed = folder.join(file);
+    let plain = file.file_name().map(|name| folder.join(name));
+    plain
+        .filter(|plain| !listed.is_file() && plain.is_file())
+        .unwrap_or(listed)
+}
+
+/// The error about a bag whose files are no MCAP.
+fn not_mcap(path: &Path, found: &str) -> anyhow::Error {
+    let bag = match path.is_dir() {
+        true => path,
+        false => path.parent().unwrap_or(path),
+    };
+    let (bag, new) = (
+        bag.display(),
+        bag.with_extension("mcap").display().to_string(),
+    );
+    let new = new.trim_end_matches(".mcap").to_owned() + "_mcap";
+    hinted(
+        format!(
+            "{}: this is a bag in {}; bags are read as MCAP",
+            path.display(),
+            if found == "sqlite3" {
+                "SQLite (.db3)"
+            } else {
+                found
+            }
+        ),
+        format!(
+            "convert it: write `output_bags: [{{uri: {new}, storage_id: mcap, all: true}}]` into convert.yaml, then `ros2 bag convert -i {bag} -o convert.yaml`; \
+             without ROS: `pip install rosbags`, then `rosbags-convert --src {bag} --dst {new} --dst-storage mcap`. Record with `ros2 bag record -s mcap`"
+        ),
+    )
+}
+
+/// Recordings in a folder by name.
+fn recordings_in(folder: &Path) -> Vec<PathBuf> {
+    let ends = |path: &PathBuf| {
+        let name = path.to_string_lossy().to_lowercase();
+        [".mcap", ".mcap.zstd", ".db3"]
+            .iter()
+            .any(|end| name.ends_with(end))
+    };
+    let mut found: Vec<PathBuf> = folder_entries(folder).into_iter().filter(ends).collect();
+    found.retain(|path| path.is_file());
+    found
+}
+
+/// What is in a folder, by name; nothing where it cannot be read.
+fn folder_entries(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let mut paths: Vec<PathBuf> = entries
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .collect();
+    paths.sort();
+    paths
+}
+
+fn names(paths: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    paths.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
+fn kind_of(file: &mut File) -> io::Result<Kind> {
+    let mut start = Vec::new();
+    file.take(16).read_to_end(&mut start)?;
+    file.rewind()?;
+    Ok(match start.as_slice() {
+        [0x89, b'M', b'C', b'A', b'P', ..] => Kind::Mcap,
+        [b'S', b'Q', b'L', b'i', b't', b'e', b' ', ..] => Kind::Sqlite,
+        [0x28, 0xb5, 0x2f, 0xfd, ..] => Kind::Zstd,
+        _ => Kind::Other,
+    })
+}
+
+/// How to say on the command line which topic is meant.
+fn topic_hint(error: McapError) -> anyhow::Error {
+    let help = match *error.problem {
+        McapProblem::MissingTopic { topic, .. } => format!("name it with --topic {topic}=TOPIC"),
+        McapProblem::SensorNumber { missing } => {
+            format!("name it with --topic fixel_{missing}=TOPIC")
+        }
+        McapProblem::Frame { wrench: true, .. } => {
+            "leave forces out with --topic wrench=".to_owned()
+        }
+        _ => return error.into(),
+    };
+    hinted(error.to_string(), help)
+}
