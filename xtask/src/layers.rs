@@ -17,7 +17,7 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
         &["ncp/"],
         &["solver/"],
         &["feet", "prepared_scene", "assembly", "stated_problem"],
-        &["step", "rollout"],
+        &["step", "compiled_step", "rollout"],
     ],
 )];
 

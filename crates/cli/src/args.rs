@@ -175,6 +175,10 @@ pub enum MethodName {
     Particle,
     /// Constant-velocity Kalman filter that knows nothing of contact
     Kalman,
+    /// The same, at rest from the first tactile contact in the dark on
+    KalmanStops,
+    /// The same, which in the dark moves with the pusher as if glued to it
+    WithPusher,
     /// Simulation with the nominal friction, blind after the first pose
     Nominal,
 }
@@ -254,6 +258,8 @@ impl From<MethodName> for Method {
         match name {
             MethodName::Particle => Self::Particle,
             MethodName::Kalman => Self::Kalman,
+            MethodName::KalmanStops => Self::KalmanStops,
+            MethodName::WithPusher => Self::WithPusher,
             MethodName::Nominal => Self::Nominal,
         }
     }

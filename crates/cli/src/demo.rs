@@ -87,8 +87,7 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
 
 /// Every variant that differs on the experiment.
 fn runs(experiment: &Experiment, conditions: &RunConditions) -> Result<Vec<ReportedRun>> {
-    let variants: Vec<Variant> =
-        Variant::compared_on(&experiment.log, conditions.occlusion).collect();
+    let variants: Vec<Variant> = Variant::drawn_on(&experiment.log, conditions.occlusion).collect();
     let runs = variants
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, conditions));

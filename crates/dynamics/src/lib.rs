@@ -1,6 +1,7 @@
 //! Planar frictional contact dynamics of one pushed object.
 
 mod assembly;
+mod compiled_step;
 mod feet;
 mod friction;
 mod geometry;
@@ -16,6 +17,7 @@ mod start;
 mod stated_problem;
 mod step;
 
+pub use compiled_step::CompiledStep;
 pub use friction::Friction;
 pub use geometry::contact::Gap;
 pub use geometry::narrow_phase::narrow_phase;

@@ -47,7 +47,7 @@ impl PreparedScene {
         pushers: &[Option<PusherMotion>; W],
     ) -> Option<PusherContext<W>> {
         let first = pushers.iter().flatten().next()?;
-        let mut context: PusherContext<W> = SharedPusher::new(self, Some(first)).of(0)?;
+        let mut context: PusherContext<W> = SharedPusher::new(self, Some(first)).splat()?;
         for (lane, pusher) in pushers.iter().enumerate() {
             context.present.set(lane, pusher.is_some());
             if let Some(pusher) = pusher {
@@ -83,58 +83,50 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
 }
 
-/// The pusher of every chunk of particles in one step.
-pub(crate) trait Pushers<const W: usize> {
-    /// That of one chunk; `None` while it is off the plane in every lane.
-    fn of(&self, chunk: usize) -> Option<PusherContext<W>>;
-
-    /// Offsets of the fixels (m) for one chunk; none where they stand as the scene says.
-    #[inline(always)]
-    fn fixel_offsets(&self, _chunk: usize) -> &[[Lanes<W>; 2]] {
-        &[]
-    }
+/// The pusher of every chunk of particles in one step, and where the fixels stand.
+#[derive(Clone, Copy, Debug)]
+pub enum Pushers<'a, const W: usize> {
+    /// The same pusher for all particles.
+    Shared(SharedPusher),
+    /// One for each particle, chunk by chunk.
+    Each(&'a [Option<PusherContext<W>>]),
+    /// The same pusher for all, but beside its pose, and fixels beside theirs.
+    Offset {
+        /// The pusher at its pose.
+        pusher: SharedPusher,
+        /// How far beside it is, and the fixels.
+        offsets: Offsets<'a, W>,
+        /// Number of fixels.
+        fixels: usize,
+    },
 }
 
 /// The same pusher for all particles; its lanes are made where they are used.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SharedPusher(Option<(PusherMotion, Transform, f64)>);
-
-/// One pusher for each particle, chunk by chunk.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct EachPusher<'a, const W: usize>(pub &'a [Option<PusherContext<W>>]);
-
-/// The same pusher for all particles, but beside its pose, and fixels beside theirs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OffsetPusher<'a, const W: usize> {
-    pub pusher: SharedPusher,
-    pub offsets: Offsets<'a, W>,
-    /// Number of fixels.
-    pub fixels: usize,
-}
+pub struct SharedPusher(Option<(PusherMotion, Transform, f64)>);
 
 /// A pusher's motion and where it stands, lane by lane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PusherContext<const W: usize> {
-    pub motion: PusherMotion<Lanes<W>>,
-    pub transform: Transform<Lanes<W>>,
+pub struct PusherContext<const W: usize> {
+    pub(crate) motion: PusherMotion<Lanes<W>>,
+    pub(crate) transform: Transform<Lanes<W>>,
     /// Speed of its fastest point (m/s).
-    pub speed: Lanes<W>,
+    pub(crate) speed: Lanes<W>,
     /// The lanes in which it is on the plane.
-    pub present: Mask<W>,
+    pub(crate) present: Mask<W>,
 }
 
 impl SharedPusher {
-    pub fn new(scene: &PreparedScene, pusher: Option<&PusherMotion>) -> Self {
+    pub(crate) fn new(scene: &PreparedScene, pusher: Option<&PusherMotion>) -> Self {
         Self(pusher.map(|motion| {
             let speed = fastest_point(scene, &motion.twist);
             (*motion, Transform::from(motion.pose), speed)
         }))
     }
-}
 
-impl<const W: usize> Pushers<W> for SharedPusher {
+    /// It in every lane; `None` while it is off the plane.
     #[inline(always)]
-    fn of(&self, _: usize) -> Option<PusherContext<W>> {
+    fn splat<const W: usize>(&self) -> Option<PusherContext<W>> {
         let (motion, transform, speed) = self.0.as_ref()?;
         Some(PusherContext {
             motion: motion.splat(),
@@ -145,35 +137,43 @@ impl<const W: usize> Pushers<W> for SharedPusher {
     }
 }
 
-impl<const W: usize> Pushers<W> for EachPusher<'_, W> {
+impl<const W: usize> Pushers<'_, W> {
+    /// That of one chunk; `None` while it is off the plane in every lane.
     #[inline(always)]
-    fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
-        self.0[chunk]
+    pub fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
+        match self {
+            Self::Shared(pusher) => pusher.splat(),
+            Self::Each(pushers) => pushers[chunk],
+            Self::Offset {
+                pusher, offsets, ..
+            } => {
+                let mut context: PusherContext<W> = pusher.splat()?;
+                let [x, y] = offsets.pusher[chunk];
+                context.motion.pose.x += x;
+                context.motion.pose.y += y;
+                context.transform.origin[0] += x;
+                context.transform.origin[1] += y;
+                Some(context)
+            }
+        }
     }
-}
 
-impl<const W: usize> Pushers<W> for OffsetPusher<'_, W> {
+    /// Offsets of the fixels (m) for one chunk; none where they stand as the scene says.
     #[inline(always)]
-    fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
-        let mut context: PusherContext<W> = self.pusher.of(chunk)?;
-        let [x, y] = self.offsets.pusher[chunk];
-        context.motion.pose.x += x;
-        context.motion.pose.y += y;
-        context.transform.origin[0] += x;
-        context.transform.origin[1] += y;
-        Some(context)
-    }
-
-    #[inline(always)]
-    fn fixel_offsets(&self, chunk: usize) -> &[[Lanes<W>; 2]] {
-        &self.offsets.fixels[chunk * self.fixels..][..self.fixels]
+    pub fn fixel_offsets(&self, chunk: usize) -> &[[Lanes<W>; 2]] {
+        match self {
+            Self::Offset {
+                offsets, fixels, ..
+            } => &offsets.fixels[chunk * fixels..][..*fixels],
+            _ => &[],
+        }
     }
 }
 
 impl<const W: usize> PusherContext<W> {
     /// Overwrites one lane.
     fn set(&mut self, scene: &PreparedScene, lane: usize, pusher: &PusherMotion) {
-        let alone: Option<PusherContext<1>> = SharedPusher::new(scene, Some(pusher)).of(0);
+        let alone: Option<PusherContext<1>> = SharedPusher::new(scene, Some(pusher)).splat();
         let alone = alone.expect("there is a pusher");
         for (to, from) in self.numbers_mut().into_iter().zip(alone.numbers()) {
             to.0[lane] = from.0[0];

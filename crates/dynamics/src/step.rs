@@ -6,9 +6,10 @@
 
 use std::ops::Range;
 
-use stickslip_lanes::{Lanes, Level, Mask, on_widest};
+use stickslip_lanes::{Lanes, Level, Mask};
 
 use crate::assembly::Assembly;
+use crate::compiled_step::CompiledStep;
 use crate::friction::Friction;
 use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::{Body, Offsets, PusherMotion, StepInput};
@@ -18,8 +19,7 @@ use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
 use crate::prepared_scene::{
-    EachPusher, OffsetPusher, PreparedScene, PusherContext, Pushers, SharedPusher, StepBodies,
-    StepContext,
+    PreparedScene, PusherContext, Pushers, SharedPusher, StepBodies, StepContext,
 };
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
@@ -32,17 +32,13 @@ const MARGIN: f64 = 5e-4;
 /// Search distance at which widening ends (m): nothing real moves so far in one step.
 const WIDEST: f64 = 1e3;
 
-/// Lanes from which on vector instructions wider than the baseline's are worth their own copy of
-/// the step.
-const WIDE: usize = 4;
-
 /// Γ for one scene.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
     scene: PreparedScene,
     /// Radius of the object's bounding circle about its centre of mass (m).
     object_radius: f64,
-    level: Level,
+    pub(crate) level: Level,
 }
 
 /// Working memory of [`Dynamics::step_block`], `W` particles to a chunk; nothing is allocated once
@@ -143,7 +139,10 @@ impl Dynamics {
         friction: &[Friction; W],
         particles: &mut [Particle; W],
         work: &mut StepWork<W>,
-    ) -> [Report; W] {
+    ) -> [Report; W]
+    where
+        StepWork<W>: CompiledStep<W>,
+    {
         let mut chunk = Particles::default();
         for (lane, (particle, friction)) in particles.iter().zip(friction).enumerate() {
             chunk.set(lane, particle, friction);
@@ -165,14 +164,11 @@ impl Dynamics {
         input: &StepInput,
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
-    ) {
-        self.dispatch::<W>(
-            #[inline(always)]
-            || {
-                let pusher = SharedPusher::new(&self.scene, input.pusher.as_ref());
-                self.step_lanes(input.h, &pusher, particles, work);
-            },
-        );
+    ) where
+        StepWork<W>: CompiledStep<W>,
+    {
+        let pusher = SharedPusher::new(&self.scene, input.pusher.as_ref());
+        work.step(self, input.h, &Pushers::Shared(pusher), particles);
     }
 
     /// The same for particles of which each has a pusher of its own: `pushers` holds those of a
@@ -188,7 +184,9 @@ impl Dynamics {
         pushers: &[[Option<PusherMotion>; W]],
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
-    ) {
+    ) where
+        StepWork<W>: CompiledStep<W>,
+    {
         assert_eq!(
             pushers.len(),
             particles.len(),
@@ -197,10 +195,7 @@ impl Dynamics {
         let mut contexts = std::mem::take(&mut work.pushers);
         contexts.clear();
         contexts.extend(pushers.iter().map(|pushers| self.scene.pushers(pushers)));
-        self.dispatch::<W>(
-            #[inline(always)]
-            || self.step_lanes(h, &EachPusher(&contexts), particles, work),
-        );
+        work.step(self, h, &Pushers::Each(&contexts), particles);
         work.pushers = contexts;
     }
 
@@ -215,39 +210,25 @@ impl Dynamics {
         offsets: Offsets<'_, W>,
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
-    ) {
+    ) where
+        StepWork<W>: CompiledStep<W>,
+    {
         let (chunks, fixels) = (particles.len(), self.scene.fixels.len());
         assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
-        self.dispatch::<W>(
-            #[inline(always)]
-            || {
-                let pusher = SharedPusher::new(&self.scene, input.pusher.as_ref());
-                let pusher = OffsetPusher {
-                    pusher,
-                    offsets,
-                    fixels,
-                };
-                self.step_lanes(input.h, &pusher, particles, work);
-            },
-        );
-    }
-
-    /// Runs a step of `W` particles side by side on the vector instructions that pay for it.
-    #[inline(always)]
-    fn dispatch<const W: usize>(&self, step: impl FnOnce()) {
-        if W < WIDE {
-            step();
-        } else {
-            on_widest(self.level, step);
-        }
+        let pushers = Pushers::Offset {
+            pusher: SharedPusher::new(&self.scene, input.pusher.as_ref()),
+            offsets,
+            fixels,
+        };
+        work.step(self, input.h, &pushers, particles);
     }
 
     #[inline(always)]
-    fn step_lanes<const W: usize>(
+    pub(crate) fn step_lanes<const W: usize>(
         &self,
         h: f64,
-        pushers: &impl Pushers<W>,
+        pushers: &Pushers<'_, W>,
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
     ) {
@@ -303,7 +284,7 @@ impl Dynamics {
     fn too_narrow<const W: usize>(
         &self,
         h: f64,
-        pushers: &impl Pushers<W>,
+        pushers: &Pushers<'_, W>,
         first: usize,
         work: &mut StepWork<W>,
     ) -> Range<usize> {
@@ -383,10 +364,10 @@ fn length_at_most<const W: usize>(x: &Lanes<W>, y: &Lanes<W>) -> Lanes<W> {
 }
 
 /// The problems of some chunks of particles.
-struct Problems<'a, P, const W: usize> {
+struct Problems<'a, const W: usize> {
     scene: &'a PreparedScene,
     context: StepContext,
-    pushers: &'a P,
+    pushers: &'a Pushers<'a, W>,
     /// Number of the first chunk.
     first: usize,
     particles: &'a [Particles<W>],
@@ -394,7 +375,7 @@ struct Problems<'a, P, const W: usize> {
     narrow: &'a mut NarrowPhase<W>,
 }
 
-impl<P: Pushers<W>, const W: usize> Source<W> for Problems<'_, P, W> {
+impl<const W: usize> Source<W> for Problems<'_, W> {
     #[inline(always)]
     fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
         self.chunks[chunk].collect(

@@ -63,7 +63,7 @@ fn push(step: usize, [dx, dy]: [f64; 2]) -> StepInput {
 
 #[test]
 fn each_lane_steps_as_in_a_scene_of_its_own() {
-    const LANES: usize = 4;
+    const LANES: usize = 8;
     let lane = |i: usize, k: usize| 1e-4 * ((7 * i + 3 * k) % 5) as f64 - 2e-4;
     let pusher = |i: usize| [lane(i, 0), lane(i, 1)];
     let fixels = |i: usize| [[lane(i, 2), lane(i, 3)], [lane(i, 4), lane(i, 5)]];

@@ -12,6 +12,10 @@ pub enum Method {
     Particle,
     /// A constant-velocity Kalman filter that knows nothing of contact.
     Kalman,
+    /// The same, at rest from the first tactile contact in the dark on.
+    KalmanStops,
+    /// The same, which in the dark moves with the pusher as if glued to it.
+    WithPusher,
     /// The nominal simulation, which never looks at the camera after the first pose.
     Nominal,
 }

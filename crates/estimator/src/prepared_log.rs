@@ -22,6 +22,8 @@ pub(crate) struct PreparedLog<'a> {
     pub first: usize,
     /// The pose there.
     pub start: Pose,
+    /// The pusher's track.
+    pub track: PusherTrack,
     /// The substeps from row to row.
     pub schedule: Schedule,
     /// Is shown every time step.
@@ -47,6 +49,7 @@ impl<'a> PreparedLog<'a> {
             first,
             start,
             schedule: Schedule::new(&log.time, &track, options.substeps),
+            track,
             observer: None,
         })
     }

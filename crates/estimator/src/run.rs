@@ -1,6 +1,6 @@
 //! Runs a method over a recorded log: [`run`].
 
-use crate::baseline::{kalman, nominal};
+use crate::baseline::{kalman, nominal, stopping, with_pusher};
 use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
@@ -96,6 +96,14 @@ fn run_prepared(
         }
         (Method::Particle, Tracking::Causal) => track_causal(setup, prepared, options, progress)?,
         (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, 0),
+        (Method::KalmanStops, _) => {
+            let kalman = kalman::track(setup, &camera()?, prepared)?;
+            (stopping(kalman, prepared, options.tactile), 0)
+        }
+        (Method::WithPusher, _) => {
+            let kalman = kalman::track(setup, &camera()?, prepared)?;
+            (with_pusher(kalman, prepared), 0)
+        }
         (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), 0),
     };
     let all = |count: fn(&EstimateRow) -> Option<u32>| {

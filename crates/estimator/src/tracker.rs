@@ -89,7 +89,8 @@ impl TrackerOptions {
 ///
 /// It gives what [`run`](crate::run) gives with [`Tracking::Causal`](crate::Tracking), bit for bit:
 /// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the first
-/// rows, on one thread, a row allocates nothing.
+/// rows, on one thread, a row allocates nothing, but where a step needs the search over contact
+/// modes.
 ///
 /// ```
 /// use stickslip::{Row, Tracker, TrackerOptions};

@@ -21,6 +21,9 @@ pub struct Uncertainty {
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
+    /// Standard deviation of the way by which a pusher that a jam holds back is behind its logged pose
+    /// (m).
+    pub pusher_lag: f64,
     /// Standard deviation of the error of each fixel's position, on each axis (m).
     pub fixel_position: f64,
     /// Standard deviation of the logarithm of a factor of these two offsets: rigs differ.
@@ -45,6 +48,7 @@ impl Default for Uncertainty {
             variation_length: 5e-3,
             force_std: 0.25,
             pusher_offset: 1.5e-4,
+            pusher_lag: 3e-4,
             fixel_position: 7e-5,
             roughness: 1.0,
             latency: 0.03,

@@ -5,7 +5,7 @@ mod common;
 
 use common::{RATE, log, setup};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Log, Mode, RunOptions, Setup, run};
+use stickslip::{Estimate, Log, Method, Mode, Occlusion, RunOptions, Setup, run};
 
 /// Speed of the pusher (m/s), and where it meets the disc (s).
 const SPEED: f64 = 0.02;
@@ -111,4 +111,39 @@ fn a_camera_that_moves_for_good_is_followed() {
         (pose.x - 0.1).abs() < 2e-3 && (pose.y - 0.05).abs() < 2e-3,
         "{pose:?}"
     );
+}
+
+/// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
+/// else it slides round the fixel. It slides; most particles believe that it jams.
+fn slides_past(pusher_lag: f64) -> f64 {
+    let mut slippery = setup(&[[0.032, -0.022]]);
+    (slippery.scene.nominal.mu_p, slippery.scene.nominal.mu_f) = (0.15, 0.15);
+    let beside = |time: f64| Some(Pose::new(-0.0348 + SPEED * time, 0.004, 0.0));
+    let mut log = log(110, |_| Some(Pose::default()), beside);
+    let truth = RunOptions {
+        method: Method::Nominal,
+        ..RunOptions::default()
+    };
+    let truth = run(&slippery, &log, &truth, &mut |_| ()).expect("a simulation");
+    log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
+    let last = log.object[109].expect("a pose");
+    assert!(last.y > 0.01, "the disc slides round the fixel: {last:?}");
+
+    let mut sticky = slippery.clone();
+    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    sticky.uncertainty.pusher_lag = pusher_lag;
+    let dark = RunOptions {
+        occlusion: Occlusion::Rows { from: 5, to: None },
+        particles: 400,
+        ..RunOptions::default()
+    };
+    let run = run(&sticky, &log, &dark, &mut |_| ()).expect("a run");
+    let believed = run.estimate.rows[109].pose.expect("a pose");
+    (believed.x - last.x).hypot(believed.y - last.y)
+}
+
+#[test]
+fn a_pusher_that_goes_on_says_that_nothing_jams() {
+    let (deaf, hears) = (slides_past(1e3), slides_past(3e-4));
+    assert!(hears < 0.5 * deaf, "{hears} m, without the pusher {deaf} m");
 }

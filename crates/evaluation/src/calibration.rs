@@ -9,14 +9,12 @@ use stickslip::{
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
 
+use crate::belief::NINETY_PERCENT;
 use crate::learned_friction::LearnedParameter;
 use crate::paper::PaperExperiment;
 use crate::run::{RunConditions, ScoredRun};
 use crate::simulation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};
 use crate::variant::Variant;
-
-/// Standard deviations on either side of the mean that hold 90 % of a normal distribution.
-const NINETY_PERCENT: f64 = 1.644_853_626_951_472_7;
 
 /// Quantities of a run: the pose at its end, the four friction parameters.
 pub const QUANTITIES: [&str; 7] = ["x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];

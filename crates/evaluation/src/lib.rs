@@ -3,6 +3,7 @@
 //!
 //! Nothing here opens a file or reads a clock. The same arguments give the same bits.
 
+mod belief;
 mod calibration;
 mod learned_friction;
 pub mod paper;
@@ -12,6 +13,7 @@ mod simulation;
 mod statistics;
 mod variant;
 
+pub use belief::Belief;
 pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally, TruthSource};
 pub use learned_friction::LearnedParameter;
 pub use run::{RunConditions, ScoredRun};

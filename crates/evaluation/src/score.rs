@@ -9,6 +9,8 @@ use stickslip::dynamics::Pose;
 use stickslip::{Camera, Estimate, Log, wrapped};
 use stickslip_formats::Experiment;
 
+use crate::belief::{Belief, Judged};
+
 /// Standard deviation of an object position where no camera is described (m).
 const POSITION_STD: f64 = 3e-4;
 
@@ -21,6 +23,9 @@ const SAME_TIME: f64 = 1e-4;
 /// Time over which the final error is a mean where the reference is measured (s): one noisy pose
 /// says little.
 const SETTLED: f64 = 1.0;
+
+/// Time after the reference has come to rest up to which a row still counts as on the way (s).
+const AFTER_REST: f64 = 1.0;
 
 /// The trajectory an estimate is scored against.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,6 +41,8 @@ pub struct Reference {
     pub first_pusher_contact: Option<usize>,
     /// Distance below which the reference counts as having come to rest (m).
     pub rest: f64,
+    /// Standard deviations of its poses (m, m, rad); 0 for the truth.
+    pub std: Pose,
     /// The final error is the mean over this time before the last pose (s); 0: that of the last
     /// pose.
     pub settled: f64,
@@ -61,6 +68,7 @@ impl Reference {
                     latency: 0.0,
                     first_pusher_contact: None,
                     rest: REST,
+                    std: Pose::default(),
                     settled: 0.0,
                 }
             }
@@ -90,6 +98,14 @@ impl Reference {
             latency: camera.map_or(0.0, |camera| camera.latency),
             first_pusher_contact: None,
             rest: (4.0 * position_std).max(REST),
+            std: camera.map_or(Pose::default(), |camera| {
+                let Camera {
+                    position_std,
+                    orientation_std,
+                    ..
+                } = *camera;
+                Pose::new(position_std, position_std, orientation_std)
+            }),
             settled: SETTLED,
         }
     }
@@ -119,6 +135,8 @@ pub struct Scores {
     pub wmse_occluded_mm: Option<f64>,
     /// The same from the first pusher contact to the last motion of the reference (mm).
     pub wmse_moving_mm: Option<f64>,
+    /// The same over the hidden rows up to 1 s after the last motion of the reference (mm).
+    pub wmse_until_rest_mm: Option<f64>,
     /// What `wmse_occluded_mm` would be if the estimate's own standard deviations told the truth
     /// (mm): root of the mean variance over the hidden rows.
     pub spread_occluded_mm: Option<f64>,
@@ -127,6 +145,14 @@ pub struct Scores {
     pub final_error_mm: Option<f64>,
     /// Difference of the last scored angles, on the circle (degrees), or that mean of it.
     pub final_error_deg: Option<f64>,
+    /// Whether the belief is true over all scored rows.
+    pub belief: Belief,
+    /// Over the hidden rows.
+    pub belief_occluded: Belief,
+    /// Over the rows that were seen while the reference moved.
+    pub belief_seen: Belief,
+    /// At the last scored row.
+    pub belief_final: Belief,
 }
 
 /// Scores `estimate` against `reference`; `hidden` are the rows that were occluded,
@@ -149,14 +175,28 @@ pub fn score(
             .filter_map(|(_, error)| *error);
         weighted_rmse(kept, virtual_radius)
     };
+    let is_hidden = |row: usize| hidden.get(row).copied().unwrap_or(false);
+    let rested = reference.time.get(moving.end.saturating_sub(1));
+    let on_the_way = |row| rested.is_some_and(|end| reference.time[row] <= end + AFTER_REST);
+    let believed = |keep: &dyn Fn(usize) -> bool| {
+        let rows = errors.iter().enumerate().filter(|(row, _)| keep(*row));
+        let judged = rows.filter_map(|(row, error)| (*error)?.judged(estimate, reference, row));
+        Belief::of(judged, virtual_radius)
+    };
     let last = final_error(&errors, reference);
+    let last_row = errors.iter().rposition(Option::is_some);
     Scores {
         wmse_mm: over(&|_| true),
-        wmse_occluded_mm: over(&|row| hidden.get(row).copied().unwrap_or(false)),
+        wmse_occluded_mm: over(&is_hidden),
         wmse_moving_mm: over(&|row| moving.contains(&row)),
+        wmse_until_rest_mm: over(&|row| is_hidden(row) && on_the_way(row)),
         spread_occluded_mm: spread(estimate, hidden, virtual_radius),
         final_error_mm: last.map(|e| 1e3 * e.dx.hypot(e.dy)),
         final_error_deg: last.map(|e| e.turn.abs().to_degrees()),
+        belief: believed(&|_| true),
+        belief_occluded: believed(&is_hidden),
+        belief_seen: believed(&|row| !is_hidden(row) && moving.contains(&row)),
+        belief_final: believed(&|row| Some(row) == last_row),
     }
 }
 
@@ -193,6 +233,20 @@ impl Error {
             dy: self.dy + other.dy,
             turn: self.turn + other.turn,
         }
+    }
+
+    /// With what the estimate says of it, and the reference's own noise; `None` where it says
+    /// nothing.
+    fn judged(self, estimate: &Estimate, reference: &Reference, row: usize) -> Option<Judged> {
+        let (own, noise) = (estimate.rows[row].spread?.pose, reference.std);
+        Some(Judged {
+            error: Pose::new(self.dx, self.dy, self.turn),
+            std: Pose::new(
+                own.x.hypot(noise.x),
+                own.y.hypot(noise.y),
+                own.theta.hypot(noise.theta),
+            ),
+        })
     }
 }
 

@@ -14,6 +14,10 @@ pub enum Variant {
     Kalman,
     /// The Kalman filter with nothing hidden from it.
     KalmanCameraOn,
+    /// The Kalman filter that comes to rest at the first tactile contact in the dark.
+    KalmanStops,
+    /// The Kalman filter that in the dark moves with the pusher as if glued to it.
+    WithPusher,
     /// Particle filter without tactile readings.
     ParticleNoTouch,
     /// The same with nothing hidden from it.
@@ -25,8 +29,20 @@ pub enum Variant {
 }
 
 impl Variant {
-    /// Those that `compare` and `demo` run, in the order of tables.
-    pub const COMPARED: [Self; 5] = [
+    /// Those that `compare` runs, in the order of its tables.
+    pub const COMPARED: [Self; 8] = [
+        Self::Nominal,
+        Self::Kalman,
+        Self::KalmanStops,
+        Self::WithPusher,
+        Self::ParticleNoTouch,
+        Self::Particle,
+        Self::KalmanCameraOn,
+        Self::ParticleCameraOn,
+    ];
+
+    /// Those that are drawn, in the order of tables.
+    pub const DRAWN: [Self; 5] = [
         Self::Nominal,
         Self::Kalman,
         Self::ParticleNoTouch,
@@ -40,6 +56,8 @@ impl Variant {
         match (method, tactile) {
             (Method::Nominal, _) => Self::Nominal,
             (Method::Kalman, _) => Self::Kalman,
+            (Method::KalmanStops, _) => Self::KalmanStops,
+            (Method::WithPusher, _) => Self::WithPusher,
             (Method::Particle, TactileUse::Ignored) => Self::ParticleNoTouch,
             (Method::Particle, TactileUse::Used) => Self::Particle,
         }
@@ -47,17 +65,29 @@ impl Variant {
 
     /// Those of [`Variant::COMPARED`] that differ on a log of which `occlusion` hides rows.
     pub fn compared_on(log: &Log, occlusion: Occlusion) -> impl Iterator<Item = Self> {
+        Self::different_on(&Self::COMPARED, log, occlusion)
+    }
+
+    /// Those of [`Variant::DRAWN`] that differ on a log of which `occlusion` hides rows.
+    pub fn drawn_on(log: &Log, occlusion: Occlusion) -> impl Iterator<Item = Self> {
+        Self::different_on(&Self::DRAWN, log, occlusion)
+    }
+
+    fn different_on<'a>(
+        all: &'a [Self],
+        log: &Log,
+        occlusion: Occlusion,
+    ) -> impl Iterator<Item = Self> + use<'a> {
         let (touch, hides) = (
             !log.tactile.is_empty(),
             occlusion.hidden(log).contains(&true),
         );
-        Self::COMPARED
-            .into_iter()
-            .filter(move |variant| match variant {
-                Self::ParticleNoTouch => touch,
-                Self::ParticleCameraOn => hides,
-                _ => true,
-            })
+        all.iter().copied().filter(move |variant| match variant {
+            Self::ParticleNoTouch => touch,
+            Self::ParticleCameraOn | Self::KalmanCameraOn | Self::WithPusher => hides,
+            Self::KalmanStops => touch && hides,
+            _ => true,
+        })
     }
 
     /// Its method.
@@ -66,6 +96,8 @@ impl Variant {
         match self {
             Self::Nominal => Method::Nominal,
             Self::Kalman | Self::KalmanCameraOn => Method::Kalman,
+            Self::KalmanStops => Method::KalmanStops,
+            Self::WithPusher => Method::WithPusher,
             _ => Method::Particle,
         }
     }
@@ -144,6 +176,12 @@ impl Variant {
                 "kalman, camera on",
                 "Kalman filter, camera on",
             ],
+            Self::KalmanStops => [
+                "kalman_stops",
+                "kalman, stops at touch",
+                "Kalman filter that stops at touch",
+            ],
+            Self::WithPusher => ["with_pusher", "with the pusher", "moved with the pusher"],
             Self::ParticleNoTouch => [
                 "particle_no_tactile",
                 "particle, no tactile",

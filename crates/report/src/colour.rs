@@ -31,7 +31,8 @@ impl Colour {
     pub fn of(variant: Variant) -> Self {
         match variant {
             Variant::Nominal => Self::GREY,
-            Variant::Kalman => Self::ORANGE,
+            Variant::Kalman | Variant::KalmanStops => Self::ORANGE,
+            Variant::WithPusher => Self::YELLOW,
             Variant::KalmanCameraOn => Self::PURPLE,
             Variant::ParticleNoTouch => Self::SKY,
             Variant::ParticleNoTouchCameraOn => Self::BLUE,
@@ -70,7 +71,10 @@ impl Line {
     pub fn of(variant: Variant) -> Self {
         match variant {
             Variant::Nominal | Variant::Kalman | Variant::Particle => Self::Solid,
-            Variant::ParticleNoTouch | Variant::ParticleNoTouchCameraOn => Self::Dashed,
+            Variant::KalmanStops
+            | Variant::WithPusher
+            | Variant::ParticleNoTouch
+            | Variant::ParticleNoTouchCameraOn => Self::Dashed,
             Variant::KalmanCameraOn | Variant::ParticleCameraOn => Self::Dotted,
         }
     }

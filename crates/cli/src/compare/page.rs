@@ -2,7 +2,7 @@
 
 use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
 
-use super::results::{Comparison, Overall};
+use super::results::{Comparison, LEGEND, Overall};
 use super::tables;
 use crate::origin::origin;
 
@@ -15,6 +15,7 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         folders,
         overall,
         errors,
+        touch_gain,
     } = comparison;
     let outcome = |row: &Overall| Outcome {
         name: row.variant.title().to_owned(),
@@ -30,11 +31,12 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
          Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
         folders.len()
     );
-    let note = format!("Quantiles: {quantile}. {}", Fate::rule());
+    let gain = touch_gain.map_or_else(String::new, |gain| gain.to_string());
+    let note = format!("{LEGEND} Quantiles: {quantile}. {gain} {}", Fate::rule());
     let all = [
         Block::Table(
             tables::overall(overall),
-            "Median (90th percentile) over all experiments".to_owned(),
+            "Over all experiments: median (90th percentile)".to_owned(),
         ),
         Block::Note(note),
     ];

@@ -63,7 +63,7 @@ fn section(folder: &Folder, mode: Mode, particles: usize) -> Result<Section> {
         occlusion: *occlusion,
         seed: 0,
     };
-    let variants: Vec<Variant> = Variant::compared_on(&experiment.log, *occlusion).collect();
+    let variants: Vec<Variant> = Variant::drawn_on(&experiment.log, *occlusion).collect();
     let runs = variants
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, &conditions))

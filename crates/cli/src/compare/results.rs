@@ -18,10 +18,20 @@ pub struct ShownScores {
     pub wmse_mm: Option<f64>,
     /// The same while the object moves (mm).
     pub wmse_moving_mm: Option<f64>,
+    /// The same over the hidden rows up to 1 s after the last motion (mm).
+    pub wmse_until_rest_mm: Option<f64>,
     /// Final position error (mm).
     pub final_error_mm: Option<f64>,
     /// Final angle error (degrees).
     pub final_error_deg: Option<f64>,
+    /// Share of the 90 % intervals of x, y and θ that hold the reference, over the rows of `wmse_mm`.
+    pub covered_90: Option<f64>,
+    /// The same over the rows that were seen while the object moved.
+    pub covered_90_seen: Option<f64>,
+    /// The same at the last scored row.
+    pub covered_90_final: Option<f64>,
+    /// Continuous ranked probability score over the rows of `wmse_mm` (mm).
+    pub crps_mm: Option<f64>,
     /// Unsolved particle steps, summed over seeds.
     pub unsolved: u64,
     /// Rows at which no particle explained the camera, summed over seeds.
@@ -38,6 +48,17 @@ pub struct Column {
     pub title: &'static str,
     /// The score.
     pub of: fn(&ShownScores) -> Option<f64>,
+    /// What is shown of it over folders.
+    pub over: Over,
+}
+
+/// What is shown of a score over folders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Its median and its 90th percentile.
+    Quantiles,
+    /// Its mean: a share has no tail.
+    Mean,
 }
 
 /// A variant's scores.
@@ -94,6 +115,8 @@ pub struct Overall {
     pub median: ShownScores,
     /// 90th percentiles over folders.
     pub p90: ShownScores,
+    /// Means over folders.
+    pub mean: ShownScores,
     /// Unsolved particle steps over all folders and seeds.
     pub unsolved: u64,
 }
@@ -111,59 +134,151 @@ pub struct Comparison {
     pub folders: Vec<FolderResult>,
     /// Over folders.
     pub overall: Vec<Overall>,
+    /// What touch does to the belief; `None` where no two folders have sensors.
+    pub touch_gain: Option<TouchGain>,
     /// Folders that gave no result.
     pub errors: Vec<LostFolder>,
 }
 
+/// CRPS of the particle filter with touch minus that without, folder by folder.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TouchGain {
+    /// Mean over folders (mm); negative where touch makes the belief better.
+    pub crps_mm: f64,
+    /// Standard error of that mean (mm).
+    pub standard_error_mm: f64,
+    /// Number of folders.
+    pub folders: usize,
+}
+
 /// The scores that are shown, in order.
-pub const COLUMNS: [Column; 4] = [
+pub const COLUMNS: [Column; 6] = [
     Column {
         title: "WMSE mm",
         of: |scores| scores.wmse_mm,
+        over: Over::Quantiles,
     },
     Column {
         title: "moving mm",
         of: |scores| scores.wmse_moving_mm,
+        over: Over::Quantiles,
     },
     Column {
         title: "final mm",
         of: |scores| scores.final_error_mm,
+        over: Over::Quantiles,
     },
     Column {
         title: "final deg",
         of: |scores| scores.final_error_deg,
+        over: Over::Quantiles,
+    },
+    Column {
+        title: "covers %",
+        of: |scores| scores.covered_90.map(|share| 100.0 * share),
+        over: Over::Mean,
+    },
+    Column {
+        title: "CRPS mm",
+        of: |scores| scores.crps_mm,
+        over: Over::Mean,
     },
 ];
+
+/// What the columns of a table mean, in a line.
+pub const LEGEND: &str = "WMSE: over hidden rows, over all where none is hidden. covers: share of the 90 % intervals of x, y and theta that hold the \
+     reference there; CRPS: error of the whole belief; both means.";
 
 impl ShownScores {
     /// The scores of one run.
     pub fn of(run: &ScoredRun) -> Self {
         let scores = &run.scores;
+        let belief = match scores.wmse_occluded_mm {
+            Some(_) => scores.belief_occluded,
+            None => scores.belief,
+        };
         Self {
             wmse_mm: scores.wmse_occluded_mm.or(scores.wmse_mm),
             wmse_moving_mm: scores.wmse_moving_mm,
+            wmse_until_rest_mm: scores.wmse_until_rest_mm,
             final_error_mm: scores.final_error_mm,
             final_error_deg: scores.final_error_deg,
+            covered_90: belief.covered,
+            covered_90_seen: scores.belief_seen.covered,
+            covered_90_final: scores.belief_final.covered,
+            crps_mm: belief.crps_mm,
             unsolved: run.unsolved,
             collapses: run.collapses,
             seen: run.seen(),
         }
     }
 
+    /// Median errors and mean shares over seeds.
+    fn over_seeds(of: &[Self]) -> Self {
+        let mean = Self::mean(of);
+        Self {
+            covered_90: mean.covered_90,
+            covered_90_seen: mean.covered_90_seen,
+            covered_90_final: mean.covered_90_final,
+            crps_mm: mean.crps_mm,
+            ..Self::quantile(of, 0.5)
+        }
+    }
+
     /// The `q`-quantile of each score, and all unsolved steps and collapses.
     fn quantile(of: &[Self], q: f64) -> Self {
+        Self::each(of, |values| quantile(values, q))
+    }
+
+    /// The mean of each score, and all unsolved steps and collapses.
+    fn mean(of: &[Self]) -> Self {
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        Self::each(of, |values| (!values.is_empty()).then(|| mean(values)))
+    }
+
+    /// What `summarise` makes of each score, and all unsolved steps and collapses.
+    fn each(of: &[Self], summarise: impl Fn(&[f64]) -> Option<f64>) -> Self {
         let each = |score: fn(&Self) -> Option<f64>| {
-            quantile(&of.iter().filter_map(score).collect::<Vec<_>>(), q)
+            summarise(&of.iter().filter_map(score).collect::<Vec<_>>())
         };
         Self {
             wmse_mm: each(|m| m.wmse_mm),
             wmse_moving_mm: each(|m| m.wmse_moving_mm),
+            wmse_until_rest_mm: each(|m| m.wmse_until_rest_mm),
             final_error_mm: each(|m| m.final_error_mm),
             final_error_deg: each(|m| m.final_error_deg),
+            covered_90: each(|m| m.covered_90),
+            covered_90_seen: each(|m| m.covered_90_seen),
+            covered_90_final: each(|m| m.covered_90_final),
+            crps_mm: each(|m| m.crps_mm),
             unsolved: of.iter().map(|m| m.unsolved).sum(),
             collapses: of.iter().map(|m| m.collapses).sum(),
             seen: of.iter().map(|m| m.seen).sum(),
         }
+    }
+}
+
+impl TouchGain {
+    fn of(folders: &[FolderResult]) -> Option<Self> {
+        let crps = |folder: &FolderResult, variant: Variant| {
+            let mut methods = folder.methods.iter();
+            methods
+                .find(|entry| entry.variant == variant)?
+                .scores
+                .crps_mm
+        };
+        let gains = folders.iter().filter_map(|folder| {
+            Some(crps(folder, Variant::Particle)? - crps(folder, Variant::ParticleNoTouch)?)
+        });
+        let gains: Vec<f64> = gains.collect();
+        let count = gains.len() as f64;
+        let mean = gains.iter().sum::<f64>() / count;
+        let squares: f64 = gains.iter().map(|gain| (gain - mean).powi(2)).sum();
+        (gains.len() >= 2).then(|| Self {
+            crps_mm: mean,
+            standard_error_mm: (squares / (count - 1.0) / count).sqrt(),
+            folders: gains.len(),
+        })
     }
 }
 
@@ -204,9 +319,9 @@ impl FolderResult {
             .map(|finding| finding.to_string())
             .chain(unexplained);
         let warnings = warnings.collect();
-        let methods = by_variant.into_iter().map(|(variant, scores)| {
-            VariantScores::new(variant, ShownScores::quantile(&scores, 0.5))
-        });
+        let methods = by_variant
+            .into_iter()
+            .map(|(variant, scores)| VariantScores::new(variant, ShownScores::over_seeds(&scores)));
         Ok(Self {
             warnings,
             folder: folder.display().to_string(),
@@ -243,6 +358,7 @@ impl Comparison {
             particles: args.shared.particles,
             seeds: args.seeds,
             quantile,
+            touch_gain: TouchGain::of(&folders),
             folders,
             overall,
             errors,
@@ -268,6 +384,7 @@ impl Overall {
             folders: scores.len(),
             median,
             p90,
+            mean: ShownScores::mean(&scores),
             unsolved: median.unsolved,
         };
         (!scores.is_empty()).then_some(result)

@@ -2,7 +2,9 @@
 
 use stickslip_report::{Colour, Table, number};
 
-use super::results::{COLUMNS, Column, Comparison, Overall, VariantScores};
+use super::results::{
+    COLUMNS, Column, Comparison, LEGEND, Over, Overall, TouchGain, VariantScores,
+};
 
 /// A table per folder, then one over all of them; nothing where there is no folder.
 pub fn text(comparison: &Comparison) -> String {
@@ -22,9 +24,12 @@ pub fn text(comparison: &Comparison) -> String {
     let overall = (!folders.is_empty()).then(|| {
         format!(
             "median (90th percentile) over {} folders, each the median of {seeds} seeds\n{}\
-             WMSE: over hidden rows, over all where none is hidden. Quantiles: {quantile}.\n",
+             {LEGEND} Quantiles: {quantile}.\n{}",
             folders.len(),
-            overall(&comparison.overall)
+            overall(&comparison.overall),
+            comparison
+                .touch_gain
+                .map_or_else(String::new, |gain| gain.to_string())
         )
     });
     folder_tables.chain(overall).collect::<Vec<_>>().join("\n")
@@ -55,12 +60,13 @@ pub fn entries(entries: &[VariantScores]) -> Table {
 pub fn overall(rows: &[Overall]) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved", "collapses", "folders"]));
     for row in rows {
-        let both = |column: &Column| {
-            format!(
+        let both = |column: &Column| match column.over {
+            Over::Quantiles => format!(
                 "{} ({})",
                 number((column.of)(&row.median), 2),
                 number((column.of)(&row.p90), 2)
-            )
+            ),
+            Over::Mean => number((column.of)(&row.mean), 2),
         };
         let counts = [
             row.unsolved.to_string(),
@@ -76,6 +82,16 @@ pub fn overall(rows: &[Overall]) -> Table {
         );
     }
     table
+}
+
+impl std::fmt::Display for TouchGain {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(
+            f,
+            "touch changes the CRPS by {:+.3} mm, standard error {:.3}, over {} folders",
+            self.crps_mm, self.standard_error_mm, self.folders
+        )
+    }
 }
 
 fn titles<const A: usize, const B: usize>(before: [&str; A], after: [&str; B]) -> Vec<String> {

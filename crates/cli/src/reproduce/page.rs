@@ -123,7 +123,7 @@ fn played(
         &replicate.experiment,
         replicate.conditions(particles, tracking),
     );
-    let runs = Variant::COMPARED
+    let runs = Variant::DRAWN
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, &conditions))
         .collect::<Result<Vec<_>, _>>()?;

@@ -137,8 +137,9 @@ impl Columns {
         self.unknowns() + 6
     }
 
-    /// log-likelihood of the tactile readings of the latest row (contact mode).
-    pub fn touch_log_likelihood(&self) -> usize {
+    /// log-likelihood of what is known of the latest row without the camera: the pusher's place and
+    /// tactile readings (contact mode).
+    pub fn felt_log_likelihood(&self) -> usize {
         self.unknowns() + 7
     }
 

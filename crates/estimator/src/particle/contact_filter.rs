@@ -134,6 +134,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         let tactile = measured.tactile.iter().copied();
         self.observation.tactile.extend(tactile);
+        self.observation.felt = self.filter.model().columns().mode() == Mode::Contact;
 
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
@@ -213,6 +214,7 @@ impl<'o> ContactFilter<'o> {
         self.look_back(time);
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();
+        self.observation.felt = false;
         let _ = self.filter.observe(&self.plan, &self.observation);
         summarise(&self.filter, &self.plan.reference, &mut self.latest);
         &self.latest

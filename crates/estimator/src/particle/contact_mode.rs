@@ -5,7 +5,7 @@ use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist}
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::mode::Mode;
-use crate::particle::chunk::{Column, FlagsMut, LANES, is_set};
+use crate::particle::chunk::{Column, FlagsMut, LANES, is_set, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::propagation::{NOISE_STEP, Propagation, Transition, load_columns};
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
@@ -48,6 +48,9 @@ impl Propagation {
             self.draw_offsets(transition, block);
         }
         self.load_offsets(transition, block);
+        for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
+            *before = squared(particles.pusher_lag);
+        }
     }
 
     /// The object's friction: what nothing was felt of is drawn anew from its prior; what was felt
@@ -223,8 +226,40 @@ impl Propagation {
         }
     }
 
-    /// Weighs the tactile readings at the end of the step.
-    pub(super) fn read_touch(
+    /// Weighs what is known without the camera at the end of the step: where the pusher is, and what
+    /// the sensors read.
+    pub(super) fn feel(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        self.read_pusher(transition, block);
+        self.read_touch(transition, plan, block);
+    }
+
+    /// Weighs how far behind its logged pose the pusher gave way in this step: a particle that jams
+    /// a pusher which goes on is contradicted by the log.
+    fn read_pusher(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        block: &mut BlockMut<'_>,
+    ) {
+        let std = setup.uncertainty.pusher_lag;
+        let scale = Lanes::splat(-0.5 / (std * std));
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let after = squared(self.particles[chunk].pusher_lag);
+            let log_likelihood = (after - self.lag_before[chunk]) * scale;
+            store_chunk(
+                block.column_mut(columns.felt_log_likelihood()),
+                chunk,
+                &log_likelihood,
+            );
+        }
+    }
+
+    /// Weighs the tactile readings.
+    fn read_touch(
         &mut self,
         transition: &Transition<'_>,
         plan: &StepPlan,
@@ -235,7 +270,6 @@ impl Propagation {
         let h = plan.duration();
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let threshold = setup.tactile.touch_force * last_h;
-        block.column_mut(columns.touch_log_likelihood()).fill(0.0);
         for (j, reading) in plan.tactile.iter().enumerate() {
             let Some(reading) = *reading else { continue };
             for chunk in 0..block.len().div_ceil(LANES) {
@@ -254,11 +288,15 @@ impl Propagation {
                     for (k, stuck) in stuck.into_iter().enumerate() {
                         block.column_mut(columns.stuck(j) + k)[i] = stuck;
                     }
-                    block.column_mut(columns.touch_log_likelihood())[i] += log_likelihood;
+                    block.column_mut(columns.felt_log_likelihood())[i] += log_likelihood;
                 }
             }
         }
     }
+}
+
+fn squared([x, y]: [Column; 2]) -> Column {
+    x * x + y * y
 }
 
 /// One step of a random walk in a normal distribution that it keeps: `fresh` is drawn from that

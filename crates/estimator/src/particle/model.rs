@@ -167,18 +167,18 @@ impl Model for ContactModel<'_> {
             #[inline(always)]
             |chunk| {
                 let camera = &self.camera_likelihood;
-                let touch = match self.columns().mode() {
+                let felt = match self.columns().mode() {
                     Mode::Paper => {
                         let tactile = &self.tactile_likelihood;
                         tactile.log_likelihood(&observation.tactile, block, chunk)
                     }
-                    Mode::Contact if observation.tactile.is_empty() => Column::ZERO,
+                    Mode::Contact if !observation.felt => Column::ZERO,
                     Mode::Contact => {
-                        let column = self.columns().touch_log_likelihood();
+                        let column = self.columns().felt_log_likelihood();
                         load_chunk(block.column(column), chunk, 0.0)
                     }
                 };
-                camera.log_likelihood(observation, block, chunk) + touch
+                camera.log_likelihood(observation, block, chunk) + felt
             },
         );
     }

@@ -28,11 +28,13 @@ pub struct Observation {
     pub latency: Option<LatencyCompensation>,
     /// Tactile readings, one per sensor.
     pub tactile: Vec<Option<bool>>,
+    /// Whether what the step itself says of pusher and sensors counts (contact mode).
+    pub felt: bool,
 }
 
 impl Observation {
     /// True where nothing was read.
     pub fn is_empty(&self) -> bool {
-        self.pose.is_none() && self.tactile.iter().all(Option::is_none)
+        self.pose.is_none() && !self.felt && self.tactile.iter().all(Option::is_none)
     }
 }

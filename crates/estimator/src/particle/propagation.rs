@@ -51,6 +51,8 @@ pub struct Propagation {
     /// Where each particle's pusher and fixels stand beside their poses (contact mode).
     pub(super) pusher_offsets: Vec<[Column; 2]>,
     pub(super) fixel_offsets: Vec<[Column; 2]>,
+    /// Square of the pusher's lag before the step (m²) (contact mode).
+    pub(super) lag_before: [Column; CHUNKS],
     involved: [Involved; CHUNKS],
     pub(super) normals: [[f64; BLOCK]; 4],
     level: Level,
@@ -98,6 +100,7 @@ impl Default for Propagation {
             proposed: [Friction::default(); CHUNKS],
             pusher_offsets: Vec::new(),
             fixel_offsets: Vec::new(),
+            lag_before: [Column::ZERO; CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
             level: Level::new(),
@@ -157,7 +160,7 @@ impl Propagation {
             || self.store(transition, plan, block),
         );
         if mode == Mode::Contact {
-            self.read_touch(transition, plan, block);
+            self.feel(transition, plan, block);
         }
     }
 

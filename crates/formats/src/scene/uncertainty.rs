@@ -61,6 +61,12 @@ const PUSHER_OFFSET: Quantity = Quantity::new(
     Unit::Metre,
     Rule::NotNegative,
 );
+const PUSHER_LAG: Quantity = Quantity::new(
+    "pusher_lag",
+    "the standard deviation of the way by which a held pusher is behind its logged pose",
+    Unit::Metre,
+    Rule::Positive,
+);
 const FIXEL_POSITION: Quantity = Quantity::new(
     "fixel_position",
     "the standard deviation of a fixel's position",
@@ -102,6 +108,7 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
         variation_length: number(&VARIATION_LENGTH, default.variation_length)?,
         force_std: number(&FORCE_STD, default.force_std)?,
         pusher_offset: number(&PUSHER_OFFSET, default.pusher_offset)?,
+        pusher_lag: number(&PUSHER_LAG, default.pusher_lag)?,
         fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,
         roughness: number(&ROUGHNESS, default.roughness)?,
         latency: number(&LATENCY, default.latency)?,
