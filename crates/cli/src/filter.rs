@@ -45,6 +45,8 @@ struct Summary<'a> {
     /// Of those, the ones whose solver gave up; the others have no solution.
     failed: u64,
     collapses: u32,
+    /// ln of what the particles expected of the log.
+    log_evidence: Option<f64>,
     /// What makes the scores doubtful.
     warnings: &'a [String],
     real_time_factor: f64,
@@ -196,6 +198,7 @@ impl<'a> Summary<'a> {
             unsolved: run.unsolved,
             failed: run.failed,
             collapses: run.collapses,
+            log_evidence: run.log_evidence,
             warnings,
             real_time_factor: experiment.log.duration() / seconds,
             stall_force: experiment.setup.scene.pusher.stall_force,

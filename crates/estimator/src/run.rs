@@ -24,6 +24,10 @@ pub struct Run {
     pub failed: u64,
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
     pub collapses: u32,
+    /// ln of the evidence of the log: of two scenes, or of two modes, the one with the higher evidence
+    /// expected the camera poses and tactile readings more. Up to a constant of the log; rows at which
+    /// the filter collapsed are left out. `None` for methods without particles.
+    pub log_evidence: Option<f64>,
 }
 
 /// Runs a method over a log; `progress` gets the number of every finished row.
@@ -90,21 +94,21 @@ fn run_prepared(
     progress: &mut dyn FnMut(usize),
 ) -> Result<Run, RunError> {
     let camera = || setup.camera.ok_or(RunError::NoCamera);
-    let (estimate, collapses) = match (options.method, options.tracking) {
+    let (estimate, collapses, log_evidence) = match (options.method, options.tracking) {
         (Method::Particle, Tracking::Smoothed) => {
             track_smoothed(setup, camera()?, prepared, options, progress)?
         }
         (Method::Particle, Tracking::Causal) => track_causal(setup, prepared, options, progress)?,
-        (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, 0),
+        (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, 0, None),
         (Method::KalmanStops, _) => {
             let kalman = kalman::track(setup, &camera()?, prepared)?;
-            (stopping(kalman, prepared, options.tactile), 0)
+            (stopping(kalman, prepared, options.tactile), 0, None)
         }
         (Method::WithPusher, _) => {
             let kalman = kalman::track(setup, &camera()?, prepared)?;
-            (with_pusher(kalman, prepared), 0)
+            (with_pusher(kalman, prepared), 0, None)
         }
-        (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), 0),
+        (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), 0, None),
     };
     let all = |count: fn(&EstimateRow) -> Option<u32>| {
         let counts = estimate.rows.iter().filter_map(count);
@@ -115,17 +119,21 @@ fn run_prepared(
         failed: all(|row| row.failed),
         estimate,
         collapses,
+        log_evidence,
     })
 }
 
-/// The particle filter, driven by the pusher's smoothed track; also the number of collapses.
+/// An estimate with the number of collapses and ln of the evidence.
+type ParticleRun = (Estimate, u32, Option<f64>);
+
+/// The particle filter, driven by the pusher's smoothed track; with what it says of itself.
 fn track_smoothed(
     setup: &Setup,
     camera: Camera,
     prepared: &PreparedLog<'_>,
     options: &RunOptions,
     progress: &mut dyn FnMut(usize),
-) -> Result<(Estimate, u32), RunError> {
+) -> Result<ParticleRun, RunError> {
     let PreparedLog {
         log,
         first,
@@ -166,16 +174,16 @@ fn track_smoothed(
         }
         progress(row);
     }
-    Ok((estimate, filter.collapses()))
+    Ok((estimate, filter.collapses(), Some(filter.log_evidence())))
 }
 
-/// The particle filter row by row, as a [`Tracker`] takes them; also the number of collapses.
+/// The particle filter row by row, as a [`Tracker`] takes them; with what it says of itself.
 fn track_causal(
     setup: &Setup,
     prepared: &PreparedLog<'_>,
     options: &RunOptions,
     progress: &mut dyn FnMut(usize),
-) -> Result<(Estimate, u32), RunError> {
+) -> Result<ParticleRun, RunError> {
     let tracker_options = TrackerOptions::of(options);
     let mut tracker = Tracker::build(setup, &tracker_options, prepared.observer)?;
     let mut estimate = prepared.empty_estimate(setup);
@@ -190,7 +198,7 @@ fn track_causal(
             progress(row);
         }
     }
-    Ok((estimate, tracker.collapses()))
+    Ok((estimate, tracker.collapses(), Some(tracker.log_evidence())))
 }
 
 impl PreparedLog<'_> {

@@ -286,4 +286,12 @@ impl<'o> Tracker<'o> {
     pub fn collapses(&self) -> u32 {
         self.filter.as_ref().map_or(0, ContactFilter::collapses)
     }
+
+    /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence); 0
+    /// before the first pose.
+    pub fn log_evidence(&self) -> f64 {
+        self.filter
+            .as_ref()
+            .map_or(0.0, ContactFilter::log_evidence)
+    }
 }

@@ -9,7 +9,8 @@ use stickslip_dynamics::Friction;
 pub struct Uncertainty {
     /// Standard deviations of ln β, the priors of the friction parameters: 0.45 is 45 %.
     pub friction: Friction,
-    /// Random step of ln β per step of 1/30 s while the camera looks; it keeps the prior.
+    /// Random step of ln β per step of 1/30 s, while the camera looks or the pusher moves; it keeps the
+    /// prior.
     pub drift: f64,
     /// Standard deviation of the logarithm by which friction differs from place to place.
     pub variation: f64,
@@ -44,15 +45,15 @@ impl Default for Uncertainty {
                 d_tri: 0.25,
             },
             drift: 0.05,
-            variation: 0.05,
+            variation: 0.1,
             variation_length: 5e-3,
             force_std: 0.25,
             pusher_offset: 1.5e-4,
             pusher_lag: 3e-4,
-            fixel_position: 7e-5,
+            fixel_position: 1e-4,
             roughness: 1.0,
             latency: 0.03,
-            touch_gap: 3e-4,
+            touch_gap: 5e-4,
         }
     }
 }

@@ -5,7 +5,7 @@ mod common;
 
 use common::{RATE, log, setup};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Log, Method, Mode, Occlusion, RunOptions, Setup, run};
+use stickslip::{Estimate, Log, Method, Mode, Occlusion, Run, RunOptions, Setup, run};
 
 /// Speed of the pusher (m/s), and where it meets the disc (s).
 const SPEED: f64 = 0.02;
@@ -114,36 +114,61 @@ fn a_camera_that_moves_for_good_is_followed() {
 }
 
 /// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
-/// else it slides round the fixel. It slides; most particles believe that it jams.
-fn slides_past(pusher_lag: f64) -> f64 {
+/// else it slides round the fixel. Here it slides.
+fn slippery() -> (Setup, Log) {
     let mut slippery = setup(&[[0.032, -0.022]]);
-    (slippery.scene.nominal.mu_p, slippery.scene.nominal.mu_f) = (0.15, 0.15);
+    let nominal = &mut slippery.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
     let beside = |time: f64| Some(Pose::new(-0.0348 + SPEED * time, 0.004, 0.0));
     let mut log = log(110, |_| Some(Pose::default()), beside);
-    let truth = RunOptions {
+    let options = RunOptions {
         method: Method::Nominal,
         ..RunOptions::default()
     };
-    let truth = run(&slippery, &log, &truth, &mut |_| ()).expect("a simulation");
+    let truth = run(&slippery, &log, &options, &mut |_| ()).expect("a simulation");
     log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
-    let last = log.object[109].expect("a pose");
-    assert!(last.y > 0.01, "the disc slides round the fixel: {last:?}");
+    assert!(log.object[109].expect("a pose").y > 0.01);
+    (slippery, log)
+}
 
-    let mut sticky = slippery.clone();
-    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
-    sticky.uncertainty.pusher_lag = pusher_lag;
-    let dark = RunOptions {
+/// A run in the dark.
+fn blind(setup: &Setup, log: &Log) -> Run {
+    let options = RunOptions {
         occlusion: Occlusion::Rows { from: 5, to: None },
         particles: 400,
         ..RunOptions::default()
     };
-    let run = run(&sticky, &log, &dark, &mut |_| ()).expect("a run");
-    let believed = run.estimate.rows[109].pose.expect("a pose");
-    (believed.x - last.x).hypot(believed.y - last.y)
+    run(setup, log, &options, &mut |_| ()).expect("a run")
 }
 
 #[test]
 fn a_pusher_that_goes_on_says_that_nothing_jams() {
-    let (deaf, hears) = (slides_past(1e3), slides_past(3e-4));
+    let (slippery, log) = slippery();
+    let last = log.object[109].expect("a pose");
+    // most particles believe that it jams
+    let mut sticky = slippery.clone();
+    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    let error = |pusher_lag| {
+        sticky.uncertainty.pusher_lag = pusher_lag;
+        let run = blind(&sticky, &log);
+        let believed = run.estimate.rows[109].pose.expect("a pose");
+        (believed.x - last.x).hypot(believed.y - last.y)
+    };
+    let [deaf, hears] = [1e3, 3e-4].map(error);
     assert!(hears < 0.5 * deaf, "{hears} m, without the pusher {deaf} m");
+}
+
+#[test]
+fn the_evidence_is_for_the_friction_that_was() {
+    let (slippery, log) = slippery();
+    let mut sticky = slippery.clone();
+    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    let [right, wrong] = [&slippery, &sticky].map(|setup| blind(setup, &log).log_evidence);
+    assert!(right > wrong, "{right:?}, {wrong:?}");
+    let other = RunOptions {
+        method: Method::Kalman,
+        ..RunOptions::default()
+    };
+    let kalman = run(&slippery, &log, &other, &mut |_| ()).expect("a run");
+    assert_eq!(kalman.log_evidence, None);
 }

@@ -145,6 +145,12 @@ fn sampled(setup: &Setup, seed: u64, mode: Mode) -> Option<KnownExperiment> {
         ..RunOptions::default()
     };
     let particle = run(setup, &experiment.log, &options, &mut |_| ()).ok()?;
+    // a motion that the logged pusher contradicts is as much rarer among truths
+    let chance = libm::exp(particle.log_evidence?);
+    let streams = Streams::new(seed + OTHER_SEEDS).of(Purpose::General);
+    if streams.uniform(0, 0, 0) > chance {
+        return None;
+    }
     let last = particle.estimate.rows.last()?;
     let (friction, end) = (last.friction?, last.pose?);
     measure(&mut experiment, &particle.estimate, setup.camera?, seed);

@@ -40,6 +40,8 @@ pub struct ScoredRun {
     pub failed: u64,
     /// Rows at which no particle explained the camera.
     pub collapses: u32,
+    /// ln of the evidence of the log, see [`Run::log_evidence`].
+    pub log_evidence: Option<f64>,
 }
 
 impl ScoredRun {
@@ -81,6 +83,7 @@ impl ScoredRun {
             unsolved,
             failed,
             collapses,
+            log_evidence,
         } = run;
         let hidden = occlusion.hidden(&experiment.log);
         let against = |reference: &Reference| score(&estimate, reference, &hidden, radius);
@@ -92,6 +95,7 @@ impl ScoredRun {
             unsolved,
             failed,
             collapses,
+            log_evidence,
         }
     }
 

@@ -48,6 +48,8 @@ pub(crate) struct ContactFilter<'o> {
     observation: Observation,
     latest: EstimateRow,
     collapses: u32,
+    /// ln of what the particles gave to the rows so far.
+    log_evidence: f64,
     /// Camera poses in a row that no particle explained (contact mode).
     unexplained: u32,
     /// The latest camera pose.
@@ -115,6 +117,7 @@ impl<'o> ContactFilter<'o> {
             observation: Observation::default(),
             latest: EstimateRow::default(),
             collapses: 0,
+            log_evidence: 0.0,
             unexplained: 0,
             shown: None,
         };
@@ -139,6 +142,9 @@ impl<'o> ContactFilter<'o> {
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
         self.collapses += u32::from(report.collapsed());
+        if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
+            self.log_evidence += log_evidence;
+        }
         self.judge_camera(&report);
         self.report(&report, measured.object.is_some());
         &self.latest
@@ -241,5 +247,11 @@ impl<'o> ContactFilter<'o> {
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
     pub fn collapses(&self) -> u32 {
         self.collapses
+    }
+
+    /// ln of the evidence of the rows so far: what the particles expected of them, up to a constant of
+    /// the sensors. Rows at which they collapsed are left out.
+    pub fn log_evidence(&self) -> f64 {
+        self.log_evidence
     }
 }

@@ -8,7 +8,7 @@ use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, is_set, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::propagation::{NOISE_STEP, Propagation, Transition, load_columns};
-use crate::particle::step_plan::{ParameterNoise, StepPlan};
+use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt};
 
 /// Numbers for what is unknown: behind those of all substeps.
@@ -16,8 +16,8 @@ const VARIATION_PAIR: u32 = 1 << 20;
 const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
 const FIXEL_PAIR: u32 = OFFSET_PAIR + 2;
 
-/// Share of their spread by which offsets and latency wander from row to row while the camera looks:
-/// copies of a particle are to differ.
+/// Share of their spread by which offsets and latency wander from row to row: copies of a particle
+/// are to differ.
 const OFFSET_STEP: f64 = 0.05;
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
@@ -43,7 +43,7 @@ impl Propagation {
             self.draw_normals(draw, FIXEL_PAIR + 2 * j as u32, block);
             self.draw_fixel_offset(transition, plan, j, block);
         }
-        if plan.parameter_noise == ParameterNoise::Drawn {
+        if plan.unknowns_wander() {
             self.draw_normals(draw, OFFSET_PAIR, block);
             self.draw_offsets(transition, block);
         }
@@ -54,7 +54,7 @@ impl Propagation {
     }
 
     /// The object's friction: what nothing was felt of is drawn anew from its prior; what was felt
-    /// takes a random step that keeps the prior, while the camera looks.
+    /// takes a random step that keeps the prior.
     fn draw_friction(
         &mut self,
         Transition { setup, .. }: &Transition<'_>,
@@ -62,9 +62,9 @@ impl Propagation {
         block: &BlockMut<'_>,
     ) {
         let h = plan.duration();
-        let drift = match plan.parameter_noise {
-            ParameterNoise::Drawn => setup.uncertainty.drift * (h / NOISE_STEP).sqrt(),
-            ParameterNoise::Frozen => 0.0,
+        let drift = match plan.unknowns_wander() {
+            true => setup.uncertainty.drift * (h / NOISE_STEP).sqrt(),
+            false => 0.0,
         };
         let priors = setup.uncertainty.friction.fields();
         let (nominal, limits) = (setup.scene.nominal.fields(), setup.filter.limits.fields());
@@ -134,10 +134,10 @@ impl Propagation {
     ) {
         for (i, _) in block.particles() {
             let met = is_set(&block.as_block(), columns.met(j), i);
-            let step = match (met, plan.parameter_noise) {
+            let step = match (met, plan.unknowns_wander()) {
                 (false, _) => 1.0,
-                (true, ParameterNoise::Drawn) => OFFSET_STEP,
-                (true, ParameterNoise::Frozen) => continue,
+                (true, true) => OFFSET_STEP,
+                (true, false) => continue,
             };
             for axis in 0..2 {
                 let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];

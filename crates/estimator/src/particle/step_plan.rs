@@ -36,6 +36,13 @@ impl StepPlan {
         self.substeps.iter().map(|step| step.h).sum()
     }
 
+    /// Whether what a particle takes as known changes a little, so that copies differ: while the
+    /// camera looks, and in the dark while the pusher moves (contact mode). At rest nothing would tell
+    /// them apart.
+    pub(crate) fn unknowns_wander(&self) -> bool {
+        self.driven || self.parameter_noise == ParameterNoise::Drawn
+    }
+
     /// No step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {

@@ -67,6 +67,7 @@ const TABLES: [(&str, &[&str]); 11] = [
             "variation_length",
             "force_std",
             "pusher_offset",
+            "pusher_lag",
             "fixel_position",
             "roughness",
             "latency",
