@@ -33,6 +33,9 @@ class Scene:
     def virtual_radius(self) -> float:
         """Weight of an angle in scores: the object's radius of gyration (m)."""
 
+    def drawn_friction(self, normals: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Friction (K, 4) from the scene's prior, by standard normal numbers (K, 4): mu_s, mu_p, mu_f, d_tri."""
+
 class RunArguments(TypedDict):
     method: str
     mode: str
@@ -64,7 +67,7 @@ def particles(
     options: RunArguments,
     rows: Sequence[int] | None = None,
 ) -> tuple[NDArray[np.int64], dict[str, NDArray[np.float64]]]: ...
-def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> None: ...
+def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> dict[str, Any]: ...
 def simulate(
     scene: Scene, options: Mapping[str, Any]
 ) -> tuple[dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]], str]: ...

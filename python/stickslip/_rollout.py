@@ -23,6 +23,10 @@ class Rollout(TypedDict):
     twist: NDArray[np.float64]
     #: Steps without a certified solution (N,).
     unsolved: NDArray[np.uint32]
+    #: Way from where the pusher stands at the end to its pose (m), (N, 2): it gave way by so much.
+    pusher_lag: NDArray[np.float64]
+    #: Length of the longest such way after any step (m), (N,).
+    most_pusher_lag: NDArray[np.float64]
 
 
 def rollout(
@@ -41,8 +45,8 @@ def rollout(
     (N, 3): poses, at rest. ``pusher``: poses of the pusher where steps begin and end, (N, T + 1, 3), or
     (T + 1, 3) for all: x, y (m), theta (rad); it moves straight from one to the next, and gives way where
     the scene has a stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a number or
-    (N,); the scene's where it has none. ``out``: arrays of an earlier rollout of the same shape, to be
-    written over.
+    (N,); the scene's where it has none. ``out``: an earlier rollout of the same shape, whose poses and twists
+    are written over.
 
     The interpreter's lock is released; C-ordered float64 arrays are read as they lie, and results are
     written straight into the arrays that are returned. A trajectory depends on nothing but its own start,
@@ -64,17 +68,25 @@ def rollout(
             f"pusher has the shape {np.shape(pusher)}; it must be ({count}, T + 1, 3), or (T + 1, 3) for all, "
             "with T at least 1"
         )
-    result = _results(out, (count, pushers.shape[1], 3))
+    shape = (count, pushers.shape[1], 3)
+    pose, twist = (np.empty(shape), np.empty(shape)) if out is None else (out["pose"], out["twist"])
+    if pose.shape != shape or twist.shape != shape:
+        raise Error(f"out is of another shape than this rollout's {shape}")
     arrays = {
         "states": start,
         "friction": _frictions(scene, friction or {}, count),
         "pushers": pushers,
-        "poses": result["pose"],
-        "twists": result["twist"],
-        "unsolved": result["unsolved"],
+        "poses": pose,
+        "twists": twist,
     }
-    _native.rollout(scene, h, arrays, threads)
-    return result
+    ends = _native.rollout(scene, h, arrays, threads)
+    return {
+        "pose": pose,
+        "twist": twist,
+        "unsolved": ends["unsolved"],
+        "pusher_lag": ends["pusher_lag"],
+        "most_pusher_lag": ends["most_pusher_lag"],
+    }
 
 
 def _array(values: ArrayLike, name: str) -> NDArray[np.float64]:
@@ -101,15 +113,3 @@ def _frictions(scene: Scene, given: Mapping[str, ArrayLike], count: int) -> NDAr
             raise Error(f"friction: `{name}` has a value that is negative or not finite")
         friction[:, k] = values
     return friction
-
-
-def _results(out: Rollout | None, shape: tuple[int, int, int]) -> Rollout:
-    if out is None:
-        return {
-            "pose": np.empty(shape),
-            "twist": np.empty(shape),
-            "unsolved": np.empty(shape[0], dtype=np.uint32),
-        }
-    if out["pose"].shape != shape or out["twist"].shape != shape or out["unsolved"].shape != shape[:1]:
-        raise Error(f"out is of another shape than this rollout's {shape}")
-    return out

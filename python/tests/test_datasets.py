@@ -111,6 +111,9 @@ def test_two_finger_runs_are_cut_where_the_hand_is_lifted(tmp_path):
     expected = _motion(log["time"] + time[1] - 1495591820.0)
     np.testing.assert_allclose(log["object_x"][seen], expected[seen, 0] + 0.001, atol=1e-6)
     np.testing.assert_allclose(np.diff(log["object_theta"][seen]), np.diff(expected[seen, 2]), atol=1e-6)
+    np.savetxt(tmp_path / "one.txt", rows[:50], delimiter=",", fmt="%.12g")
+    (one,) = datasets.import_two_finger(tmp_path / "one.txt", SCENE, tmp_path / "one")
+    assert len(stickslip.load_log(one / "log.csv")["time"]) == 49
     pushes = datasets.import_two_finger(tmp_path / "log.txt", SCENE, tmp_path / "push", single_pushes=True)
     assert [len(stickslip.load_log(push / "log.csv")["time"]) for push in pushes] == [49, 50]
 

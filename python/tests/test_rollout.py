@@ -50,13 +50,29 @@ def test_a_trajectory_depends_on_nothing_but_itself(bench):
 
 def test_results_are_written_into_the_given_arrays(bench):
     first = stickslip.rollout(bench, _starts(3), _push(20))
-    expected = {name: first[name].copy() for name in first}
-    for array in first.values():
-        array.fill(1)
+    expected = {name: first[name].copy() for name in ("pose", "twist")}
+    for name in expected:
+        first[name].fill(1)
     again = stickslip.rollout(bench, _starts(3), _push(20), out=first)
-    assert all(again[name] is first[name] for name in first)
-    for name in first:
-        np.testing.assert_array_equal(first[name], expected[name])
+    for name, values in expected.items():
+        assert again[name] is first[name]
+        np.testing.assert_array_equal(again[name], values)
+    with pytest.raises(stickslip.Error, match="out is of another shape"):
+        stickslip.rollout(bench, _starts(4), _push(20), out=first)
+
+
+def test_a_drive_that_gives_way_stays_behind_where_the_object_stops_it(data):
+    text = (data / "bench-scene/scene.toml").read_text().replace("[pusher]", "[pusher]\nstall_force = 20.0")
+    walls = "".join(
+        f"[[fixel]]\nposition = [0.05, {y}]\nshape = [ {{ disc = {{ radius = 0.005 }} }} ]\n" for y in (0.015, -0.015)
+    )
+    scene = stickslip.Scene(text[: text.index("[[fixel]]")] + walls)
+    push = np.column_stack([np.linspace(-0.032, 0.008, 61), np.zeros((61, 2))])
+    blocked = stickslip.rollout(scene, np.zeros((2, 3)), np.stack([push, push + np.array([0, 0.2, 0])]))
+    # the square stops after 20 mm, the pusher is told to go 40, of which 2 are to the square
+    assert blocked["pusher_lag"][0, 0] == pytest.approx(0.018, abs=1e-3)
+    assert blocked["most_pusher_lag"][0] >= blocked["pusher_lag"][0, 0]
+    assert blocked["pusher_lag"][1].tolist() == [0, 0] and blocked["unsolved"].tolist() == [0, 0]
 
 
 def test_arrays_of_any_layout_are_read(bench):

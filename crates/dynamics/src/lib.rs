@@ -31,7 +31,9 @@ pub use ncp::report::{Outcome, Report, Route, TOLERANCE};
 pub use ncp::rows::{ContactRow, FootRow, Ncp};
 pub use ncp::unknowns::Unknowns;
 pub use particles::{ContactImpulse, Particle, Particles, WarmStart};
-pub use rollout::{ROLLOUT_BLOCK, Rollout, RolloutArrays, RolloutError, RolloutStart, RolloutWork};
+pub use rollout::{
+    ROLLOUT_BLOCK, Rollout, RolloutArrays, RolloutEnd, RolloutError, RolloutStart, RolloutWork,
+};
 pub use scene::{Feet, Fixel, Object, Pusher, Scene};
 pub use se2::{Pose, Twist, Wrench};
 pub use solver::chain::{Solver, solve, solve_from};

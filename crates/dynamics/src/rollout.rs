@@ -41,8 +41,20 @@ pub struct Rollout {
     pub poses: Vec<Pose>,
     /// Twists of the object (m/s, m/s, rad/s), (N, T + 1).
     pub twists: Vec<Twist>,
-    /// Steps without a certified solution, (N,).
-    pub unsolved: Vec<u32>,
+    /// How each trajectory went, (N,).
+    pub ends: Vec<RolloutEnd>,
+}
+
+/// How a trajectory went besides its motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RolloutEnd {
+    /// Steps without a certified solution.
+    pub unsolved: u32,
+    /// Way from where the pusher stands at the end to its pose (m), world frame: it gave way by so
+    /// much; zero where it stands at its pose.
+    pub pusher_lag: [f64; 2],
+    /// Length of the longest such way after any step (m).
+    pub most_pusher_lag: f64,
 }
 
 /// The arrays of N trajectories as a caller keeps them. Trajectories count from 0 in the order of
@@ -54,8 +66,8 @@ pub trait RolloutArrays {
     /// Keeps where the object of `trajectory` is at `row`, and how it moves.
     fn keep(&mut self, trajectory: usize, row: usize, pose: Pose, twist: Twist);
 
-    /// Keeps how many steps of `trajectory` have no certified solution.
-    fn keep_unsolved(&mut self, trajectory: usize, steps: u32);
+    /// Keeps how `trajectory` went.
+    fn keep_end(&mut self, trajectory: usize, end: RolloutEnd);
 }
 
 /// Why a rollout was refused.
@@ -142,7 +154,7 @@ impl Dynamics {
                 steps,
                 poses: vec![Pose::default(); pushers.len()],
                 twists: vec![Twist::default(); pushers.len()],
-                unsolved: vec![0; starts.len()],
+                ends: vec![RolloutEnd::default(); starts.len()],
             },
         };
         self.rollout_into(h, steps, starts, &mut columns, &mut RolloutWork::default())?;
@@ -226,8 +238,8 @@ impl RolloutArrays for Columns<'_> {
         self.rollout.twists[at] = twist;
     }
 
-    fn keep_unsolved(&mut self, trajectory: usize, steps: u32) {
-        self.rollout.unsolved[trajectory] = steps;
+    fn keep_end(&mut self, trajectory: usize, end: RolloutEnd) {
+        self.rollout.ends[trajectory] = end;
     }
 }
 
@@ -268,7 +280,7 @@ impl<A: RolloutArrays> Block<'_, A> {
         for (i, first) in directions[..count].iter_mut().enumerate() {
             *first = self.first_direction(i, steps);
         }
-        let mut unsolved = [0; ROLLOUT_BLOCK];
+        let mut ends = [RolloutEnd::default(); ROLLOUT_BLOCK];
         let mut pushers = [[None; LANES]; CHUNKS];
         for step in 0..steps {
             // the pusher of each trajectory, straight from pose to pose
@@ -283,22 +295,19 @@ impl<A: RolloutArrays> Block<'_, A> {
                 pushers[i / LANES][i % LANES] = Some(motion);
             }
 
-            step_chunks(
-                dynamics,
-                h,
-                &pushers[..chunks],
-                &mut particles[..chunks],
-                work,
-            );
+            dynamics.step_block_each(h, &pushers[..chunks], &mut particles[..chunks], work);
 
             self.keep(step + 1, &particles);
             let reports = work.reports().as_flattened();
-            for (unsolved, report) in unsolved[..count].iter_mut().zip(reports) {
-                *unsolved += u32::from(report.outcome != Outcome::Solved);
+            for (i, (end, report)) in ends[..count].iter_mut().zip(reports).enumerate() {
+                end.unsolved += u32::from(report.outcome != Outcome::Solved);
+                end.pusher_lag = particles[i / LANES].pusher_lag.map(|x| x.0[i % LANES]);
+                let [x, y] = end.pusher_lag;
+                end.most_pusher_lag = end.most_pusher_lag.max(libm::hypot(x, y));
             }
         }
-        for (i, steps) in unsolved[..count].iter().enumerate() {
-            self.arrays.keep_unsolved(self.first + i, *steps);
+        for (i, end) in ends[..count].iter().enumerate() {
+            self.arrays.keep_end(self.first + i, *end);
         }
     }
 
@@ -323,18 +332,6 @@ impl<A: RolloutArrays> Block<'_, A> {
             .find_map(|(from, to)| direction(from, to))
             .unwrap_or([1.0, 0.0])
     }
-}
-
-/// [`Dynamics::step_block_each`], compiled here once and not with every caller's arrays.
-#[inline(never)]
-fn step_chunks(
-    dynamics: &Dynamics,
-    h: f64,
-    pushers: &[[Option<PusherMotion>; LANES]],
-    particles: &mut [Particles<LANES>],
-    work: &mut RolloutWork,
-) {
-    dynamics.step_block_each(h, pushers, particles, work);
 }
 
 /// The pusher from `from` to `to` in `h` seconds; `last` is its last direction of translation.

@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::{
     Dynamics, Feet, Fixel, Friction, Object, Outcome, Part, Particle, Pose, Pusher, PusherMotion,
-    RolloutError, RolloutStart, Scene, Shape, StepInput, StepWork, Twist,
+    RolloutEnd, RolloutError, RolloutStart, Scene, Shape, StepInput, StepWork, Twist,
 };
 
 const STEPS: usize = 60;
@@ -79,7 +79,7 @@ fn pusher(i: usize) -> impl Iterator<Item = Pose> {
 }
 
 /// The same trajectory, alone and step by step.
-fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, u32) {
+fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, RolloutEnd) {
     let RolloutStart {
         pose,
         twist,
@@ -92,7 +92,8 @@ fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, u32) {
     }];
     let mut work = StepWork::<1>::default();
     let poses: Vec<Pose> = pusher(i).collect();
-    let (mut trajectory, mut unsolved, mut direction) = (vec![pose], 0, [1.0, 0.0]);
+    let mut end = RolloutEnd::default();
+    let (mut trajectory, mut direction) = (vec![pose], [1.0, 0.0]);
     for pair in poses.windows(2) {
         let (x, y) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
         let length = libm::hypot(x, y);
@@ -109,10 +110,13 @@ fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, u32) {
             pusher: Some(motion),
         };
         let [report] = dynamics.step(&input, &[friction], &mut particle, &mut work);
-        unsolved += u32::from(report.outcome != Outcome::Solved);
+        end.unsolved += u32::from(report.outcome != Outcome::Solved);
+        end.pusher_lag = particle[0].pusher_lag;
+        let lag = libm::hypot(end.pusher_lag[0], end.pusher_lag[1]);
+        end.most_pusher_lag = end.most_pusher_lag.max(lag);
         trajectory.push(particle[0].pose);
     }
-    (trajectory, unsolved)
+    (trajectory, end)
 }
 
 #[test]
@@ -124,11 +128,40 @@ fn trajectories_side_by_side_are_those_of_single_steps_bit_for_bit() {
         let rollout = dynamics.rollout(H, &starts, &pushers).expect("a rollout");
         assert_eq!(rollout.steps, STEPS);
         for (i, found) in rollout.poses.chunks(STEPS + 1).enumerate() {
-            let (expected, unsolved) = alone(&dynamics, i);
+            let (expected, end) = alone(&dynamics, i);
             assert_eq!(found, expected, "trajectory {i} of {count}");
-            assert_eq!(rollout.unsolved[i], unsolved);
+            assert_eq!(rollout.ends[i], end);
         }
     }
+}
+
+/// 36 mm of push, and the fixels stop the square after some 20: a drive that gives way stands 10 mm and
+/// more behind, one without end of force has steps without a solution.
+#[test]
+fn pushers_that_the_object_stops_stay_behind() {
+    let poses: Vec<Pose> = (0..=STEPS)
+        .map(|step| Pose::new(-0.032 + 0.02 * H * step as f64, 0.0, 0.0))
+        .collect();
+    let at_rest = RolloutStart {
+        pose: Pose::default(),
+        twist: Twist::default(),
+        friction: friction(0),
+    };
+    let end = |scene| {
+        let rollout = Dynamics::new(scene).rollout(H, &[at_rest], &poses);
+        rollout.expect("a rollout").ends[0]
+    };
+    let gave_way = end(scene());
+    assert_eq!(gave_way.unsolved, 0);
+    assert!(gave_way.pusher_lag[0] > 0.01, "{gave_way:?}");
+    assert!(gave_way.most_pusher_lag >= gave_way.pusher_lag[0]);
+    let mut rigid = scene();
+    rigid.pusher.stall_force = None;
+    let stuck = end(rigid);
+    assert!(
+        stuck.unsolved > 0 && stuck.most_pusher_lag == 0.0,
+        "{stuck:?}"
+    );
 }
 
 /// q⁺ = q + h v⁺, of every step.

@@ -1,12 +1,14 @@
 //! Many pushes at once, on NumPy arrays: [`rollout`].
 
 use numpy::{
-    PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray1, PyReadwriteArray3, PyUntypedArrayMethods,
+    PyArray1, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray3,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use rayon::prelude::*;
 use stickslip_dynamics::{
-    Dynamics, Friction, Pose, ROLLOUT_BLOCK, RolloutArrays, RolloutError, RolloutStart,
+    Dynamics, Friction, Pose, ROLLOUT_BLOCK, RolloutArrays, RolloutEnd, RolloutError, RolloutStart,
     RolloutWork, Twist,
 };
 
@@ -17,10 +19,10 @@ use crate::threads::{on_threads, processors};
 /// Numbers of a pose or twist, as arrays hold them.
 type Numbers = [f64; 3];
 
-/// Arrays of a rollout, in C order; the results are written into the last three.
+/// Arrays of a rollout, in C order; the motion is written into the last two.
 ///
 /// states (N, 6), friction (N, 4), pushers (N, T + 1, 3) or (1, T + 1, 3) for all, poses and twists
-/// (N, T + 1, 3), unsolved (N,).
+/// (N, T + 1, 3).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Arrays<'py> {
@@ -29,28 +31,25 @@ pub struct Arrays<'py> {
     pushers: PyReadonlyArray3<'py, f64>,
     poses: PyReadwriteArray3<'py, f64>,
     twists: PyReadwriteArray3<'py, f64>,
-    unsolved: PyReadwriteArray1<'py, u32>,
 }
 
-/// Simulates the trajectories into the given arrays.
+/// Simulates the trajectories into the given arrays; returns how they ended, (N,) or (N, 2) each.
 #[pyfunction]
 #[pyo3(signature = (scene, h, arrays, threads = None))]
-pub fn rollout(
-    py: Python<'_>,
-    scene: &Bound<'_, Scene>,
+pub fn rollout<'py>(
+    py: Python<'py>,
+    scene: &Bound<'py, Scene>,
     h: f64,
-    mut arrays: Arrays<'_>,
+    mut arrays: Arrays<'py>,
     threads: Option<usize>,
-) -> PyResult<()> {
-    let steps = arrays.check()?;
-    let rows = steps + 1;
+) -> PyResult<Bound<'py, PyDict>> {
+    let rows = arrays.check()?;
     let dynamics = &scene.get().dynamics;
     let states = arrays.states.as_slice()?.as_chunks::<6>().0;
     let friction = arrays.friction.as_slice()?.as_chunks::<4>().0;
     let pushers = arrays.pushers.as_slice()?.as_chunks::<3>().0;
     let poses = arrays.poses.as_slice_mut()?.as_chunks_mut::<3>().0;
     let twists = arrays.twists.as_slice_mut()?.as_chunks_mut::<3>().0;
-    let unsolved = arrays.unsolved.as_slice_mut()?;
 
     // blocks of trajectories, each with its part of every array
     let shared = pushers.len() == rows;
@@ -59,12 +58,10 @@ pub fn rollout(
         .zip(friction.par_chunks(ROLLOUT_BLOCK))
         .zip(poses.par_chunks_mut(ROLLOUT_BLOCK * rows))
         .zip(twists.par_chunks_mut(ROLLOUT_BLOCK * rows))
-        .zip(unsolved.par_chunks_mut(ROLLOUT_BLOCK))
         .enumerate();
-    let simulate = |work: &mut RolloutWork,
-                    (block, ((((states, friction), poses), twists), unsolved))| {
+    let simulate = |work: &mut RolloutWork, (block, (((states, friction), poses), twists))| {
         let first = block * ROLLOUT_BLOCK;
-        let mut block = Block {
+        let block = Block {
             rows,
             pushers: if shared {
                 pushers
@@ -74,11 +71,10 @@ pub fn rollout(
             shared,
             poses,
             twists,
-            unsolved,
+            ends: [RolloutEnd::default(); ROLLOUT_BLOCK],
         };
-        block
-            .simulate(dynamics, h, states, friction, work)
-            .map_err(|error| placed(error, first))
+        let ends = block.simulate(dynamics, h, states, friction, work);
+        ends.map_err(|error| placed(error, first))
     };
     let work = || {
         blocks
@@ -87,14 +83,31 @@ pub fn rollout(
     };
     let useful = states.len().div_ceil(ROLLOUT_BLOCK);
     let results = py.detach(|| on_threads(threads, processors(), useful, work))?;
-    results
+    let ends: Vec<_> = results
         .into_iter()
-        .collect::<Result<(), _>>()
-        .map_err(refused)
+        .collect::<Result<_, _>>()
+        .map_err(refused)?;
+    let mut ends = ends.concat();
+    ends.truncate(states.len());
+    to_dict(py, &ends)
+}
+
+/// How trajectories ended, as arrays.
+fn to_dict<'py>(py: Python<'py>, ends: &[RolloutEnd]) -> PyResult<Bound<'py, PyDict>> {
+    let lags = PyArray1::from_iter(py, ends.iter().flat_map(|end| end.pusher_lag));
+    let most = PyArray1::from_iter(py, ends.iter().map(|end| end.most_pusher_lag));
+    let dict = PyDict::new(py);
+    dict.set_item(
+        "unsolved",
+        PyArray1::from_iter(py, ends.iter().map(|end| end.unsolved)),
+    )?;
+    dict.set_item("pusher_lag", lags.reshape([ends.len(), 2])?)?;
+    dict.set_item("most_pusher_lag", most)?;
+    Ok(dict)
 }
 
 impl Arrays<'_> {
-    /// T, where the arrays go together; the package makes them so.
+    /// T + 1, where the arrays go together; the package makes them so.
     fn check(&self) -> PyResult<usize> {
         let (states, pushers) = (self.states.shape(), self.pushers.shape());
         let (count, rows) = (states[0], pushers[1]);
@@ -104,10 +117,9 @@ impl Arrays<'_> {
             && pushers[2] == 3
             && [1, count].contains(&pushers[0])
             && self.poses.shape() == of
-            && self.twists.shape() == of
-            && self.unsolved.shape() == [count];
+            && self.twists.shape() == of;
         if right && rows > 1 {
-            Ok(rows - 1)
+            Ok(rows)
         } else {
             Err(refused("the arrays of a rollout do not go together"))
         }
@@ -138,18 +150,19 @@ struct Block<'a> {
     shared: bool,
     poses: &'a mut [Numbers],
     twists: &'a mut [Numbers],
-    unsolved: &'a mut [u32],
+    /// How they ended; those past the last trajectory mean nothing.
+    ends: [RolloutEnd; ROLLOUT_BLOCK],
 }
 
 impl Block<'_> {
     fn simulate(
-        &mut self,
+        mut self,
         dynamics: &Dynamics,
         h: f64,
         states: &[[f64; 6]],
         friction: &[[f64; 4]],
         work: &mut RolloutWork,
-    ) -> Result<(), RolloutError> {
+    ) -> Result<[RolloutEnd; ROLLOUT_BLOCK], RolloutError> {
         let start = |(state, friction): (&[f64; 6], &[f64; 4])| {
             let [x, y, theta, vx, vy, omega] = *state;
             let [mu_s, mu_p, mu_f, d_tri] = *friction;
@@ -165,7 +178,8 @@ impl Block<'_> {
             }
         };
         let starts: Vec<RolloutStart> = states.iter().zip(friction).map(start).collect();
-        dynamics.rollout_into(h, self.rows - 1, &starts, self, work)
+        dynamics.rollout_into(h, self.rows - 1, &starts, &mut self, work)?;
+        Ok(self.ends)
     }
 }
 
@@ -186,7 +200,7 @@ impl RolloutArrays for Block<'_> {
         self.twists[at] = [twist.vx, twist.vy, twist.omega];
     }
 
-    fn keep_unsolved(&mut self, trajectory: usize, steps: u32) {
-        self.unsolved[trajectory] = steps;
+    fn keep_end(&mut self, trajectory: usize, end: RolloutEnd) {
+        self.ends[trajectory] = end;
     }
 }

@@ -1,5 +1,6 @@
 //! A scene file, read: [`Scene`].
 
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip::Setup;
@@ -69,6 +70,29 @@ impl Scene {
     #[getter]
     fn virtual_radius(&self) -> f64 {
         self.setup.virtual_radius()
+    }
+
+    /// Friction (K, 4) from the scene's prior, by standard normal numbers (K, 4): mu_s, mu_p, mu_f,
+    /// d_tri.
+    fn drawn_friction<'py>(
+        &self,
+        py: Python<'py>,
+        normals: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = normals.as_slice()?.as_chunks::<4>().0;
+        if normals.shape() != [rows.len(), 4] {
+            return Err(refused("normals must have the shape (K, 4)"));
+        }
+        let drawn = rows.iter().flat_map(|normals| {
+            let Friction {
+                mu_s,
+                mu_p,
+                mu_f,
+                d_tri,
+            } = self.setup.drawn_friction(*normals);
+            [mu_s, mu_p, mu_f, d_tri]
+        });
+        PyArray1::from_iter(py, drawn).reshape([rows.len(), 4])
     }
 
     fn __repr__(&self) -> String {

@@ -89,11 +89,14 @@ def _filled(
     time: NDArray[np.float64], poses: NDArray[np.float64], breaks: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rows of NaN at 30 Hz where the hand was lifted."""
-    times, rows = [time[: breaks[0]] if len(breaks) else time], [poses[: breaks[0]] if len(breaks) else poses]
-    for begin, end in zip(breaks, [*breaks[1:], len(time)], strict=True):
-        lifted = np.arange(time[begin - 1] + 1 / 30, time[begin] - 1 / 60, 1 / 30)
-        times += [lifted, time[begin:end]]
-        rows += [np.full((len(lifted), 6), np.nan), poses[begin:end]]
+    times, rows = [], []
+    for begin, end in zip([0, *breaks], [*breaks, len(time)], strict=True):
+        if begin > 0:
+            lifted = np.arange(time[begin - 1] + 1 / 30, time[begin] - 1 / 60, 1 / 30)
+            times.append(lifted)
+            rows.append(np.full((len(lifted), 6), np.nan))
+        times.append(time[begin:end])
+        rows.append(poses[begin:end])
     return np.concatenate(times), np.concatenate(rows)
 
 

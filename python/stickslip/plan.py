@@ -1,0 +1,154 @@
+"""Choosing a push: which of many brings the object nearest to a goal, may jam, or teaches most of friction.
+
+>>> from stickslip import plan
+>>> pushes = plan.straight_pushes(scene, pose=(0, 0, 0), count=500, length=0.05)  # doctest: +SKIP
+>>> outcome = plan.predict(scene, (0, 0, 0), pushes, plan.prior(scene, 50))  # doctest: +SKIP
+>>> best = outcome.nearest(goal=(0.05, 0.01, 0.3), jam_below=0.05)  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip._native import Error, Scene
+from stickslip._outline import outlines
+from stickslip._rollout import rollout
+
+__all__ = ["Outcome", "predict", "prior", "straight_pushes"]
+
+_FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
+
+#: Distance between object and pusher where a candidate begins (m).
+_CLEARANCE = 2e-3
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How N pushes end under K frictions."""
+
+    #: Last poses of the object (N, K, 3): x, y (m), theta (rad).
+    pose: NDArray[np.float64]
+    #: Whether the drive gave way, or a step had no certified solution (N, K).
+    jammed: NDArray[np.bool_]
+    #: Weight of an angle in distances (m): the object's radius of gyration.
+    radius: float
+
+    @property
+    def jam_probability(self) -> NDArray[np.float64]:
+        """Share of the frictions under which each push jams (N,)."""
+        return np.asarray(self.jammed.mean(axis=1))
+
+    def distance(self, goal: ArrayLike) -> NDArray[np.float64]:
+        """Root mean square distance (m) from ``goal`` (x, y in m, theta in rad) over the frictions (N,)."""
+        away = self.pose - np.asarray(goal, dtype=np.float64)
+        turn = np.angle(np.exp(1j * away[..., 2]))
+        square = away[..., 0] ** 2 + away[..., 1] ** 2 + (self.radius * turn) ** 2
+        return np.asarray(np.sqrt(square.mean(axis=1)))
+
+    def nearest(self, goal: ArrayLike, *, jam_below: float = 1.0) -> int:
+        """The push that ends nearest to ``goal`` among those that jam with at most this probability."""
+        allowed = self.jam_probability <= jam_below
+        if not allowed.any():
+            raise Error(f"every push jams with more than {jam_below}; the least is {self.jam_probability.min()}")
+        return int(np.where(allowed, self.distance(goal), np.inf).argmin())
+
+    def information(self, *, position_std: float, orientation_std: float) -> NDArray[np.float64]:
+        """What a look at the object after each push would tell of friction (N,), in nats.
+
+        It is the mutual information of friction and a pose with this noise (m, rad), with the poses that the
+        frictions lead to taken as normal: half of ln det(1 + C / noise), C their covariance.
+        """
+        noise = np.array([position_std, position_std, orientation_std])
+        if self.pose.shape[1] < 2 or not (noise > 0).all():
+            raise Error("information needs two frictions or more, and noise above 0")
+        spread = (self.pose - self.pose.mean(axis=1, keepdims=True)) / noise
+        covariance = np.einsum("nki,nkj->nij", spread, spread) / (self.pose.shape[1] - 1)
+        return np.asarray(0.5 * np.linalg.slogdet(np.eye(3) + covariance)[1])
+
+
+def predict(
+    scene: Scene,
+    pose: ArrayLike,
+    pushes: ArrayLike,
+    friction: Mapping[str, ArrayLike] | None = None,
+    *,
+    h: float = 1.0 / 30.0,
+    gives_way: float = 1e-3,
+    threads: int | None = None,
+) -> Outcome:
+    """Simulates every push under every friction.
+
+    ``pose``: the object's, at rest, (3,), or one per friction, (K, 3), as from :func:`stickslip.particles`.
+    ``pushes``: poses of the pusher (N, T + 1, 3), a step of ``h`` (s) apart. ``friction``: ``mu_s``, ``mu_p``,
+    ``mu_f``, ``d_tri`` (m), each (K,), as from :func:`prior` or :func:`stickslip.samples`; the scene's by
+    default. A push counts as jammed where the pusher falls farther than ``gives_way`` (m) behind.
+    """
+    paths = np.ascontiguousarray(pushes, dtype=np.float64)
+    if paths.ndim != 3 or paths.shape[2] != 3 or paths.shape[1] < 2:
+        raise Error(f"pushes has the shape {paths.shape}; it must be (N, T + 1, 3)")
+    values = {name: np.atleast_1d(np.asarray(value, dtype=np.float64)) for name, value in (friction or {}).items()}
+    starts = np.atleast_2d(np.asarray(pose, dtype=np.float64))
+    draws = max([len(starts), *(len(value) for value in values.values())])
+    starts = np.broadcast_to(starts, (draws, 3))
+    count = len(paths)
+    result = rollout(
+        scene,
+        np.tile(starts, (count, 1)),
+        np.repeat(paths, draws, axis=0),
+        {name: np.tile(np.broadcast_to(value, draws), count) for name, value in values.items()},
+        h=h,
+        threads=threads,
+    )
+    jammed = (result["unsolved"] > 0) | (result["most_pusher_lag"] > gives_way)
+    return Outcome(
+        result["pose"][:, -1].reshape(count, draws, 3).copy(), jammed.reshape(count, draws), scene.virtual_radius
+    )
+
+
+def prior(scene: Scene, count: int, *, seed: int = 0) -> dict[str, NDArray[np.float64]]:
+    """Frictions drawn from the scene's prior (``[uncertainty]``): each parameter (count,), d_tri in m."""
+    normals = np.random.default_rng(seed).standard_normal((count, len(_FRICTION)))
+    drawn = scene.drawn_friction(normals)
+    known = {name for name, value in scene.friction.items() if not np.isnan(value)}
+    return {name: drawn[:, k].copy() for k, name in enumerate(_FRICTION) if name in known}
+
+
+def straight_pushes(
+    scene: Scene,
+    pose: ArrayLike,
+    count: int,
+    *,
+    length: float,
+    speed: float = 0.02,
+    h: float = 1.0 / 30.0,
+    seed: int = 0,
+) -> NDArray[np.float64]:
+    """Random straight pushes at ``speed`` (m/s) that begin clear of the object at ``pose`` and go ``length`` (m)
+    past the circle around it: poses of the pusher (count, T + 1, 3), a step of ``h`` (s) apart.
+
+    The direction is any, the aim any point across the object. A push may still sweep through a fixel.
+    """
+    if not (count > 0 and length > 0 and speed > 0 and h > 0):
+        raise Error("count, length, speed and h must be above 0")
+    x, y, _ = np.asarray(pose, dtype=np.float64)
+    bodies = outlines(scene)
+    reach = _radius(bodies.object)
+    away = reach + _radius(bodies.pusher) + _CLEARANCE
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(-np.pi, np.pi, count)
+    aside = rng.uniform(-0.7, 0.7, count) * reach
+    ahead = np.column_stack([np.cos(angle), np.sin(angle)])
+    across = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    start = np.array([x, y]) - away * ahead + aside[:, None] * across
+    steps = max(1, int(np.ceil((length + _CLEARANCE) / (speed * h))))
+    travelled = speed * h * np.arange(steps + 1)
+    places = start[:, None, :] + travelled[None, :, None] * ahead[:, None, :]
+    return np.concatenate([places, np.broadcast_to(angle[:, None, None], (count, steps + 1, 1))], axis=2)
+
+
+def _radius(polygons: list[NDArray[np.float64]]) -> float:
+    return float(max(np.hypot(*polygon.T).max() for polygon in polygons))
