@@ -29,7 +29,7 @@ const CHANCE_AND_THREADS: &[&str] = &["rand", "rand_distr", "rand_core", "rayon"
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, then
 /// lanes, which know of nobody; testbed, rendering and vision stand beside the estimator, and
 /// evaluation brings all together.
-pub const CRATES: [Rules; 15] = [
+pub const CRATES: [Rules; 16] = [
     Rules {
         must_not_use: CHANCE_AND_THREADS,
         ..Rules::of("crates/lanes", &[])
@@ -71,6 +71,16 @@ pub const CRATES: [Rules; 15] = [
         ],
     ),
     Rules::of(
+        "crates/fit",
+        &[
+            "crates/dynamics",
+            "crates/filter",
+            "crates/estimator",
+            "crates/formats",
+            "crates/evaluation",
+        ],
+    ),
+    Rules::of(
         "crates/report",
         &[
             "crates/dynamics",
@@ -90,6 +100,7 @@ pub const CRATES: [Rules; 15] = [
             "crates/rendering",
             "crates/vision",
             "crates/evaluation",
+            "crates/fit",
             "crates/report",
         ],
     ),

@@ -8,6 +8,7 @@ use stickslip_evaluation::Variant;
 
 use crate::arg_values::{Rows, ThreadArgs, particles, positive};
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
+use crate::fit_args::FitArgs;
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
@@ -30,6 +31,8 @@ pub enum Command {
     Filter(FilterArgs),
     /// Run every method on experiment folders and compare their errors
     Compare(CompareArgs),
+    /// Learn from many pushes what a scene cannot know: friction, tripod radius; with its spread
+    Fit(FitArgs),
     /// Simulate an experiment: a folder with scene, log and truth
     Simulate(SimulateArgs),
     /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers

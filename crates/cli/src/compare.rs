@@ -24,6 +24,7 @@ use crate::log_files::log_path;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
+pub use folders::expand;
 use results::{Comparison, FolderResult, LostFolder, ShownScores};
 
 /// Runs above which a person would wait.
@@ -50,7 +51,7 @@ struct Job {
 
 /// Runs the command.
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
-    let folders = folders::expand(&args.folders, &args.scene_name)?;
+    let folders = expand(&args.folders, &args.scene_name)?;
     if let Some(path) = &args.report {
         let logs: Vec<PathBuf> = folders.iter().map(|folder| log_path(folder)).collect();
         let inputs: Vec<&Path> = logs.iter().map(PathBuf::as_path).collect();

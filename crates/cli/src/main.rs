@@ -19,6 +19,8 @@ mod experiment;
 mod failure;
 mod files;
 mod filter;
+mod fit;
+mod fit_args;
 mod frames;
 mod log_files;
 mod origin;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         Command::Demo(args) => demo::demo(&args),
         Command::Filter(args) => filter::filter(&args),
         Command::Compare(args) => compare::compare(&args),
+        Command::Fit(args) => fit::fit(&args),
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Check(args) => check::check(&args),

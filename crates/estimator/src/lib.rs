@@ -26,6 +26,7 @@ mod trajectory;
 mod uncertainty;
 
 pub use angle::wrapped;
+pub use baseline::predictor::{NominalPrediction, NominalPredictor};
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
 pub use log::Log;

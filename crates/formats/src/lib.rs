@@ -41,6 +41,7 @@ pub use log_mcap::{
 pub use log_warning::LogWarning;
 pub use mounts::Mounts;
 pub use named_columns::{ColumnError, NamedColumns};
-pub use scene::{SceneError, SceneProblem, read_mounts, read_scene};
+pub use nearest::nearest;
+pub use scene::{SceneEdit, SceneError, SceneProblem, read_mounts, read_scene};
 pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

@@ -2,7 +2,7 @@
 
 /// The candidate with the fewest edits to `name`, and that number; the first of equals; `None`
 /// without candidates.
-pub(crate) fn nearest<'a>(
+pub fn nearest<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<(&'a str, usize)> {

@@ -4,5 +4,6 @@
 mod in_the_dark;
 pub(crate) mod kalman;
 pub(crate) mod nominal;
+pub(crate) mod predictor;
 
 pub(crate) use in_the_dark::{stopping, with_pusher};

@@ -23,7 +23,13 @@ const TABLES: [(&str, &[&str]); 11] = [
     ("object", &["mass", "inertia", "shape", "tags"]),
     (
         "support",
-        &["friction", "tripod_radius", "tripod_angle", "feet"],
+        &[
+            "friction",
+            "tripod_radius",
+            "tripod_angle",
+            "feet",
+            "foot_loads",
+        ],
     ),
     ("pusher", &["shape", "friction", "stall_force", "tags"]),
     ("fixels", &["friction"]),

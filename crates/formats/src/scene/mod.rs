@@ -3,6 +3,7 @@
 //! SI units, angles counter-clockwise; the object's frame has its origin in the centre of mass.
 
 mod document;
+mod edit;
 mod error;
 mod feet;
 mod keys;
@@ -22,6 +23,7 @@ use toml::de::DeTable;
 use crate::mounts::Mounts;
 
 use document::{Node, Source, Table};
+pub use edit::SceneEdit;
 pub use error::{SceneError, SceneProblem};
 use keys::keys_of;
 use quantity::Quantity;
@@ -77,6 +79,12 @@ const FOOT: Quantity = Quantity::new(
     "three feet as [[x, y], [x, y], [x, y]] in the object frame",
     Unit::Metre,
     Rule::Finite,
+);
+const FOOT_LOADS: Quantity = Quantity::new(
+    "foot_loads",
+    "the share of the weight on each of the three feet, as far as friction goes",
+    Unit::None,
+    Rule::NotNegative,
 );
 const STALL_FORCE: Quantity = Quantity::new(
     "stall_force",
@@ -137,11 +145,12 @@ fn parsed<T>(text: &str, name: &str, read: impl FnOnce(&Table<'_>) -> Result<T>)
 
 fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> SceneError {
     let place = error.span().map_or(0, |span| span.start);
-    let message = error
-        .message()
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ");
+    syntax(source, place, error.message())
+}
+
+/// What a TOML parser says of a place.
+fn syntax(source: Source<'_>, place: usize, message: &str) -> SceneError {
+    let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
     source.error(
         place,
         SceneProblem::Syntax {
@@ -260,9 +269,26 @@ fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
     }
     let [a, b, c] = node.exactly::<3>(&format!("{} in {}", FOOT.what, FOOT.unit.symbol()))?;
     let positions = [a.pair(&FOOT)?, b.pair(&FOOT)?, c.pair(&FOOT)?];
-    let loads = feet::loads(positions).map_err(|problem| node.error(problem))?;
+    let loads = match support.optional(FOOT_LOADS.key) {
+        None => feet::loads(positions).map_err(|problem| node.error(problem))?,
+        Some(given) => given_loads(&given)?,
+    };
     let [a, b, c] = positions.map(|[x, y]| (x * x + y * y).sqrt());
     Ok((Feet::Known { positions, loads }, (a + b + c) / 3.0))
+}
+
+/// Loads that are not those of statics: where friction acts about another point than the centre of mass.
+fn given_loads(node: &Node<'_>) -> Result<[f64; 3]> {
+    let [a, b, c] = node.exactly::<3>(FOOT_LOADS.what)?;
+    let loads = [
+        a.number(&FOOT_LOADS)?,
+        b.number(&FOOT_LOADS)?,
+        c.number(&FOOT_LOADS)?,
+    ];
+    if (loads.iter().sum::<f64>() - 1.0).abs() > 1e-6 {
+        return Err(node.out_of_range("three shares that sum to 1", &FOOT_LOADS));
+    }
+    Ok(loads)
 }
 
 fn fixels(root: &Table<'_>) -> Result<Vec<Fixel>> {

@@ -1,0 +1,277 @@
+//! `stickslip fit`: learns from many pushes what a scene cannot know.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::CommandFactory;
+use rayon::prelude::*;
+use serde::Serialize;
+use stickslip_fit::{CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push};
+use stickslip_formats::Topics;
+use stickslip_report::{Block, Report, Section, Table};
+
+use crate::args::Program;
+use crate::compare::expand;
+use crate::experiment::{experiment_name, read_folder, text_of};
+use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::fit_args::FitArgs;
+use crate::log_files::log_path;
+use crate::origin::origin;
+use crate::output::{show_result, talk};
+use crate::verdict::Verdict;
+
+/// What is written to fit.json.
+#[derive(Debug, Serialize)]
+struct FitResult {
+    /// The folders with the pushes.
+    folders: Vec<String>,
+    seed: u64,
+    #[serde(flatten)]
+    fit: Fit,
+    /// None where there are too few pushes, or none was asked for.
+    cross_validation: Option<CrossValidation>,
+}
+
+/// Runs the command.
+pub fn fit(args: &FitArgs) -> Result<Verdict> {
+    let parameters = Parameter::parse_list(&args.free)?;
+    let options = FitOptions {
+        parameters,
+        seed: args.seed,
+    };
+    let folders = expand(&args.folders, &args.scene_name)?;
+    let topics = args.topics.topics(Program::command())?;
+    let pool = args.threads.pool()?;
+    let first_scene = folders[0].join(&args.scene_name);
+    let [scene_out, json_out] = ["scene.toml", "fit.json"].map(|name| args.out.join(name));
+    let scenes = folders.iter().map(|folder| folder.join(&args.scene_name));
+    let scenes: Vec<PathBuf> = scenes.collect();
+    let scenes: Vec<&Path> = scenes.iter().map(PathBuf::as_path).collect();
+    refuse_inputs(&scene_out, &scenes)?;
+    if let Some(report) = &args.report {
+        ready_file(report, &scenes)?;
+    }
+    ready_folder(&args.out)?;
+
+    let result: Result<(FitResult, Verdict)> = pool.install(|| {
+        let (pushes, verdict) = read_pushes(args, &topics, &folders)?;
+        let fit = stickslip_fit::fit(&pushes, &options)?;
+        let folds = args.folds.unwrap_or(match pushes.len() {
+            8.. => 4,
+            4..8 => 2,
+            _ => 0,
+        });
+        let validate = || stickslip_fit::cross_validate(&pushes, folds, &options);
+        let result = FitResult {
+            folders: folders
+                .iter()
+                .map(|path| path.display().to_string())
+                .collect(),
+            seed: args.seed,
+            fit,
+            cross_validation: (folds > 0).then(validate).transpose()?,
+        };
+        Ok((result, verdict))
+    });
+    let (result, verdict) = result?;
+
+    let name = first_scene.display().to_string();
+    let scene = result
+        .fit
+        .scene_text(&text_of(&first_scene, "scene")?, &name)?;
+    let json = serde_json::to_string_pretty(&result)? + "\n";
+    write_out(&scene_out, |file| file.write_all(scene.as_bytes()))?;
+    write_out(&json_out, |file| file.write_all(json.as_bytes()))?;
+    show_result(args.json, &result, || text(&result))?;
+    if let Some(path) = &args.report {
+        let path = write_report(path.clone(), &page(&result, args.seed))?;
+        talk(format_args!("wrote {}", path.display()));
+    }
+    talk(format_args!(
+        "wrote {} and {}",
+        scene_out.display(),
+        json_out.display()
+    ));
+    Ok(verdict)
+}
+
+/// All pushes, and whether all of their logs could be read. One that cannot be read is an error: left
+/// out, it would change what is learnt.
+fn read_pushes(
+    args: &FitArgs,
+    topics: &Topics,
+    folders: &[PathBuf],
+) -> Result<(Vec<Push>, Verdict)> {
+    let read = |folder: &PathBuf| {
+        let (experiment, verdict) = read_folder(folder, &args.scene_name, topics)
+            .with_context(|| folder.display().to_string())?;
+        let push = Push {
+            name: experiment_name(&log_path(folder)),
+            setup: experiment.setup,
+            log: experiment.log,
+        };
+        Ok((push, verdict))
+    };
+    let read: Vec<(Push, Verdict)> = folders.par_iter().map(read).collect::<Result<_>>()?;
+    let mut verdicts = read.iter().map(|(_, verdict)| *verdict);
+    let lost = verdicts.find(|verdict| *verdict != Verdict::Done);
+    let pushes = read.into_iter().map(|(push, _)| push).collect();
+    Ok((pushes, lost.unwrap_or(Verdict::Done)))
+}
+
+/// The result as a terminal shows it.
+fn text(result: &FitResult) -> String {
+    let mut lines = vec![
+        format!("learnt from {} pushes", result.fit.pushes),
+        parameters(&result.fit).to_string(),
+        remarks(result).join("\n"),
+    ];
+    if let Some(validation) = &result.cross_validation {
+        lines.push(format!("{}{}", errors(validation), coverage(validation)));
+    }
+    lines.join("\n")
+}
+
+/// The result as a page.
+fn page(result: &FitResult, seed: u64) -> Report {
+    let mut sections = vec![Section {
+        title: "Learnt".to_owned(),
+        blocks: vec![Block::Table(parameters(&result.fit), String::new())],
+    }];
+    if let Some(validation) = &result.cross_validation {
+        sections.push(Section {
+            title: "On pushes left out".to_owned(),
+            blocks: vec![
+                Block::Table(errors(validation), "Median over the pushes".to_owned()),
+                Block::Text(coverage(validation)),
+                Block::Table(each(validation), "Each push".to_owned()),
+            ],
+        });
+    }
+    Report {
+        title: format!("Learnt from {} pushes", result.fit.pushes),
+        summary: remarks(result).into_iter().map(Block::Text).collect(),
+        sections,
+        origin: origin([("seed", seed.to_string())]),
+    }
+}
+
+/// What is to be said besides the tables.
+fn remarks(result: &FitResult) -> Vec<String> {
+    let fit = &result.fit;
+    let mut remarks = Vec::new();
+    if let Some([a, b, strongest]) = strongest_correlation(fit) {
+        remarks.push(format!("strongest correlation: {a} with {b}, {strongest}"));
+    }
+    remarks.push(format!(
+        "the model drifts by {:.1} % of the pusher's way; the camera's noise is {:.2} times what the scene says",
+        100.0 * fit.noise.drift,
+        fit.noise.camera_scale
+    ));
+    if !fit.sampling.settled {
+        remarks.push(format!(
+            "warning: the chains have not settled (split R-hat {:.2}); the spreads are rough",
+            fit.sampling.split_rhat
+        ));
+    }
+    if fit.sampling.unsolved > 0 {
+        remarks.push(format!("unsolved steps: {}", fit.sampling.unsolved));
+    }
+    if result.cross_validation.is_none() {
+        remarks.push("no push was left out to check the fit".to_owned());
+    }
+    remarks
+}
+
+fn parameters(fit: &Fit) -> Table {
+    let mut table = Table::new([
+        "parameter",
+        "before",
+        "after",
+        "spread",
+        "unit",
+        "spread/prior",
+        "",
+    ]);
+    for fitted in &fit.parameters {
+        let said = match fitted.determined {
+            true => "determined",
+            false => "not determined by these pushes",
+        };
+        table.push([
+            fitted.name.to_owned(),
+            digits(fitted.prior.value(0.0)),
+            digits(fitted.value),
+            digits(fitted.std),
+            fitted.unit.to_owned(),
+            format!("{:.2}", fitted.std_ratio),
+            said.to_owned(),
+        ]);
+    }
+    table
+}
+
+/// A number with four digits after its leading zeros.
+fn digits(value: f64) -> String {
+    let places = 3.0 - value.abs().max(1e-9).log10().floor();
+    format!("{value:.*}", places.clamp(0.0, 9.0) as usize)
+}
+
+/// The two parameters that the pushes tell apart least, and their correlation.
+fn strongest_correlation(fit: &Fit) -> Option<[String; 3]> {
+    let name = |k: usize| -> &FittedParameter { &fit.parameters[k] };
+    let pairs = (0..fit.parameters.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let strongest = pairs.max_by(|a, b| {
+        let of = |(i, j): &(usize, usize)| fit.correlation[*i][*j].abs();
+        of(a).total_cmp(&of(b))
+    });
+    strongest.map(|(i, j)| {
+        let value = format!("{:.2}", fit.correlation[i][j]);
+        [name(i).name.to_owned(), name(j).name.to_owned(), value]
+    })
+}
+
+fn errors(validation: &CrossValidation) -> Table {
+    let mut table = Table::new(["held-out pushes, median", "unfitted", "fitted", "ratio"]);
+    for (name, [unfitted, fitted]) in [
+        ("final position (mm)", validation.median_final_mm),
+        ("WMSE (mm)", validation.median_wmse_mm),
+    ] {
+        table.push([
+            name.to_owned(),
+            format!("{unfitted:.3}"),
+            format!("{fitted:.3}"),
+            format!("{:.2}", fitted / unfitted),
+        ]);
+    }
+    table
+}
+
+fn coverage(validation: &CrossValidation) -> String {
+    format!(
+        "90 % intervals predicted for final x, y and theta hold {:.0} % ({} pushes, {} folds)",
+        100.0 * validation.coverage_90,
+        validation.pushes.len(),
+        validation.folds
+    )
+}
+
+fn each(validation: &CrossValidation) -> Table {
+    let mut table = Table::new([
+        "push",
+        "final, unfitted (mm)",
+        "final, fitted (mm)",
+        "WMSE, unfitted (mm)",
+        "WMSE, fitted (mm)",
+        "in the intervals",
+    ]);
+    for push in &validation.pushes {
+        let numbers = [push.final_mm, push.wmse_mm];
+        let numbers = numbers.as_flattened().iter().map(|mm| format!("{mm:.2}"));
+        let inside = push.covered.iter().filter(|covered| **covered).count();
+        let cells = [push.push.clone()].into_iter().chain(numbers);
+        table.push(cells.chain([format!("{inside} of 3")]));
+    }
+    table
+}

@@ -1,0 +1,125 @@
+//! The nominal simulation of one log with many frictions, side by side: [`NominalPredictor`].
+
+use std::sync::Arc;
+
+use stickslip_dynamics::{
+    CompiledStep, Dynamics, Friction, Outcome, Particle, Particles, Pose, Scene, StepWork,
+};
+
+use crate::error::RunError;
+use crate::log::Log;
+use crate::options::RunOptions;
+use crate::prepared_log::PreparedLog;
+use crate::pusher::schedule::Schedule;
+use crate::setup::Setup;
+
+/// Simulations side by side.
+const LANES: usize = 8;
+
+/// A log, ready to be predicted blind from its first object pose and its recorded pusher.
+#[derive(Clone, Debug)]
+pub struct NominalPredictor {
+    dynamics: Dynamics,
+    schedule: Arc<Schedule>,
+    most_lag: f64,
+    rows: usize,
+    /// First row with an object pose.
+    pub first: usize,
+    /// The pose there.
+    pub start: Pose,
+}
+
+/// Where the object goes from its first pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NominalPrediction {
+    /// Pose at every row, from the first one with an object pose.
+    pub poses: Vec<Pose>,
+    /// Steps without a certified solution.
+    pub unsolved: u32,
+}
+
+impl NominalPredictor {
+    /// # Errors
+    /// Those of [`run`](crate::run) with the nominal simulation.
+    pub fn new(setup: &Setup, log: &Log) -> Result<Self, RunError> {
+        let prepared = PreparedLog::new(setup, log, &RunOptions::default())?;
+        Ok(Self {
+            dynamics: Dynamics::new(setup.scene.clone()),
+            most_lag: setup.most_pusher_lag(),
+            rows: log.len(),
+            first: prepared.first,
+            start: prepared.start,
+            schedule: Arc::new(prepared.schedule),
+        })
+    }
+
+    /// The same log in another scene.
+    #[must_use]
+    pub fn with_scene(&self, scene: Scene) -> Self {
+        Self {
+            dynamics: Dynamics::new(scene),
+            schedule: Arc::clone(&self.schedule),
+            ..*self
+        }
+    }
+
+    /// How the log's rows become steps.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// Predicts the log once with each of `frictions`, as [`run`](crate::run) with the nominal simulation
+    /// does with that of the scene, bit for bit. One thread runs.
+    pub fn predict(&self, frictions: &[Friction]) -> Vec<NominalPrediction> {
+        let chunks = frictions.chunks(LANES).map(|chunk| match chunk {
+            [one] => Vec::from(self.predict_lanes(&[*one])),
+            several => {
+                // lanes that are left repeat the last one
+                let last = several.len() - 1;
+                let lanes = std::array::from_fn(|lane| several[lane.min(last)]);
+                let mut predictions = Vec::from(self.predict_lanes::<LANES>(&lanes));
+                predictions.truncate(several.len());
+                predictions
+            }
+        });
+        chunks.flatten().collect()
+    }
+
+    fn predict_lanes<const W: usize>(&self, frictions: &[Friction; W]) -> [NominalPrediction; W]
+    where
+        StepWork<W>: CompiledStep<W>,
+    {
+        let mut particles = [Particles::<W>::default()];
+        let start = Particle {
+            pose: self.start,
+            ..Particle::default()
+        };
+        for (lane, friction) in frictions.iter().enumerate() {
+            particles[0].set(lane, &start, friction);
+        }
+        let mut predictions = std::array::from_fn(|_| NominalPrediction {
+            poses: Vec::with_capacity(self.rows - self.first),
+            unsolved: 0,
+        });
+        let write = |predictions: &mut [NominalPrediction; W], particles: &[Particles<W>; 1]| {
+            for (lane, prediction) in predictions.iter_mut().enumerate() {
+                let pose = particles[0].pose.map(|x| x.0[lane]);
+                prediction.poses.push(pose);
+            }
+        };
+
+        write(&mut predictions, &particles);
+        let mut work = StepWork::<W>::default();
+        for row in self.first..self.rows - 1 {
+            particles[0].limit_pusher_lag(self.most_lag);
+            for input in self.schedule.step(row) {
+                self.dynamics.step_block(input, &mut particles, &mut work);
+                for (prediction, report) in predictions.iter_mut().zip(&work.reports()[0]) {
+                    prediction.unsolved += u32::from(report.outcome != Outcome::Solved);
+                }
+            }
+            write(&mut predictions, &particles);
+        }
+        predictions
+    }
+}

@@ -1,0 +1,116 @@
+//! Why a fit was refused: [`FitError`].
+
+use stickslip::RunError;
+use stickslip_dynamics::ShapeError;
+use stickslip_formats::SceneError;
+
+/// Why a fit was refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// Too few pushes for what is asked.
+    #[error("there are {pushes} pushes; at least {least} are needed. Give more folders")]
+    TooFewPushes {
+        /// Pushes given.
+        pushes: usize,
+        /// Fewest that would do.
+        least: usize,
+    },
+    /// A name that is no parameter.
+    #[error(
+        "`{name}` is no parameter that can be learnt; did you mean `{nearest}`? Known are {known}"
+    )]
+    UnknownParameter {
+        /// The name found.
+        name: String,
+        /// The nearest that is one.
+        nearest: &'static str,
+        /// All that are.
+        known: String,
+    },
+    /// Nothing is to be learnt.
+    #[error("no parameter is free; name some of {known}")]
+    NothingFree {
+        /// All that could be.
+        known: String,
+    },
+    /// The prior leaves nothing open.
+    #[error(
+        "{push}: {parameter} is {value} with the relative spread {spread}, which leaves nothing to be learnt; \
+         both must be above 0. Give a first guess, and {parameter} in [uncertainty], or take it from the free ones"
+    )]
+    ClosedPrior {
+        /// The push whose scene says so.
+        push: String,
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// First guess.
+        value: f64,
+        /// Spread of its logarithm.
+        spread: f64,
+    },
+    /// The tripod is to be learnt where the feet are known.
+    #[error(
+        "{push}: the scene gives the feet, so there is no {parameter} to learn. \
+         Take it from the free parameters, or give tripod_radius instead of feet"
+    )]
+    KnownFeet {
+        /// The push whose scene does.
+        push: String,
+        /// Name of the parameter.
+        parameter: &'static str,
+    },
+    /// Two scenes start from different guesses.
+    #[error(
+        "{parameter} is {a} (spread {a_spread}) in the scene of {first} and {b} (spread {b_spread}) in that of {second}; \
+         pushes are fitted together where they share what is learnt. Fit one object and one table at a time, or make the scenes agree"
+    )]
+    Disagree {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// First push.
+        first: String,
+        /// Its guess.
+        a: f64,
+        /// Spread of that.
+        a_spread: f64,
+        /// Second push.
+        second: String,
+        /// Its guess.
+        b: f64,
+        /// Spread of that.
+        b_spread: f64,
+    },
+    /// A push that nothing can be learnt from.
+    #[error(
+        "{push}: after the first pose of the object no other was measured; give a log with at least two, or leave the folder out"
+    )]
+    NoPose {
+        /// The push.
+        push: String,
+    },
+    /// A latency is to be learnt where there is no camera.
+    #[error(
+        "{push}: the scene has no [camera], so no latency either; add the table, or take latency from the free parameters"
+    )]
+    NoCamera {
+        /// The push whose scene has none.
+        push: String,
+    },
+    /// The fitted outline is none.
+    #[error(
+        "the fitted outline is none: {0}; take outline_scale, outline_offset and pusher_offset from the free parameters"
+    )]
+    Outline(#[from] ShapeError),
+    /// The scene to be written is none.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A push that cannot be simulated.
+    #[error("{push}: {source}")]
+    Run {
+        /// The push.
+        push: String,
+        /// What is wrong with it.
+        source: RunError,
+    },
+}

@@ -1,0 +1,258 @@
+//! What pushes teach: [`fit`].
+
+use serde::Serialize;
+use stickslip::Setup;
+use stickslip_dynamics::ShapeError;
+use stickslip_filter::Streams;
+
+use crate::chain::Chain;
+use crate::error::FitError;
+use crate::likelihood::Noise;
+use crate::optimum::optima;
+use crate::parameter::Parameter;
+use crate::posterior::Posterior;
+use crate::prior::Prior;
+use crate::push::{PreparedPush, Push};
+use crate::sampler::sample;
+
+/// Posterior over prior standard deviation below which a parameter counts as determined.
+const DETERMINED: f64 = 0.5;
+
+/// Vectors drawn from the prior, the best of which start searches.
+const SCREENED: usize = 256;
+
+/// Searches for the optimum.
+const SEARCHES: usize = 4;
+
+/// Split R̂ above which the chains have not settled.
+const SETTLED: f64 = 1.2;
+
+/// Samples that stand for the posterior in predictions.
+const KEPT_SAMPLES: usize = 64;
+
+/// What is to be learnt, and by which random numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitOptions {
+    /// The free parameters.
+    pub parameters: Vec<Parameter>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// What some pushes teach.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fit {
+    /// Number of pushes.
+    pub pushes: usize,
+    /// The free parameters.
+    pub parameters: Vec<FittedParameter>,
+    /// Their posterior correlation, row by row.
+    pub correlation: Vec<Vec<f64>>,
+    /// How far measured poses are from predicted ones.
+    pub noise: Noise,
+    /// How the posterior was explored.
+    pub sampling: Sampling,
+    /// Samples of the posterior, as [`Posterior`] takes them.
+    #[serde(skip)]
+    pub(crate) samples: Vec<Vec<f64>>,
+}
+
+/// A parameter before and after.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FittedParameter {
+    /// Its name.
+    pub name: &'static str,
+    /// Which one it is.
+    #[serde(skip)]
+    pub parameter: Parameter,
+    /// Symbol of its unit; empty for a bare number.
+    pub unit: &'static str,
+    /// The value that predicts best; the prior's centre where the pushes do not determine it.
+    pub value: f64,
+    /// Standard deviation; that of the prior where the pushes do not determine it.
+    pub std: f64,
+    /// What was believed before.
+    pub prior: Prior,
+    /// Posterior over prior standard deviation: 0 where the pushes say all, 1 where they say nothing.
+    pub std_ratio: f64,
+    /// Whether `std_ratio` is below 0.5.
+    pub determined: bool,
+}
+
+/// How the posterior was explored.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Sampling {
+    /// Vectors of parameters with which all pushes were predicted.
+    pub vectors: u64,
+    /// Share of the chains' proposals that were accepted.
+    pub acceptance: f64,
+    /// Largest split R̂ of the parameters and the noise.
+    pub split_rhat: f64,
+    /// Whether the chains agree (R̂ up to 1.2).
+    pub settled: bool,
+    /// Steps without a certified solution in the predictions with the fitted values.
+    pub unsolved: u32,
+}
+
+/// Learns the free parameters of `options` from `pushes`.
+///
+/// # Errors
+/// Fewer than two pushes, scenes that do not go together, or a push that cannot be simulated.
+pub fn fit(pushes: &[Push], options: &FitOptions) -> Result<Fit, FitError> {
+    let prepared = prepare(pushes)?;
+    fit_prepared(&prepared.iter().collect::<Vec<_>>(), options)
+}
+
+/// Pushes made ready; at least two.
+pub(crate) fn prepare(pushes: &[Push]) -> Result<Vec<PreparedPush>, FitError> {
+    if pushes.len() < 2 {
+        return Err(FitError::TooFewPushes {
+            pushes: pushes.len(),
+            least: 2,
+        });
+    }
+    pushes.iter().cloned().map(PreparedPush::new).collect()
+}
+
+pub(crate) fn fit_prepared(
+    pushes: &[&PreparedPush],
+    options: &FitOptions,
+) -> Result<Fit, FitError> {
+    let posterior = Posterior::new(pushes.to_vec(), &options.parameters)?;
+    let streams = Streams::new(options.seed);
+
+    // the optimum, from the best of many draws from the prior
+    let (starts, screened) = screen(&posterior, streams);
+    let (best, searched) = optima(&posterior, &starts);
+    let optimum = &best[0];
+
+    // the posterior around it
+    let (chain, sampled) = sample(&posterior, optimum, SETTLED, streams);
+    let covariance = chain.covariance();
+    let free = options.parameters.len();
+    let stds: Vec<f64> = (0..free).map(|k| covariance[k][k].sqrt()).collect();
+
+    // what is not determined keeps its prior, and the others go with that
+    let (values, noise, refined) = settle(pushes, options, &posterior, optimum, &stds)?;
+
+    let parameters = posterior.parameters.iter().zip(&values).zip(&stds);
+    let fit = Fit {
+        pushes: pushes.len(),
+        parameters: parameters
+            .map(|((&(parameter, prior), &z), &std)| fitted(parameter, prior, z, std))
+            .collect(),
+        correlation: correlation(&covariance, free),
+        noise,
+        sampling: sampling(&chain, screened + searched + sampled + refined),
+        samples: chain.thinned(KEPT_SAMPLES),
+    };
+    Ok(fit.with_unsolved(&posterior, &values))
+}
+
+/// The best of [`SCREENED`] draws from the prior and of its centre; the number of vectors tried.
+fn screen(posterior: &Posterior<'_>, streams: Streams) -> (Vec<Vec<f64>>, u64) {
+    let dimension = posterior.dimension();
+    let draw = |k: usize| -> Vec<f64> {
+        (0..dimension)
+            .map(|i| match k {
+                0 => 0.0,
+                _ => streams.normal(0, k as u32, i as u32),
+            })
+            .collect()
+    };
+    let vectors: Vec<Vec<f64>> = (0..SCREENED).map(draw).collect();
+    let densities = posterior.log_densities(&vectors);
+    let mut order: Vec<usize> = (0..SCREENED).collect();
+    order.sort_by(|a, b| densities[*b].total_cmp(&densities[*a]));
+    let best = order[..SEARCHES].iter().map(|k| vectors[*k].clone());
+    (best.collect(), SCREENED as u64)
+}
+
+/// Whitened values of all parameters, the noise that goes with them, and the number of vectors tried.
+fn settle(
+    pushes: &[&PreparedPush],
+    options: &FitOptions,
+    posterior: &Posterior<'_>,
+    optimum: &[f64],
+    stds: &[f64],
+) -> Result<(Vec<f64>, Noise, u64), FitError> {
+    let free = stds.len();
+    let kept: Vec<usize> = (0..free).filter(|k| stds[*k] < DETERMINED).collect();
+    if kept.len() == free {
+        return Ok((optimum[..free].to_vec(), posterior.noise(optimum), 0));
+    }
+    let parameters: Vec<Parameter> = kept.iter().map(|k| options.parameters[*k]).collect();
+    let smaller = Posterior::new(pushes.to_vec(), &parameters)?;
+    let start = kept.iter().map(|k| optimum[*k]);
+    let start: Vec<f64> = start.chain(optimum[free..].iter().copied()).collect();
+    let (best, tried) = optima(&smaller, &[start]);
+    let mut values = vec![0.0; free];
+    for (k, z) in kept.iter().zip(&best[0]) {
+        values[*k] = *z;
+    }
+    Ok((values, smaller.noise(&best[0]), tried))
+}
+
+fn fitted(parameter: Parameter, prior: Prior, z: f64, std: f64) -> FittedParameter {
+    let determined = std < DETERMINED;
+    let value = prior.value(z);
+    FittedParameter {
+        name: parameter.name(),
+        parameter,
+        unit: parameter.unit(),
+        value,
+        std: prior.spread(value, if determined { std } else { 1.0 }),
+        prior,
+        std_ratio: std,
+        determined,
+    }
+}
+
+fn correlation(covariance: &[Vec<f64>], free: usize) -> Vec<Vec<f64>> {
+    let of = |i: usize, j: usize| {
+        let scale = (covariance[i][i] * covariance[j][j]).sqrt();
+        if i == j {
+            1.0
+        } else {
+            covariance[i][j] / scale
+        }
+    };
+    (0..free)
+        .map(|i| (0..free).map(|j| of(i, j)).collect())
+        .collect()
+}
+
+fn sampling(chain: &Chain, vectors: u64) -> Sampling {
+    let split_rhat = chain.split_rhat();
+    Sampling {
+        vectors,
+        acceptance: chain.acceptance(),
+        split_rhat,
+        settled: split_rhat <= SETTLED,
+        unsolved: 0,
+    }
+}
+
+impl Fit {
+    /// Writes the fitted values into a setup.
+    ///
+    /// # Errors
+    /// The fitted outline is none in this scene.
+    pub fn apply(&self, setup: &mut Setup) -> Result<(), ShapeError> {
+        let values = self.parameters.iter();
+        let values: Vec<_> = values
+            .map(|fitted| (fitted.parameter, fitted.value))
+            .collect();
+        Parameter::apply(&values, setup)
+    }
+
+    /// The same with the number of steps without a certified solution at the whitened `values`.
+    fn with_unsolved(mut self, posterior: &Posterior<'_>, values: &[f64]) -> Self {
+        let vector = [values.to_vec()];
+        let unsolved = (0..posterior.pushes.len())
+            .flat_map(|push| posterior.predictions(push, &vector))
+            .map(|prediction| prediction.map_or(0, |prediction| prediction.unsolved));
+        self.sampling.unsolved = unsolved.sum();
+        self
+    }
+}

@@ -1,0 +1,27 @@
+//! Learns from many pushes what a scene cannot know: [`fit`].
+//!
+//! A vector of parameters is judged by how well it predicts every push blind, from the first pose of
+//! the object and the recorded pusher alone. The posterior is explored by an optimiser with several
+//! starts and by an ensemble of Markov chains; [`cross_validate`] says what the fit is worth on
+//! pushes that it has not seen.
+
+mod chain;
+mod error;
+mod fitted;
+mod likelihood;
+mod optimum;
+mod parameter;
+mod posterior;
+mod prior;
+mod push;
+mod sampler;
+mod scene_text;
+mod validation;
+
+pub use error::FitError;
+pub use fitted::{Fit, FitOptions, FittedParameter, Sampling, fit};
+pub use likelihood::Noise;
+pub use parameter::Parameter;
+pub use prior::Prior;
+pub use push::Push;
+pub use validation::{CrossValidation, HeldOut, cross_validate};

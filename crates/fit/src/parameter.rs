@@ -1,0 +1,297 @@
+//! What can be learnt: [`Parameter`].
+
+use stickslip::Setup;
+use stickslip_dynamics::{Feet, Friction, Part, Shape, ShapeError};
+use stickslip_formats::nearest;
+
+use crate::error::FitError;
+use crate::prior::Prior;
+
+/// How far the centre of friction may be from the origin, as a share of the radius of gyration.
+const CENTRE_STD: f64 = 0.15;
+
+/// How well the size of an outline is known.
+const SCALE_STD: f64 = 0.02;
+
+/// How well it is known where an outline lies about the tracked frame (m).
+const OFFSET_STD: f64 = 1e-3;
+
+/// A number of a scene that pushes can teach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// μ_s, friction between object and support.
+    MuS,
+    /// μ_p, friction between object and pusher.
+    MuP,
+    /// μ_f, friction between object and fixels.
+    MuF,
+    /// d_tri, radius of the support tripod (m).
+    TripodRadius,
+    /// x of the tripod's centre in the object frame (m).
+    CentreX,
+    /// y of it.
+    CentreY,
+    /// Factor of the object's outline.
+    OutlineScale,
+    /// By how much the object's outline lies to the x of the scene's, object frame (m).
+    OutlineX,
+    /// The same for y.
+    OutlineY,
+    /// By how much the pusher's outline lies to the x of the scene's, pusher frame (m).
+    PusherX,
+    /// The same for y.
+    PusherY,
+    /// Time by which object poses lag the pusher's (s).
+    Latency,
+}
+
+/// What a name on the command line stands for.
+const GROUPS: [(&str, &[Parameter]); 9] = [
+    ("mu_s", &[Parameter::MuS]),
+    ("mu_p", &[Parameter::MuP]),
+    ("mu_f", &[Parameter::MuF]),
+    ("tripod_radius", &[Parameter::TripodRadius]),
+    (
+        "centre_of_friction",
+        &[Parameter::CentreX, Parameter::CentreY],
+    ),
+    ("outline_scale", &[Parameter::OutlineScale]),
+    (
+        "outline_offset",
+        &[Parameter::OutlineX, Parameter::OutlineY],
+    ),
+    ("pusher_offset", &[Parameter::PusherX, Parameter::PusherY]),
+    ("latency", &[Parameter::Latency]),
+];
+
+impl Parameter {
+    /// Its name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MuS => "mu_s",
+            Self::MuP => "mu_p",
+            Self::MuF => "mu_f",
+            Self::TripodRadius => "tripod_radius",
+            Self::CentreX => "centre_of_friction_x",
+            Self::CentreY => "centre_of_friction_y",
+            Self::OutlineScale => "outline_scale",
+            Self::OutlineX => "outline_offset_x",
+            Self::OutlineY => "outline_offset_y",
+            Self::PusherX => "pusher_offset_x",
+            Self::PusherY => "pusher_offset_y",
+            Self::Latency => "latency",
+        }
+    }
+
+    /// Symbol of its unit; empty for a bare number.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::MuS | Self::MuP | Self::MuF | Self::OutlineScale => "",
+            Self::Latency => "s",
+            _ => "m",
+        }
+    }
+
+    /// Names that a list of free parameters may have.
+    #[must_use]
+    pub fn known_names() -> [&'static str; 9] {
+        GROUPS.map(|(name, _)| name)
+    }
+
+    /// The parameters that a list of names asks for, in one order whatever that of the names.
+    ///
+    /// # Errors
+    /// A name that is none, or no name.
+    pub fn parse_list(names: &[String]) -> Result<Vec<Self>, FitError> {
+        let known = Self::known_names();
+        for name in names {
+            if !known.contains(&name.as_str()) {
+                return Err(FitError::UnknownParameter {
+                    name: name.clone(),
+                    nearest: nearest(name, known).map_or("", |(nearest, _)| nearest),
+                    known: known.join(", "),
+                });
+            }
+        }
+        let asked = |group: &&(&str, _)| names.iter().any(|name| name == group.0);
+        let groups = GROUPS.iter().filter(asked);
+        let parameters: Vec<Self> = groups.flat_map(|(_, group)| *group).copied().collect();
+        match parameters.is_empty() {
+            true => Err(FitError::NothingFree {
+                known: known.join(", "),
+            }),
+            false => Ok(parameters),
+        }
+    }
+
+    /// Whether predictions with several values of it have one scene, but for friction.
+    pub(crate) fn keeps_scene(self) -> bool {
+        matches!(
+            self,
+            Self::MuS | Self::MuP | Self::MuF | Self::TripodRadius | Self::Latency
+        )
+    }
+
+    /// Whether it is a number of the tripod.
+    pub(crate) fn needs_tripod(self) -> bool {
+        matches!(self, Self::TripodRadius | Self::CentreX | Self::CentreY)
+    }
+
+    /// Writes it into friction parameters, if it is one.
+    pub(crate) fn apply_to_friction(self, friction: &mut Friction, value: f64) {
+        match self {
+            Self::MuS => friction.mu_s = value,
+            Self::MuP => friction.mu_p = value,
+            Self::MuF => friction.mu_f = value,
+            Self::TripodRadius => friction.d_tri = value,
+            _ => {}
+        }
+    }
+
+    /// Where a scene file has it, and the standard deviation of its logarithm.
+    pub(crate) fn scene_keys(self) -> Option<[[&'static str; 2]; 2]> {
+        let keys = match self {
+            Self::MuS => (["support", "friction"], "mu_s"),
+            Self::MuP => (["pusher", "friction"], "mu_p"),
+            Self::MuF => (["fixels", "friction"], "mu_f"),
+            Self::TripodRadius => (["support", "tripod_radius"], "d_tri"),
+            _ => return None,
+        };
+        Some([keys.0, ["uncertainty", keys.1]])
+    }
+
+    /// What `setup` believes of it.
+    #[must_use]
+    pub fn prior(self, setup: &Setup) -> Prior {
+        let log_normal = |median, relative_std| Prior::LogNormal {
+            median,
+            relative_std,
+        };
+        let normal = |mean, std| Prior::Normal { mean, std };
+        let (nominal, open) = (&setup.scene.nominal, &setup.uncertainty);
+        match self {
+            Self::MuS => log_normal(nominal.mu_s, open.friction.mu_s),
+            Self::MuP => log_normal(nominal.mu_p, open.friction.mu_p),
+            Self::MuF => log_normal(nominal.mu_f, open.friction.mu_f),
+            Self::TripodRadius => log_normal(nominal.d_tri, open.friction.d_tri),
+            Self::CentreX | Self::CentreY => normal(0.0, CENTRE_STD * setup.virtual_radius()),
+            Self::OutlineScale => log_normal(1.0, SCALE_STD),
+            Self::OutlineX | Self::OutlineY | Self::PusherX | Self::PusherY => {
+                normal(0.0, OFFSET_STD)
+            }
+            Self::Latency => {
+                let latency = setup.camera.map_or(0.0, |camera| camera.latency);
+                normal(latency, open.latency)
+            }
+        }
+    }
+
+    /// Writes the values of some parameters into `setup`, those of others as if they were not there.
+    ///
+    /// # Errors
+    /// An outline that is scaled or moved to where it is none.
+    pub fn apply(values: &[(Self, f64)], setup: &mut Setup) -> Result<(), ShapeError> {
+        let mut centre = [0.0; 2];
+        let mut object = Change::default();
+        let mut pusher = Change::default();
+        let nominal = &mut setup.scene.nominal;
+        for &(parameter, value) in values {
+            match parameter {
+                Self::MuS | Self::MuP | Self::MuF | Self::TripodRadius => {
+                    parameter.apply_to_friction(nominal, value);
+                }
+                Self::CentreX => centre[0] = value,
+                Self::CentreY => centre[1] = value,
+                Self::OutlineScale => object.scale = value,
+                Self::OutlineX => object.offset[0] = value,
+                Self::OutlineY => object.offset[1] = value,
+                Self::PusherX => pusher.offset[0] = value,
+                Self::PusherY => pusher.offset[1] = value,
+                Self::Latency => {
+                    if let Some(camera) = &mut setup.camera {
+                        camera.latency = value.max(0.0);
+                    }
+                }
+            }
+        }
+        if let (Feet::Tripod { angle }, true) = (setup.scene.feet, centre != [0.0; 2]) {
+            let radius = setup.scene.nominal.d_tri;
+            setup.scene.feet = Feet::Known {
+                positions: feet(angle, radius, centre),
+                loads: [1.0 / 3.0; 3],
+            };
+        }
+        object.apply(&mut setup.scene.object.shape)?;
+        pusher.apply(&mut setup.scene.pusher.shape)
+    }
+}
+
+/// Feet 120° apart about `centre` (m).
+fn feet(angle: f64, radius: f64, [x, y]: [f64; 2]) -> [[f64; 2]; 3] {
+    [0.0, 1.0, -1.0].map(|turn| {
+        let (sin, cos) = libm::sincos(angle + turn * (2.0 / 3.0 * std::f64::consts::PI));
+        [x + radius * cos, y + radius * sin]
+    })
+}
+
+/// An outline scaled about the origin of its frame, then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Change {
+    pub scale: f64,
+    pub offset: [f64; 2],
+}
+
+impl Default for Change {
+    fn default() -> Self {
+        Self {
+            scale: 1.0,
+            offset: [0.0; 2],
+        }
+    }
+}
+
+impl Change {
+    fn apply(self, shape: &mut Shape) -> Result<(), ShapeError> {
+        if self == Self::default() {
+            return Ok(());
+        }
+        let parts = shape.parts().iter().map(|part| self.of_part(part));
+        *shape = Shape::new(parts.collect())?;
+        Ok(())
+    }
+
+    fn of_part(self, part: &Part) -> Part {
+        let Self { scale, .. } = self;
+        match part {
+            Part::Polygon { vertices } => Part::Polygon {
+                vertices: vertices
+                    .iter()
+                    .map(|vertex| self.of_point(*vertex))
+                    .collect(),
+            },
+            Part::Disc { radius, centre } => Part::Disc {
+                radius: scale * radius,
+                centre: self.of_point(*centre),
+            },
+            Part::Ellipse {
+                semi_axes,
+                centre,
+                angle,
+            } => Part::Ellipse {
+                semi_axes: semi_axes.map(|axis| scale * axis),
+                centre: self.of_point(*centre),
+                angle: *angle,
+            },
+        }
+    }
+
+    /// Where a point of the outline is then (m).
+    pub fn of_point(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [
+            self.scale * x + self.offset[0],
+            self.scale * y + self.offset[1],
+        ]
+    }
+}

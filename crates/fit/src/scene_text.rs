@@ -1,0 +1,89 @@
+//! A scene file with what was learnt: [`Fit::scene_text`].
+
+use stickslip_dynamics::Feet;
+use stickslip_formats::{SceneEdit, read_scene};
+
+use crate::error::FitError;
+use crate::fitted::{Fit, FittedParameter};
+use crate::parameter::Parameter;
+
+impl Fit {
+    /// A scene file with the fitted values and their spreads in place; what is not determined stays as it
+    /// is. Values without a key of their own (an offset, a scale) are worked into the outlines and feet,
+    /// and said in comments on top. `name` is shown in errors.
+    ///
+    /// # Errors
+    /// The text is no scene, or its outline is none once it is changed.
+    pub fn scene_text(&self, text: &str, name: &str) -> Result<String, FitError> {
+        let mut edit = SceneEdit::new(text, name)?;
+        let learnt: Vec<&FittedParameter> = self
+            .parameters
+            .iter()
+            .filter(|fitted| fitted.determined)
+            .collect();
+        for line in self.comments() {
+            edit.comment(&line);
+        }
+        for fitted in &learnt {
+            if let Some([value, spread]) = fitted.parameter.scene_keys() {
+                edit.set(&value, fitted.value);
+                edit.set(&spread, fitted.std / fitted.value);
+            }
+        }
+
+        // what has no key
+        let mut setup = read_scene(text, name)?;
+        self.apply(&mut setup)?;
+        let is = |group: fn(Parameter) -> bool| learnt.iter().any(|fitted| group(fitted.parameter));
+        if is(|p| {
+            matches!(
+                p,
+                Parameter::OutlineScale | Parameter::OutlineX | Parameter::OutlineY
+            )
+        }) {
+            edit.set_shape("object", &setup.scene.object.shape);
+        }
+        if is(|p| matches!(p, Parameter::PusherX | Parameter::PusherY)) {
+            edit.set_shape("pusher", &setup.scene.pusher.shape);
+        }
+        if let (Feet::Known { positions, loads }, true) = (
+            setup.scene.feet,
+            is(|p| matches!(p, Parameter::CentreX | Parameter::CentreY)),
+        ) {
+            edit.set_feet(positions, loads);
+        }
+        if let (Some(camera), true) = (setup.camera, is(|p| p == Parameter::Latency)) {
+            edit.set(&["camera", "latency"], camera.latency);
+        }
+        Ok(edit.text())
+    }
+
+    /// What was learnt, for people.
+    fn comments(&self) -> Vec<String> {
+        let value = |fitted: &FittedParameter| {
+            format!(
+                "{} = {:.6} +- {:.6} {}",
+                fitted.name, fitted.value, fitted.std, fitted.unit
+            )
+        };
+        let (learnt, left): (Vec<_>, Vec<_>) =
+            self.parameters.iter().partition(|fitted| fitted.determined);
+        let mut lines = Vec::new();
+        if !learnt.is_empty() {
+            lines.push(format!(
+                "learnt from {} pushes by `stickslip fit`:",
+                self.pushes
+            ));
+            lines.extend(
+                learnt
+                    .into_iter()
+                    .map(|fitted| value(fitted).trim_end().to_owned()),
+            );
+        }
+        if !left.is_empty() {
+            let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
+            lines.push(format!("not determined by them: {}", names.join(", ")));
+        }
+        lines
+    }
+}

@@ -1,0 +1,200 @@
+//! What a fit is worth on pushes that it has not seen: [`cross_validate`].
+
+use serde::Serialize;
+use stickslip::{Method, RunOptions, Setup, quantile, run};
+use stickslip_evaluation::{Reference, Scores, score};
+use stickslip_filter::{Draw, Streams};
+use stickslip_formats::{Experiment, TruthFacts};
+
+use crate::error::FitError;
+use crate::fitted::{Fit, FitOptions, fit_prepared, prepare};
+use crate::likelihood::{FREEDOM, Noise, STRAY_FACTOR, STRAY_SHARE, drift_std};
+use crate::posterior::Posterior;
+use crate::push::{PreparedPush, Push};
+
+/// Draws of the noise for each sample of the posterior.
+const NOISE_DRAWS: usize = 8;
+
+/// Ends of the predictive interval.
+const INTERVAL: [f64; 2] = [0.05, 0.95];
+
+/// Step of the random streams from which on noise is drawn.
+const FIRST_NOISE: u64 = 1 << 40;
+
+/// Pushes predicted blind by fits that have not seen them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CrossValidation {
+    /// Parts that the pushes were dealt into, one after the other.
+    pub folds: usize,
+    /// Each push.
+    pub pushes: Vec<HeldOut>,
+    /// Medians over the pushes of the final position error (mm): unfitted scene, fitted scene.
+    pub median_final_mm: [f64; 2],
+    /// Medians over the pushes of the WMSE over all rows (mm): unfitted scene, fitted scene.
+    pub median_wmse_mm: [f64; 2],
+    /// Share of final x, y and θ within the 90 % interval predicted for them.
+    pub coverage_90: f64,
+}
+
+/// One push, predicted from its first pose by a fit to others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeldOut {
+    /// Its name.
+    pub push: String,
+    /// The fold that it is in, from 0.
+    pub fold: usize,
+    /// Final position error of the unfitted and the fitted scene (mm).
+    pub final_mm: [f64; 2],
+    /// WMSE over all rows of the unfitted and the fitted scene (mm).
+    pub wmse_mm: [f64; 2],
+    /// Whether the last measured x, y and θ lie in the 90 % interval predicted for them.
+    pub covered: [bool; 3],
+}
+
+/// Deals the pushes into `folds` parts, one after the other, and predicts each part by a fit to the
+/// others. Errors are against the measured poses.
+///
+/// # Errors
+/// Those of [`fit`](crate::fit); a fold that leaves fewer than two pushes to fit.
+pub fn cross_validate(
+    pushes: &[Push],
+    folds: usize,
+    options: &FitOptions,
+) -> Result<CrossValidation, FitError> {
+    let prepared = prepare(pushes)?;
+    let least = if folds < 3 { 4 } else { 3.max(folds) };
+    if folds < 2 || prepared.len() < least {
+        return Err(FitError::TooFewPushes {
+            pushes: prepared.len(),
+            least,
+        });
+    }
+    let mut held_out: Vec<(usize, HeldOut)> = Vec::new();
+    for fold in 0..folds {
+        let of_fold = |(k, _): &(usize, &PreparedPush)| k % folds == fold;
+        let (test, train): (Vec<_>, Vec<_>) = prepared.iter().enumerate().partition(of_fold);
+        let train: Vec<&PreparedPush> = train.into_iter().map(|(_, push)| push).collect();
+        let fit = fit_prepared(&train, options)?;
+        for (k, push) in test {
+            held_out.push((k, predict_held_out(push, k, fold, &fit, options)?));
+        }
+    }
+    held_out.sort_by_key(|(k, _)| *k);
+    Ok(summary(
+        folds,
+        held_out.into_iter().map(|(_, push)| push).collect(),
+    ))
+}
+
+fn summary(folds: usize, pushes: Vec<HeldOut>) -> CrossValidation {
+    let median = |of: &dyn Fn(&HeldOut) -> f64| {
+        let values: Vec<f64> = pushes.iter().map(of).collect();
+        quantile(&values, 0.5).unwrap_or(f64::NAN)
+    };
+    let covered = pushes.iter().flat_map(|push| push.covered);
+    let covered = covered.filter(|covered| *covered).count();
+    CrossValidation {
+        folds,
+        median_final_mm: [0, 1].map(|k| median(&|push| push.final_mm[k])),
+        median_wmse_mm: [0, 1].map(|k| median(&|push| push.wmse_mm[k])),
+        coverage_90: covered as f64 / (3 * pushes.len()) as f64,
+        pushes,
+    }
+}
+
+fn predict_held_out(
+    push: &PreparedPush,
+    index: usize,
+    fold: usize,
+    fit: &Fit,
+    options: &FitOptions,
+) -> Result<HeldOut, FitError> {
+    let mut fitted = push.push.setup.clone();
+    fit.apply(&mut fitted)?;
+    let unfitted = scores(push, &push.push.setup)?;
+    let fitted = scores(push, &fitted)?;
+    let of = |score: fn(&Scores) -> Option<f64>| {
+        [&unfitted, &fitted].map(|scores| score(scores).unwrap_or(f64::NAN))
+    };
+    let draw = Streams::new(options.seed).at(FIRST_NOISE + index as u64);
+    Ok(HeldOut {
+        push: push.push.name.clone(),
+        fold,
+        final_mm: of(|scores| scores.final_error_mm),
+        wmse_mm: of(|scores| scores.wmse_mm),
+        covered: covered(push, fit, options, draw)?,
+    })
+}
+
+/// Scores of the nominal simulation of `setup` against the measured poses, as it understands them.
+fn scores(push: &PreparedPush, setup: &Setup) -> Result<Scores, FitError> {
+    let log = &push.push.log;
+    let options = RunOptions {
+        method: Method::Nominal,
+        ..RunOptions::default()
+    };
+    let run = run(setup, log, &options, &mut |_| ()).map_err(|source| FitError::Run {
+        push: push.push.name.clone(),
+        source,
+    })?;
+    let experiment = Experiment {
+        setup: setup.clone(),
+        log: log.clone(),
+        truth: None,
+        facts: TruthFacts::default(),
+    };
+    let (reference, hidden) = (Reference::measured(&experiment), vec![false; log.len()]);
+    Ok(score(
+        &run.estimate,
+        &reference,
+        &hidden,
+        setup.virtual_radius(),
+    ))
+}
+
+/// Whether the last measured pose lies in the intervals predicted for it, axis by axis.
+fn covered(
+    push: &PreparedPush,
+    fit: &Fit,
+    options: &FitOptions,
+    draw: Draw,
+) -> Result<[bool; 3], FitError> {
+    let posterior = Posterior::new(vec![push], &options.parameters)?;
+    let radius = push.push.setup.virtual_radius();
+    let mut errors: [Vec<f64>; 3] = Default::default();
+    let predictions = posterior.predictions(0, &fit.samples);
+    for (sample, prediction) in predictions.into_iter().enumerate() {
+        let instants = posterior.instants(0, &fit.samples[sample]);
+        let travelled = instants.last().map_or(0.0, |instant| instant.travelled);
+        let residuals = push.residuals(&instants, &prediction?);
+        let last = residuals.last().expect("a prepared push has a pose");
+        let noise = posterior.noise(&fit.samples[sample]);
+        for k in 0..NOISE_DRAWS {
+            let number = (sample * NOISE_DRAWS + k) as u32;
+            let stray = draw.uniform(number, 0) < STRAY_SHARE;
+            let drift = if stray { STRAY_FACTOR } else { 1.0 } * noise.drift;
+            let noise = Noise { drift, ..noise };
+            let stds = drift_std(travelled, &noise, push.noise(), radius);
+            for axis in 0..3 {
+                let camera = push.noise()[axis / 2] * noise.camera_scale;
+                let first = 2 + 16 * axis as u32;
+                let drifted = stds[axis] * draw.normal(number, first);
+                let measured = camera * student(draw, number, first + 2);
+                errors[axis].push(last[axis] - drifted - measured);
+            }
+        }
+    }
+    // the pose is covered where an error of zero is
+    Ok(errors.map(|errors| {
+        let [low, high] = INTERVAL.map(|q| quantile(&errors, q).expect("there are samples"));
+        low <= 0.0 && 0.0 <= high
+    }))
+}
+
+/// A number of Student's t distribution with [`FREEDOM`] degrees of freedom.
+fn student(draw: Draw, number: u32, first: u32) -> f64 {
+    let degrees = FREEDOM as u32;
+    let squares = (1..=degrees).map(|k| draw.normal(number, first + k));
+    let chi_squared: f64 = squares.map(|x| x * x).sum();
+    draw.normal(number, first) / (chi_squared / FREEDOM).sqrt()
+}

@@ -1,0 +1,153 @@
+//! Numbers of a scene file replaced, all else kept: [`SceneEdit`].
+
+use stickslip_dynamics::{Part, Shape};
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value};
+
+use super::error::SceneError;
+use super::{Source, read_scene, syntax};
+
+/// Significant digits of a written number: measured values have no more.
+const DIGITS: i32 = 6;
+
+/// A scene file whose numbers can be replaced; its comments, order and layout stay.
+///
+/// ```
+/// # use stickslip_formats::SceneEdit;
+/// # let text = std::fs::read_to_string("../cli/demo/slide-ell-disc-110/scene.toml")?;
+/// let mut edit = SceneEdit::new(&text, "scene.toml")?;
+/// edit.set(&["support", "friction"], 0.312);
+/// edit.set(&["uncertainty", "mu_s"], 0.1);
+/// let setup = stickslip_formats::read_scene(&edit.text(), "scene.toml")?;
+/// assert_eq!((setup.scene.nominal.mu_s, setup.uncertainty.friction.mu_s), (0.312, 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct SceneEdit {
+    document: DocumentMut,
+    heading: String,
+}
+
+impl SceneEdit {
+    /// # Errors
+    /// Those of [`read_scene`].
+    pub fn new(text: &str, name: &str) -> Result<Self, SceneError> {
+        read_scene(text, name)?;
+        let document = text.parse().map_err(|error: toml_edit::TomlError| {
+            let place = error.span().map_or(0, |span| span.start);
+            syntax(Source { name, text }, place, error.message())
+        })?;
+        Ok(Self {
+            document,
+            heading: String::new(),
+        })
+    }
+
+    /// Puts a comment line on top of the file.
+    pub fn comment(&mut self, line: &str) {
+        self.heading += &format!("# {line}\n");
+    }
+
+    /// Writes a number, rounded to six digits, at the end of a way of keys; tables that are missing are
+    /// made.
+    ///
+    /// # Panics
+    /// If the way is empty or leads through something that is no table.
+    pub fn set(&mut self, way: &[&str], number: f64) {
+        let (key, tables) = way.split_last().expect("a way has a key");
+        let table = self.table(tables);
+        let mut value = Value::from(rounded(number));
+        if let Some(old) = table.get(key).and_then(Item::as_value) {
+            // spaces and comments around it
+            *value.decor_mut() = old.decor().clone();
+        }
+        table.insert(key, Item::Value(value));
+    }
+
+    /// Writes the outline of a body, `object` or `pusher`, one part a line; the names of its parts stay, what
+    /// was written between them does not.
+    ///
+    /// # Panics
+    /// If the scene has no such body.
+    pub fn set_shape(&mut self, body: &str, shape: &Shape) {
+        let mut parts = Array::new();
+        for part in shape.parts() {
+            let mut table = InlineTable::new();
+            match part {
+                Part::Polygon { vertices } => {
+                    table.insert("polygon", points(vertices));
+                }
+                Part::Disc { radius, centre } => {
+                    let mut disc = InlineTable::new();
+                    disc.insert("radius", rounded(*radius).into());
+                    disc.insert("centre", point(*centre));
+                    table.insert("disc", disc.into());
+                }
+                Part::Ellipse {
+                    semi_axes,
+                    centre,
+                    angle,
+                } => {
+                    let mut ellipse = InlineTable::new();
+                    ellipse.insert("semi_axes", point(*semi_axes));
+                    ellipse.insert("centre", point(*centre));
+                    ellipse.insert("angle", rounded(*angle).into());
+                    table.insert("ellipse", ellipse.into());
+                }
+            }
+            let mut part = Value::from(table);
+            part.decor_mut().set_prefix("\n  ");
+            parts.push_formatted(part);
+        }
+        parts.set_trailing("\n");
+        parts.set_trailing_comma(true);
+        self.table(&[body])
+            .insert("shape", Item::Value(parts.into()));
+    }
+
+    /// Writes three feet (m) and their shares of the weight in the tripod's place.
+    ///
+    /// # Panics
+    /// If the scene has no support.
+    pub fn set_feet(&mut self, positions: [[f64; 2]; 3], loads: [f64; 3]) {
+        let support = self.table(&["support"]);
+        for key in ["tripod_radius", "tripod_angle"] {
+            support.remove(key);
+        }
+        support.insert("feet", Item::Value(points(&positions)));
+        // a third has no six digits that sum to 1
+        let loads: Array = loads.into_iter().collect();
+        support.insert("foot_loads", Item::Value(loads.into()));
+    }
+
+    /// The table at the end of a way of keys; those that are missing are made.
+    fn table(&mut self, way: &[&str]) -> &mut dyn TableLike {
+        let mut table: &mut dyn TableLike = self.document.as_table_mut();
+        for name in way {
+            let item = table.entry(name).or_insert(Item::Table(Table::new()));
+            table = item
+                .as_table_like_mut()
+                .expect("the way leads through tables");
+        }
+        table
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn text(&self) -> String {
+        format!("{}{}", self.heading, self.document)
+    }
+}
+
+fn point(at: [f64; 2]) -> Value {
+    at.map(rounded).into_iter().collect::<Array>().into()
+}
+
+fn points(of: &[[f64; 2]]) -> Value {
+    of.iter().map(|at| point(*at)).collect::<Array>().into()
+}
+
+/// A number with [`DIGITS`] significant digits.
+fn rounded(number: f64) -> f64 {
+    let digits = DIGITS as usize - 1;
+    format!("{number:.digits$e}").parse().unwrap_or(number)
+}
