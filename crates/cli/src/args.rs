@@ -9,6 +9,7 @@ use stickslip_evaluation::Variant;
 use crate::arg_values::{Rows, ThreadArgs, particles, positive};
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::fit_args::FitArgs;
+use crate::live_args::LiveArgs;
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
@@ -37,9 +38,13 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers
     Reproduce(ReproduceArgs),
+    /// Look into a ROS 2 bag: topics, types, rates, gaps, which would do, and what to type next
+    Info(InfoArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps,
     /// swapped sensors
     Check(CheckArgs),
+    /// Estimate row by row: JSON lines on standard input, an estimate for each on standard output
+    Live(LiveArgs),
     /// Calibrate a camera from frames of a tag board
     Calibrate(CalibrateArgs),
     /// Track object and pusher through camera frames by their tags, into a log
@@ -95,6 +100,12 @@ pub struct FilterArgs {
     /// Write estimate.csv into this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// With --out, write estimate.mcap too, for viewers of ROS 2
+    #[arg(long, requires = "out")]
+    pub mcap: bool,
+    /// With --out, write estimate.tum too, for evo
+    #[arg(long, requires = "out")]
+    pub tum: bool,
     /// Write a report with figures and a playback into this HTML file
     #[arg(long, value_name = "HTML")]
     pub report: Option<PathBuf>,
@@ -139,6 +150,16 @@ pub struct CheckArgs {
     /// Topics of an MCAP log
     #[command(flatten)]
     pub topics: TopicArgs,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `stickslip info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// The folder of a bag, or an MCAP file
+    pub bag: PathBuf,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

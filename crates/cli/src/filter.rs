@@ -1,6 +1,7 @@
 //! `stickslip filter`: one method over one log, its scores and its estimates.
 
 use std::collections::BTreeMap;
+use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -9,9 +10,9 @@ use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
+use stickslip::{Estimate, Run, Setup, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
-use stickslip_formats::{Experiment, write_estimate};
+use stickslip_formats::{Experiment, write_estimate, write_estimate_mcap, write_estimate_tum};
 use stickslip_report::{Block, CloudSample, Report, ReportedExperiment, Table, number};
 
 use crate::args::{FilterArgs, MethodName, Program};
@@ -89,8 +90,9 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let written = args
         .out
         .as_deref()
-        .map(|folder| write(folder.join(ESTIMATE), &scored.estimate))
-        .transpose()?;
+        .map(|folder| write_all(args, folder, &scored.estimate, &experiment.setup))
+        .transpose()?
+        .unwrap_or_default();
     let reported = args
         .report
         .as_deref()
@@ -180,9 +182,28 @@ fn report(
     write_report(path.to_owned(), &report)
 }
 
-fn write(path: PathBuf, estimate: &Estimate) -> Result<PathBuf> {
-    write_out(&path, |file| write_estimate(file, estimate))?;
-    Ok(path)
+/// Writes the estimate in all forms that are asked for.
+fn write_all(
+    args: &FilterArgs,
+    folder: &Path,
+    estimate: &Estimate,
+    setup: &Setup,
+) -> Result<Vec<PathBuf>> {
+    let mut written = vec![folder.join(ESTIMATE)];
+    write_out(&written[0], |file| write_estimate(file, estimate))?;
+    if args.tum {
+        let path = folder.join("estimate.tum");
+        write_out(&path, |file| write_estimate_tum(file, estimate))?;
+        written.push(path);
+    }
+    if args.mcap {
+        let path = folder.join("estimate.mcap");
+        let mut bytes = Cursor::new(Vec::new());
+        write_estimate_mcap(&mut bytes, estimate, setup)?;
+        write_out(&path, |file| file.write_all(bytes.get_ref()))?;
+        written.push(path);
+    }
+    Ok(written)
 }
 
 impl<'a> Summary<'a> {

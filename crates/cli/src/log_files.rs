@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use stickslip::Log;
 use stickslip_formats::{
-    BagOptions, LogWarning, McapError, McapProblem, read_bag, read_bag_metadata, read_log,
+    BagInfo, BagOptions, LogWarning, McapError, McapProblem, read_bag, read_bag_info,
+    read_bag_metadata, read_log,
 };
 
 use crate::experiment::{open, text_of, unreadable};
@@ -119,15 +120,50 @@ impl LogFiles {
         }
     }
 
-    /// Reads them; warnings go to standard error. The verdict says whether all could be read.
-    pub fn read(&self, options: &BagOptions) -> Result<(Log, Verdict)> {
-        let mut files = Vec::new();
-        for path in &self.paths {
-            files.push((
-                path.display().to_string(),
-                BufReader::new(self.opened(path)?),
+    /// Looks through a bag; warnings go to standard error.
+    pub fn info(&self) -> Result<(BagInfo, Verdict)> {
+        if !self.is_bag {
+            return Err(hinted(
+                format!("{}: this is no bag", self.shown.display()),
+                "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
             ));
         }
+        let (info, warnings) = read_bag_info(self.open_all()?)?;
+        Ok((info, self.told(&warnings)))
+    }
+
+    /// All files by name.
+    fn open_all(&self) -> Result<Vec<(String, BufReader<File>)>> {
+        let open = |path: &PathBuf| {
+            let file = BufReader::new(self.opened(path)?);
+            Ok((path.display().to_string(), file))
+        };
+        self.paths.iter().map(open).collect()
+    }
+
+    /// Tells warnings, and whether they are about lost input.
+    fn told(&self, warnings: &[LogWarning]) -> Verdict {
+        for warning in warnings {
+            talk(format_args!("warning: {warning}"));
+        }
+        if !self.missing.is_empty() {
+            talk(format_args!(
+                "warning: {}: {} is not there; what it held is lost",
+                self.shown.display(),
+                names(&self.missing)
+            ));
+        }
+        let lost = !self.missing.is_empty() || warnings.iter().any(LogWarning::is_loss);
+        if lost {
+            Verdict::InputLost
+        } else {
+            Verdict::Done
+        }
+    }
+
+    /// Reads them; warnings go to standard error. The verdict says whether all could be read.
+    pub fn read(&self, options: &BagOptions) -> Result<(Log, Verdict)> {
+        let mut files = self.open_all()?;
         let (log, warnings) = if self.is_bag {
             read_bag(files, options).map_err(topic_hint)?
         } else if options.topics.is_default() {
@@ -142,23 +178,7 @@ impl LogFiles {
                 "leave --topic out",
             ));
         };
-        for warning in &warnings {
-            talk(format_args!("warning: {warning}"));
-        }
-        if !self.missing.is_empty() {
-            talk(format_args!(
-                "warning: {}: {} is not there; what it held is lost",
-                self.shown.display(),
-                names(&self.missing)
-            ));
-        }
-        let lost = !self.missing.is_empty() || warnings.iter().any(LogWarning::is_loss);
-        let verdict = if lost {
-            Verdict::InputLost
-        } else {
-            Verdict::Done
-        };
-        Ok((log, verdict))
+        Ok((log, self.told(&warnings)))
     }
 
     /// A file that is of the kind that its name says.

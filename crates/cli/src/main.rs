@@ -22,6 +22,9 @@ mod filter;
 mod fit;
 mod fit_args;
 mod frames;
+mod info;
+mod live;
+mod live_args;
 mod log_files;
 mod origin;
 mod output;
@@ -50,6 +53,8 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Check(args) => check::check(&args),
+        Command::Info(args) => info::info(&args),
+        Command::Live(args) => live::live(&args),
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Track(args) => track::track(&args),
         Command::Render(args) => render::render(&args),

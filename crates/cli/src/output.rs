@@ -17,10 +17,7 @@ use crate::verdict::Verdict;
 /// left.
 pub fn show(text: impl Display) -> Result<()> {
     match write(&mut io::stdout().lock(), text) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(hinted(
-            format!("standard output cannot be written: {error}"),
-            "send it to a terminal, a pipe or a file with room for it",
-        )),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(unwritable(&error)),
         _ => Ok(()),
     }
 }
@@ -36,6 +33,31 @@ pub fn show_result(
     } else {
         text()
     })
+}
+
+/// Whether somebody reads what is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reader {
+    /// As far as one can know.
+    Here,
+    /// The reader has left.
+    Gone,
+}
+
+/// Writes one line of many to standard output.
+pub fn stream_line(line: &str) -> Result<Reader> {
+    match write(&mut io::stdout().lock(), line) {
+        Ok(()) => Ok(Reader::Here),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(Reader::Gone),
+        Err(error) => Err(unwritable(&error)),
+    }
+}
+
+fn unwritable(error: &io::Error) -> anyhow::Error {
+    hinted(
+        format!("standard output cannot be written: {error}"),
+        "send it to a terminal, a pipe or a file with room for it",
+    )
 }
 
 /// Most characters of a line on standard error; what a damaged file says of itself may be longer.

@@ -138,3 +138,69 @@ fn bag_without_all_of_its_files_is_done_with_input_lost() {
         "{told}"
     );
 }
+
+#[test]
+fn info_names_what_would_do_and_the_command_that_it_prints_runs() {
+    let case = Experiment::copy(STOP, "bags/info");
+    let (log, _) = read_log(fs::read(case.log()).unwrap().as_slice(), "log.csv").unwrap();
+    let bag = case.folder.join("a bag");
+    fs::create_dir(&bag).unwrap();
+    let topics = [
+        "object=/vicon/box/pose",
+        "pusher=/arm/tool0",
+        "fixel_1=/left/touch",
+    ];
+    let topics = Topics::new(topics.map(|text| text.parse().unwrap())).unwrap();
+    let mut bytes = Cursor::new(Vec::new());
+    write_log_mcap(&mut bytes, &log, &topics).unwrap();
+    fs::write(bag.join("bag_0.mcap"), bytes.into_inner()).unwrap();
+
+    let info = json(stickslip().arg("info").arg(&bag).arg("--json"));
+    assert_eq!(
+        info["suggestion"],
+        serde_json::json!([
+            "object=/vicon/box/pose",
+            "pusher=/arm/tool0",
+            "fixel_1=/left/touch"
+        ])
+    );
+    let topics = info["topics"].as_array().unwrap();
+    let touch = topics
+        .iter()
+        .find(|topic| topic["name"] == "/left/touch")
+        .unwrap();
+    assert_eq!(
+        (&touch["name"], &touch["message_type"], &touch["keys"]),
+        (
+            &"/left/touch".into(),
+            &"std_msgs/msg/Bool".into(),
+            &serde_json::json!(["fixel"])
+        )
+    );
+    let measured = log.object.iter().flatten().count();
+    assert_eq!(info["poses"][1]["poses"], measured, "{info}");
+
+    // the command, taken apart by a shell, reads the bag like the table
+    let command = info["commands"][0].as_str().unwrap();
+    let program = env!("CARGO_BIN_EXE_stickslip");
+    let command = command.replacen("stickslip", &format!("'{program}'"), 1);
+    let run = std::process::Command::new("sh")
+        .args(["-c", &command])
+        .output()
+        .unwrap();
+    let of_table = stickslip()
+        .args(["check", &case.scene(), &case.log()])
+        .output()
+        .unwrap();
+    assert_eq!(run.stdout, of_table.stdout, "{command}: {}", words(&run));
+
+    let text = stickslip().arg("info").arg(&bag).output().unwrap();
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.contains("Go on with\n  stickslip check '"), "{text}");
+    let table = stickslip().args(["info", &case.log()]).output().unwrap();
+    assert!(
+        words(&table).contains("this is no bag"),
+        "{}",
+        words(&table)
+    );
+}

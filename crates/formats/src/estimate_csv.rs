@@ -61,8 +61,12 @@ const CONTACT_PUSHER: usize = 11;
 pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::Result<()> {
     assert_eq!(estimate.time.len(), estimate.rows.len(), "one time per row");
     writeln!(writer, "{}", header(estimate.fixels).join(","))?;
+    let columns = EstimateColumns {
+        fixels: estimate.fixels,
+        has_tripod: estimate.has_tripod,
+    };
     for (time, row) in estimate.time.iter().zip(&estimate.rows) {
-        writeln!(writer, "{}", cells(*time, row, estimate).join(","))?;
+        writeln!(writer, "{}", cells(*time, row, columns).join(","))?;
     }
     Ok(())
 }
@@ -98,6 +102,15 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
     }
     estimate.has_tripod = tripod.unwrap_or(true);
     Ok(estimate)
+}
+
+/// Which columns an estimate has, and which are filled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EstimateColumns {
+    /// Number of fixels.
+    pub fixels: usize,
+    /// Whether d_tri is a parameter.
+    pub has_tripod: bool,
 }
 
 /// The names of the columns, in the order of the file.
@@ -148,11 +161,12 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
     Ok(fixels)
 }
 
-fn cells(time: f64, row: &EstimateRow, estimate: &Estimate) -> Vec<String> {
+/// The cells of a row, one per column.
+pub(crate) fn cells(time: f64, row: &EstimateRow, columns: EstimateColumns) -> Vec<String> {
     assert!(
         row.contact_fixels
             .as_ref()
-            .is_none_or(|contacts| contacts.len() == estimate.fixels),
+            .is_none_or(|contacts| contacts.len() == columns.fixels),
         "one contact probability per fixel"
     );
     let mut cells = vec![number::text(time)];
@@ -161,11 +175,11 @@ fn cells(time: f64, row: &EstimateRow, estimate: &Estimate) -> Vec<String> {
         &mut cells,
         row.twist.map(|twist| [twist.vx, twist.vy, twist.omega]),
     );
-    push_friction(&mut cells, row.friction, estimate.has_tripod);
+    push_friction(&mut cells, row.friction, columns.has_tripod);
     push(&mut cells, row.contact_pusher.map(|contact| [contact]));
     match &row.contact_fixels {
         Some(contacts) => cells.extend(contacts.iter().copied().map(number::text)),
-        None => cells.extend(vec![String::new(); estimate.fixels]),
+        None => cells.extend(vec![String::new(); columns.fixels]),
     }
     push(
         &mut cells,
@@ -174,7 +188,7 @@ fn cells(time: f64, row: &EstimateRow, estimate: &Estimate) -> Vec<String> {
     push_friction(
         &mut cells,
         row.spread.and_then(|spread| spread.friction),
-        estimate.has_tripod,
+        columns.has_tripod,
     );
     push(&mut cells, row.ess.map(|ess| [ess]));
     cells.push(

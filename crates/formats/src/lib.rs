@@ -12,6 +12,7 @@ mod csv_error;
 mod csv_table;
 mod estimate_columns;
 mod estimate_csv;
+mod estimate_json;
 mod experiment;
 mod frames_csv;
 mod log_columns;
@@ -22,6 +23,8 @@ mod mounts;
 mod named_columns;
 mod nearest;
 mod number;
+mod recorder;
+mod row_json;
 mod scene;
 mod truth_csv;
 mod truth_json;
@@ -30,18 +33,22 @@ pub use bag_metadata::{BagMetadata, BagMetadataError, read_bag_metadata};
 pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_columns::{estimate_columns, estimate_of_columns};
 pub use estimate_csv::{read_estimate, write_estimate};
+pub use estimate_json::estimate_json;
 pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
-    BagOptions, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place, Topic,
-    TopicError, TopicMapping, Topics, read_bag, read_log_mcap, write_log_mcap,
+    BagInfo, BagOptions, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place,
+    PosesInfo, Topic, TopicError, TopicInfo, TopicMapping, Topics, read_bag, read_bag_info,
+    read_log_mcap, write_estimate_mcap, write_estimate_tum, write_log_mcap,
 };
 pub use log_warning::LogWarning;
 pub use mounts::Mounts;
 pub use named_columns::{ColumnError, NamedColumns};
 pub use nearest::nearest;
+pub use recorder::{CsvRecorder, McapRecorder};
+pub use row_json::{RowJsonError, read_row_json};
 pub use scene::{SceneEdit, SceneError, SceneProblem, read_mounts, read_scene};
 pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

@@ -232,7 +232,8 @@ pub(crate) fn header(log: &Log) -> Vec<String> {
         .collect()
 }
 
-fn cells(log: &Log, row: usize) -> Vec<String> {
+/// The cells of a row.
+pub(crate) fn cells(log: &Log, row: usize) -> Vec<String> {
     let pose_cells = |pose: Option<Pose>| match pose {
         Some(pose) => [pose.x, pose.y, pose.theta].map(number::text),
         None => Default::default(),

@@ -26,6 +26,18 @@ pub struct McapError {
     pub problem: Box<McapProblem>,
 }
 
+impl McapError {
+    /// Whether it says that two frames are not joined by what was recorded.
+    pub(crate) fn is_about_frames(&self) -> bool {
+        matches!(
+            *self.problem,
+            McapProblem::NoChain { .. }
+                | McapProblem::NothingMoves { .. }
+                | McapProblem::TwoParents { .. }
+        )
+    }
+}
+
 impl fmt::Display for McapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.file)?;

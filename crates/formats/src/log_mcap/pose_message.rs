@@ -1,21 +1,21 @@
 //! Messages that carry one pose, whatever else they say: [`StampedPose`].
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::message::{Header, Message, PoseStamped, Quaternion, Vector3, decode};
 
 /// Six by six numbers, row by row.
-type Covariance = [[f64; 6]; 6];
+pub(crate) type Covariance = [[f64; 6]; 6];
 
-/// `geometry_msgs/msg/PoseWithCovarianceStamped`, laid out flat; the covariance is not used.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-struct PoseWithCovarianceStamped {
-    header: Header,
-    position: Vector3,
-    orientation: Quaternion,
-    #[serde(rename = "covariance")]
-    _covariance: Covariance,
+/// `geometry_msgs/msg/PoseWithCovarianceStamped`, laid out flat; where one is read, the covariance is
+/// not used.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PoseWithCovarianceStamped {
+    pub header: Header,
+    pub position: Vector3,
+    pub orientation: Quaternion,
+    pub covariance: Covariance,
 }
 
 /// `nav_msgs/msg/Odometry`, laid out flat; only its pose is used.
@@ -35,7 +35,7 @@ struct Odometry {
 }
 
 /// `geometry_msgs/msg/TransformStamped`, laid out flat.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TransformStamped {
     pub header: Header,
     pub child_frame_id: String,
@@ -44,7 +44,7 @@ pub(crate) struct TransformStamped {
 }
 
 /// `tf2_msgs/msg/TFMessage`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TfMessage {
     pub transforms: Vec<TransformStamped>,
 }

@@ -12,7 +12,7 @@ use crate::log_mcap::error::{McapError, McapProblem};
 use crate::log_mcap::message::SECOND;
 use crate::log_mcap::place::Place;
 use crate::log_mcap::planar::Tilt;
-use crate::log_mcap::recording::Recording;
+use crate::log_mcap::recording::{Damage, Recording};
 use crate::log_mcap::rows::Rows;
 use crate::log_mcap::series::{Series, Timed, seconds_text};
 use crate::log_mcap::source::{CommonFrame, Source};
@@ -104,7 +104,7 @@ pub fn read_bag<R: Read>(
         options,
         recording: &recording,
     };
-    let mut warnings = reader.damage();
+    let mut warnings = damage_warnings(&recording, &names);
     let sensors = reader
         .check_topics()
         .map_err(|problem| reader.whole(problem))?;
@@ -147,12 +147,23 @@ pub fn read_bag<R: Read>(
 }
 
 /// An error of the whole bag, told of its latest file.
-fn whole(files: &[String], problem: McapProblem) -> McapError {
+pub(crate) fn whole(files: &[String], problem: McapProblem) -> McapError {
     McapError {
         file: files.last().cloned().unwrap_or_default(),
         place: None,
         problem: Box::new(problem),
     }
+}
+
+/// The warnings about where files end too early.
+pub(crate) fn damage_warnings(recording: &Recording, files: &[String]) -> Vec<LogWarning> {
+    let warning = |damage: &Damage| LogWarning::CutOff {
+        file: files[damage.file].clone(),
+        at: damage.at,
+        size: damage.size,
+        why: damage.why.clone(),
+    };
+    recording.damage.iter().map(warning).collect()
 }
 
 /// A bag with the names of its files and how it is read.
@@ -169,19 +180,6 @@ impl<'a> Reader<'a> {
     /// An error of the whole bag.
     fn whole(&self, problem: McapProblem) -> McapError {
         whole(&self.files[..self.files.len().min(1)], problem)
-    }
-
-    /// The warnings about where files end too early.
-    fn damage(&self) -> Vec<LogWarning> {
-        let damage = self.recording.damage.iter();
-        damage
-            .map(|damage| LogWarning::CutOff {
-                file: self.files[damage.file].clone(),
-                at: damage.at,
-                size: damage.size,
-                why: damage.why.clone(),
-            })
-            .collect()
     }
 
     /// All needed topics are there; the number of sensors.
@@ -219,7 +217,7 @@ impl<'a> Reader<'a> {
             };
         }
         let free = found
-            .iter()
+            .keys()
             .map(String::as_str)
             .filter(|name| self.options.topics.carries(name).is_none());
         let hint = nearest(&name, free).filter(|(_, distance)| *distance <= name.len() / 2);
@@ -233,7 +231,7 @@ impl<'a> Reader<'a> {
             topic,
             name,
             hint,
-            found: found.iter().cloned().collect(),
+            found: found.keys().cloned().collect(),
         }
     }
 

@@ -1,31 +1,25 @@
 //! MCAP files as messages by topic, as far as they can be read: [`Recording`].
 //!
-//! A file is read record by record, and only messages of the needed topics are kept. Whole chunks are
-//! unpacked here and not by the library's reader: that one trusts the lengths in them. An attachment is
+//! A file is read record by record, and only messages of the needed topics are kept. An attachment is
 //! never looked at.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{self, ErrorKind, Read, copy, sink};
+use std::io::{self, Read, copy, sink};
 
-use mcap::read::{ChannelAccumulator, parse_record};
-use mcap::records::{ChunkHeader, Record, op};
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::read::ChannelAccumulator;
+use mcap::records::{Record, op};
 
 use crate::log_mcap::error::McapProblem;
+use crate::log_mcap::records::{
+    Stop, damage, damaged, parse, records, split_record, unpacked, unreadable,
+};
 use crate::log_mcap::topics::Topics;
-
-/// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large image
-/// takes 50. No more than this of a file is in memory at a time.
-const CHUNK_LIMIT: u64 = 1 << 28;
 
 /// Largest size of a message of a needed topic (bytes); poses, forces and touches take 200.
 const MESSAGE_LIMIT: usize = 1 << 16;
 
 /// How what zstd packed begins; plain CDR and MCAP begin otherwise.
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
-
-/// Most bytes that are taken from a file at once: a record may claim more than there is.
-const LARGEST_READ: usize = 1 << 20;
 
 /// A message as it is recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,11 +65,54 @@ pub(crate) struct Content {
     pub messages: Vec<RawMessage>,
 }
 
+/// Which topics are read.
+pub(crate) trait Wanted {
+    /// Whether a topic with messages of a type is read.
+    fn wants(&self, name: &str, schema: &str) -> bool;
+}
+
+impl Wanted for Topics {
+    fn wants(&self, name: &str, _: &str) -> bool {
+        self.wants(name)
+    }
+}
+
+/// What was seen of a topic, read or not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Seen {
+    /// Message type.
+    pub schema: String,
+    /// Number of messages.
+    pub count: usize,
+    /// Log time of the first message (ns).
+    pub first: u64,
+    /// Latest log time (ns).
+    pub last: u64,
+    /// Longest log time from one message to the next in the file (ns).
+    pub longest_gap: u64,
+    /// Log time of the message before (ns).
+    before: u64,
+}
+
+impl Seen {
+    /// Counts a message.
+    fn add(&mut self, log_time: u64) {
+        if self.count == 0 {
+            (self.first, self.last, self.before) = (log_time, log_time, log_time);
+        }
+        self.count += 1;
+        self.longest_gap = self.longest_gap.max(log_time.abs_diff(self.before));
+        self.before = log_time;
+        self.first = self.first.min(log_time);
+        self.last = self.last.max(log_time);
+    }
+}
+
 /// The topics of a recording that a log needs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
-    /// Names of all topics.
-    pub names: BTreeSet<String>,
+    /// All topics by name.
+    pub names: BTreeMap<String, Seen>,
     /// The needed ones by name.
     pub topics: BTreeMap<String, Content>,
     /// Where its files were cut off.
@@ -84,21 +121,9 @@ pub(crate) struct Recording {
     files: usize,
 }
 
-/// Why reading stopped.
-enum Stop {
-    Damage(String),
-    Refused(McapProblem),
-}
-
-impl From<mcap::McapError> for Stop {
-    fn from(error: mcap::McapError) -> Self {
-        Self::Damage(error.to_string())
-    }
-}
-
 /// A file while it is read.
 struct Progress<'t> {
-    wanted: &'t Topics,
+    wanted: &'t dyn Wanted,
     links: ChannelAccumulator<'static>,
     recording: &'t mut Recording,
     /// Messages so far by topic.
@@ -108,7 +133,7 @@ struct Progress<'t> {
 impl Recording {
     /// Adds what a file holds of the topics that `wanted` names, up to the first damage. The whole
     /// file may be packed with zstd.
-    pub(crate) fn add(&mut self, file: impl Read, wanted: &Topics) -> Result<(), McapProblem> {
+    pub(crate) fn add(&mut self, file: impl Read, wanted: &dyn Wanted) -> Result<(), McapProblem> {
         let mut start = Vec::new();
         let mut file = file;
         let read = (&mut file)
@@ -124,7 +149,7 @@ impl Recording {
         self.add_unpacked(unpacked.map_err(|error| unreadable(&error))?, wanted)
     }
 
-    fn add_unpacked(&mut self, file: impl Read, wanted: &Topics) -> Result<(), McapProblem> {
+    fn add_unpacked(&mut self, file: impl Read, wanted: &dyn Wanted) -> Result<(), McapProblem> {
         let mut file = Counted { file, bytes: 0 };
         let number = self.files;
         self.files += 1;
@@ -209,20 +234,6 @@ impl<R: Read> Read for Counted<R> {
     }
 }
 
-fn unreadable(error: &io::Error) -> McapProblem {
-    McapProblem::Unreadable {
-        why: error.to_string(),
-    }
-}
-
-/// Why a file cannot be read on: what unpacks it says so by these two kinds.
-fn damaged(error: &io::Error) -> Stop {
-    match error.kind() {
-        ErrorKind::UnexpectedEof | ErrorKind::Other => Stop::Damage(error.to_string()),
-        _ => Stop::Refused(unreadable(error)),
-    }
-}
-
 impl Progress<'_> {
     fn take_chunk(&mut self, body: &[u8]) -> Result<(), Stop> {
         let (header, packed) = match parse(op::CHUNK, body)? {
@@ -256,6 +267,9 @@ impl Progress<'_> {
                     .links
                     .get(header.channel_id)
                     .ok_or_else(|| damage("a message is of no channel"))?;
+                if let Some(seen) = self.recording.names.get_mut(&channel.topic) {
+                    seen.add(header.log_time);
+                }
                 let Some(content) = self.recording.topics.get_mut(&channel.topic) else {
                     return Ok(());
                 };
@@ -279,12 +293,13 @@ impl Progress<'_> {
             .links
             .get(id)
             .ok_or_else(|| damage("a channel is lost"))?;
-        self.recording.names.insert(channel.topic.clone());
-        if self.wanted.wants(&channel.topic) {
-            let schema = channel
-                .schema
-                .as_ref()
-                .map_or(String::new(), |schema| schema.name.clone());
+        let schema = channel
+            .schema
+            .as_ref()
+            .map_or(String::new(), |schema| schema.name.clone());
+        let seen = self.recording.names.entry(channel.topic.clone());
+        seen.or_default().schema.clone_from(&schema);
+        if self.wanted.wants(&channel.topic, &schema) {
             let kind = Kind {
                 schema,
                 encoding: channel.message_encoding.clone(),
@@ -323,125 +338,5 @@ fn message_data(topic: &str, data: &[u8]) -> Result<Vec<u8>, Stop> {
         Err(error) => Err(Stop::Damage(format!(
             "a message cannot be unpacked: {error}"
         ))),
-    }
-}
-
-fn damage(why: &str) -> Stop {
-    Stop::Damage(why.to_owned())
-}
-
-/// Takes a record: opcode and body.
-type Take<'t> = dyn FnMut(u8, &[u8]) -> Result<(), Stop> + 't;
-
-/// Shows all records of a file behind its first bytes to `take`, one at a time.
-fn records(file: &mut dyn Read, take: &mut Take<'_>) -> Result<(), Stop> {
-    let options = LinearReaderOptions::default()
-        .with_emit_chunks(true)
-        .with_skip_start_magic(true)
-        .with_record_length_limit(CHUNK_LIMIT as usize);
-    let mut reader = LinearReader::new_with_options(options);
-    while let Some(event) = reader.next_event() {
-        match event? {
-            LinearReadEvent::ReadRequest(need) => {
-                let read = file.read(reader.insert(need.min(LARGEST_READ)));
-                let read = read.map_err(|error| damaged(&error))?;
-                reader.notify_read(read);
-            }
-            LinearReadEvent::Record { opcode, data } => take(opcode, data)?,
-        }
-    }
-    Ok(())
-}
-
-/// The first record of a chunk's content: its opcode, its body and what follows.
-fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
-    let (opcode, rest) = bytes.split_first()?;
-    let (length, rest) = rest.split_first_chunk()?;
-    let (body, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-    Some((*opcode, body, rest))
-}
-
-/// A record whose texts lie within it; the library reserves memory by their lengths before it
-/// looks.
-fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
-    let fits = match opcode {
-        op::SCHEMA => body
-            .get(2..)
-            .and_then(|rest| after_texts(rest, 2))
-            .is_some(),
-        op::CHANNEL => body
-            .get(4..)
-            .and_then(|rest| after_texts(rest, 2))
-            .and_then(map_fits)
-            .is_some(),
-        op::CHUNK => body
-            .get(28..)
-            .and_then(|rest| after_texts(rest, 1))
-            .is_some(),
-        _ => true,
-    };
-    if fits {
-        Ok(parse_record(opcode, body)?)
-    } else {
-        Err(damage("a text is longer than its record"))
-    }
-}
-
-/// What follows `count` texts, each behind its length.
-fn after_texts(bytes: &[u8], count: usize) -> Option<&[u8]> {
-    (0..count).try_fold(bytes, |rest, _| {
-        let (length, rest) = rest.split_first_chunk()?;
-        rest.get(u32::from_le_bytes(*length) as usize..)
-    })
-}
-
-/// Whether all keys and values of a map lie in it.
-fn map_fits(bytes: &[u8]) -> Option<()> {
-    let (length, rest) = bytes.split_first_chunk()?;
-    let mut map = rest.get(..u32::from_le_bytes(*length) as usize)?;
-    while !map.is_empty() {
-        map = after_texts(map, 2)?;
-    }
-    Some(())
-}
-
-/// The records in a chunk; their checksum is right.
-fn unpacked(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, Stop> {
-    let size = header.uncompressed_size;
-    if size > CHUNK_LIMIT {
-        return Err(Stop::Damage(format!(
-            "a chunk claims {size} bytes, more than {CHUNK_LIMIT}"
-        )));
-    }
-    let failed =
-        |error: std::io::Error| Stop::Damage(format!("a chunk cannot be unpacked: {error}"));
-    let mut content = Vec::new();
-    let read = match header.compression.as_str() {
-        "" => packed.take(size).read_to_end(&mut content),
-        "zstd" => zstd::stream::read::Decoder::new(packed)
-            .map_err(failed)?
-            .take(size)
-            .read_to_end(&mut content),
-        "lz4" => lz4::Decoder::new(packed)
-            .map_err(failed)?
-            .take(size)
-            .read_to_end(&mut content),
-        found => {
-            return Err(Stop::Refused(McapProblem::Compression {
-                found: found.to_owned(),
-            }));
-        }
-    };
-    read.map_err(failed)?;
-    if content.len() as u64 != size {
-        return Err(Stop::Damage(format!(
-            "a chunk has {} bytes, and its header says {size}",
-            content.len()
-        )));
-    }
-    match header.uncompressed_crc {
-        0 => Ok(content),
-        crc if crc == crc32fast::hash(&content) => Ok(content),
-        _ => Err(damage("a chunk's checksum is wrong")),
     }
 }

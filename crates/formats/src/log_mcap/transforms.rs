@@ -84,6 +84,23 @@ impl<'a> Transforms<'a> {
             .collect()
     }
 
+    /// Frames that move in those above them.
+    pub(crate) fn moving(&self) -> BTreeSet<&str> {
+        let moves = |frame: &&str| {
+            let line = self.ancestry(frame).unwrap_or_default();
+            let mut links = line
+                .array_windows()
+                .map(|[child, parent]| &self.links[*child][*parent]);
+            links.any(|link| !link.is_static)
+        };
+        self.frames().into_iter().filter(moves).collect()
+    }
+
+    /// How many frames are above one.
+    pub(crate) fn depth(&self, frame: &str) -> usize {
+        self.ancestry(frame).map_or(0, |line| line.len() - 1)
+    }
+
     /// The poses of a frame in another one: at every stamp of the first link that moves on the way
     /// from the child, the others interpolated between neighbours at most 0.2 s apart.
     pub(crate) fn chain(&self, frames: &Frames) -> Result<Chain, McapError> {

@@ -88,52 +88,81 @@ pub fn write_log_mcap(
     topics: &Topics,
 ) -> Result<(), McapWriteError> {
     assert_equal_columns(log);
-
-    // a channel for each topic
     let stamps = stamps(&log.time)?;
-    let mut recorder = Recorder::new(writer)?;
-    let object = recorder.channel::<PoseStamped>(topics, Topic::Object)?;
-    let pusher = recorder.channel::<PoseStamped>(topics, Topic::Pusher)?;
-    let touches = (1..=log.tactile.len())
-        .map(|k| recorder.channel::<Bool>(topics, Topic::Fixel(k)))
-        .collect::<Result<Vec<_>, _>>()?;
-    let wrench = if log.force.is_empty() {
-        None
-    } else {
-        recorder.channel::<WrenchStamped>(topics, Topic::Wrench)?
-    };
-
-    // a message for each cell that is not empty
+    let mut messages = LogMessages::new(writer, log, topics)?;
     for (row, stamp) in stamps.into_iter().enumerate() {
-        recorder.write(
+        messages.write_row(log, row, stamp)?;
+    }
+    messages.finish()
+}
+
+/// The messages of logs while they are written, a topic per column.
+pub(crate) struct LogMessages<W: Write + Seek> {
+    recorder: Recorder<W>,
+    object: Option<u16>,
+    pusher: Option<u16>,
+    touches: Vec<Option<u16>>,
+    wrench: Option<u16>,
+}
+
+impl<W: Write + Seek> LogMessages<W> {
+    /// Begins a recording with a channel for each column that `log` has.
+    pub(crate) fn new(writer: W, log: &Log, topics: &Topics) -> Result<Self, McapWriteError> {
+        let mut recorder = Recorder::new(writer)?;
+        let object = recorder.channel::<PoseStamped>(topics, Topic::Object)?;
+        let pusher = recorder.channel::<PoseStamped>(topics, Topic::Pusher)?;
+        let touches = (1..=log.tactile.len())
+            .map(|k| recorder.channel::<Bool>(topics, Topic::Fixel(k)))
+            .collect::<Result<Vec<_>, _>>()?;
+        let wrench = if log.force.is_empty() {
+            None
+        } else {
+            recorder.channel::<WrenchStamped>(topics, Topic::Wrench)?
+        };
+        Ok(Self {
+            recorder,
             object,
-            stamp,
-            log.object[row].map(|pose| pose_message(stamp, pose)),
-        )?;
-        recorder.write(
             pusher,
-            stamp,
-            log.pusher[row].map(|pose| pose_message(stamp, pose)),
-        )?;
-        for (channel, column) in touches.iter().zip(&log.tactile) {
+            touches,
+            wrench,
+        })
+    }
+
+    /// Writes all rows of a log with those columns.
+    pub(crate) fn write(&mut self, log: &Log) -> Result<(), McapWriteError> {
+        for (row, stamp) in stamps(&log.time)?.into_iter().enumerate() {
+            self.write_row(log, row, stamp)?;
+        }
+        Ok(())
+    }
+
+    /// Writes a message for each cell of a row that is not empty.
+    fn write_row(&mut self, log: &Log, row: usize, stamp: i64) -> Result<(), McapWriteError> {
+        let pose = |pose: Pose| pose_message(stamp, pose);
+        let recorder = &mut self.recorder;
+        recorder.write(self.object, stamp, log.object[row].map(pose))?;
+        recorder.write(self.pusher, stamp, log.pusher[row].map(pose))?;
+        for (channel, column) in self.touches.iter().zip(&log.tactile) {
             recorder.write(*channel, stamp, column[row].map(|data| Bool { data }))?;
         }
-        recorder.write(
-            wrench,
-            stamp,
-            log.force
-                .get(row)
-                .copied()
-                .flatten()
-                .map(|force| force_message(stamp, force)),
-        )?;
+        let force = log.force.get(row).copied().flatten();
+        let force = force.map(|force| force_message(stamp, force));
+        recorder.write(self.wrench, stamp, force)
     }
-    recorder.0.finish()?;
-    Ok(())
+
+    /// Ends the chunk at hand and writes it.
+    pub(crate) fn flush(&mut self) -> Result<(), McapWriteError> {
+        Ok(self.recorder.0.flush()?)
+    }
+
+    /// Ends the recording.
+    pub(crate) fn finish(self) -> Result<(), McapWriteError> {
+        self.recorder.finish()
+    }
 }
 
 /// Times of the rows (ns), each one that a stamp holds, rising.
-fn stamps(time: &[f64]) -> Result<Vec<i64>, McapWriteError> {
+pub(crate) fn stamps(time: &[f64]) -> Result<Vec<i64>, McapWriteError> {
     let mut stamps: Vec<i64> = Vec::with_capacity(time.len());
     for (row, &time) in time.iter().enumerate() {
         let stamp = (time * SECOND as f64).round() as i64;
@@ -149,10 +178,11 @@ fn stamps(time: &[f64]) -> Result<Vec<i64>, McapWriteError> {
 }
 
 /// A recording while it is written.
-struct Recorder<W: Write + Seek>(Writer<W>);
+pub(crate) struct Recorder<W: Write + Seek>(Writer<W>);
 
 impl<W: Write + Seek> Recorder<W> {
-    fn new(writer: W) -> Result<Self, McapWriteError> {
+    /// Begins a recording.
+    pub(crate) fn new(writer: W) -> Result<Self, McapWriteError> {
         // without compression, whose output may change from one version to the next
         let options = WriteOptions::new()
             .compression(None)
@@ -173,16 +203,26 @@ impl<W: Write + Seek> Recorder<W> {
             Some(place) if place.frames.is_some() => return Err(McapWriteError::Frames(topic)),
             Some(place) => place.topic.clone(),
         };
+        Ok(Some(self.topic::<M>(&name)?))
+    }
+
+    /// A topic by its name.
+    pub(crate) fn topic<M: WrittenMessage>(&mut self, name: &str) -> Result<u16, McapWriteError> {
         let schema = self
             .0
             .add_schema(M::TYPE, "ros2msg", M::SCHEMA.as_bytes())?;
         let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), String::new())]);
-        Ok(Some(
-            self.0.add_channel(schema, &name, ENCODING, &metadata)?,
-        ))
+        Ok(self.0.add_channel(schema, name, ENCODING, &metadata)?)
     }
 
-    fn write<M: WrittenMessage>(
+    /// Ends the recording.
+    pub(crate) fn finish(mut self) -> Result<(), McapWriteError> {
+        self.0.finish()?;
+        Ok(())
+    }
+
+    /// Writes a message, if there is one.
+    pub(crate) fn write<M: WrittenMessage>(
         &mut self,
         channel: Option<u16>,
         stamp: i64,
@@ -202,7 +242,8 @@ impl<W: Write + Seek> Recorder<W> {
     }
 }
 
-fn header(stamp: i64) -> Header {
+/// The header of what is in the common frame at a time (ns).
+pub(crate) fn header(stamp: i64) -> Header {
     let Some(stamp) = Time::of(stamp) else {
         panic!("{stamp} ns was checked")
     };
@@ -213,22 +254,29 @@ fn header(stamp: i64) -> Header {
 }
 
 fn pose_message(stamp: i64, pose: Pose) -> PoseStamped {
+    let (position, orientation) = pose_parts(pose);
+    PoseStamped {
+        header: header(stamp),
+        position,
+        orientation,
+    }
+}
+
+/// A pose on the table in space.
+pub(crate) fn pose_parts(pose: Pose) -> (Vector3, Quaternion) {
     let (z, w) = libm::sincos(pose.theta / 2.0);
     let position = Vector3 {
         x: pose.x,
         y: pose.y,
         z: 0.0,
     };
-    PoseStamped {
-        header: header(stamp),
-        position,
-        orientation: Quaternion {
-            x: 0.0,
-            y: 0.0,
-            z,
-            w,
-        },
-    }
+    let orientation = Quaternion {
+        x: 0.0,
+        y: 0.0,
+        z,
+        w,
+    };
+    (position, orientation)
 }
 
 fn force_message(stamp: i64, force: [f64; 2]) -> WrenchStamped {

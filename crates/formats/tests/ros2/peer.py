@@ -1,6 +1,7 @@
 """ROS 2 recordings by other people's programs: what is in ours, and one of theirs for us to read.
 
     peer.py decode RECORDING        every message as a line `program topic log-time stamp frame numbers`, by two programs
+    peer.py estimate RECORDING      every message of an estimate as a line of numbers, by our definitions and by those of ROS 2 Humble
     peer.py record LOG.csv FOLDER   a log as a bag, packed with zstd, topic after topic and the latest messages first
     peer.py kinds LOG.csv FOLDER    the same with other messages: PoseWithCovarianceStamped, Odometry, WrenchStamped as a touch
     peer.py frames LOG.csv FOLDER   the same with both bodies on /tf only: the object by two tags in front of a camera, each
@@ -53,6 +54,33 @@ def decode(path):
     with AnyReader([Path(path)]) as reader:
         for connection, log_time, raw in reader.messages():
             show("rosbags", connection.topic, log_time, reader.deserialize(raw, connection.msgtype))
+
+
+def estimate(path):
+    with open(path, "rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for _, channel, record, message in reader.iter_decoded_messages():
+            show_estimate("ours", channel.topic, record.log_time, message)
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    with AnyReader([Path(path)]) as reader:
+        for connection, log_time, raw in reader.messages():
+            show_estimate("humble", connection.topic, log_time, store.deserialize_cdr(raw, connection.msgtype))
+
+
+def show_estimate(program, topic, log_time, message):
+    if hasattr(message, "markers"):
+        for m in message.markers:
+            p, q, c = m.pose.position, m.pose.orientation, m.color
+            points = [number for point in m.points for number in (point.x, point.y, point.z)]
+            numbers = [m.id, m.type, p.x, p.y, q.z, q.w, round(c.r, 2), len(m.points), *points]
+            print(program, topic, log_time, m.header.frame_id, m.ns, *(repr(float(number)) for number in numbers))
+    elif hasattr(message, "transforms"):
+        for t in message.transforms:
+            p, q = t.transform.translation, t.transform.rotation
+            print(program, topic, log_time, t.header.frame_id, t.child_frame_id, *(repr(float(n)) for n in [p.x, p.y, q.z, q.w]))
+    else:
+        p, q, c = message.pose.pose.position, message.pose.pose.orientation, message.pose.covariance
+        print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for n in [p.x, p.y, q.z, q.w, *c]))
 
 
 class Bag:
@@ -215,5 +243,5 @@ def frames(path, folder):
 
 
 if __name__ == "__main__":
-    commands = {"decode": decode, "record": record, "kinds": kinds, "frames": frames}
+    commands = {"decode": decode, "estimate": estimate, "record": record, "kinds": kinds, "frames": frames}
     commands[sys.argv[1]](*sys.argv[2:])

@@ -1,0 +1,172 @@
+//! `stickslip info`: what is in a bag, and how to read a log from it.
+
+use std::path::Path;
+
+use anyhow::Result;
+use serde::Serialize;
+use stickslip_formats::{BagInfo, PosesInfo, TopicInfo};
+use stickslip_report::Table;
+
+use crate::args::InfoArgs;
+use crate::experiment::scene_beside;
+use crate::log_files::LogFiles;
+use crate::output::show_result;
+use crate::verdict::Verdict;
+
+/// What is printed of a bag.
+#[derive(Serialize)]
+struct Shown {
+    #[serde(flatten)]
+    info: BagInfo,
+    /// Commands to go on with, in their order.
+    commands: Vec<String>,
+}
+
+/// Runs the command.
+pub fn info(args: &InfoArgs) -> Result<Verdict> {
+    let (info, verdict) = LogFiles::find(&args.bag)?.info()?;
+    let shown = Shown {
+        commands: commands(&args.bag, &info.suggestion),
+        info,
+    };
+    show_result(args.json, &shown, || text(&shown))?;
+    Ok(verdict)
+}
+
+/// How to check and filter the bag.
+fn commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
+    let topics: String = suggestion
+        .iter()
+        .map(|topic| format!(" --topic {}", quoted(topic)))
+        .collect();
+    let shown = quoted(&bag.display().to_string());
+    let (check, filter) = match scene_beside(bag) {
+        Ok(_) => (String::new(), String::new()),
+        Err(_) => ("scene.toml ".to_owned(), " --scene scene.toml".to_owned()),
+    };
+    vec![
+        format!("stickslip check {check}{shown}{topics}"),
+        format!("stickslip filter {shown}{filter}{topics} --out out --report report.html"),
+    ]
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-=:+@%,".contains(c);
+    match word.chars().all(plain) && !word.is_empty() {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
+fn text(shown: &Shown) -> String {
+    let BagInfo { topics, poses, .. } = &shown.info;
+    let mut parts = vec![topic_table(topics).to_string()];
+    if !poses.is_empty() {
+        parts.push(poses_table(poses).to_string());
+    }
+    parts.extend(problems(poses));
+    let missing = missing(&shown.info);
+    parts.push(if missing.is_empty() {
+        format!("Go on with\n  {}", shown.commands.join("\n  "))
+    } else {
+        format!(
+            "Nothing that moves on the table is left for {}: record its poses, or put the transform from a frame of the table to the camera on /tf_static",
+            missing.join(" and ")
+        )
+    });
+    parts.join("\n")
+}
+
+/// Bodies that nothing was found for.
+fn missing(info: &BagInfo) -> Vec<&'static str> {
+    let found = |body: &&str| {
+        let mapped = info
+            .suggestion
+            .iter()
+            .any(|text| text.starts_with(&format!("{body}=")));
+        mapped
+            || info
+                .topics
+                .iter()
+                .any(|topic| topic.name == format!("/{body}/pose"))
+    };
+    ["object", "pusher"]
+        .into_iter()
+        .filter(|body| !found(body))
+        .collect()
+}
+
+fn topic_table(topics: &[TopicInfo]) -> Table {
+    let mut table = Table::new([
+        "topic",
+        "type",
+        "messages",
+        "rate, Hz",
+        "longest gap, s",
+        "would do for",
+    ]);
+    for topic in topics {
+        table.push([
+            topic.name.clone(),
+            topic.message_type.clone(),
+            topic.messages.to_string(),
+            topic
+                .rate
+                .map_or(String::new(), |rate| format!("{rate:.1}")),
+            format!("{:.3}", topic.longest_gap),
+            topic.keys.join(", "),
+        ]);
+    }
+    table
+}
+
+fn poses_table(poses: &[PosesInfo]) -> Table {
+    let mut table = Table::new([
+        "poses of",
+        "count",
+        "rate, Hz",
+        "longest gap, s",
+        "moves, mm",
+        "from, s",
+        "tilt, deg",
+    ]);
+    for info in poses.iter().filter(|info| info.problem.is_none()) {
+        table.push([
+            info.place.clone(),
+            info.poses.to_string(),
+            info.rate.map_or(String::new(), |rate| format!("{rate:.1}")),
+            format!("{:.3}", info.longest_gap),
+            format!("{:.1}", 1e3 * info.moves),
+            format!("{:.2}", info.moves_at),
+            format!("{:.1}", info.tilt_deg),
+        ]);
+    }
+    table
+}
+
+/// Why some poses cannot be read.
+fn problems(poses: &[PosesInfo]) -> Vec<String> {
+    let told = poses.iter().filter_map(|info| {
+        let problem = info.problem.as_ref()?;
+        Some(format!("{}: {problem}\n", info.place))
+    });
+    told.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quoted_is_what_a_shell_takes_apart_into_the_word() {
+        for word in ["a b", "it's", "/tf:table.tag_7", "$HOME", "", "a*"] {
+            let run = std::process::Command::new("sh")
+                .args(["-c", &format!("printf %s {}", quoted(word))])
+                .output()
+                .unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(String::from_utf8_lossy(&run.stdout), word);
+        }
+        assert_eq!(quoted("/tf:table.tag_7"), "/tf:table.tag_7");
+    }
+}

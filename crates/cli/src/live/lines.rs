@@ -1,0 +1,125 @@
+//! Lines of standard input as they arrive: [`Lines`].
+
+use std::io::{BufRead, BufReader, Read};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread;
+use std::time::Instant;
+
+/// Longest line (bytes); a row with a thousand sensors takes 20 kB.
+const LONGEST: usize = 1 << 16;
+
+/// Lines that wait for their answers; the source then waits too.
+const WAITING: usize = 1024;
+
+/// A line as it arrived.
+pub struct Line {
+    /// Its number, from 1.
+    pub number: u64,
+    /// When it was there as a whole.
+    pub arrived: Instant,
+    /// What it says, or why that cannot be told.
+    pub text: Result<String, String>,
+}
+
+/// Lines in the order of their arrival.
+pub struct Lines(Receiver<Line>);
+
+impl Lines {
+    /// The lines of a source, read by a thread of their own, so that their time of arrival is known.
+    pub fn read(source: impl Read + Send + 'static) -> Self {
+        let (sender, receiver) = sync_channel(WAITING);
+        thread::spawn(move || {
+            let mut source = BufReader::new(source);
+            for number in 1.. {
+                let Some(text) = next_line(&mut source) else {
+                    break;
+                };
+                let arrived = Instant::now();
+                let line = Line {
+                    number,
+                    arrived,
+                    text,
+                };
+                if sender.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        Self(receiver)
+    }
+}
+
+impl Iterator for Lines {
+    type Item = Line;
+
+    fn next(&mut self) -> Option<Line> {
+        self.0.recv().ok()
+    }
+}
+
+/// The next line without its end; `None` where the source ends or cannot be read any more.
+fn next_line(source: &mut impl BufRead) -> Option<Result<String, String>> {
+    let mut bytes = Vec::new();
+    let limit = LONGEST as u64 + 1;
+    source.take(limit).read_until(b'\n', &mut bytes).ok()?;
+    if bytes.is_empty() {
+        return None;
+    }
+    if bytes.len() > LONGEST && bytes.last() != Some(&b'\n') {
+        let rest = skip_line(source);
+        return Some(Err(format!(
+            "the line has {} bytes, more than the {LONGEST} that a row can have. Send one row per line",
+            bytes.len() + rest
+        )));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = 1 + error.utf8_error().valid_up_to();
+        format!("the line is no UTF-8 text from byte {at} on. Send rows as JSON")
+    });
+    Some(text)
+}
+
+/// Reads to the end of the line, and keeps nothing; how many bytes that are.
+fn skip_line(source: &mut impl BufRead) -> usize {
+    let mut skipped = 0;
+    loop {
+        let Ok(bytes) = source.fill_buf() else {
+            return skipped;
+        };
+        if bytes.is_empty() {
+            return skipped;
+        }
+        let end = bytes.iter().position(|byte| *byte == b'\n');
+        let used = end.map_or(bytes.len(), |end| end + 1);
+        source.consume(used);
+        skipped += used;
+        if end.is_some() {
+            return skipped;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_told_apart_whatever_is_in_them() {
+        let long = "x".repeat(LONGEST + 1);
+        let text = format!("a\n{long}\nb\r\n\n{}", "y".repeat(LONGEST));
+        let bytes = [text.as_bytes(), b"\n\xff\nlast"].concat();
+        let lines: Vec<Line> = Lines::read(std::io::Cursor::new(bytes)).collect();
+        let texts: Vec<Result<&str, &str>> = lines
+            .iter()
+            .map(|line| line.text.as_deref().map_err(String::as_str))
+            .collect();
+        assert_eq!(
+            (texts[0], texts[2], texts[3]),
+            (Ok("a\n"), Ok("b\r\n"), Ok("\n"))
+        );
+        assert!(texts[1].is_err_and(|why| why.starts_with("the line has 65538 bytes")));
+        assert_eq!(texts[4].map(str::len), Ok(LONGEST + 1));
+        assert!(texts[5].is_err_and(|why| why.contains("from byte 1 on")));
+        assert_eq!((texts[6], lines[6].number, lines.len()), (Ok("last"), 7, 7));
+    }
+}

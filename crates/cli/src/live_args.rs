@@ -1,0 +1,51 @@
+//! Arguments of `stickslip live`: [`LiveArgs`].
+
+use std::path::PathBuf;
+
+use clap::Args;
+use stickslip::TactileUse;
+
+use crate::arg_values::{ThreadArgs, particles, positive};
+use crate::args::ModeName;
+
+/// Arguments of `stickslip live`.
+#[derive(Debug, Args)]
+pub struct LiveArgs {
+    /// What is known before (scene.toml)
+    pub scene: PathBuf,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
+    pub particles: usize,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Rules of the particle filter
+    #[arg(long, value_enum, default_value_t = ModeName::Contact)]
+    pub mode: ModeName,
+    /// Ignore the tactile readings
+    #[arg(long)]
+    pub no_tactile: bool,
+    /// How far behind the latest row a row may come and still count
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
+    pub late: f64,
+    /// Count the answers that take longer from the arrival of their row
+    #[arg(long, value_name = "MS", value_parser = positive)]
+    pub deadline_ms: Option<f64>,
+    /// Keep the rows in a new file, .mcap or .csv
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
+}
+
+impl LiveArgs {
+    /// What becomes of tactile readings.
+    pub fn tactile(&self) -> TactileUse {
+        if self.no_tactile {
+            TactileUse::Ignored
+        } else {
+            TactileUse::Used
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Logs that are written row by row, as a live source brings them: [`CsvRecorder`], [`McapRecorder`].
+
+use std::io::{Seek, Write};
+
+use stickslip::{Log, Row};
+
+use crate::log_csv::{cells, header};
+use crate::log_mcap::{LogMessages, McapWriteError, Topics};
+
+/// Writes rows as `log.csv`.
+pub struct CsvRecorder<W: Write> {
+    writer: W,
+    sensors: usize,
+}
+
+/// Writes rows as a recording of ROS 2 messages.
+pub struct McapRecorder<W: Write + Seek> {
+    messages: LogMessages<W>,
+    sensors: usize,
+}
+
+impl<W: Write> CsvRecorder<W> {
+    /// Writes the header of a log with forces and this many tactile sensors.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    pub fn new(mut writer: W, sensors: usize) -> std::io::Result<Self> {
+        writeln!(
+            writer,
+            "{}",
+            header(&one_row(&Row::default(), sensors)).join(",")
+        )?;
+        Ok(Self { writer, sensors })
+    }
+
+    /// Writes a row, up to the operating system. Times must rise from row to row for the log to be
+    /// read.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&mut self, row: &Row) -> std::io::Result<()> {
+        let log = one_row(row, self.sensors);
+        writeln!(self.writer, "{}", cells(&log, 0).join(","))?;
+        self.writer.flush()
+    }
+}
+
+impl<W: Write + Seek> McapRecorder<W> {
+    /// Begins a recording with forces and this many tactile sensors.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    pub fn new(writer: W, sensors: usize) -> Result<Self, McapWriteError> {
+        let log = one_row(&Row::default(), sensors);
+        let messages = LogMessages::new(writer, &log, &Topics::default())?;
+        Ok(Self { messages, sensors })
+    }
+
+    /// Writes a row into the chunk at hand.
+    ///
+    /// # Errors
+    /// A time that a stamp cannot hold, or what the writer says.
+    pub fn write(&mut self, row: &Row) -> Result<(), McapWriteError> {
+        self.messages.write(&one_row(row, self.sensors))
+    }
+
+    /// Ends the chunk at hand and writes it, up to the operating system: what is written by then can
+    /// be read whatever happens to the program.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn flush(&mut self) -> Result<(), McapWriteError> {
+        self.messages.flush()
+    }
+
+    /// Ends the recording.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn finish(self) -> Result<(), McapWriteError> {
+        self.messages.finish()
+    }
+}
+
+/// A log of one row.
+fn one_row(row: &Row, sensors: usize) -> Log {
+    let reading = |k: usize| vec![row.tactile.get(k).copied().flatten()];
+    Log {
+        time: vec![row.time],
+        object: vec![row.object],
+        pusher: vec![row.pusher],
+        tactile: (0..sensors).map(reading).collect(),
+        force: vec![row.force],
+    }
+}
