@@ -141,8 +141,8 @@ def test_particles_have_the_mean_of_the_estimate(demo, scene):
 
 def test_samples_have_equal_weight_and_the_posterior_s_moments(demo, scene):
     options = {"particles": 400, "occlude": 200}
-    posterior = stickslip.samples(demo / "log.csv", scene, rows=[250, 100], chains=2, draws=4000, **options)
-    assert posterior["mu_p"].shape == (2, 4000, 2)
+    posterior = stickslip.samples(demo / "log.csv", scene, rows=[250, 100], chains=2, draws=40000, **options)
+    assert posterior["mu_p"].shape == (2, 40000, 2)
     for chain, seed in enumerate((0, 1)):
         estimate = stickslip.filter(demo / "log.csv", scene, seed=seed, **options)
         for draw, row in enumerate((250, 100)):
