@@ -1,8 +1,9 @@
 //! What a run knows of friction when it ends: [`LearnedParameter`].
 //!
-//! Particles get new friction values only where the camera sees the object and Φ keeps them
-//! (docs/method.md (20), (21)). In the dark and at rest the set is resampled without them, until all
-//! its particles are copies of a few: its spread then shrinks though nothing has been learnt. So the
+//! In paper mode particles get new friction values only where the camera sees the object and Φ keeps
+//! them (docs/method.md (20), (21)), in contact mode while the pusher moves, too (34). At rest in the
+//! dark the set is resampled without them, until all its particles are copies of a few: its spread
+//! then shrinks though nothing has been learnt. So the
 //! last row that informs about a parameter has its estimate, and where there is none it was not
 //! observed. Where particles begin with a prior (contact mode), a parameter whose spread is hardly
 //! narrower than that was not observed, either.
