@@ -15,6 +15,7 @@ from stickslip._columns import Columns, Log
 from stickslip._compare import compare
 from stickslip._files import load_log, load_scene, load_truth
 from stickslip._filter import FilterOptions, filter, particles, samples
+from stickslip._fit import Fit, fit
 from stickslip._native import Error, Scene, __version__
 from stickslip._rollout import Rollout, rollout
 from stickslip._score import score
@@ -25,6 +26,7 @@ __all__ = [
     "Columns",
     "Error",
     "FilterOptions",
+    "Fit",
     "Log",
     "Rollout",
     "Row",
@@ -34,6 +36,7 @@ __all__ = [
     "__version__",
     "compare",
     "filter",
+    "fit",
     "load_log",
     "load_scene",
     "load_truth",

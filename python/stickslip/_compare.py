@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Unpack
 
-from stickslip._files import load_log, load_scene, load_truth
+from stickslip._files import experiments, load_log, load_scene, load_truth, log_in
 from stickslip._filter import FilterOptions, filter
 from stickslip._native import Error
 from stickslip._score import score
@@ -33,6 +33,8 @@ def compare(
 ) -> list[dict[str, Any]]:
     """Runs each variant on each experiment folder, particle filters with ``seeds`` seeds from ``seed`` on.
 
+    A folder that is none itself stands for those below it.
+
     ``variants``: ``nominal``, ``kalman``, ``particle_no_tactile``, ``particle``, ``particle_always_on`` (the
     camera stays on). Those that do not differ on a log (no tactile columns, nothing hidden) are left out. The
     camera is hidden as ``options`` say, else from ``occlude_from`` of ``truth.json`` on. Scores are against
@@ -44,12 +46,13 @@ def compare(
     unknown = sorted(set(chosen) - set(_VARIANTS))
     if unknown:
         raise Error(f"variants has a `{unknown[0]}`; it may have {', '.join(_VARIANTS)}")
-    return [row for folder in folders for row in _on(Path(folder), chosen, seeds, scene_name, options)]
+    found = [inner for folder in folders for inner in experiments(Path(folder), scene_name)]
+    return [row for folder in found for row in _on(folder, chosen, seeds, scene_name, options)]
 
 
 def _on(folder: Path, variants: list[str], seeds: int, scene_name: str, options: FilterOptions) -> list[dict[str, Any]]:
     scene = load_scene(folder / scene_name)
-    log = load_log(folder / "log.csv" if (folder / "log.csv").is_file() else folder / "log.mcap")
+    log = load_log(log_in(folder))
     truth = load_truth(folder / "truth.csv") if (folder / "truth.csv").is_file() else None
     known = folder / "truth.json"
     facts = json.loads(known.read_text(encoding="utf-8")) if known.is_file() else {}

@@ -52,6 +52,21 @@ def load_truth(path: str | os.PathLike[str]) -> Columns:
     return {name: np.ascontiguousarray(table[:, k]) for k, name in enumerate(names)}
 
 
+def log_in(folder: Path) -> Path:
+    """The log of an experiment folder."""
+    return folder / "log.csv" if (folder / "log.csv").is_file() else folder / "log.mcap"
+
+
+def experiments(folder: Path, scene_name: str) -> list[Path]:
+    """The folder, or the experiment folders below it in the order of their names."""
+
+    def is_one(path: Path) -> bool:
+        return (path / scene_name).is_file() or log_in(path).is_file()
+
+    found = [folder] if is_one(folder) else sorted(path for path in folder.rglob("*") if is_one(path))
+    return found or [folder]
+
+
 def log_of(log: Any) -> Columns:
     """The columns of a log that is given by its path, as a mapping or as a data frame."""
     if isinstance(log, str | os.PathLike):

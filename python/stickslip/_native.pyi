@@ -67,6 +67,9 @@ def particles(
     options: RunArguments,
     rows: Sequence[int] | None = None,
 ) -> tuple[NDArray[np.int64], dict[str, NDArray[np.float64]]]: ...
+def fit(
+    pushes: Sequence[tuple[str, Scene, dict[str, NDArray[np.float64]]]], options: Mapping[str, Any]
+) -> tuple[str, str, dict[str, NDArray[np.float64]], str]: ...
 def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> dict[str, Any]: ...
 def simulate(
     scene: Scene, options: Mapping[str, Any]

@@ -111,6 +111,7 @@ pub const CRATES: [Rules; 16] = [
             "crates/estimator",
             "crates/formats",
             "crates/evaluation",
+            "crates/fit",
         ],
     ),
     Rules::of(

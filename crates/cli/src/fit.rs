@@ -7,7 +7,9 @@ use anyhow::{Context, Result};
 use clap::CommandFactory;
 use rayon::prelude::*;
 use serde::Serialize;
-use stickslip_fit::{CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push};
+use stickslip_fit::{
+    CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
+};
 use stickslip_formats::Topics;
 use stickslip_report::{Block, Report, Section, Table};
 
@@ -57,11 +59,7 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     let result: Result<(FitResult, Verdict)> = pool.install(|| {
         let (pushes, verdict) = read_pushes(args, &topics, &folders)?;
         let fit = stickslip_fit::fit(&pushes, &options)?;
-        let folds = args.folds.unwrap_or(match pushes.len() {
-            8.. => 4,
-            4..8 => 2,
-            _ => 0,
-        });
+        let folds = args.folds.unwrap_or(default_folds(pushes.len()));
         let validate = || stickslip_fit::cross_validate(&pushes, folds, &options);
         let result = FitResult {
             folders: folders

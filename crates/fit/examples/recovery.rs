@@ -13,7 +13,7 @@ use stickslip_evaluation::Physics;
 use stickslip_filter::Streams;
 use stickslip_fit::{FitOptions, FittedParameter, Parameter, fit};
 
-/// Pushes of a set.
+/// Pushes of a set, unless the third argument says another number.
 const PUSHES: usize = 8;
 
 /// Standard deviations on either side that hold 90 % of a normal distribution.
@@ -26,31 +26,51 @@ fn main() {
         Some("testbed") => Physics::Testbed,
         _ => Physics::Model,
     };
+    let pushes_of_a_set = arguments.next().and_then(|n| n.parse().ok());
     let options = FitOptions {
         parameters: vec![Parameter::MuP, Parameter::TripodRadius],
         seed: 0,
     };
-    let mut held = [0_u32; 2];
+    let mut errors: [Vec<[f64; 2]>; 2] = Default::default();
     for set in 0..sets {
         let truth = setup().drawn_friction(Streams::new(1000 + set).normals(0, 0, 0));
         let seed = 100 * set;
-        let fit = fit(&pushes(truth, physics, PUSHES, seed), &options).expect("a fit");
+        let pushes = pushes(truth, physics, pushes_of_a_set.unwrap_or(PUSHES), seed);
+        let fit = fit(&pushes, &options).expect("a fit");
         let d_tri = match physics {
             Physics::Model => truth.d_tri,
             Physics::Testbed => rig_tripod_radius(truth, seed),
         };
         for (k, truth) in [truth.mu_p, d_tri].into_iter().enumerate() {
-            held[k] += u32::from(holds(&fit.parameters[k], truth));
+            errors[k].push(error(&fit.parameters[k], truth));
         }
+        println!(
+            "set {set}: mu_p {:.3}, tripod_radius {:.4}; errors and spreads of logarithms {:.3?} {:.3?}, drift {:.4}",
+            truth.mu_p, d_tri, errors[0][set as usize], errors[1][set as usize], fit.noise.drift
+        );
     }
-    println!(
-        "90 % intervals hold the truth in {sets} sets: mu_p {}, tripod_radius {}",
-        held[0], held[1]
-    );
+    for (name, errors) in ["mu_p", "tripod_radius"].into_iter().zip(&errors) {
+        println!("{name}: {}", summary(errors));
+    }
 }
 
-/// Whether the 90 % interval of a logarithm holds that of the truth.
-fn holds(fitted: &FittedParameter, truth: f64) -> bool {
-    let off = libm::log(fitted.value / truth).abs();
-    off <= NINETY_PERCENT * fitted.std / fitted.value
+/// Error of a logarithm, and its standard deviation.
+fn error(fitted: &FittedParameter, truth: f64) -> [f64; 2] {
+    [libm::log(fitted.value / truth), fitted.std / fitted.value]
+}
+
+fn summary(errors: &[[f64; 2]]) -> String {
+    let mean = |of: &dyn Fn(&[f64; 2]) -> f64| -> f64 {
+        errors.iter().map(of).sum::<f64>() / errors.len() as f64
+    };
+    let held = |error: &&[f64; 2]| error[0].abs() <= NINETY_PERCENT * error[1];
+    format!(
+        "90 % intervals of the logarithm hold the truth in {} of {} sets; error {:.3} in the mean, {:.3} root mean square, \
+         spread {:.3} root mean square",
+        errors.iter().filter(held).count(),
+        errors.len(),
+        mean(&|error| error[0]),
+        mean(&|error| error[0] * error[0]).sqrt(),
+        mean(&|error| error[1] * error[1]).sqrt()
+    )
 }

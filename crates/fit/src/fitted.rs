@@ -10,7 +10,7 @@ use crate::error::FitError;
 use crate::likelihood::Noise;
 use crate::optimum::optima;
 use crate::parameter::Parameter;
-use crate::posterior::Posterior;
+use crate::posterior::{Posterior, noise_of};
 use crate::prior::Prior;
 use crate::push::{PreparedPush, Push};
 use crate::sampler::sample;
@@ -27,8 +27,8 @@ const SEARCHES: usize = 4;
 /// Split R̂ above which the chains have not settled.
 const SETTLED: f64 = 1.2;
 
-/// Samples that stand for the posterior in predictions.
-const KEPT_SAMPLES: usize = 64;
+/// Samples that stand for the posterior.
+const KEPT_SAMPLES: usize = 512;
 
 /// What is to be learnt, and by which random numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +73,10 @@ pub struct FittedParameter {
     pub std: f64,
     /// What was believed before.
     pub prior: Prior,
+    /// Its centre, in the parameter's unit.
+    pub prior_value: f64,
+    /// Its standard deviation, at its centre.
+    pub prior_std: f64,
     /// Posterior over prior standard deviation: 0 where the pushes say all, 1 where they say nothing.
     pub std_ratio: f64,
     /// Whether `std_ratio` is below 0.5.
@@ -203,6 +207,8 @@ fn fitted(parameter: Parameter, prior: Prior, z: f64, std: f64) -> FittedParamet
         value,
         std: prior.spread(value, if determined { std } else { 1.0 }),
         prior,
+        prior_value: prior.value(0.0),
+        prior_std: prior.spread(prior.value(0.0), 1.0),
         std_ratio: std,
         determined,
     }
@@ -244,6 +250,28 @@ impl Fit {
             .map(|fitted| (fitted.parameter, fitted.value))
             .collect();
         Parameter::apply(&values, setup)
+    }
+
+    /// Samples of the posterior by name: 512 of each free parameter in its unit, also where the pushes do
+    /// not determine it, then of `camera_scale` and `drift` as [`Noise`] has them. The k-th numbers belong
+    /// together.
+    #[must_use]
+    pub fn draws(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let of_parameters = self.parameters.iter().enumerate().map(|(k, fitted)| {
+            let values = self.samples.iter();
+            let values = values.map(|sample| fitted.prior.value(sample[k]));
+            (fitted.name, values.collect())
+        });
+        let noise = |of: fn(&Noise) -> f64| -> Vec<f64> {
+            let samples = self.samples.iter();
+            let noises = samples.map(|sample| noise_of(&sample[self.parameters.len()..]));
+            noises.map(|noise| of(&noise)).collect()
+        };
+        let of_noise = [
+            ("camera_scale", noise(|noise| noise.camera_scale)),
+            ("drift", noise(|noise| noise.drift)),
+        ];
+        of_parameters.chain(of_noise).collect()
     }
 
     /// The same with the number of steps without a certified solution at the whitened `values`.

@@ -24,4 +24,4 @@ pub use likelihood::Noise;
 pub use parameter::Parameter;
 pub use prior::Prior;
 pub use push::Push;
-pub use validation::{CrossValidation, HeldOut, cross_validate};
+pub use validation::{CrossValidation, HeldOut, cross_validate, default_folds};

@@ -76,11 +76,7 @@ impl<'a> Posterior<'a> {
 
     /// The noise that a vector stands for.
     pub fn noise(&self, vector: &[f64]) -> Noise {
-        let [camera, drift] = [0, 1].map(|k| vector[self.parameters.len() + k]);
-        Noise {
-            camera_scale: CAMERA_SCALE.value(camera),
-            drift: DRIFT.value(drift),
-        }
+        noise_of(&vector[self.parameters.len()..])
     }
 
     /// Log-density of each vector, up to a constant; a vector far out of range has -∞.
@@ -177,6 +173,14 @@ impl<'a> Posterior<'a> {
             );
         }
         likelihoods
+    }
+}
+
+/// The noise that the last numbers of a vector stand for.
+pub(crate) fn noise_of(nuisances: &[f64]) -> Noise {
+    Noise {
+        camera_scale: CAMERA_SCALE.value(nuisances[0]),
+        drift: DRIFT.value(nuisances[1]),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::posterior::Posterior;
 use crate::push::{PreparedPush, Push};
 
 /// Draws of the noise for each sample of the posterior.
-const NOISE_DRAWS: usize = 8;
+const NOISE_DRAWS: usize = 4;
 
 /// Ends of the predictive interval.
 const INTERVAL: [f64; 2] = [0.05, 0.95];
@@ -49,6 +49,16 @@ pub struct HeldOut {
     pub wmse_mm: [f64; 2],
     /// Whether the last measured x, y and θ lie in the 90 % interval predicted for them.
     pub covered: [bool; 3],
+}
+
+/// Parts that so many pushes are dealt into where nobody says how many: 0, none, for fewer than four.
+#[must_use]
+pub fn default_folds(pushes: usize) -> usize {
+    match pushes {
+        8.. => 4,
+        4..8 => 2,
+        _ => 0,
+    }
 }
 
 /// Deals the pushes into `folds` parts, one after the other, and predicts each part by a fit to the

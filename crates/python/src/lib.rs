@@ -8,6 +8,7 @@
 mod columns;
 mod error;
 mod filter;
+mod fit;
 mod log;
 mod particles;
 mod rollout;
@@ -30,6 +31,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(log::read_log, module)?)?;
     module.add_function(wrap_pyfunction!(log::write_log, module)?)?;
     module.add_function(wrap_pyfunction!(filter::filter, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(particles::particles, module)?)?;
     module.add_function(wrap_pyfunction!(rollout::rollout, module)?)?;
     module.add_function(wrap_pyfunction!(simulate::simulate, module)?)?;

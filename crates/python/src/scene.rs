@@ -15,9 +15,9 @@ pub struct Scene {
     pub setup: Setup,
     pub dynamics: Dynamics,
     #[pyo3(get)]
-    text: String,
+    pub text: String,
     #[pyo3(get)]
-    name: String,
+    pub name: String,
 }
 
 #[pymethods]

@@ -1,0 +1,79 @@
+//! What many pushes teach: [`fit`].
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use stickslip_fit::{
+    CrossValidation, Fit, FitOptions, Parameter, Push, cross_validate, default_folds,
+};
+
+use crate::columns::to_dict;
+use crate::error::refused;
+use crate::log::log_of;
+use crate::scene::Scene;
+use crate::threads::{on_threads, processors};
+
+/// The items of a dict of options.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Arguments {
+    free: Vec<String>,
+    seed: u64,
+    folds: Option<usize>,
+    threads: Option<usize>,
+}
+
+/// Name, scene and columns of the log.
+type PushArguments<'py> = (String, Bound<'py, Scene>, Bound<'py, PyDict>);
+
+/// The fit and its cross-validation as in fit.json, draws by name, and the first scene's text with the
+/// values in place.
+type Fitted<'py> = (String, String, Bound<'py, PyDict>, String);
+
+/// Learns from pushes of one object on one table.
+#[pyfunction]
+pub fn fit<'py>(
+    py: Python<'py>,
+    pushes: Vec<PushArguments<'py>>,
+    options: Arguments,
+) -> PyResult<Fitted<'py>> {
+    let parameters = Parameter::parse_list(&options.free).map_err(refused)?;
+    let fit_options = FitOptions {
+        parameters,
+        seed: options.seed,
+    };
+    let scene = pushes.first().map(|(_, scene, _)| scene.clone());
+    let pushes: Vec<Push> = pushes.into_iter().map(push_of).collect::<PyResult<_>>()?;
+    let folds = options.folds.unwrap_or(default_folds(pushes.len()));
+    let learn = || -> Result<(Fit, Option<CrossValidation>), _> {
+        let fit = stickslip_fit::fit(&pushes, &fit_options)?;
+        let validate = || cross_validate(&pushes, folds, &fit_options);
+        Ok((fit, (folds > 0).then(validate).transpose()?))
+    };
+    let processors = processors();
+    let learnt = py.detach(|| on_threads(options.threads, processors, processors, learn))?;
+    let (fit, validation) = learnt.map_err(|error: stickslip_fit::FitError| refused(error))?;
+
+    let columns = fit.draws().into_iter();
+    let columns = columns.map(|(name, draws)| (name.to_owned(), draws));
+    let scene = scene.expect("a fit has pushes");
+    let text = fit.scene_text(&scene.get().text, &scene.get().name);
+    Ok((
+        json(&fit)?,
+        json(&validation)?,
+        to_dict(py, columns.collect())?,
+        text.map_err(refused)?,
+    ))
+}
+
+fn push_of((name, scene, columns): PushArguments<'_>) -> PyResult<Push> {
+    Ok(Push {
+        name,
+        setup: scene.get().setup.clone(),
+        log: log_of(&columns)?,
+    })
+}
+
+fn json(result: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(result).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+}
