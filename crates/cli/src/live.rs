@@ -1,11 +1,11 @@
 //! `stickslip live`: rows as JSON lines on standard input, an estimate for each on standard output.
 
+mod latencies;
 mod lines;
 mod recording;
 mod session;
 
 use std::io::stdin;
-use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use stickslip::TrackerOptions;
@@ -18,13 +18,6 @@ use lines::Lines;
 use recording::Recording;
 use session::Session;
 
-/// How long the answers took (ms), and how many were late.
-#[derive(Default)]
-struct Latencies {
-    taken: Vec<f32>,
-    missed: usize,
-}
-
 /// Runs the command.
 pub fn live(args: &LiveArgs) -> Result<Verdict> {
     let setup = read_scene_file(&args.scene)?;
@@ -36,7 +29,8 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
         late: args.late,
         ..TrackerOptions::default()
     };
-    let mut session = Session::new(&setup, &options)?;
+    let deadline = args.deadline_ms.map(|milliseconds| 1e-3 * milliseconds);
+    let mut session = Session::new(&setup, &options, deadline)?;
     let sensors = setup.scene.fixels.len();
     let mut recording = args
         .record
@@ -47,10 +41,10 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     let lines = Lines::read(stdin());
 
     // one answer per line, until the source ends or nobody reads the answers
-    let mut latencies = Latencies::default();
     let ended = pool.install(|| -> Result<()> {
         for line in lines {
-            let answer = session.answer(line.number, line.text);
+            let arrived = line.arrived;
+            let answer = session.answer(line);
             if answer.text.is_empty() {
                 continue;
             }
@@ -58,7 +52,7 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
                 recording.write(row)?;
             }
             let reader = stream_line(&answer.text)?;
-            latencies.add(line.arrived, args.deadline_ms);
+            session.answered(arrived);
             if reader == Reader::Gone {
                 break;
             }
@@ -69,8 +63,7 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
         talk(recording.finish()?);
     }
     ended?;
-    talk(session.summary());
-    if let Some(text) = latencies.summary(args.deadline_ms) {
+    for text in session.summary() {
         talk(text);
     }
     Ok(if session.refused() == 0 {
@@ -78,30 +71,4 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     } else {
         Verdict::InputLost
     })
-}
-
-impl Latencies {
-    /// Takes the time since a line arrived.
-    fn add(&mut self, arrived: Instant, deadline: Option<f64>) {
-        /// Answers that are kept for the quantiles: a day at 100 Hz, in 40 MB.
-        const MOST: usize = 10_000_000;
-        let taken: Duration = arrived.elapsed();
-        let milliseconds = 1e3 * taken.as_secs_f64();
-        self.missed += usize::from(deadline.is_some_and(|deadline| milliseconds > deadline));
-        if self.taken.len() < MOST {
-            self.taken.push(milliseconds as f32);
-        }
-    }
-
-    fn summary(mut self, deadline: Option<f64>) -> Option<String> {
-        self.taken.sort_by(f32::total_cmp);
-        let last = self.taken.len().checked_sub(1)?;
-        let [median, late, most] = [last / 2, last * 99 / 100, last].map(|index| self.taken[index]);
-        let missed = deadline.map_or(String::new(), |deadline| {
-            format!("; {} missed the deadline of {deadline} ms", self.missed)
-        });
-        Some(format!(
-            "answered within {median:.2} ms (median), {late:.2} ms (99 %), {most:.2} ms (all){missed}"
-        ))
-    }
 }

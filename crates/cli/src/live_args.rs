@@ -28,7 +28,8 @@ pub struct LiveArgs {
     /// How far behind the latest row a row may come and still count
     #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
     pub late: f64,
-    /// Count the answers that take longer from the arrival of their row
+    /// When an answer is due after its row: fewer particles are used where all would be late, and late
+    /// answers are counted
     #[arg(long, value_name = "MS", value_parser = positive)]
     pub deadline_ms: Option<f64>,
     /// Keep the rows in a new file, .mcap or .csv

@@ -37,9 +37,10 @@ struct Live {
 impl Live {
     fn start(case: &Experiment, args: &[&str]) -> Self {
         let mut command: Command = stickslip();
-        command
-            .args(["live", &case.scene(), "--particles", "64"])
-            .args(args);
+        command.args(["live", &case.scene()]).args(args);
+        if !args.contains(&"--particles") {
+            command.args(["--particles", "64"]);
+        }
         let pipes = command
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -106,11 +107,16 @@ fn answers_are_the_bits_of_filter_causal() {
     let mut expected = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let names = expected.next().unwrap();
 
+    // a deadline that leaves time changes no bit
     let mut live = Live::start(&case, &["--deadline-ms", "1e6"]);
     let mut compared = 0;
     for (row, expected) in rows(&case, 200).iter().zip(expected) {
         let answer = live.ask(row.as_bytes());
-        assert_eq!(answer.as_object().unwrap().len(), names.len());
+        assert_eq!(answer.as_object().unwrap().len(), names.len() + 2);
+        assert_eq!(
+            (&answer["particles"], &answer["missed"]),
+            (&64.into(), &0.into())
+        );
         for (name, expected) in names.iter().zip(expected) {
             let found = cell(&answer, name);
             // as numbers, to the bit: whole ones are written in two ways
@@ -259,4 +265,31 @@ fn recording_of_a_killed_program_lacks_the_last_second_at_most() {
     let kept = report["frames"].as_u64().unwrap();
     // 30 rows a second
     assert!((119..150).contains(&kept), "{kept}");
+}
+
+#[test]
+fn deadline_that_cannot_be_met_leaves_few_particles_and_is_counted() {
+    let case = Experiment::copy(SLIDE, "live/deadline");
+    let args = ["--deadline-ms", "0.001", "--particles", "300"];
+    let mut live = Live::start(&case, &args);
+    let answers: Vec<Value> = rows(&case, 60)
+        .iter()
+        .map(|row| live.ask(row.as_bytes()))
+        .collect();
+    let last = answers.last().unwrap();
+    assert_eq!(
+        (&answers[0]["particles"], &answers[0]["missed"]),
+        (&300.into(), &0.into())
+    );
+    assert_eq!(
+        (&last["particles"], &last["missed"]),
+        (&64.into(), &59.into())
+    );
+    assert!(last["x"].is_f64(), "{last}");
+    let (code, told) = live.end();
+    assert_eq!(code, Some(0), "{told}");
+    assert!(
+        told.contains("60 missed the deadline of 0.001 ms") && told.contains("64 to 300 particles"),
+        "{told}"
+    );
 }

@@ -1,5 +1,7 @@
 //! Tracks the object row by row, as a robot needs it: [`Tracker`].
 
+use std::num::NonZero;
+
 use stickslip_dynamics::StepInput;
 
 use crate::error::RunError;
@@ -83,6 +85,15 @@ impl TrackerOptions {
             megabytes: bytes / 1_000_000,
         })
     }
+}
+
+/// What a step costs: its time goes by the product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepSize {
+    /// Substeps that lead to the row; 0 at the first one.
+    pub substeps: u32,
+    /// Number of particles.
+    pub particles: NonZero<u32>,
 }
 
 /// The particle filter over contact dynamics, one row at a time.
@@ -196,6 +207,21 @@ impl<'o> Tracker<'o> {
     /// # Errors
     /// [`RowError`] where the row cannot be used; the tracker then is as it was before.
     pub fn push(&mut self, row: &Row) -> Result<&EstimateRow, RowError> {
+        self.push_sized(row, |step| step.particles)
+    }
+
+    /// The same with as many particles as `particles` says once the size of the step to the row is
+    /// known, its number of particles being that of the row before; it is not asked at late rows and
+    /// before the first object pose. Where the number changes, the particles are resampled first, by
+    /// which the estimate of this row and later ones depends on when it changed.
+    ///
+    /// # Errors
+    /// Those of [`push`](Self::push).
+    pub fn push_sized(
+        &mut self,
+        row: &Row,
+        particles: impl FnOnce(StepSize) -> NonZero<u32>,
+    ) -> Result<&EstimateRow, RowError> {
         row.check(self.setup.scene.fixels.len())?;
         match self.time {
             Some(latest) if row.time <= latest => return self.push_late(row, latest),
@@ -224,6 +250,10 @@ impl<'o> Tracker<'o> {
                     tactile,
                 };
                 let substeps = &self.substeps;
+                filter.resize(particles(StepSize {
+                    substeps: substeps.len() as u32,
+                    particles: filter.count(),
+                }));
                 filter.step(measured, Drive { substeps, moves });
             }
             (None, Some(pose)) => {

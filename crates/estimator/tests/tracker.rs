@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::num::NonZero;
+
 use common::{log, setup};
 use stickslip::dynamics::Pose;
 use stickslip::{
@@ -243,4 +245,33 @@ fn before_the_first_pose_there_is_no_estimate() {
     let estimate = tracker.push(&row).expect("an empty row");
     assert_eq!((estimate.pose, estimate.visual), (None, false));
     assert!(tracker.particles().is_none());
+}
+
+/// Fewer particles and more again: the estimates stay near those of one number, and the same numbers
+/// give the same bits.
+#[test]
+fn number_of_particles_may_change_from_row_to_row() {
+    let (setup, log) = push();
+    let tracked = |count: &dyn Fn(usize) -> u32| {
+        let mut tracker = Tracker::new(&setup, &TrackerOptions::default()).expect("a tracker");
+        let rows = (0..log.len()).map(|index| {
+            let size = |_| NonZero::new(count(index)).expect("not 0");
+            let estimate = tracker.push_sized(&log.row(index), size);
+            let estimate = estimate.expect("an estimate").clone();
+            let particles = tracker.particles().map_or(0, |particles| particles.len());
+            (estimate, particles)
+        });
+        rows.collect::<Vec<_>>()
+    };
+    let changing = |row: usize| [500, 64, 130, 1000][row / 10 % 4];
+    let (rows, steady) = (tracked(&changing), tracked(&|_| 500));
+    assert_eq!(rows, tracked(&changing));
+    // until the poses go on where the fixel stops the object
+    let before = rows.iter().zip(&steady).enumerate().take(60);
+    for (index, (row, steady)) in before.skip(10) {
+        assert_eq!((row.1, steady.1), (changing(index) as usize, 500));
+        let (found, expected) = (row.0.pose.expect("a pose"), steady.0.pose.expect("a pose"));
+        let apart = (found.x - expected.x).hypot(found.y - expected.y);
+        assert!(apart < 1e-3, "row {index}: {found:?}, {expected:?}");
+    }
 }

@@ -118,6 +118,36 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.reset();
     }
 
+    /// Goes on with another number of particles: resamples by the weights, which become equal. What is
+    /// estimated stays that of the last step; where the number is the same, nothing changes.
+    ///
+    /// # Errors
+    /// If the number is out of range; nothing changes then.
+    pub fn resize(&mut self, particles: usize) -> Result<(), SettingsError> {
+        let settings = Settings {
+            particles,
+            ..self.settings
+        };
+        settings.check()?;
+        if particles == self.settings.particles {
+            return Ok(());
+        }
+        self.ancestors.resize(particles, 0);
+        self.choose_ancestors(Purpose::Resize);
+        let blocks_before = self.particles.block_count();
+        self.particles = self.particles.gathered(&self.ancestors);
+        self.settings = settings;
+        self.weights = LogWeights::equal(particles);
+        self.unnormalised = UnnormalisedWeights::zeros(particles);
+        self.resetting.resize(particles, 0.0);
+        let blocks = self.particles.block_count();
+        self.block_sums.resize_with(blocks, M::Sums::default);
+        if blocks > blocks_before {
+            self.scratch = PerThread::new(blocks, || self.model.scratch());
+        }
+        Ok(())
+    }
+
     /// All stages of the step on one block after the other, while the block is in the cache.
     fn pass_over_blocks(
         &mut self,

@@ -62,6 +62,20 @@ impl ParticleSet {
         *self = grown;
     }
 
+    /// A set of as many particles as there are `ancestors`, particle i a copy of `ancestors[i]`.
+    ///
+    /// # Panics
+    /// If there are no ancestors, or one is not in the set.
+    #[must_use]
+    pub fn gathered(&self, ancestors: &[u32]) -> Self {
+        let mut gathered = Self::zeros(ancestors.len(), self.columns);
+        let blocks = gathered.data.chunks_exact_mut(self.columns * BLOCK);
+        for (block, ancestors) in blocks.zip(ancestors.chunks(BLOCK)) {
+            gather_block(&self.data, ancestors, block);
+        }
+        gathered
+    }
+
     /// The number N of particles.
     #[expect(clippy::len_without_is_empty, reason = "a particle set is never empty")]
     pub fn len(&self) -> usize {

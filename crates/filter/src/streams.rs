@@ -39,6 +39,8 @@ pub enum Purpose {
     Reinitialise = 5,
     /// Noise of simulated sensors.
     Measure = 6,
+    /// Resampling to another number of particles.
+    Resize = 7,
 }
 
 #[derive(Clone, Copy)]

@@ -32,11 +32,12 @@ struct Run {
     resampled: usize,
 }
 
-fn run(resampling: Resampling, seed: u64) -> Run {
+/// A filter of as many particles at each row as `sizes` has in turn.
+fn run(resampling: Resampling, seed: u64, sizes: &[usize]) -> Run {
     let (times, measurements) = series(ROWS, 1);
     let settings = Settings {
         resampling,
-        ..settings(PARTICLES, seed)
+        ..settings(sizes[0], seed)
     };
     let mut filter = ParticleFilter::new(Axis::OPEN, settings).unwrap();
     filter.recompute_sums(&0.0);
@@ -46,11 +47,14 @@ fn run(resampling: Resampling, seed: u64) -> Run {
         resampled: 0,
     };
     for row in 1..ROWS {
+        let size = sizes[row % sizes.len()];
+        let resized = size != filter.settings().particles;
+        filter.resize(size).unwrap();
         let report = filter.step(&(times[row] - times[row - 1]), measurements[row].as_ref());
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             run.log_evidence += log_evidence;
         }
-        run.resampled += usize::from(report.resampled);
+        run.resampled += usize::from(report.resampled || resized);
         run.rows.push(moments(filter.sums()));
     }
     run
@@ -85,10 +89,12 @@ fn check(what: &str, estimates: &[f64], exact: f64, scale: f64) {
     );
 }
 
-fn agrees_with_kalman(resampling: Resampling) {
+fn agrees_with_kalman(resampling: Resampling, sizes: &[usize]) {
     let (times, measurements) = series(ROWS, 1);
     let exact = AXIS.filter(&times, &measurements).unwrap();
-    let runs: Vec<Run> = (0..SEEDS).map(|seed| run(resampling, seed)).collect();
+    let runs: Vec<Run> = (0..SEEDS)
+        .map(|seed| run(resampling, seed, sizes))
+        .collect();
     assert!(
         runs.iter().all(|run| run.resampled >= 3),
         "resampling takes part"
@@ -135,20 +141,28 @@ fn agrees_with_kalman(resampling: Resampling) {
 
 #[test]
 fn filter_with_systematic_resampling_agrees_with_kalman() {
-    agrees_with_kalman(Resampling::Systematic);
+    agrees_with_kalman(Resampling::Systematic, &[PARTICLES]);
 }
 
 #[test]
 fn filter_with_stratified_resampling_agrees_with_kalman() {
-    agrees_with_kalman(Resampling::Stratified);
+    agrees_with_kalman(Resampling::Stratified, &[PARTICLES]);
 }
 
 #[test]
 fn filter_with_residual_resampling_agrees_with_kalman() {
-    agrees_with_kalman(Resampling::Residual);
+    agrees_with_kalman(Resampling::Residual, &[PARTICLES]);
 }
 
 #[test]
 fn filter_with_multinomial_resampling_agrees_with_kalman() {
-    agrees_with_kalman(Resampling::Multinomial);
+    agrees_with_kalman(Resampling::Multinomial, &[PARTICLES]);
+}
+
+#[test]
+fn filter_whose_number_of_particles_changes_agrees_with_kalman() {
+    agrees_with_kalman(
+        Resampling::Systematic,
+        &[PARTICLES, PARTICLES, 1500, 1500, 2500, 1980],
+    );
 }

@@ -1,17 +1,27 @@
 //! An estimate's row as one line of JSON: [`estimate_json`], keys named as the columns of
-//! `estimate.csv`.
+//! `estimate.csv`, and what a deadline did to it.
 
 use stickslip::{EstimateRow, Setup};
 
 use crate::estimate_csv::{EstimateColumns, cells, header};
 
+/// What a deadline did to the estimates so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pace {
+    /// Particles that this estimate is made of.
+    pub particles: usize,
+    /// Answers before this one that came after their deadline.
+    pub missed: u64,
+}
+
 /// A row of an estimate as a JSON object on one line, its keys and numbers those of `estimate.csv`,
-/// `null` for an empty cell; every number reads back to the same bits.
+/// `null` for an empty cell; every number reads back to the same bits. Where there is a deadline, the
+/// keys `particles` and `missed` come after them.
 ///
 /// # Panics
 /// If the row has not one contact probability per fixel of `setup`.
 #[must_use]
-pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup) -> String {
+pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup, pace: Option<Pace>) -> String {
     let columns = EstimateColumns {
         fixels: setup.scene.fixels.len(),
         has_tripod: setup.has_tripod(),
@@ -23,7 +33,10 @@ pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup) -> String {
         let value = if cell.is_empty() { "null" } else { &cell };
         format!("\"{name}\":{value}")
     });
-    format!("{{{}}}", entries.collect::<Vec<_>>().join(","))
+    let paced = pace
+        .map(|Pace { particles, missed }| format!("\"particles\":{particles},\"missed\":{missed}"));
+    let entries: Vec<String> = entries.chain(paced).collect();
+    format!("{{{}}}", entries.join(","))
 }
 
 #[cfg(test)]
@@ -40,10 +53,20 @@ mod tests {
             resampled: Some(true),
             ..EstimateRow::default()
         };
-        let line = estimate_json(0.1, &row, &setup);
+        let line = estimate_json(0.1, &row, &setup, None);
         let value: serde_json::Value = serde_json::from_str(&line).expect("JSON");
         let object = value.as_object().expect("an object");
         assert_eq!(object.len(), 24 + setup.scene.fixels.len());
+        let pace = Pace {
+            particles: 64,
+            missed: 3,
+        };
+        let line = estimate_json(0.1, &row, &setup, Some(pace));
+        let paced: serde_json::Value = serde_json::from_str(&line).expect("JSON");
+        assert_eq!(
+            (&paced["particles"], &paced["missed"]),
+            (&64.into(), &3.into())
+        );
         assert_eq!(
             (
                 &object["time"],

@@ -33,7 +33,7 @@ pub use bag_metadata::{BagMetadata, BagMetadataError, read_bag_metadata};
 pub use csv_error::{CsvColumn, CsvError, CsvProblem, LogError};
 pub use estimate_columns::{estimate_columns, estimate_of_columns};
 pub use estimate_csv::{read_estimate, write_estimate};
-pub use estimate_json::estimate_json;
+pub use estimate_json::{Pace, estimate_json};
 pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use log_columns::{log_columns, log_of_columns};

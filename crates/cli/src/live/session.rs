@@ -1,11 +1,16 @@
 //! A tracker that outlives what its source does: [`Session`].
 
 use std::collections::VecDeque;
+use std::num::NonZero;
+use std::time::Instant;
 
 use anyhow::Result;
 use serde::Serialize;
-use stickslip::{Row, RowError, Setup, Tracker, TrackerOptions};
-use stickslip_formats::{estimate_json, read_row_json};
+use stickslip::{ParticleBudget, Row, RowError, Setup, StepSize, Tracker, TrackerOptions};
+use stickslip_formats::{Pace, estimate_json, read_row_json};
+
+use super::latencies::Latencies;
+use super::lines::Line;
 
 /// Most rows that are remembered to know repeats by.
 const REMEMBERED: usize = 10_000;
@@ -32,6 +37,17 @@ pub struct Session<'a> {
     refused: u64,
     restarts: u64,
     collapses: u64,
+    latencies: Latencies,
+    pacing: Option<Pacing>,
+}
+
+/// A deadline, and how many particles meet it.
+struct Pacing {
+    /// Time from a row's arrival until its answer is due (s).
+    deadline: f64,
+    budget: ParticleBudget,
+    /// Fewest particles that a row had.
+    fewest: usize,
 }
 
 /// An answer that is no estimate.
@@ -42,8 +58,18 @@ struct Refusal {
 }
 
 impl<'a> Session<'a> {
-    /// A session that waits for its first row.
-    pub fn new(setup: &'a Setup, options: &'a TrackerOptions) -> Result<Self> {
+    /// A session that waits for its first row, whose answers are due `deadline` (s) after their line.
+    pub fn new(
+        setup: &'a Setup,
+        options: &'a TrackerOptions,
+        deadline: Option<f64>,
+    ) -> Result<Self> {
+        let most = u32::try_from(options.particles).ok().and_then(NonZero::new);
+        let pacing = deadline.zip(most).map(|(deadline, most)| Pacing {
+            deadline,
+            budget: ParticleBudget::new(most, deadline),
+            fewest: options.particles,
+        });
         Ok(Self {
             setup,
             options,
@@ -55,23 +81,30 @@ impl<'a> Session<'a> {
             refused: 0,
             restarts: 0,
             collapses: 0,
+            latencies: Latencies::new(deadline),
+            pacing,
         })
     }
 
     /// Takes a line: an estimate at the latest row, or an error.
-    pub fn answer(&mut self, line: u64, text: Result<String, String>) -> Answer {
+    pub fn answer(&mut self, line: Line) -> Answer {
+        let Line {
+            number: line,
+            arrived,
+            text,
+        } = line;
         if text.as_deref().is_ok_and(|text| text.trim().is_empty()) {
             return Answer {
                 text: String::new(),
                 row: None,
             };
         }
-        match text.and_then(|text| self.take(&text)) {
+        match text.and_then(|text| self.take(&text, arrived)) {
             Ok(row) => {
                 self.rows += 1;
                 let time = self.tracker.time().unwrap_or(row.time);
                 Answer {
-                    text: estimate_json(time, self.tracker.estimate(), self.setup),
+                    text: estimate_json(time, self.tracker.estimate(), self.setup, self.pace()),
                     row: Some(row),
                 }
             }
@@ -91,16 +124,55 @@ impl<'a> Session<'a> {
         self.refused
     }
 
-    /// What happened, in words.
-    pub fn summary(&self) -> String {
-        let collapses = self.collapses + u64::from(self.tracker.collapses());
-        format!(
-            "{} rows, {} of them late; {} lines refused; {} restarts after pauses; {collapses} collapses",
-            self.rows, self.late, self.refused, self.restarts
-        )
+    /// Takes that the answer to a line that `arrived` then is there now.
+    pub fn answered(&mut self, arrived: Instant) {
+        self.latencies.add(arrived);
     }
 
-    fn take(&mut self, text: &str) -> Result<Row, String> {
+    /// What happened, in words.
+    pub fn summary(&self) -> Vec<String> {
+        let collapses = self.collapses + u64::from(self.tracker.collapses());
+        let rows = format!(
+            "{} rows, {} of them late; {} lines refused; {} restarts after pauses; {collapses} collapses",
+            self.rows, self.late, self.refused, self.restarts
+        );
+        let pacing = self.pacing.as_ref().map(|pacing| {
+            let (fewest, most) = (pacing.fewest, self.options.particles);
+            format!("{fewest} to {most} particles, by what was in time")
+        });
+        let lines = [Some(rows), self.latencies.summary(), pacing];
+        lines.into_iter().flatten().collect()
+    }
+
+    /// What the deadline did so far.
+    fn pace(&self) -> Option<Pace> {
+        self.pacing.as_ref().map(|_| Pace {
+            particles: self.tracker.particles().map_or(0, |view| view.len()),
+            missed: self.latencies.missed(),
+        })
+    }
+
+    /// Gives a row to the tracker, with as many particles as will be in time.
+    fn push(&mut self, row: &Row, arrived: Instant) -> Result<(), RowError> {
+        let Some(pacing) = &mut self.pacing else {
+            return self.tracker.push(row).map(|_| ());
+        };
+        let mut step = None;
+        let from = Instant::now();
+        self.tracker.push_sized(row, |size| {
+            let left = pacing.deadline - arrived.elapsed().as_secs_f64();
+            let particles = pacing.budget.particles(size, left);
+            pacing.fewest = pacing.fewest.min(particles.get() as usize);
+            step = Some(StepSize { particles, ..size });
+            particles
+        })?;
+        if let Some(step) = step {
+            pacing.budget.took(step, from.elapsed().as_secs_f64());
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, text: &str, arrived: Instant) -> Result<Row, String> {
         let row = read_row_json(text).map_err(|error| error.to_string())?;
         if self.recent.contains(&row) {
             return Err(format!(
@@ -109,7 +181,7 @@ impl<'a> Session<'a> {
             ));
         }
         let latest = self.tracker.time();
-        match self.tracker.push(&row).err() {
+        match self.push(&row, arrived).err() {
             None => self.ahead = None,
             Some(RowError::Pause { to, .. }) if self.follows_a_pause(to) => self.restart(&row)?,
             Some(error) => return Err(error.to_string()),

@@ -1,6 +1,8 @@
 //! The particle filter over contact dynamics, one row at a time: [`ContactFilter`], docs/method.md,
 //! "The particle filter" (paper §III-D).
 
+use std::num::NonZero;
+
 use stickslip_dynamics::{Pose, StepInput};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
 
@@ -148,6 +150,19 @@ impl<'o> ContactFilter<'o> {
         self.judge_camera(&report);
         self.report(&report, measured.object.is_some());
         &self.latest
+    }
+
+    /// Goes on with another number of particles.
+    pub fn resize(&mut self, particles: NonZero<u32>) {
+        let resized = self.filter.resize(particles.get() as usize);
+        resized.expect("a u32 from 1 up is a number of particles");
+    }
+
+    /// The number of particles.
+    pub fn count(&self) -> NonZero<u32> {
+        let count = u32::try_from(self.filter.particles().len());
+        let count = count.ok().and_then(NonZero::new);
+        count.expect("a particle set is numbered in u32 and never empty")
     }
 
     /// In contact mode, a pose equal to the one before is that frame again, not a new measurement.
