@@ -10,6 +10,7 @@ use crate::arg_values::{Rows, ThreadArgs, particles, positive};
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::fit_args::FitArgs;
 use crate::live_args::LiveArgs;
+use crate::print_args::PrintArgs;
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
@@ -38,6 +39,10 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers
     Reproduce(ReproduceArgs),
+    /// Write a scene to begin with, every key explained, and its JSON schema for editors
+    New(NewArgs),
+    /// Draw tags and the calibration board to scale, with a ruler, as SVG to be printed
+    Print(PrintArgs),
     /// Look into a ROS 2 bag: topics, types, rates, gaps, which would do, and what to type next
     Info(InfoArgs),
     /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps,
@@ -51,6 +56,13 @@ pub enum Command {
     Track(TrackArgs),
     /// Render camera frames of an experiment, with a calibration recording
     Render(RenderArgs),
+}
+
+/// Arguments of `stickslip new`.
+#[derive(Debug, Args)]
+pub struct NewArgs {
+    /// The folder of the experiment, where scene.toml and scene.schema.json are written
+    pub folder: PathBuf,
 }
 
 /// Arguments of `stickslip demo`.

@@ -9,11 +9,12 @@ use anyhow::{Context, Result};
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
     BagOptions, Experiment, Topics, Truth, TruthFacts, read_log, read_mounts, read_scene,
-    read_truth_csv, read_truth_json,
+    read_truth_csv, read_truth_json, scene_assumptions,
 };
 
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
+use crate::output::talk;
 use crate::verdict::Verdict;
 
 /// The texts of an experiment's files.
@@ -123,10 +124,12 @@ pub fn reference_name(experiment: &Experiment) -> &'static str {
 
 /// Reads a scene file.
 pub fn read_scene_file(path: &Path) -> Result<Setup> {
-    Ok(read_scene(
-        &text_of(path, "scene")?,
-        &path.display().to_string(),
-    )?)
+    let (text, name) = (text_of(path, "scene")?, path.display().to_string());
+    let setup = read_scene(&text, &name)?;
+    for line in scene_assumptions(&text, &name)? {
+        talk(format_args!("note: {name}: {line}"));
+    }
+    Ok(setup)
 }
 
 /// Reads what else a scene file says of how a log is recorded: where tags sit and from which force

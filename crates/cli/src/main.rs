@@ -26,8 +26,11 @@ mod info;
 mod live;
 mod live_args;
 mod log_files;
+mod new;
 mod origin;
 mod output;
+mod print;
+mod print_args;
 mod progress;
 mod render;
 mod reported_run;
@@ -52,6 +55,8 @@ fn main() -> ExitCode {
         Command::Fit(args) => fit::fit(&args),
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
+        Command::New(args) => new::new(&args),
+        Command::Print(args) => print::print(&args),
         Command::Check(args) => check::check(&args),
         Command::Info(args) => info::info(&args),
         Command::Live(args) => live::live(&args),

@@ -6,7 +6,7 @@ mod common;
 
 use std::fs;
 
-use common::{Experiment, SLIDE, stickslip};
+use common::{Experiment, SLIDE, stickslip, succeeds};
 
 /// What `filter` says to a log under another name or with other content.
 fn refusal(case: &Experiment, log: &str) -> String {
@@ -128,4 +128,45 @@ fn compare_takes_topics() {
     };
     assert!(bag("object=/box").contains("--topic is for MCAP logs"));
     assert!(bag("nobody=/box").contains("none of the keys"));
+}
+
+#[test]
+fn new_scene_and_prints_are_ready_to_use() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("inputs/new");
+    let _ = fs::remove_dir_all(&folder);
+    let at = |name: &str| folder.join(name).display().to_string();
+    let run = succeeds(stickslip().args(["new", &at("")]));
+    let told = String::from_utf8(run.stdout).unwrap();
+    assert!(
+        told.contains("`object.inertia` is missing: 2.083e-4 kg m^2 is taken"),
+        "{told}"
+    );
+    let again = stickslip().args(["new", &at("")]).output().unwrap();
+    assert_eq!(again.status.code(), Some(1), "a scene is not written over");
+    assert!(
+        fs::read_to_string(at("scene.schema.json"))
+            .unwrap()
+            .contains("\"tripod_radius\"")
+    );
+
+    fs::write(
+        at("board.toml"),
+        "rows = 2\ncolumns = 3\ntag_size = 0.03\ngap = 0.01\n",
+    )
+    .unwrap();
+    succeeds(stickslip().args(["print", &at("board.svg"), "--board", &at("board.toml")]));
+    succeeds(stickslip().args(["print", &at("tags.svg"), "--tags", "0,1", "--size", "0.03"]));
+    for (file, tags) in [("board.svg", 6), ("tags.svg", 2)] {
+        let svg = fs::read_to_string(at(file)).unwrap();
+        assert_eq!(svg.matches("id=\"tag").count(), tags, "{file}");
+    }
+    let large = stickslip()
+        .args(["print", &at("x.svg"), "--tags", "0", "--size", "1"])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&large.stderr).into_owned();
+    assert!(
+        large.status.code() == Some(1) && told.contains("the paper has"),
+        "{told}"
+    );
 }

@@ -49,6 +49,9 @@ pub use named_columns::{ColumnError, NamedColumns};
 pub use nearest::nearest;
 pub use recorder::{CsvRecorder, McapRecorder};
 pub use row_json::{RowJsonError, read_row_json};
-pub use scene::{SceneEdit, SceneError, SceneProblem, read_mounts, read_scene};
+pub use scene::{
+    NEW_SCENE, SceneEdit, SceneError, SceneProblem, read_mounts, read_scene, scene_assumptions,
+    scene_schema,
+};
 pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

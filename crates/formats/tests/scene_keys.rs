@@ -133,21 +133,7 @@ fn missing_key_is_refused_at_its_table() {
     for (from, to, place, key, unit) in [
         ("gravity = 9.81 ", "#", "1:1", "`gravity`", "m/s^2"),
         ("mass = 0.50\n", "", "3:1", "`object.mass`", "kg"),
-        (
-            "inertia = 2.1e-4\n",
-            "",
-            "3:1",
-            "`object.inertia`",
-            "kg m^2",
-        ),
         ("friction = 0.28\n", "", "8:1", "`support.friction`", ""),
-        (
-            "tripod_radius = 0.02 ",
-            "#",
-            "8:1",
-            "`support.tripod_radius`",
-            " m",
-        ),
         ("friction = 0.30\n", "", "13:1", "`pusher.friction`", ""),
         ("friction = 0.25\n", "", "21:1", "`fixels.friction`", ""),
         (

@@ -112,6 +112,18 @@ pub enum SceneProblem {
         /// The tripod's key.
         key: &'static str,
     },
+    /// What is missing cannot be worked out, since the object is no uniform plate.
+    #[error(
+        "`{key}` is missing, and the middle of the outline is at ({x:.4}, {y:.4}) m; it can be worked out only where that is the centre of mass, the origin of the object frame. Move the outline by ({dx:.4}, {dy:.4}), or give `{key}`", dx = -x, dy = -y
+    )]
+    OffCentre {
+        /// The missing key.
+        key: &'static str,
+        /// The middle of the outline (m).
+        x: f64,
+        /// The middle of the outline (m).
+        y: f64,
+    },
     /// The feet stand on one line.
     #[error(
         "support.feet are on one line; three feet carry an object only as a triangle. Give their positions in the object frame in m"

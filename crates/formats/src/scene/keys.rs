@@ -3,7 +3,7 @@
 use crate::nearest::nearest;
 
 /// The keys of each table of the format; the first one is the document itself.
-const TABLES: [(&str, &[&str]); 11] = [
+pub(super) const TABLES: [(&str, &[&str]); 11] = [
     (
         "",
         &[

@@ -7,7 +7,10 @@ mod edit;
 mod error;
 mod feet;
 mod keys;
+mod new_scene;
+mod plate;
 mod quantity;
+mod schema;
 mod sensing;
 mod shapes;
 mod start;
@@ -26,7 +29,10 @@ use document::{Node, Source, Table};
 pub use edit::SceneEdit;
 pub use error::{SceneError, SceneProblem};
 use keys::keys_of;
+pub use new_scene::NEW_SCENE;
+use plate::Plate;
 use quantity::Quantity;
+pub use schema::scene_schema;
 use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;
@@ -136,6 +142,41 @@ pub fn read_mounts(text: &str, name: &str) -> Result<Mounts> {
     parsed(text, name, tags::mounts)
 }
 
+/// What a scene file leaves out that [`read_scene`] works out from the outline, in a sentence each.
+///
+/// # Errors
+/// Those of [`read_scene`] about syntax, keys, mass, shape and support.
+///
+/// ```
+/// let scene = "[object]\nmass = 0.5\nshape = [ { disc = { radius = 0.02 } } ]\n[support]\nfeet = [[0.01, 0], [-0.01, 0.01], [-0.01, -0.01]]\n";
+/// let assumed = stickslip_formats::scene_assumptions(scene, "scene.toml")?;
+/// assert_eq!(assumed, ["`object.inertia` is missing: 1.000e-4 kg m^2 is taken, that of a uniform plate"]);
+/// # Ok::<(), stickslip_formats::SceneError>(())
+/// ```
+pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
+    parsed(text, name, |root| {
+        let (table, support) = (root.section("object")?, root.section("support")?);
+        let mut lines = Vec::new();
+        if table.optional(INERTIA.key).is_none() {
+            let inertia = object(&table)?.inertia;
+            lines.push(format!(
+                "`object.inertia` is missing: {} kg m^2 is taken, that of a uniform plate",
+                format_args!("{inertia:.3e}")
+            ));
+        }
+        if [FOOT.key, TRIPOD_RADIUS.key]
+            .iter()
+            .all(|key| support.optional(key).is_none())
+        {
+            let (_, radius) = feet(&support, &table)?;
+            lines.push(format!(
+                "`support.tripod_radius` is missing: {radius:.4} m is taken, the mean distance of the outline's inside from the centre of mass"
+            ));
+        }
+        Ok(lines)
+    })
+}
+
 /// What `read` makes of the document.
 fn parsed<T>(text: &str, name: &str, read: impl FnOnce(&Table<'_>) -> Result<T>) -> Result<T> {
     let source = Source { name, text };
@@ -197,9 +238,10 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
 
 fn scene(root: &Table<'_>) -> Result<Scene> {
     let gravity = root.number(&GRAVITY)?;
-    let object = object(&root.section("object")?)?;
+    let body = root.section("object")?;
+    let object = object(&body)?;
     let support = root.section("support")?;
-    let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support)?);
+    let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support, &body)?);
     let sliding = mu_s * object.mass * gravity;
     let (mu_p, pusher) = pusher(&root.section("pusher")?, sliding)?;
     let mu_f = root.section("fixels")?.number(&MU_F)?;
@@ -219,11 +261,30 @@ fn scene(root: &Table<'_>) -> Result<Scene> {
 }
 
 fn object(table: &Table<'_>) -> Result<Object> {
+    let mass = table.number(&MASS)?;
+    let inertia = match table.optional(INERTIA.key) {
+        Some(_) => table.number(&INERTIA)?,
+        None => mass * plate(table, "object.inertia")?.mean_square,
+    };
     Ok(Object {
-        mass: table.number(&MASS)?,
-        inertia: table.number(&INERTIA)?,
+        mass,
+        inertia,
         shape: shape(table)?,
     })
+}
+
+/// The object as a uniform plate, from which the missing `key` is worked out.
+fn plate(table: &Table<'_>, key: &'static str) -> Result<Plate> {
+    /// How far the middle of the outline may lie from the centre of mass, as a share of the radius
+    /// of gyration.
+    const OFF: f64 = 0.05;
+    let plate = Plate::of(shape(table)?.parts());
+    let [x, y] = plate.centre;
+    if x * x + y * y > OFF * OFF * plate.mean_square {
+        let problem = SceneProblem::OffCentre { key, x, y };
+        return Err(table.required("shape", "the outline")?.error(problem));
+    }
+    Ok(plate)
 }
 
 /// The pusher with its friction; `sliding` is the force (N) that slides the object.
@@ -249,13 +310,17 @@ fn stall_force(table: &Table<'_>, sliding: f64) -> Result<Option<f64>> {
     Ok(force.is_finite().then_some(force))
 }
 
-/// The feet with the nominal d_tri.
-fn feet(support: &Table<'_>) -> Result<(Feet, f64)> {
+/// The feet with the nominal d_tri; where the file has none, that of a plate of the object's outline.
+fn feet(support: &Table<'_>, object: &Table<'_>) -> Result<(Feet, f64)> {
     match support.optional(FOOT.key) {
         Some(feet) => known_feet(support, &feet),
         None => {
             let angle = support.number_or(&TRIPOD_ANGLE, FRAC_PI_2)?;
-            Ok((Feet::Tripod { angle }, support.number(&TRIPOD_RADIUS)?))
+            let radius = match support.optional(TRIPOD_RADIUS.key) {
+                Some(_) => support.number(&TRIPOD_RADIUS)?,
+                None => plate(object, "support.tripod_radius")?.mean_radius,
+            };
+            Ok((Feet::Tripod { angle }, radius))
         }
     }
 }
