@@ -149,10 +149,48 @@ fn page(result: &FitResult, seed: u64) -> Report {
     }
     Report {
         title: format!("Learnt from {} pushes", result.fit.pushes),
-        summary: remarks(result).into_iter().map(Block::Text).collect(),
+        summary: headlines(result)
+            .into_iter()
+            .chain(remarks(result))
+            .map(Block::Text)
+            .collect(),
         sections,
         origin: origin([("seed", seed.to_string())]),
     }
+}
+
+/// What matters most: what was learnt, and what that is worth.
+fn headlines(result: &FitResult) -> Vec<String> {
+    let (learnt, left): (Vec<_>, Vec<_>) = result
+        .fit
+        .parameters
+        .iter()
+        .partition(|fitted| fitted.determined);
+    let mut lines: Vec<String> = learnt
+        .into_iter()
+        .map(|fitted| {
+            let [value, std, before] = [fitted.value, fitted.std, fitted.prior_value].map(digits);
+            let (name, unit) = (fitted.name, fitted.unit);
+            format!("{name}: {value} ± {std} {unit}")
+                .trim_end()
+                .to_owned()
+                + &format!(", first guess {before}")
+        })
+        .collect();
+    if !left.is_empty() {
+        let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
+        lines.push(format!(
+            "not determined by these pushes: {}",
+            names.join(", ")
+        ));
+    }
+    if let Some(validation) = &result.cross_validation {
+        let [unfitted, fitted] = validation.median_final_mm;
+        lines.push(format!(
+            "final position of pushes left out: {unfitted:.2} mm off with the first guesses, {fitted:.2} mm with what the others taught"
+        ));
+    }
+    lines
 }
 
 /// What is to be said besides the tables.

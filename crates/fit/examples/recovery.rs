@@ -1,5 +1,6 @@
 //! How often 90 % intervals of learnt friction hold the truth, over sets of simulated pushes whose friction
-//! is drawn from the prior: `cargo run --release -p stickslip-fit --example recovery -- 30 model`.
+//! is drawn from the prior: `cargo run --release -p stickslip-fit --example recovery -- 30 model`; `testbed` is
+//! another physics, and a third argument the number of pushes in a set.
 #![allow(
     clippy::unwrap_used,
     reason = "a simulated set that cannot be made ends it"
