@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._native import Error, Scene
 
-_FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
+#: Friction parameters in the order of arrays.
+FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
 
 
 class Rollout(TypedDict):
@@ -99,13 +100,13 @@ def _array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 def _frictions(scene: Scene, given: Mapping[str, ArrayLike], count: int) -> NDArray[np.float64]:
     """Friction of each trajectory (N, 4)."""
     nominal = scene.friction
-    unknown = sorted(set(given) - set(_FRICTION))
+    unknown = sorted(set(given) - set(FRICTION))
     if unknown:
-        raise Error(f"friction has a `{unknown[0]}`; it may have {', '.join(_FRICTION)}")
+        raise Error(f"friction has a `{unknown[0]}`; it may have {', '.join(FRICTION)}")
     if "d_tri" in given and np.isnan(nominal["d_tri"]):
         raise Error("friction has a `d_tri`, but the scene's feet are known; leave it out")
-    friction = np.empty((count, len(_FRICTION)))
-    for k, name in enumerate(_FRICTION):
+    friction = np.empty((count, len(FRICTION)))
+    for k, name in enumerate(FRICTION):
         values = _array(given[name], name) if name in given else np.nan_to_num(nominal[name])
         if np.shape(values) not in ((), (1,), (count,)):
             raise Error(f"friction: `{name}` has the shape {np.shape(values)}; it must be a number or ({count},)")

@@ -16,11 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip._native import Error, Scene
 from stickslip._outline import outlines
-from stickslip._rollout import rollout
+from stickslip._rollout import FRICTION, rollout
 
 __all__ = ["Outcome", "predict", "prior", "straight_pushes"]
-
-_FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
 
 #: Distance between object and pusher where a candidate begins (m).
 _CLEARANCE = 2e-3
@@ -111,10 +109,10 @@ def predict(
 
 def prior(scene: Scene, count: int, *, seed: int = 0) -> dict[str, NDArray[np.float64]]:
     """Frictions drawn from the scene's prior (``[uncertainty]``): each parameter (count,), d_tri in m."""
-    normals = np.random.default_rng(seed).standard_normal((count, len(_FRICTION)))
+    normals = np.random.default_rng(seed).standard_normal((count, len(FRICTION)))
     drawn = scene.drawn_friction(normals)
     known = {name for name, value in scene.friction.items() if not np.isnan(value)}
-    return {name: drawn[:, k].copy() for k, name in enumerate(_FRICTION) if name in known}
+    return {name: drawn[:, k].copy() for k, name in enumerate(FRICTION) if name in known}
 
 
 def straight_pushes(

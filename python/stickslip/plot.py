@@ -18,13 +18,12 @@ from stickslip._columns import Log
 from stickslip._files import log_of
 from stickslip._native import Scene
 from stickslip._outline import Polygons, outlines, placed
+from stickslip._rollout import FRICTION
 
 __all__ = ["errors", "friction", "particles", "poses", "scene"]
 
 #: Colours of bodies and curves: Okabe and Ito's, told apart by all eyes.
 _BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#999999"
-
-_FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
 
 
 def scene(
@@ -89,7 +88,7 @@ def errors(
     return ax
 
 
-def friction(estimate: Mapping[str, Any], *, names: Sequence[str] = _FRICTION, ax: Axes | None = None) -> Axes:
+def friction(estimate: Mapping[str, Any], *, names: Sequence[str] = FRICTION, ax: Axes | None = None) -> Axes:
     """Draws friction parameters against time with a band of one standard deviation; d_tri in cm."""
     ax = ax or plt.figure(layout="constrained").add_subplot()
     time = np.asarray(estimate["time"], dtype=np.float64)
