@@ -2,19 +2,24 @@
 
 mod latencies;
 mod lines;
+mod page;
 mod recording;
 mod session;
+mod shown_row;
 
 use std::io::stdin;
 
 use anyhow::Result;
-use stickslip::TrackerOptions;
+use stickslip::{Setup, TrackerOptions};
+use stickslip_report::live_page;
 
 use crate::experiment::read_scene_file;
+use crate::failure::hinted;
 use crate::live_args::LiveArgs;
 use crate::output::{Reader, stream_line, talk};
 use crate::verdict::Verdict;
 use lines::Lines;
+use page::PageServer;
 use recording::Recording;
 use session::Session;
 
@@ -37,6 +42,10 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
         .as_deref()
         .map(|path| Recording::create(path, sensors, &args.scene))
         .transpose()?;
+    let mut page = args
+        .page
+        .map(|port| open_page(&setup, &args.scene.display().to_string(), port))
+        .transpose()?;
     let pool = args.threads.filter_pool(args.particles)?;
     let lines = Lines::read(stdin());
 
@@ -53,6 +62,11 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
             }
             let reader = stream_line(&answer.text)?;
             session.answered(arrived);
+            if let Some(page) = page.as_mut().filter(|page| page.wants())
+                && let Some(shown) = session.shown(&answer, arrived)
+            {
+                page.show(shown);
+            }
             if reader == Reader::Gone {
                 break;
             }
@@ -71,4 +85,17 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     } else {
         Verdict::InputLost
     })
+}
+
+/// Serves the live page of a scene, and says where.
+fn open_page(setup: &Setup, name: &str, port: u16) -> Result<PageServer> {
+    let page = live_page(&setup.scene, name);
+    let server = PageServer::start(page, port).map_err(|error| {
+        hinted(
+            format!("the page cannot be served at port {port}: {error}"),
+            "name another port, as --page=8321, or none",
+        )
+    })?;
+    talk(format_args!("open {}", server.address()));
+    Ok(server)
 }

@@ -35,6 +35,9 @@ pub struct LiveArgs {
     /// Keep the rows in a new file, .mcap or .csv
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
+    /// Show what happens on a page that this machine alone can open; its address is printed
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
+    pub page: Option<u16>,
     /// How many threads
     #[command(flatten)]
     pub threads: ThreadArgs,

@@ -301,4 +301,4 @@ class Player {
   }
 }
 
-document.querySelectorAll(".player").forEach((root) => new Player(root));
+document.querySelectorAll(".player:not(.live)").forEach((root) => new Player(root));

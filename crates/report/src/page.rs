@@ -11,7 +11,7 @@ use crate::story::{Fate, Story};
 use crate::table::Table;
 
 const STYLE: &str = include_str!("../page/report.css");
-const SCRIPT: &str = include_str!("../page/player.js");
+pub(crate) const SCRIPT: &str = include_str!("../page/player.js");
 
 /// A page with a summary on top.
 #[derive(Clone, Debug, Default)]
@@ -73,13 +73,7 @@ impl Report {
         let page = html! {
             (DOCTYPE)
             html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    link rel="icon" href="data:,";
-                    title { (self.title) }
-                    style { (PreEscaped(font_face(REGULAR, "normal"))) (PreEscaped(font_face(BOLD, "bold"))) (PreEscaped(STYLE)) }
-                }
+                (head(&self.title))
                 body {
                     main {
                         h1 { (self.title) }
@@ -94,6 +88,19 @@ impl Report {
             }
         };
         page.into_string()
+    }
+}
+
+/// The head of a page, with styles and fonts in it.
+pub(crate) fn head(title: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            link rel="icon" href="data:,";
+            title { (title) }
+            style { (PreEscaped(font_face(REGULAR, "normal"))) (PreEscaped(font_face(BOLD, "bold"))) (PreEscaped(STYLE)) }
+        }
     }
 }
 

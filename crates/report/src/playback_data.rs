@@ -90,7 +90,7 @@ fn whole(value: f64, units: f64) -> Value {
 }
 
 /// Inside and boundary as paths (mm, upwards), and the middle.
-fn body(outline: &Outline) -> Value {
+pub(crate) fn body(outline: &Outline) -> Value {
     let text = |lines: &[Vec<[f64; 2]>], closed: bool| -> String {
         lines
             .iter()

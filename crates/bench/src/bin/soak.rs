@@ -54,8 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     while begin.elapsed().as_secs_f64() < seconds {
         let (round, at) = (tick / ticks.len() as u64, tick as usize % ticks.len());
         for line in &ticks[at] {
-            // each round is 100 s later by the source's clock
-            let line = line.replace("ROUND", &round.to_string());
+            // each round is 100 s later by the source's clock; JSON has no numbers that begin with 00
+            let line = line.replace("ROUND", &(round + 1).to_string());
             sent.send(Instant::now())?;
             writeln!(input, "{line}")?;
         }

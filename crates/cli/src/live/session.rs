@@ -11,6 +11,7 @@ use stickslip_formats::{Pace, estimate_json, read_row_json};
 
 use super::latencies::Latencies;
 use super::lines::Line;
+use super::shown_row::ShownRow;
 
 /// Most rows that are remembered to know repeats by.
 const REMEMBERED: usize = 10_000;
@@ -127,6 +128,16 @@ impl<'a> Session<'a> {
     /// Takes that the answer to a line that `arrived` then is there now.
     pub fn answered(&mut self, arrived: Instant) {
         self.latencies.add(arrived);
+    }
+
+    /// What the live page is sent of an answer to a line that `arrived` then; nothing of a refusal.
+    pub fn shown(&self, answer: &Answer, arrived: Instant) -> Option<String> {
+        let row = answer.row.as_ref()?;
+        let estimate = serde_json::from_str(&answer.text).ok()?;
+        let latency = 1e3 * arrived.elapsed().as_secs_f64();
+        let missed = self.pacing.as_ref().map(|_| self.latencies.missed());
+        let shown = ShownRow::new(row, estimate, self.tracker.particles(), (latency, missed));
+        serde_json::to_string(&shown).ok()
     }
 
     /// What happened, in words.

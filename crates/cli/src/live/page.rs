@@ -1,0 +1,216 @@
+//! The live page: a server on the loopback address, for one page and its WebSocket: [`PageServer`].
+
+use std::io::{self, BufRead, BufReader, Write};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tungstenite::handshake::server::{ErrorResponse, Request, Response};
+use tungstenite::http::StatusCode;
+use tungstenite::{Message, accept_hdr};
+
+/// Least time between two rows that are shown: 30 a second are seen.
+const PERIOD: Duration = Duration::from_millis(33);
+
+/// Most pages that are served at a time.
+const MOST_VIEWERS: usize = 8;
+
+/// How long a client may take to say or take something.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// Longest head of a request (bytes).
+const LONGEST_HEAD: usize = 16 << 10;
+
+/// Serves the page until the program ends.
+pub struct PageServer {
+    shared: Arc<Shared>,
+    address: String,
+    shown: Option<Instant>,
+}
+
+/// What the threads of the connections share.
+struct Shared {
+    page: String,
+    /// What the page's address must end in.
+    token: String,
+    port: u16,
+    viewers: AtomicUsize,
+    newest: Mutex<Newest>,
+    changed: Condvar,
+}
+
+/// The newest message and its number.
+#[derive(Default)]
+struct Newest {
+    number: u64,
+    text: Arc<str>,
+}
+
+impl PageServer {
+    /// Listens at a port of the loopback address, 0 for any that is free.
+    pub fn start(page: String, port: u16) -> io::Result<Self> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        let port = listener.local_addr()?.port();
+        let token = token()?;
+        let address = format!("http://127.0.0.1:{port}/?{token}");
+        let shared = Arc::new(Shared {
+            page,
+            token,
+            port,
+            viewers: AtomicUsize::new(0),
+            newest: Mutex::new(Newest::default()),
+            changed: Condvar::new(),
+        });
+        let served = shared.clone();
+        thread::spawn(move || {
+            for stream in listener.incoming().flatten() {
+                serve_aside(&served, stream);
+            }
+        });
+        Ok(Self {
+            shared,
+            address,
+            shown: None,
+        })
+    }
+
+    /// The page's address, token included.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// Whether somebody would see a row now: a page is open, and the last row was some time ago.
+    pub fn wants(&self) -> bool {
+        let due = self.shown.is_none_or(|shown| shown.elapsed() >= PERIOD);
+        due && self.shared.viewers.load(Ordering::Relaxed) > 0
+    }
+
+    /// Shows a message to all pages that are open; those that are busy drop the one before.
+    pub fn show(&mut self, text: String) {
+        let mut newest = lock(&self.shared.newest);
+        newest.number += 1;
+        newest.text = text.into();
+        self.shown = Some(Instant::now());
+        self.shared.changed.notify_all();
+    }
+}
+
+/// 128 random bits in hexadecimal digits.
+fn token() -> io::Result<String> {
+    let mut bytes = [0_u8; 16];
+    getrandom::fill(&mut bytes).map_err(io::Error::other)?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn lock(newest: &Mutex<Newest>) -> MutexGuard<'_, Newest> {
+    newest.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Serves one connection on a thread of its own, if there are not too many.
+fn serve_aside(shared: &Arc<Shared>, stream: TcpStream) {
+    if shared.viewers.fetch_add(1, Ordering::Relaxed) >= MOST_VIEWERS {
+        shared.viewers.fetch_sub(1, Ordering::Relaxed);
+        return;
+    }
+    let shared = shared.clone();
+    thread::spawn(move || {
+        // a client that goes away, or says what is no request, is its own affair
+        let _ = shared.serve(stream);
+        shared.viewers.fetch_sub(1, Ordering::Relaxed);
+    });
+}
+
+impl Shared {
+    fn serve(&self, stream: TcpStream) -> io::Result<()> {
+        stream.set_read_timeout(Some(PATIENCE))?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        stream.set_nodelay(true)?;
+        let mut start = [0_u8; 12];
+        let begin = Instant::now();
+        while stream.peek(&mut start)? < start.len() {
+            if begin.elapsed() > PATIENCE {
+                return Ok(());
+            }
+            thread::sleep(Duration::from_millis(1));
+        }
+        if &start == b"GET /socket?" {
+            self.serve_socket(stream)
+        } else {
+            self.serve_page(stream)
+        }
+    }
+
+    /// Whether a request names this server and its token; of a page elsewhere, neither the name of
+    /// the host nor the origin would be ours.
+    fn allows(&self, host: Option<&str>, query: Option<&str>) -> bool {
+        let ours = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
+        host.is_some_and(|host| ours.iter().any(|own| own == host))
+            && query == Some(self.token.as_str())
+    }
+
+    fn serve_page(&self, stream: TcpStream) -> io::Result<()> {
+        let mut lines = BufReader::new(io::Read::take(&stream, LONGEST_HEAD as u64)).lines();
+        let request = lines.next().transpose()?.unwrap_or_default();
+        let heads = lines
+            .map_while(Result::ok)
+            .take_while(|line| !line.is_empty());
+        let heads: Vec<String> = heads.collect();
+        let host = heads.iter().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            name.eq_ignore_ascii_case("host").then_some(value.trim())
+        });
+        let query = request
+            .strip_prefix("GET /?")
+            .and_then(|rest| rest.split(' ').next());
+        let (status, body) = match self.allows(host, query) {
+            true => ("200 OK", self.page.as_str()),
+            false => (
+                "403 Forbidden",
+                "The address is the one that the program printed.\n",
+            ),
+        };
+        write!(
+            &stream,
+            "HTTP/1.1 {status}\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {}\r\n\
+             Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\nConnection: close\r\n\r\n{body}",
+            body.len()
+        )
+    }
+
+    fn serve_socket(&self, stream: TcpStream) -> io::Result<()> {
+        #[expect(clippy::result_large_err, reason = "the library's signature")]
+        let judge = |request: &Request, response: Response| {
+            let head = |name: &str| request.headers().get(name)?.to_str().ok();
+            let origin = head("origin").and_then(|origin| origin.strip_prefix("http://"));
+            let query = request.uri().query();
+            if self.allows(head("host"), query) && self.allows(origin, query) {
+                return Ok(response);
+            }
+            let mut refused = ErrorResponse::new(None);
+            *refused.status_mut() = StatusCode::FORBIDDEN;
+            Err(refused)
+        };
+        let mut socket =
+            accept_hdr(stream, judge).map_err(|error| io::Error::other(error.to_string()))?;
+        let mut seen = 0;
+        loop {
+            let text = {
+                let newest = lock(&self.newest);
+                let waited = self
+                    .changed
+                    .wait_timeout_while(newest, PATIENCE, |newest| newest.number == seen);
+                let (newest, _) = waited.unwrap_or_else(PoisonError::into_inner);
+                let is_new = newest.number != seen;
+                seen = newest.number;
+                is_new.then(|| newest.text.clone())
+            };
+            // a page that is gone is noticed while nothing happens, too
+            let message = text.map_or(Message::Ping(Vec::new().into()), |text| {
+                Message::text(&*text)
+            });
+            socket.send(message).map_err(io::Error::other)?;
+        }
+    }
+}

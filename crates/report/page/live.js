@@ -1,0 +1,126 @@
+// Shows what a tracker thinks while it tracks. Each message of the socket is one row: the estimate's columns, what was measured, some
+// particles; lengths in m, angles in rad, times in s. The newest one is drawn, others are dropped.
+"use strict";
+
+class Live {
+  constructor(root) {
+    this.find = (selector) => root.querySelector(selector);
+    this.root = root;
+    this.data = JSON.parse(this.find("script").textContent);
+    this.newest = null;
+    this.drawStage();
+    this.connect();
+  }
+
+  drawStage() {
+    const { data } = this;
+    this.svg = this.find(".stage svg");
+    this.world = add(this.svg, "g", { transform: "scale(1 -1)" });
+    let grid = "";
+    for (let mm = -2000; mm <= 2000; mm += 10) grid += `M${mm} -2000v4000M-2000 ${mm}h4000`;
+    add(this.world, "path", { d: grid, class: "grid" });
+    this.truth = addBody(this.world, data.object, "truth");
+    this.cloud = add(this.world, "g", { class: "cloud" });
+    this.cloud.style.setProperty("--colour", data.colour);
+    this.bodies = [];
+    this.fixels = data.fixels.map((fixel, k) => {
+      const group = addBody(this.world, fixel, "fixel");
+      add(group, "text", { transform: `translate(${fixel.middle[0]} ${fixel.middle[1]}) scale(1 -1)`, dy: "0.35em" }).textContent = k + 1;
+      return group;
+    });
+    this.pusher = addBody(this.world, data.pusher, "pusher");
+    this.ghost = addBody(this.world, data.object, "ghost", data.colour);
+    this.view = data.view.slice();
+    this.frame();
+  }
+
+  /** The picture: the fixels, and all that has been seen of object and pusher. */
+  frame() {
+    const [left, low, right, high] = this.view;
+    const width = Math.max(right - left, (high - low) / 0.7);
+    const height = Math.max(high - low, 0.62 * width);
+    const [x, y] = [(left + right - width) / 2, (low + high - height) / 2];
+    this.svg.setAttribute("viewBox", `${x} ${-y - height} ${width} ${height}`);
+    this.svg.style.aspectRatio = `${width} / ${height}`;
+    this.svg.style.setProperty("--letter", `${width / 32}px`);
+  }
+
+  include(pose) {
+    if (!pose) return;
+    const [x, y, r] = [1000 * pose[0], 1000 * pose[1], 1.2 * this.data.reach];
+    const [left, low, right, high] = this.view;
+    const wider = [Math.min(left, x - r), Math.min(low, y - r), Math.max(right, x + r), Math.max(high, y + r)];
+    if (wider.some((side, k) => side !== this.view[k])) {
+      this.view = wider;
+      this.frame();
+    }
+  }
+
+  connect() {
+    const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
+    socket.addEventListener("message", (event) => {
+      if (this.newest === null) requestAnimationFrame(() => this.draw());
+      this.newest = event.data;
+    });
+    socket.addEventListener("open", () => this.say("waiting for rows"));
+    socket.addEventListener("close", () => {
+      this.say("no connection");
+      setTimeout(() => this.connect(), 1000);
+    });
+  }
+
+  say(words) {
+    this.find(".badge").textContent = words;
+    this.root.dataset.state = words;
+  }
+
+  draw() {
+    const row = JSON.parse(this.newest);
+    this.newest = null;
+    const { estimate } = row;
+    const known = estimate.x !== null ? [estimate.x, estimate.y, estimate.theta] : null;
+    const place = (group, pose) => (pose ? moveTo(group, 1e5 * pose[0], 1e5 * pose[1], 1e4 * pose[2]) : moveTo(group, null));
+    place(this.truth, row.object);
+    place(this.pusher, row.pusher);
+    place(this.ghost, known);
+    for (const pose of [row.object, row.pusher, known]) this.include(pose);
+    while (this.bodies.length < row.particles.length) this.bodies.push(add(this.cloud, "path", { d: this.data.object.line }));
+    this.bodies.forEach((body, k) => place(body, row.particles[k]));
+    this.find(".stage").classList.toggle("blind", row.object === null);
+    this.say(row.object === null ? "camera dark" : "camera on");
+    this.find(".clock").textContent = `${estimate.time.toFixed(2)} s`;
+    this.root.dataset.time = estimate.time;
+    this.touch(row);
+    this.tell(row);
+  }
+
+  touch({ estimate, tactile }) {
+    const guesses = [estimate.contact_pusher, ...this.fixels.map((_, k) => estimate[`contact_${k + 1}`])];
+    [this.pusher, ...this.fixels].forEach((body, k) => {
+      body.style.setProperty("--guess", guesses[k] ?? 0);
+      body.classList.toggle("touching", k > 0 && tactile[k - 1] === true);
+    });
+  }
+
+  tell({ estimate, count, missed, latency_ms }) {
+    const spread = (key, unit, scale) => (estimate[`std_${key}`] === null ? "–" : `± ${(scale * estimate[`std_${key}`]).toFixed(2)} ${unit}`);
+    const shown = [
+      ["x", `${(1000 * estimate.x).toFixed(1)} mm`, spread("x", "mm", 1000)],
+      ["y", `${(1000 * estimate.y).toFixed(1)} mm`, spread("y", "mm", 1000)],
+      ["θ", `${((180 / Math.PI) * estimate.theta).toFixed(1)}°`, spread("theta", "°", 180 / Math.PI)],
+      ...["mu_s", "mu_p", "mu_f"].map((key) => [key, estimate[key]?.toFixed(3) ?? "–", spread(key, "", 1)]),
+      ["particles", String(count), ""],
+      ["answer took", `${latency_ms.toFixed(2)} ms`, missed === null ? "" : `${missed} late`],
+    ];
+    const body = this.find("tbody");
+    while (body.rows.length < shown.length) {
+      const line = body.insertRow();
+      put(line, "th");
+      put(line, "td");
+      put(line, "td");
+    }
+    shown.forEach((words, k) => words.forEach((word, cell) => (body.rows[k].cells[cell].textContent = word)));
+  }
+}
+
+document.querySelectorAll(".live").forEach((root) => new Live(root));
