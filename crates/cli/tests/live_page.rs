@@ -4,94 +4,29 @@
 
 mod common;
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::Write;
 use std::net::TcpStream;
-use std::process::{Child, ChildStderr, ChildStdin, Stdio};
 use std::thread::{self, sleep};
 use std::time::Duration;
 
-use common::{Experiment, SLIDE, stickslip};
+use common::page_session::Session;
+use common::{Experiment, SLIDE};
 use serde_json::Value;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, connect};
 
-/// A session with a page.
-struct Session {
-    child: Child,
-    input: Option<ChildStdin>,
-    errors: BufReader<ChildStderr>,
-    /// 127.0.0.1:port, and the token.
-    host: String,
-    token: String,
-}
-
-impl Session {
-    fn start(case: &Experiment) -> Self {
-        let mut command = stickslip();
-        command.args(["live", &case.scene(), "--particles", "64", "--page"]);
-        let pipes = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped());
-        let mut child = pipes.spawn().unwrap();
-        let input = child.stdin.take();
-        let mut errors = BufReader::new(child.stderr.take().unwrap());
-        let mut told = String::new();
-        errors.read_line(&mut told).unwrap();
-        let address = told
-            .trim()
-            .strip_prefix("open http://")
-            .unwrap_or_else(|| panic!("{told}"));
-        let (host, token) = address.split_once("/?").unwrap();
-        assert!(
-            host.starts_with("127.0.0.1:") && token.len() == 32,
-            "{told}"
-        );
-        let (host, token) = (host.to_owned(), token.to_owned());
-        Self {
-            child,
-            input,
-            errors,
-            host,
-            token,
+/// Whether a socket opens for an origin and a token.
+fn socket(session: &Session, origin: &str, token: &str) -> Result<Value, String> {
+    let url = format!("ws://{}/socket?{token}", session.host);
+    let mut request = url.into_client_request().unwrap();
+    request
+        .headers_mut()
+        .insert("Origin", origin.parse().unwrap());
+    let (mut socket, _) = connect(request).map_err(|error| error.to_string())?;
+    loop {
+        if let Message::Text(text) = socket.read().map_err(|error| error.to_string())? {
+            return Ok(serde_json::from_str(&text).unwrap());
         }
-    }
-
-    /// What the server says to a request; `TOKEN` and `HOST` stand for its own.
-    fn ask(&self, request: &str) -> String {
-        let request = request
-            .replace("TOKEN", &self.token)
-            .replace("HOST", &self.host);
-        let mut stream = TcpStream::connect(&self.host).unwrap();
-        stream
-            .write_all(request.replace('\n', "\r\n").as_bytes())
-            .unwrap();
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        String::from_utf8_lossy(&answer).into_owned()
-    }
-
-    /// Whether a socket opens for an origin and a token.
-    fn socket(&self, origin: &str, token: &str) -> Result<Value, String> {
-        let url = format!("ws://{}/socket?{token}", self.host);
-        let mut request = url.into_client_request().unwrap();
-        request
-            .headers_mut()
-            .insert("Origin", origin.parse().unwrap());
-        let (mut socket, _) = connect(request).map_err(|error| error.to_string())?;
-        loop {
-            if let Message::Text(text) = socket.read().map_err(|error| error.to_string())? {
-                return Ok(serde_json::from_str(&text).unwrap());
-            }
-        }
-    }
-
-    /// Ends the source: exit code.
-    fn end(mut self) -> Option<i32> {
-        drop(self.input.take());
-        let mut told = String::new();
-        self.errors.read_to_string(&mut told).unwrap();
-        self.child.wait().unwrap().code()
     }
 }
 
@@ -115,12 +50,8 @@ fn page_is_for_those_who_know_its_address() {
         );
     }
     let own = format!("http://{}", session.host);
-    assert!(
-        session
-            .socket("http://evil.example", &session.token)
-            .is_err()
-    );
-    assert!(session.socket(&own, "0123").is_err());
+    assert!(socket(&session, "http://evil.example", &session.token).is_err());
+    assert!(socket(&session, &own, "0123").is_err());
     assert_eq!(session.end(), Some(0));
 }
 
@@ -148,7 +79,7 @@ fn socket_shows_rows_and_the_session_survives_those_who_leave() {
     });
     // two, one after the other, who both leave
     for _ in 0..2 {
-        let row = session.socket(&own, &token).unwrap();
+        let row = socket(&session, &own, &token).unwrap();
         assert_eq!(row["object"], serde_json::json!([0.01, 0.0, 0.0]));
         let x = row["estimate"]["x"].as_f64().unwrap();
         assert!((x - 0.01).abs() < 1e-3, "{row}");

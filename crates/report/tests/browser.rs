@@ -7,11 +7,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "browser/chromium.rs"]
+mod chromium;
 mod common;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use chromium::chromium;
 use common::{experiment, log, setup};
 use serde_json::Value;
 use stickslip_report::Report;
@@ -39,39 +41,13 @@ fn page() -> String {
     .to_html()
 }
 
-/// What Chromium prints, or the screenshot that it makes, at a width (px).
-fn chromium(page: &Path, width: u32, what: &str) -> String {
-    let program = std::env::var("STICKSLIP_CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
+/// What Chromium prints of a page, or the screenshot that it makes, at a width (px).
+fn opened(page: &Path, width: u32, what: &str) -> String {
     // browsers that run at the same time may not share a profile
     let name = page.file_stem().unwrap().display();
-    let profile = format!(
-        "--user-data-dir={}",
-        folder().join(format!("profile-{name}-{width}")).display()
-    );
-    let size = format!("--window-size={width},1600");
-    let fixed = [
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--hide-scrollbars",
-        "--virtual-time-budget=8000",
-    ];
-    let run = Command::new("timeout")
-        .args(["120", &program])
-        .args(fixed)
-        .args([&size, &profile, what])
-        .arg(format!("file://{}", page.display()))
-        .output();
-    let run = run.unwrap_or_else(|error| {
-        panic!("{program} cannot be run: {error}; install it, or name it in STICKSLIP_CHROMIUM")
-    });
-    assert!(
-        run.status.success(),
-        "{program}: {}\n{}",
-        run.status,
-        String::from_utf8_lossy(&run.stderr)
-    );
-    String::from_utf8(run.stdout).unwrap()
+    let profile = folder().join(format!("profile-{name}-{width}"));
+    let address = format!("file://{}", page.display());
+    chromium(&profile, &address, (width, 8000), &[what])
 }
 
 /// The page with the checks in it, as it ended.
@@ -83,7 +59,7 @@ fn verdict(width: u32) -> Value {
         checked.replace("</body>", &format!("<script>{AFTER}</script></body>")),
     )
     .unwrap();
-    let ended = chromium(&path, width, "--dump-dom");
+    let ended = opened(&path, width, "--dump-dom");
     let start = ended
         .find("<pre id=\"verdict\">")
         .unwrap_or_else(|| panic!("the checks came to no end"))
@@ -120,7 +96,7 @@ fn screenshots_are_made() {
     std::fs::write(&path, page()).unwrap();
     for width in [1280, 400] {
         let picture = folder().join(format!("report-{width}.png"));
-        chromium(&path, width, &format!("--screenshot={}", picture.display()));
+        opened(&path, width, &format!("--screenshot={}", picture.display()));
         // a blank page takes a tenth of this
         assert!(
             std::fs::metadata(&picture).unwrap().len() > 60_000,

@@ -1,6 +1,8 @@
 //! Copies of the embedded experiments, to be broken on purpose.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod page_session;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
