@@ -58,7 +58,7 @@ impl ReportedExperiment<'_> {
             Figure::new(
                 "poses",
                 self.poses(),
-                "Bodies at the first contact with a fixel, if one is known, and at the end of the time shown.",
+                "Bodies at the first contact with a fixel, if one is known, and at the end of the time shown; an estimate far off may be outside the picture.",
             ),
             Figure::new(
                 "contacts",
@@ -71,7 +71,8 @@ impl ReportedExperiment<'_> {
                 "friction",
                 figure.drawing(),
                 "Estimated friction, mean and one standard deviation; its nominal value; the truth, where it is known. Dotted from \
-                 the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it.",
+                 the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it; not observed: there is no such row, or the spread in it is \
+                 more than half of what it was at first.",
             )
         });
         let cloud = self.clouds().map(|drawing| {
@@ -160,7 +161,7 @@ impl ReportedExperiment<'_> {
         );
         for (panel, learned) in panels.iter_mut().zip(&learned) {
             if !learned.observed {
-                panel.title = "not observed: as told".to_owned();
+                panel.title = "not observed".to_owned();
             }
         }
         Some(TimeFigure {
@@ -229,7 +230,7 @@ impl ReportedExperiment<'_> {
     /// Bodies at the first fixel contact and at the end, side by side and on the same scale.
     fn poses(&self) -> Drawing {
         let rows = self.shown_rows();
-        let bodies = rows.iter().flat_map(|row| self.known_bodies(*row));
+        let bodies = rows.iter().flat_map(|row| self.in_view(*row));
         let view = Some(view_of(bodies.collect()));
         let drawing = |row: &usize| {
             let overlay = Overlay {
@@ -258,13 +259,29 @@ impl ReportedExperiment<'_> {
                     .line(Line::of(run.scored.variant)),
             )
         });
-        let known = self.known_bodies(row);
         Overlay {
             title: self.instant(row),
-            view: Some(view_of(known.clone())),
-            bodies: known.into_iter().chain(estimates).collect(),
+            view: Some(view_of(self.in_view(row))),
+            bodies: self
+                .known_bodies(row)
+                .into_iter()
+                .chain(estimates)
+                .collect(),
             width: 441.0,
         }
+    }
+
+    /// What a picture has to hold: what is known, and in place of an object of which nothing is
+    /// known the learner's, or the first run's.
+    fn in_view(&self, row: usize) -> Vec<Body> {
+        let mut bodies = self.known_bodies(row);
+        if self.reference.pose_at(self.time_of(row)).is_none() {
+            let run = self.learner().or(self.runs.first());
+            let pose = run.and_then(|run| run.scored.estimate.rows.get(row)?.pose);
+            let shape = &self.setup.scene.object.shape;
+            bodies.extend(pose.map(|pose| Body::new("", shape, &pose, Colour::INK)));
+        }
+        bodies
     }
 
     /// "5.27 s, camera dark".

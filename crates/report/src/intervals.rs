@@ -1,4 +1,4 @@
-//! Where flags are set: [`row_ranges`] and [`intervals`].
+//! Where flags are set: [`row_ranges`], [`intervals`] and [`times`].
 
 /// Every stretch of set flags: its first row and the row after its last one.
 pub(crate) fn row_ranges(flags: impl IntoIterator<Item = bool>) -> Vec<[usize; 2]> {
@@ -17,8 +17,13 @@ pub(crate) fn intervals(time: &[f64], flags: &[bool]) -> Vec<[f64; 2]> {
     let set = flags.iter().take(time.len()).copied();
     row_ranges(set)
         .into_iter()
-        .map(|[from, to]| [time[from.saturating_sub(1)], time[to - 1]])
+        .map(|rows| times(time, rows))
         .collect()
+}
+
+/// The time over which rows from..to speak; `to` is after `from` and within the times.
+pub(crate) fn times(time: &[f64], [from, to]: [usize; 2]) -> [f64; 2] {
+    [time[from.saturating_sub(1)], time[to - 1]]
 }
 
 #[cfg(test)]

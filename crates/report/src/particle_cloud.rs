@@ -140,7 +140,7 @@ impl ParticleCloud {
         let stroke = path([[x, y], [x + STROKE * cos, y - STROKE * sin]], false);
         html! {
             g opacity=(px(opacity)) {
-                circle cx=(px(x)) cy=(px(y)) r=(if opacity < 1.0 { "2.2" } else { "4.5" }) fill=(colour.hex()) {}
+                circle cx=(px(x)) cy=(px(y)) r=(if opacity < 1.0 { "2.2" } else { "4.5" }) class=[(colour == Colour::INK).then_some("ink")] fill=(colour.hex()) {}
                 path d=(stroke) stroke=(colour.hex()) stroke-width=(if opacity < 1.0 { "1.2" } else { "2.5" }) fill="none" {}
             }
         }
@@ -150,7 +150,7 @@ impl ParticleCloud {
         let mut legend = Legend::default();
         let factor = self.turn_factor.max(1.0);
         legend.push(
-            Swatch::Bar(self.colour),
+            Swatch::Area(self.colour),
             &format!(
                 "{} particles (stroke: turn \u{d7} {})",
                 self.particles.len(),

@@ -2,13 +2,12 @@
 //! and its section of a report.
 
 use stickslip::diagnosis::assumed_stall_force;
-use stickslip::dynamics::Pose;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_evaluation::{Reference, Scores};
 use stickslip_formats::Experiment;
 
 use crate::colour::Line;
-use crate::intervals::intervals;
+use crate::intervals::{intervals, row_ranges, times};
 use crate::marks::Mark;
 use crate::page::{Block, Section};
 use crate::playback::{Playback, PlaybackRun};
@@ -113,22 +112,14 @@ impl<'a> ReportedExperiment<'a> {
             camera_on: run.camera_on(),
             wmse_mm: run.wmse_mm(),
         };
-        let dark = intervals(&self.log.time, &self.hidden);
-        let lost = |(pose, hidden): &(&Option<Pose>, &bool)| pose.is_none() && !**hidden;
+        let dark = self.darkness();
+        let within = |row: &usize| dark.is_some_and(|[from, to]| (from..to).contains(row));
+        let lost = (0..self.log.len()).filter(|row| self.log.object[*row].is_none());
         Story {
             what: self.what.clone(),
             duration: self.log.duration(),
-            dark: dark
-                .first()
-                .zip(dark.last())
-                .map(|(first, last)| [first[0], last[1]]),
-            lost: self
-                .log
-                .object
-                .iter()
-                .zip(&self.hidden)
-                .filter(lost)
-                .count(),
+            dark: dark.map(|rows| times(&self.log.time, rows)),
+            lost: lost.filter(|row| !within(row)).count(),
             rows: self.log.len(),
             first_fixel: self.first_fixel,
             outcomes: self.runs.iter().map(outcome).collect(),
@@ -164,7 +155,8 @@ impl<'a> ReportedExperiment<'a> {
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
-                 angles weighted by the radius of gyration, against the {}. {} Contact: {}.",
+                 angles weighted by the radius of gyration, against the {}. {} Unsolved: steps of particles that the \
+                 solver left unsolved; collapses: rows that no particle explained. Contact: {}.",
                 self.reference_name,
                 Fate::rule(),
                 rule()
@@ -252,9 +244,8 @@ impl<'a> ReportedExperiment<'a> {
         for (touch, truth) in playback.touches.iter_mut().zip(&self.touches) {
             touch.truth.clone_from(truth);
         }
-        let dark = intervals(&self.log.time, &self.hidden);
-        let dark = dark.into_iter().map(|[from, _]| Mark {
-            time: from,
+        let dark = self.darkness().map(|rows| Mark {
+            time: times(&self.log.time, rows)[0],
             name: "camera dark".to_owned(),
         });
 
@@ -301,6 +292,20 @@ impl<'a> ReportedExperiment<'a> {
         let rows = self.hidden.iter().zip(&self.log.object);
         rows.map(|(hidden, pose)| *hidden || pose.is_none())
             .collect()
+    }
+
+    /// The rows without a pose that hold the hidden ones, from..to: where the camera had lost the
+    /// object before it was hidden, from there on.
+    fn darkness(&self) -> Option<[usize; 2]> {
+        let first = self.hidden.iter().position(|hidden| *hidden)?;
+        let last = self.hidden.iter().rposition(|hidden| *hidden)?;
+        let blind = row_ranges(self.blind());
+        let holds = |row: usize| {
+            blind
+                .iter()
+                .find(move |[from, to]| (*from..*to).contains(&row))
+        };
+        Some([holds(first)?[0], holds(last)?[1]])
     }
 
     /// Times without a pose (s).

@@ -14,9 +14,9 @@ pub struct Story {
     pub what: String,
     /// Length of the recording (s).
     pub duration: f64,
-    /// When the camera was dark: from, to (s).
+    /// When the camera was dark: from, to (s), with poses that it had lost just before and after.
     pub dark: Option<[f64; 2]>,
-    /// Rows, hidden ones left out, in which the camera lost the object.
+    /// Rows outside that time in which the camera lost the object.
     pub lost: usize,
     /// All rows.
     pub rows: usize,
@@ -167,14 +167,29 @@ impl Story {
             .collect()
     }
 
-    /// How well the object could be known.
+    /// How well the object could be known: of several methods whose camera stayed on, each by its
+    /// name.
     #[must_use]
     pub fn seen(&self) -> Option<String> {
-        let outcome = self.outcomes.iter().find(|outcome| outcome.camera_on)?;
-        Some(format!(
-            "With the camera always on: {}.",
-            millimetres(outcome.wmse_mm?)
-        ))
+        let mut scored: Vec<(&str, f64)> = self
+            .outcomes
+            .iter()
+            .filter(|outcome| outcome.camera_on)
+            .filter_map(|outcome| Some((outcome.name.as_str(), outcome.wmse_mm?)))
+            .collect();
+        scored.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let said = match scored[..] {
+            [] => return None,
+            [(_, wmse)] => millimetres(wmse),
+            _ => {
+                let named = scored.iter().map(|(name, wmse)| {
+                    let name = name.strip_suffix(", camera on").unwrap_or(name);
+                    format!("{name} ({})", millimetres(*wmse))
+                });
+                named.collect::<Vec<_>>().join(", ")
+            }
+        };
+        Some(format!("With the camera always on: {said}."))
     }
 }
 

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{HALF, disc, experiment, log, setup, square};
+use common::{HALF, disc, experiment, log, setup, square, truth};
 use resvg::tiny_skia::{Color, Pixmap};
 use resvg::usvg::{Options, Tree};
 use stickslip_dynamics::Pose;
@@ -171,6 +171,24 @@ fn every_figure_of_an_experiment_is_drawn_even_of_one_row() {
             );
         }
     }
+}
+
+/// Where nobody knows where the object is, the pictures hold the estimate of it.
+#[test]
+fn a_picture_without_a_reference_holds_the_estimate() {
+    let (setup, log) = (setup(), log(90));
+    let holds = |known: bool| {
+        let mut experiment = experiment("dark", &setup, &log, 5);
+        if !known {
+            experiment.reference.pose.fill(None);
+        }
+        let [[left, low], [right, high]] = experiment.poses_at(89).view.unwrap();
+        let at = truth(89, 90);
+        assert!(left < at.x - HALF && right > at.x + HALF, "{left} {right}");
+        assert!(low < at.y - HALF && high > at.y + HALF, "{low} {high}");
+    };
+    holds(true);
+    holds(false);
 }
 
 /// A curve at 2 from 0 to 1 s on an axis from 0 to 4 is drawn in the middle of its panel, and

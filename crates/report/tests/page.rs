@@ -7,7 +7,7 @@ mod common;
 
 use common::{experiment, log, setup, truth};
 use serde_json::Value;
-use stickslip_report::{Block, Report, Section, Table};
+use stickslip_report::{Block, Outcome, Report, Section, Story, Table};
 
 const HOSTILE: &str = "</script><script>alert(1)</script> \"'<b>&amp; http://example.org";
 
@@ -57,6 +57,45 @@ fn a_page_loads_nothing() {
     {
         assert!(link.starts_with("data:"), "{}", &link[..40]);
     }
+}
+
+/// Poses that the camera had lost just before they were hidden belong to the blackout; others do not.
+#[test]
+fn the_camera_is_dark_from_the_last_pose_on() {
+    let (setup, mut log) = (setup(), log(90));
+    for row in [10, 11, 50, 51, 52, 53, 60, 89] {
+        log.object[row] = None;
+    }
+    // rows are hidden from 54 on
+    let story = experiment("gaps", &setup, &log, 5).story();
+    assert_eq!(story.lost, 2);
+    assert_eq!(story.dark, Some([log.time[49], log.time[89]]));
+}
+
+#[test]
+fn of_several_methods_with_the_camera_on_each_is_named() {
+    let outcome = |name: &str, wmse: f64| Outcome {
+        name: format!("{name}, camera on"),
+        camera_on: true,
+        wmse_mm: Some(wmse),
+    };
+    let story = |outcomes: &[Outcome]| Story {
+        outcomes: outcomes.to_vec(),
+        ..Story::default()
+    };
+    let both = [
+        outcome("Kalman filter", 2.47),
+        outcome("particle filter", 0.12),
+    ];
+    assert_eq!(
+        story(&both).seen().as_deref(),
+        Some("With the camera always on: particle filter (0.12 mm), Kalman filter (2.47 mm).")
+    );
+    assert_eq!(
+        story(&both[..1]).seen().as_deref(),
+        Some("With the camera always on: 2.47 mm.")
+    );
+    assert_eq!(story(&[]).seen(), None);
 }
 
 #[test]

@@ -31,8 +31,8 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
          Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
         folders.len()
     );
-    let gain = touch_gain.map_or_else(String::new, |gain| gain.to_string());
-    let note = format!("{LEGEND} Quantiles: {quantile}. {gain} {}", Fate::rule());
+    let gain = touch_gain.map_or_else(String::new, |gain| format!("{} ", gain.to_string().trim()));
+    let note = format!("{LEGEND} Quantiles: {quantile}. {gain}{}", Fate::rule());
     let all = [
         Block::Table(
             tables::overall(overall),

@@ -31,7 +31,7 @@ pub fn played(comparison: &Comparison, mode: Mode, folders: &[Folder]) -> Result
         let folder = folders.iter().find(path).expect("a result has its folder");
         let section = section(folder, mode, comparison.particles)?;
         let place = format!(
-            "number {} of {count} by the particle filter's WMSE",
+            "number {} of {count} by the particle filter's WMSE, seed 0",
             rank + 1
         );
         Ok(Section {

@@ -88,7 +88,7 @@ impl std::fmt::Display for TouchGain {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(
             f,
-            "touch changes the CRPS by {:+.3} mm, standard error {:.3}, over {} folders",
+            "Touch changes the CRPS by {:+.3} mm, standard error {:.3}, over {} folders.",
             self.crps_mm, self.standard_error_mm, self.folders
         )
     }

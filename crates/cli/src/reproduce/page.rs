@@ -7,7 +7,7 @@ use stickslip_evaluation::Variant;
 use stickslip_evaluation::paper::{PaperExperiment, ResultsRow, ResultsTable, RunSet};
 use stickslip_report::{Block, Colour, Figure, Report, ReportedExperiment, Section, Table};
 
-use super::text::{band, counts, median, occlusions, orders};
+use super::text::{OCCLUSIONS, band, counts, median, occlusions, orders};
 use crate::origin::origin;
 use crate::reported_run::reported_run;
 
@@ -34,7 +34,7 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
         Block::Text(SUMMARY.to_owned()),
         Block::Table(
             occlusions(&results.occlusions),
-            "Under occlusion".to_owned(),
+            format!("Under occlusion: {OCCLUSIONS}"),
         ),
     ];
     summary.extend(counts(results).into_iter().map(Block::Text));

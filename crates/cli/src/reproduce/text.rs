@@ -7,8 +7,9 @@ use stickslip_evaluation::paper::{
 };
 use stickslip_report::Table;
 
-/// How differences are shown.
-const LEGEND: &str = "  others: their median (ours less theirs: median difference ± its standard error; * by more than 2 of them better, ! worse)\n";
+/// What the table of [`occlusions`] shows.
+pub const OCCLUSIONS: &str = "particle filter with tactile data after the blackout begins, WMSE in mm; \
+    others: their median (ours less theirs: median difference ± its standard error; * by more than 2 of them better, ! worse)";
 
 /// All tables, what holds of the paper's orders, and the particle filter under occlusion.
 pub fn text(results: &Results) -> String {
@@ -20,7 +21,7 @@ pub fn text(results: &Results) -> String {
     tables
         .chain([
             orders,
-            format!("{}{LEGEND}", occlusions(&results.occlusions)),
+            format!("{OCCLUSIONS}\n\n{}", occlusions(&results.occlusions)),
         ])
         .collect::<Vec<_>>()
         .join("\n")
@@ -138,7 +139,7 @@ pub fn counts(results: &Results) -> Vec<String> {
 /// The particle filter with tactile data after the blackout begins.
 pub fn occlusions(results: &[OcclusionResult]) -> Table {
     let mut table = Table::new([
-        "after the blackout begins, WMSE in mm",
+        "experiment",
         "median",
         "10-90 %",
         "own spread",
@@ -155,9 +156,8 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
             median(result.spread_mm),
             if result.below_target { "yes" } else { "no" }.to_owned(),
         ];
-        let title = format!("  {}, particle filter with tactile data", result.experiment);
         table.push(
-            [title]
+            [result.experiment.to_string()]
                 .into_iter()
                 .chain(own)
                 .chain(result.baselines.iter().map(difference))
