@@ -31,6 +31,8 @@ pub struct Assembly<const W: usize> {
     pub(crate) rows: Vec<Row<W>>,
     /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
+    /// By how much the object is larger than its shape (m).
+    growth: Lanes<W>,
     pub(crate) scaling: Scaling<W>,
 }
 
@@ -122,6 +124,7 @@ impl<const W: usize> Assembly<W> {
     ) {
         self.rows.clear();
         ncp.clear();
+        self.growth = bodies.growth;
         let object = Transform::from(particles.pose);
         let StepBodies {
             context, pusher, ..
@@ -217,8 +220,14 @@ impl<const W: usize> Assembly<W> {
         may_touch(
             [&scene.object.shape, other],
             [object.origin, origin],
-            self.search_distance,
+            self.reach(),
         )
+    }
+
+    /// Distance from the object's shape within which contacts are sought.
+    #[inline(always)]
+    fn reach(&self) -> Lanes<W> {
+        self.search_distance + self.growth.max(Lanes::ZERO)
     }
 
     /// What does not depend on contacts: free velocity, feet, stall force.
@@ -288,9 +297,9 @@ impl<const W: usize> Assembly<W> {
             shape: other.shape,
             transform: other.transform,
         };
-        narrow.collide(placed, other_placed, self.search_distance, other.active);
+        narrow.collide(placed, other_placed, self.reach(), other.active);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
-            let gap = contact.gap;
+            let gap = contact.gap - self.growth;
             let gap = gap.abs().gt(Lanes::splat(CLOSED)).zero_unless(gap);
             let key = (other.body.number() * Contact::<W>::ID_COUNT as usize + contact.id as usize)
                 as f64;

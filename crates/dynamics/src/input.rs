@@ -29,14 +29,17 @@ impl PusherMotion {
     }
 }
 
-/// Where pusher and fixels stand beside the poses that the input and the scene give, particle by
-/// particle.
+/// Where pusher and fixels stand beside the poses that the input and the scene give, and how much
+/// larger the object is than its shape, particle by particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
     /// Offset of the pusher (m), chunk by chunk.
     pub pusher: &'a [[Lanes<W>; 2]],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
+    /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
+    /// smaller by that.
+    pub growth: &'a [Lanes<W>],
 }
 
 /// What drives one step.

@@ -81,6 +81,8 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub pusher: Option<&'a PusherContext<W>>,
     /// Offsets of the fixels (m); none where they stand as the scene says.
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
+    /// By how much the object is larger than its shape (m).
+    pub growth: Lanes<W>,
 }
 
 /// The pusher of every chunk of particles in one step, and where the fixels stand.
@@ -166,6 +168,15 @@ impl<const W: usize> Pushers<'_, W> {
                 offsets, fixels, ..
             } => &offsets.fixels[chunk * fixels..][..*fixels],
             _ => &[],
+        }
+    }
+
+    /// By how much the object is larger than its shape (m) in one chunk.
+    #[inline(always)]
+    pub fn growth(&self, chunk: usize) -> Lanes<W> {
+        match self {
+            Self::Offset { offsets, .. } => offsets.growth[chunk],
+            _ => Lanes::ZERO,
         }
     }
 }

@@ -199,11 +199,12 @@ impl Dynamics {
         work.pushers = contexts;
     }
 
-    /// The same for particles whose pusher and fixels stand beside the given poses, each by its own
-    /// `offsets`.
+    /// The same for particles whose pusher and fixels stand beside the given poses, and whose object
+    /// is larger than its shape, each by its own `offsets`.
     ///
     /// # Panics
-    /// If there is not one offset of the pusher for each chunk of particles, and of each fixel.
+    /// If there is not one offset of the pusher and one growth for each chunk of particles, and one
+    /// offset of each fixel.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -216,6 +217,7 @@ impl Dynamics {
         let (chunks, fixels) = (particles.len(), self.scene.fixels.len());
         assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
+        assert_eq!(offsets.growth.len(), chunks, "a growth for each chunk");
         let pushers = Pushers::Offset {
             pusher: SharedPusher::new(&self.scene, input.pusher.as_ref()),
             offsets,
@@ -384,6 +386,7 @@ impl<const W: usize> Source<W> for Problems<'_, W> {
                 context: &self.context,
                 pusher: self.pushers.of(self.first + chunk).as_ref(),
                 fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
+                growth: self.pushers.growth(self.first + chunk),
             },
             &self.particles[chunk],
             self.narrow,

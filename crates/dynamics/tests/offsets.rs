@@ -14,6 +14,11 @@ const FRICTION: Friction = Friction {
 
 /// A square, pushed by a disc against two discs; `shift` moves these (m).
 fn scene(shift: [[f64; 2]; 2]) -> Scene {
+    scene_of_discs(shift, 0.005)
+}
+
+/// The same with discs of another radius (m).
+fn scene_of_discs(shift: [[f64; 2]; 2], radius: f64) -> Scene {
     let disc = |radius| {
         let centre = [0.0, 0.0];
         Shape::new(vec![Part::Disc { radius, centre }]).expect("a disc")
@@ -27,7 +32,7 @@ fn scene(shift: [[f64; 2]; 2]) -> Scene {
     let places = [[0.033, 0.015], [0.033, -0.015]];
     let fixel = |([x, y], [dx, dy]): ([f64; 2], [f64; 2])| Fixel {
         pose: Pose::new(x + dx, y + dy, 0.0),
-        shape: disc(0.005),
+        shape: disc(radius),
     };
     Scene {
         gravity: 9.81,
@@ -38,7 +43,7 @@ fn scene(shift: [[f64; 2]; 2]) -> Scene {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: disc(0.005),
+            shape: disc(radius),
             stall_force: Some(20.0),
         },
         fixels: places.into_iter().zip(shift).map(fixel).collect(),
@@ -87,6 +92,7 @@ fn each_lane_steps_as_in_a_scene_of_its_own() {
         let offsets = Offsets {
             pusher: &pushers,
             fixels: &places,
+            growth: &[Lanes::ZERO],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -103,5 +109,41 @@ fn each_lane_steps_as_in_a_scene_of_its_own() {
     }
     let moved: Vec<f64> = alone.iter().map(|particle| particle.pose.x).collect();
     assert!(moved.iter().all(|x| *x > 1e-3), "{moved:?}");
+    assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
+}
+
+/// A larger object is one that meets discs which are larger by as much.
+#[test]
+fn an_object_that_has_grown_meets_larger_discs() {
+    const LANES: usize = 8;
+    let growth = |i: usize| 1e-4 * (i as f64 - 3.0);
+    let dynamics = Dynamics::new(scene([[0.0; 2]; 2]));
+    let mut chunk = [Particles::<LANES>::default()];
+    (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
+    let grown = [Lanes(std::array::from_fn(growth))];
+    let mut work = StepWork::default();
+    let mut alone: Vec<Particle> = vec![Particle::default(); LANES];
+    let mut own_work = StepWork::<1>::default();
+    for step in 0..30 {
+        let offsets = Offsets {
+            pusher: &[[Lanes::ZERO; 2]],
+            fixels: &[[Lanes::ZERO; 2]; 2],
+            growth: &grown,
+        };
+        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
+        for (i, particle) in alone.iter_mut().enumerate() {
+            let mut one = [*particle];
+            let larger = scene_of_discs([[0.0; 2]; 2], 0.005 + growth(i));
+            Dynamics::new(larger).step(&push(step, [0.0; 2]), &[FRICTION], &mut one, &mut own_work);
+            *particle = one[0];
+            let (found, expected) = (chunk[0].get(i).pose, particle.pose);
+            let apart = (found.x - expected.x).abs() + (found.y - expected.y).abs();
+            assert!(
+                apart + 0.02 * (found.theta - expected.theta).abs() < 1e-7,
+                "lane {i}, step {step}: {found:?}, {expected:?}"
+            );
+        }
+    }
+    let moved: Vec<f64> = alone.iter().map(|particle| particle.pose.x).collect();
     assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
 }
