@@ -2,14 +2,16 @@
 //! the truth then lies in the belief ([`CalibrationRun`], [`Tally`]); simulation-based calibration,
 //! Talts et al. 2018.
 
+use std::sync::Mutex;
 use stickslip::dynamics::{Friction, Pose};
+
 use stickslip::{
-    Camera, Estimate, Mode, Occlusion, RunOptions, Setup, TactileUse, Tracking, run, wrapped,
+    Camera, Estimate, Mode, Observer, Occlusion, ParticleView, RunOptions, Setup, SolvedStep,
+    TactileUse, Tracking, run, wrapped,
 };
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
 
-use crate::belief::NINETY_PERCENT;
 use crate::learned_friction::LearnedParameter;
 use crate::paper::PaperExperiment;
 use crate::run::{RunConditions, ScoredRun};
@@ -22,17 +24,16 @@ pub const QUANTITIES: [&str; 7] = ["x", "y", "theta", "mu_s", "mu_p", "mu_f", "d
 /// Where the truth lies in a belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Truth (SI).
-    pub truth: f64,
-    /// Mean of the belief.
-    pub mean: f64,
-    /// Standard deviation of the belief.
-    pub std: f64,
-    /// What was believed before the run.
-    pub prior: f64,
+    /// Weight of the particles below the truth; uniform from 0 to 1 where beliefs are true.
+    pub rank: f64,
+    /// Distance of the belief's mean from the truth (SI).
+    pub error: f64,
+    /// The same of what was believed before the run; of a pose, that of its mean.
+    pub prior_error: f64,
 }
 
-/// One simulated run: each of [`QUANTITIES`], `None` where the run says that it was not observed.
+/// One simulated run: each of [`QUANTITIES`], `None` where the run says that it was not observed. A
+/// pose is that of the last row, friction that of the row which the run reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationRun {
     /// Where the truth of each lies.
@@ -64,8 +65,9 @@ pub struct CalibrationOptions {
 
 impl CalibrationRun {
     /// Simulates `paper` with friction drawn from its scene's prior, and tracks it through the
-    /// blackout before the first contact with a fixel. `None` where no fixel is met, or the drawn rig
-    /// cannot be simulated.
+    /// blackout before the first contact with a fixel; where a particle moves the object, that is the
+    /// contact of the simulation whose pusher it has, so that no blackout tells of the truth. `None`
+    /// where no fixel is met, or the drawn rig cannot be simulated.
     ///
     /// # Panics
     /// If an embedded scene cannot be run.
@@ -73,11 +75,11 @@ impl CalibrationRun {
     pub fn new(paper: PaperExperiment, seed: u64, options: &CalibrationOptions) -> Option<Self> {
         let scene = paper.scene();
         let setup = read_scene(scene.scene, scene.name).expect("the embedded scene is one");
-        let truth = match options.source {
+        let known = match options.source {
             TruthSource::Particle => sampled(&setup, seed, options.mode),
             TruthSource::Simulated(physics) => simulated(&setup, seed, physics),
         }?;
-        let experiment = &truth.experiment;
+        let experiment = &known.experiment;
         experiment.facts.occlude_from?;
         let conditions = RunConditions {
             mode: options.mode,
@@ -90,10 +92,11 @@ impl CalibrationRun {
             true => Variant::Particle,
             false => Variant::ParticleNoTouch,
         };
-        let run = ScoredRun::new(variant, experiment, &conditions, None);
+        let ranks = Ranks::of(&known.truth);
+        let run = ScoredRun::new(variant, experiment, &conditions, Some(&ranks));
         let run = run.expect("the embedded scene can be run");
         Some(Self {
-            placed: placed(&truth, &run)?,
+            placed: placed(&known, &run, &ranks)?,
         })
     }
 }
@@ -101,8 +104,24 @@ impl CalibrationRun {
 /// An experiment with all that is true of it.
 struct KnownExperiment {
     experiment: Experiment,
+    /// By row.
+    truth: Vec<Truth>,
+}
+
+/// What is true at a row.
+#[derive(Clone, Copy, Debug)]
+struct Truth {
+    pose: Pose,
     friction: Friction,
-    end: Pose,
+}
+
+impl Truth {
+    /// In the order of [`QUANTITIES`].
+    fn values(&self) -> [f64; 7] {
+        let (pose, friction) = (self.pose.fields(), self.friction.fields());
+        let mut values = pose.into_iter().chain(friction);
+        std::array::from_fn(|_| *values.next().expect("three and four"))
+    }
 }
 
 /// An experiment simulated with friction from the prior; `None` where the drawn rig cannot be.
@@ -124,11 +143,14 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
         pusher_memory: PUSHER_MEMORY,
     };
     let simulation = Simulation::run(setup, &known, &options).ok()?;
-    let end = *simulation.truth.pose.last()?;
-    Some(KnownExperiment {
-        experiment: simulation.into_experiment(setup.clone()),
+    let poses = simulation.truth.pose.iter();
+    let truth = poses.map(|pose| Truth {
+        pose: *pose,
         friction,
-        end,
+    });
+    Some(KnownExperiment {
+        truth: truth.collect(),
+        experiment: simulation.into_experiment(setup.clone()),
     })
 }
 
@@ -151,21 +173,22 @@ fn sampled(setup: &Setup, seed: u64, mode: Mode) -> Option<KnownExperiment> {
     if streams.uniform(0, 0, 0) > chance {
         return None;
     }
-    let last = particle.estimate.rows.last()?;
-    let (friction, end) = (last.friction?, last.pose?);
+    let rows = particle.estimate.rows.iter();
+    let truth: Option<Vec<Truth>> = rows
+        .map(|row| {
+            let (pose, friction) = (row.pose?, row.friction?);
+            Some(Truth { pose, friction })
+        })
+        .collect();
     measure(&mut experiment, &particle.estimate, setup.camera?, seed);
     Some(KnownExperiment {
         experiment,
-        friction,
-        end,
+        truth: truth?,
     })
 }
 
 /// Seeds of truths lie apart from those of filters.
 const OTHER_SEEDS: u64 = 1 << 32;
-
-/// Frames from the blackout to the first contact with a fixel.
-const LEAD: usize = 5;
 
 /// Writes what camera and sensors read of the motion of `particle`, with the errors that the filter
 /// reckons with.
@@ -192,65 +215,92 @@ fn measure(experiment: &mut Experiment, particle: &Estimate, camera: Camera, see
             });
         }
     }
-    let touched = |row: &usize| {
-        let contacts = particle.rows[*row].contact_fixels.iter().flatten();
-        contacts.into_iter().any(|contact| *contact > 0.5)
-    };
-    let first = (0..particle.rows.len()).find(touched);
-    experiment.facts.occlude_from = first.map(|row| row.saturating_sub(LEAD).max(1));
+}
+
+/// Ranks of the truth among the particles, row by row.
+#[derive(Debug)]
+struct Ranks<'a> {
+    truth: &'a [Truth],
+    /// By row, in the order of [`QUANTITIES`].
+    ranks: Mutex<Vec<[f64; 7]>>,
+}
+
+impl<'a> Ranks<'a> {
+    fn of(truth: &'a [Truth]) -> Self {
+        let ranks = Mutex::new(vec![[f64::NAN; 7]; truth.len()]);
+        Self { truth, ranks }
+    }
+
+    /// At a row.
+    fn at(&self, row: usize) -> Option<[f64; 7]> {
+        let ranks = self.ranks.lock().ok()?;
+        ranks.get(row).copied()
+    }
+}
+
+impl Observer for Ranks<'_> {
+    fn on_step(&self, _: &SolvedStep<'_>) {}
+
+    fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
+        let truth = self.truth[row];
+        let mut ranks = [0.0; 7];
+        for (i, weight) in particles.weights().iter().enumerate() {
+            let mut pose = particles.pose(i);
+            pose.theta = truth.pose.theta + wrapped(pose.theta - truth.pose.theta);
+            let friction = particles.friction(i);
+            let particle = Truth { pose, friction }.values();
+            for ((rank, value), truth) in ranks.iter_mut().zip(particle).zip(truth.values()) {
+                // equal values: half of them count as below
+                let below =
+                    f64::from(u8::from(value < truth)) + f64::from(u8::from(value <= truth));
+                *rank += 0.5 * weight * below;
+            }
+        }
+        self.ranks.lock().expect("no thread panicked")[row] = ranks;
+    }
 }
 
 /// Where the truth lies at the end of a run.
-fn placed(known: &KnownExperiment, run: &ScoredRun) -> Option<[Option<Placed>; 7]> {
-    let (end, row) = (&known.end, run.estimate.rows.last()?);
-    let (mean, spread) = (row.pose?, row.spread?);
-    let turned = mean.theta + wrapped(end.theta - mean.theta);
-    let pose = [
-        (end.x, mean.x, spread.pose.x),
-        (end.y, mean.y, spread.pose.y),
-        (turned, mean.theta, spread.pose.theta),
+fn placed(
+    known: &KnownExperiment,
+    run: &ScoredRun,
+    ranks: &Ranks<'_>,
+) -> Option<[Option<Placed>; 7]> {
+    let last = known.truth.len() - 1;
+    let (truth, mean) = (known.truth[last].pose, run.estimate.rows.last()?.pose?);
+    let errors = [
+        mean.x - truth.x,
+        mean.y - truth.y,
+        wrapped(mean.theta - truth.theta),
     ];
+    let at_end = ranks.at(last)?;
     let mut all = [None; 7];
-    for (to, (truth, mean, std)) in all.iter_mut().zip(pose) {
-        let prior = mean;
+    for ((to, error), rank) in all.iter_mut().zip(errors).zip(at_end) {
         *to = Some(Placed {
-            truth,
-            mean,
-            std,
-            prior,
+            rank,
+            error: error.abs(),
+            prior_error: error.abs(),
         });
     }
     let nominal = &known.experiment.setup.scene.nominal;
     for parameter in LearnedParameter::all(&run.estimate) {
+        let Some(row) = parameter.row else { continue };
         let place = QUANTITIES.iter().position(|name| *name == parameter.name)?;
-        all[place] = parameter.observed.then_some(Placed {
-            truth: parameter.among(&known.friction)?,
-            mean: parameter.mean,
-            std: parameter.std,
-            prior: parameter.among(nominal)?,
+        let truth = parameter.among(&known.truth[row].friction)?;
+        all[place] = Some(Placed {
+            rank: ranks.at(row)?[place],
+            error: (parameter.mean - truth).abs(),
+            prior_error: (parameter.among(nominal)? - truth).abs(),
         });
     }
     Some(all)
 }
 
 impl Placed {
-    /// Whether the 90 % interval of the belief holds the truth.
+    /// Whether the central 90 % of the belief hold the truth.
     #[must_use]
     pub fn covered(&self) -> bool {
-        (self.truth - self.mean).abs() <= NINETY_PERCENT * self.std
-    }
-
-    /// Probability that the belief, taken as normal, gives to values below the truth; uniform where
-    /// beliefs are true.
-    #[must_use]
-    pub fn rank(&self) -> f64 {
-        match self.std > 0.0 {
-            true => {
-                let deviation = (self.truth - self.mean) / self.std;
-                0.5 * libm::erfc(-deviation / std::f64::consts::SQRT_2)
-            }
-            false => f64::from(u8::from(self.truth > self.mean)),
-        }
+        (0.05..=0.95).contains(&self.rank)
     }
 }
 
@@ -259,7 +309,7 @@ impl Placed {
 pub struct Tally {
     /// Runs in which it was observed.
     pub runs: usize,
-    /// Share of them whose 90 % interval holds the truth.
+    /// Share of them in which the central 90 % of the belief hold the truth.
     pub covered: f64,
     /// Standard error of that share.
     pub standard_error: f64,
@@ -280,7 +330,7 @@ impl Tally {
         let covered = placed.iter().filter(|placed| placed.covered()).count() as f64 / count;
         let mut bins = [0.0; 10];
         for placed in &placed {
-            bins[((placed.rank() * 10.0) as usize).min(9)] += 1.0;
+            bins[((placed.rank * 10.0) as usize).min(9)] += 1.0;
         }
         let expected = count / 10.0;
         let median = |distance: fn(&Placed) -> f64| {
@@ -295,8 +345,8 @@ impl Tally {
                 .iter()
                 .map(|bin| (bin - expected) * (bin - expected) / expected)
                 .sum(),
-            error: median(|placed| (placed.truth - placed.mean).abs())?,
-            prior_error: median(|placed| (placed.truth - placed.prior).abs())?,
+            error: median(|placed| placed.error)?,
+            prior_error: median(|placed| placed.prior_error)?,
         })
     }
 }
@@ -310,11 +360,11 @@ mod tests {
         let runs: Vec<CalibrationRun> = (0..2000)
             .map(|seed| {
                 let [truth, noise] = Streams::new(seed).normals::<2>(0, 0, 0);
+                let error = (truth + noise) / 2.0 - truth;
                 let placed = Placed {
-                    truth,
-                    mean: (truth + noise) / 2.0,
-                    std,
-                    prior: 0.0,
+                    rank: 0.5 * libm::erfc(error / std / std::f64::consts::SQRT_2),
+                    error: error.abs(),
+                    prior_error: truth.abs(),
                 };
                 CalibrationRun {
                     placed: [Some(placed); 7],
