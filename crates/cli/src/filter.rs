@@ -46,6 +46,7 @@ struct Summary<'a> {
     /// Of those, the ones whose solver gave up; the others have no solution.
     failed: u64,
     collapses: u32,
+    second_tries: u32,
     /// ln of what the particles expected of the log.
     log_evidence: Option<f64>,
     /// What makes the scores doubtful.
@@ -219,6 +220,7 @@ impl<'a> Summary<'a> {
             unsolved: run.unsolved,
             failed: run.failed,
             collapses: run.collapses,
+            second_tries: run.second_tries,
             log_evidence: run.log_evidence,
             warnings,
             real_time_factor: experiment.log.duration() / seconds,
@@ -287,6 +289,7 @@ fn score_table(summary: &Summary<'_>) -> Table {
     row("unsolved particle steps", summary.unsolved.to_string(), "");
     row("of them failed", summary.failed.to_string(), "");
     row("collapses", summary.collapses.to_string(), "");
+    row("second tries", summary.second_tries.to_string(), "");
     row(
         "real-time factor",
         format!("{:.1}", summary.real_time_factor),

@@ -24,6 +24,9 @@ pub struct Run {
     pub failed: u64,
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
     pub collapses: u32,
+    /// How often the steps since a blackout were made again with other random numbers, since the
+    /// particles explained pusher and touch ever worse (contact mode; docs/method.md (42)).
+    pub second_tries: u32,
     /// ln of the evidence of the log: of two scenes, or of two modes, the one with the higher evidence
     /// expected the camera poses and tactile readings more. Up to a constant of the log; rows at which
     /// the filter collapsed are left out. `None` for methods without particles.
@@ -94,21 +97,22 @@ fn run_prepared(
     progress: &mut dyn FnMut(usize),
 ) -> Result<Run, RunError> {
     let camera = || setup.camera.ok_or(RunError::NoCamera);
-    let (estimate, collapses, log_evidence) = match (options.method, options.tracking) {
+    let no_particles = ParticleRun::default();
+    let (estimate, particle) = match (options.method, options.tracking) {
         (Method::Particle, Tracking::Smoothed) => {
             track_smoothed(setup, camera()?, prepared, options, progress)?
         }
         (Method::Particle, Tracking::Causal) => track_causal(setup, prepared, options, progress)?,
-        (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, 0, None),
+        (Method::Kalman, _) => (kalman::track(setup, &camera()?, prepared)?, no_particles),
         (Method::KalmanStops, _) => {
             let kalman = kalman::track(setup, &camera()?, prepared)?;
-            (stopping(kalman, prepared, options.tactile), 0, None)
+            (stopping(kalman, prepared, options.tactile), no_particles)
         }
         (Method::WithPusher, _) => {
             let kalman = kalman::track(setup, &camera()?, prepared)?;
-            (with_pusher(kalman, prepared), 0, None)
+            (with_pusher(kalman, prepared), no_particles)
         }
-        (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), 0, None),
+        (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), no_particles),
     };
     let all = |count: fn(&EstimateRow) -> Option<u32>| {
         let counts = estimate.rows.iter().filter_map(count);
@@ -118,13 +122,19 @@ fn run_prepared(
         unsolved: all(|row| row.unsolved),
         failed: all(|row| row.failed),
         estimate,
-        collapses,
-        log_evidence,
+        collapses: particle.collapses,
+        second_tries: particle.second_tries,
+        log_evidence: particle.log_evidence,
     })
 }
 
-/// An estimate with the number of collapses and ln of the evidence.
-type ParticleRun = (Estimate, u32, Option<f64>);
+/// What a run says of itself where it has particles.
+#[derive(Clone, Copy, Debug, Default)]
+struct ParticleRun {
+    collapses: u32,
+    second_tries: u32,
+    log_evidence: Option<f64>,
+}
 
 /// The particle filter, driven by the pusher's smoothed track; with what it says of itself.
 fn track_smoothed(
@@ -133,7 +143,7 @@ fn track_smoothed(
     prepared: &PreparedLog<'_>,
     options: &RunOptions,
     progress: &mut dyn FnMut(usize),
-) -> Result<ParticleRun, RunError> {
+) -> Result<(Estimate, ParticleRun), RunError> {
     let PreparedLog {
         log,
         first,
@@ -174,7 +184,12 @@ fn track_smoothed(
         }
         progress(row);
     }
-    Ok((estimate, filter.collapses(), Some(filter.log_evidence())))
+    let run = ParticleRun {
+        collapses: filter.collapses(),
+        second_tries: filter.second_tries(),
+        log_evidence: Some(filter.log_evidence()),
+    };
+    Ok((estimate, run))
 }
 
 /// The particle filter row by row, as a [`Tracker`] takes them; with what it says of itself.
@@ -183,7 +198,7 @@ fn track_causal(
     prepared: &PreparedLog<'_>,
     options: &RunOptions,
     progress: &mut dyn FnMut(usize),
-) -> Result<ParticleRun, RunError> {
+) -> Result<(Estimate, ParticleRun), RunError> {
     let tracker_options = TrackerOptions::of(options);
     let mut tracker = Tracker::build(setup, &tracker_options, prepared.observer)?;
     let mut estimate = prepared.empty_estimate(setup);
@@ -198,7 +213,12 @@ fn track_causal(
             progress(row);
         }
     }
-    Ok((estimate, tracker.collapses(), Some(tracker.log_evidence())))
+    let run = ParticleRun {
+        collapses: tracker.collapses(),
+        second_tries: tracker.second_tries(),
+        log_evidence: Some(tracker.log_evidence()),
+    };
+    Ok((estimate, run))
 }
 
 impl PreparedLog<'_> {

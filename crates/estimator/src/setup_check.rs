@@ -247,13 +247,16 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
         ("uncertainty.variation", unknown.variation),
         ("uncertainty.force_std", unknown.force_std),
         ("uncertainty.roughness", unknown.roughness),
+        ("uncertainty.camera_noise", unknown.camera_noise),
     ];
     let lengths = [
         ("uncertainty.pusher_offset", unknown.pusher_offset),
         ("uncertainty.fixel_position", unknown.fixel_position),
+        ("uncertainty.outline", unknown.outline),
     ];
     let positive = [
         ("uncertainty.variation_length", unknown.variation_length),
+        ("uncertainty.pusher_lag", unknown.pusher_lag),
         ("uncertainty.touch_gap", unknown.touch_gap),
     ];
     let friction = names

@@ -317,6 +317,12 @@ impl<'o> Tracker<'o> {
         self.filter.as_ref().map_or(0, ContactFilter::collapses)
     }
 
+    /// How often the steps since a blackout were made again, see
+    /// [`Run::second_tries`](crate::Run::second_tries).
+    pub fn second_tries(&self) -> u32 {
+        self.filter.as_ref().map_or(0, ContactFilter::second_tries)
+    }
+
     /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence); 0
     /// before the first pose.
     pub fn log_evidence(&self) -> f64 {

@@ -27,8 +27,12 @@ pub struct Uncertainty {
     pub pusher_lag: f64,
     /// Standard deviation of the error of each fixel's position, on each axis (m).
     pub fixel_position: f64,
-    /// Standard deviation of the logarithm of a factor of these two offsets: rigs differ.
+    /// Standard deviation of the distance by which the object's outline lies outside its shape (m).
+    pub outline: f64,
+    /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs differ.
     pub roughness: f64,
+    /// Standard deviation of the logarithm by which the camera's noise differs from what is told.
+    pub camera_noise: f64,
     /// Mean time by which the camera lags more than the scene says (s).
     pub latency: f64,
     /// Gap at which object and body may touch already, as far as shapes and poses are known (m).
@@ -48,10 +52,12 @@ impl Default for Uncertainty {
             variation: 0.1,
             variation_length: 5e-3,
             force_std: 0.25,
-            pusher_offset: 1.5e-4,
+            pusher_offset: 3e-4,
             pusher_lag: 3e-4,
-            fixel_position: 1e-4,
-            roughness: 1.0,
+            fixel_position: 3e-4,
+            outline: 1.5e-4,
+            roughness: 0.5,
+            camera_noise: 0.3,
             latency: 0.03,
             touch_gap: 5e-4,
         }
@@ -59,7 +65,7 @@ impl Default for Uncertainty {
 }
 
 /// Multiples of its mean that the unknown part of the camera's latency may reach.
-const LATEST: f64 = 6.0;
+const LATEST: f64 = 10.0;
 
 impl Uncertainty {
     /// Longest time by which the camera may lag more than the scene says (s).

@@ -40,6 +40,8 @@ pub struct ScoredRun {
     pub failed: u64,
     /// Rows at which no particle explained the camera.
     pub collapses: u32,
+    /// How often the steps since a blackout were made again.
+    pub second_tries: u32,
     /// ln of the evidence of the log, see [`Run::log_evidence`].
     pub log_evidence: Option<f64>,
 }
@@ -83,6 +85,7 @@ impl ScoredRun {
             unsolved,
             failed,
             collapses,
+            second_tries,
             log_evidence,
         } = run;
         let hidden = occlusion.hidden(&experiment.log);
@@ -95,6 +98,7 @@ impl ScoredRun {
             unsolved,
             failed,
             collapses,
+            second_tries,
             log_evidence,
         }
     }

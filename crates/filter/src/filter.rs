@@ -11,12 +11,12 @@ use crate::weights::{BlockWeights, LogWeights, UnnormalisedWeights};
 
 /// A particle filter over a model.
 pub struct ParticleFilter<M: Model> {
-    model: M,
-    settings: Settings,
-    streams: Streams,
-    step: u64,
-    particles: ParticleSet,
-    weights: LogWeights,
+    pub(crate) model: M,
+    pub(crate) settings: Settings,
+    pub(crate) streams: Streams,
+    pub(crate) step: u64,
+    pub(crate) particles: ParticleSet,
+    pub(crate) weights: LogWeights,
     unnormalised: UnnormalisedWeights,
     /// Log-likelihoods for [`Model::resetting_log_likelihood`], (N,).
     resetting: Vec<f64>,
@@ -259,7 +259,7 @@ impl<M: Model> ParticleFilter<M> {
         }
     }
 
-    fn draw(&self, purpose: Purpose) -> Draw {
+    pub(crate) fn draw(&self, purpose: Purpose) -> Draw {
         self.streams.of(purpose).at(self.step)
     }
 

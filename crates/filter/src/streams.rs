@@ -41,6 +41,8 @@ pub enum Purpose {
     Measure = 6,
     /// Resampling to another number of particles.
     Resize = 7,
+    /// Resampling from the particles of two tries.
+    SecondTry = 8,
 }
 
 #[derive(Clone, Copy)]
@@ -75,6 +77,14 @@ impl Streams {
     /// The same seed's streams for another purpose.
     pub fn of(self, purpose: Purpose) -> Self {
         Streams { purpose, ..self }
+    }
+
+    /// Other streams of the same seed, of attempt number `attempt`; 0 are the streams themselves.
+    pub(crate) fn attempt(self, attempt: u64) -> Self {
+        // far from the seeds that users count up
+        const APART: u64 = 0x9e37_79b9_7f4a_7c15;
+        let seed = self.seed ^ attempt.wrapping_mul(APART);
+        Streams { seed, ..self }
     }
 
     /// The streams at one step, below 2^56.

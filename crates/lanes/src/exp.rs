@@ -20,11 +20,11 @@ pub fn exponentials(exponents: &mut [f64], largest: f64) {
     );
 }
 
-/// e^x of an x of at most 0: fdlibm's (Sun Microsystems 1993) bit for bit, without its branches.
+/// e^x of an x of at most 700: fdlibm's (Sun Microsystems 1993) bit for bit, without its branches.
 ///
 /// x = k ln 2 + r with |r| <= ln 2 / 2, and e^r = 1 + 2 r / (R(r²) - r), R a polynomial.
 #[inline(always)]
-fn exp(x: f64) -> f64 {
+pub(crate) fn exp(x: f64) -> f64 {
     /// e^x is 0 from here down.
     const LEAST: f64 = -746.0;
 

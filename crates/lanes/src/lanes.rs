@@ -5,6 +5,8 @@
 //! round a product and a sum once. So a particle's result depends neither on `W` nor on its
 //! neighbours, and `Lanes<1>` is the scalar reference.
 
+use crate::exp::exp;
+use crate::ln::ln;
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -50,6 +52,24 @@ impl<const W: usize> Lanes<W> {
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self(from_fn(|i| self.0[i].sqrt()))
+    }
+
+    /// ln x of positive normal numbers.
+    #[inline(always)]
+    pub fn ln(self) -> Self {
+        Self(from_fn(
+            #[inline(always)]
+            |i| ln(self.0[i]),
+        ))
+    }
+
+    /// e^x of numbers up to 700.
+    #[inline(always)]
+    pub fn exp(self) -> Self {
+        Self(from_fn(
+            #[inline(always)]
+            |i| exp(self.0[i]),
+        ))
     }
 
     /// 1/√x of positive normal numbers, with a relative error below 3e-12 and without the slow

@@ -1,22 +1,29 @@
 //! What the camera's pose says of a particle: [`CameraLikelihood`].
 
 use stickslip_dynamics::{Lanes, Pose};
-use stickslip_filter::Block;
+use stickslip_filter::{Block, BlockMut};
 
 use crate::angle::nearest_zero;
 use crate::mode::Mode;
+use crate::particle::camera_noise::{CameraNoise, NoisePrior};
 use crate::particle::chunk::{Column, load_chunk, load_pose};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
-use crate::setup::{Camera, FilterSettings};
+use crate::setup::{Camera, Setup};
 
-/// Normal likelihood of a camera pose, its standard deviations widened by `likelihood_scale`.
+/// Likelihood of a camera pose: normal, its standard deviations widened by `likelihood_scale`; in
+/// contact mode with a noise that is learned, and a floor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraLikelihood {
     /// 1 / (scaled standard deviation): per m of position, per rad of angle.
     per_metre: f64,
     per_radian: f64,
+    /// What both are widened by.
+    widened: f64,
     columns: Columns,
+    latency: Latency,
+    /// What is unknown of the noise (contact mode).
+    noise: Option<NoisePrior>,
     /// Likelihood of a pose that is wrong, of which there are some in contact mode; that of a perfect
     /// one is 1.
     wrong: Option<f64>,
@@ -25,13 +32,30 @@ pub(crate) struct CameraLikelihood {
 /// Likelihood of a wrong pose, relative to that of a perfect one.
 const WRONG: f64 = 3e-7;
 
+/// Squared distances of a measured pose from what particles show, in units of the told standard
+/// deviations.
+#[derive(Clone, Copy, Debug)]
+struct Residual {
+    position: Column,
+    angle: Column,
+}
+
 impl CameraLikelihood {
-    pub fn new(camera: &Camera, settings: &FilterSettings, columns: Columns) -> Self {
+    pub fn new(camera: &Camera, setup: &Setup, columns: Columns) -> Self {
+        let settings = &setup.filter;
+        let contact = columns.mode() == Mode::Contact;
+        let noise = NoisePrior::new(setup.uncertainty.camera_noise);
         Self {
             per_metre: 1.0 / (settings.likelihood_scale * camera.position_std),
             per_radian: 1.0 / (settings.likelihood_scale * camera.orientation_std),
+            widened: settings.likelihood_scale,
             columns,
-            wrong: (columns.mode() == Mode::Contact).then_some(WRONG),
+            latency: Latency {
+                told: camera.latency,
+                most: setup.uncertainty.most_latency(),
+            },
+            noise: noise.filter(|_| contact),
+            wrong: contact.then_some(WRONG),
         }
     }
 
@@ -59,75 +83,138 @@ impl CameraLikelihood {
         block: &Block<'_>,
         chunk: usize,
     ) -> Column {
-        let Some(measured) = observation.pose else {
+        let Some(residual) = self.residual(observation, block, chunk) else {
             return Column::ZERO;
         };
-        let shown = shown(self.columns, observation, block, chunk);
+        let right = self.of_right_pose(&residual, block, chunk);
+        match self.wrong {
+            Some(wrong) => (right.exp() + Lanes::splat(wrong)).ln(),
+            None => right,
+        }
+    }
+
+    /// What the particles learn of the camera's noise from a pose that weighed them.
+    #[inline(always)]
+    pub fn learn(&self, observation: &Observation, block: &mut BlockMut<'_>, chunk: usize) {
+        let Some(residual) = self.residual(observation, &block.as_block(), chunk) else {
+            return;
+        };
+        let right = self
+            .of_right_pose(&residual, &block.as_block(), chunk)
+            .exp();
+        let right = right / (right + Lanes::splat(WRONG));
+        let mut noise = CameraNoise::load(self.columns, &block.as_block(), chunk);
+        let told = self.widened * self.widened;
+        noise.learn(right, residual.position * told, residual.angle * told);
+        noise.store(self.columns, block, chunk);
+    }
+
+    #[inline(always)]
+    fn residual(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> Option<Residual> {
+        let measured = observation.pose?;
+        let shown = self.shown(observation, block, chunk);
         let dx = (shown.x - measured.x) * self.per_metre;
         let dy = (shown.y - measured.y) * self.per_metre;
         let turn = nearest_zero(shown.theta - measured.theta) * self.per_radian;
-        let exponent = (dx * dx + dy * dy + turn * turn) * -0.5;
-        match self.wrong {
-            Some(wrong) => Lanes(exponent.0.map(|e| libm::log(libm::exp(e) + wrong))),
-            None => exponent,
+        Some(Residual {
+            position: dx * dx + dy * dy,
+            angle: turn * turn,
+        })
+    }
+
+    /// ln of the likelihood of a pose that is not wrong, relative to that of a perfect one.
+    #[inline(always)]
+    fn of_right_pose(&self, residual: &Residual, block: &Block<'_>, chunk: usize) -> Column {
+        let &Residual { position, angle } = residual;
+        match self.noise {
+            Some(prior) => {
+                let noise = CameraNoise::load(self.columns, block, chunk);
+                noise.log_likelihood(prior, position, angle)
+            }
+            None => (position + angle) * -0.5,
         }
+    }
+
+    /// The poses of one chunk's particles that the camera shows: with latency, past ones.
+    #[inline(always)]
+    pub fn shown(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> Pose<Column> {
+        let columns = self.columns;
+        if columns.mode() == Mode::Contact {
+            return self.shown_with_own_latency(observation, block, chunk);
+        }
+        let Some(latency) = observation.latency else {
+            return load_pose(block, Columns::POSE, chunk);
+        };
+        let earlier = load_pose(block, columns.past_pose(latency.earlier), chunk);
+        let later = load_pose(block, columns.past_pose(latency.later), chunk);
+        let mut shown = earlier;
+        for (shown, later) in shown.fields_mut().into_iter().zip(later.fields()) {
+            *shown += (*later - *shown) * latency.fraction;
+        }
+        shown
+    }
+
+    /// The same where every particle has a latency of its own: its way through the kept poses, up to
+    /// the time that the camera shows.
+    #[inline(always)]
+    fn shown_with_own_latency(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> Pose<Column> {
+        let columns = self.columns;
+        let time = Lanes::splat(observation.time) - self.latency.of(columns, block, chunk);
+        let at = |slot: usize| load_pose(block, columns.past_pose(slot), chunk);
+        let Some((last, before)) = observation.past.split_last() else {
+            return load_pose(block, Columns::POSE, chunk);
+        };
+        // back from the latest pose: what lies before the time shown adds exactly nothing
+        let mut later = (last.0, at(last.1));
+        let mut shown = later.1;
+        for (earlier_time, slot) in before.iter().rev() {
+            let earlier = at(*slot);
+            let back = (Lanes::splat(later.0) - time) * (1.0 / (later.0 - earlier_time));
+            let back = back.max(Lanes::ZERO).min(Lanes::splat(1.0));
+            for ((shown, to), from) in shown
+                .fields_mut()
+                .into_iter()
+                .zip(later.1.fields())
+                .zip(earlier.fields())
+            {
+                *shown += (*from - *to) * back;
+            }
+            later = (*earlier_time, earlier);
+        }
+        shown
     }
 }
 
-/// The poses of one chunk's particles that the camera shows: with latency, past ones.
-#[inline(always)]
-pub(crate) fn shown(
-    columns: Columns,
-    observation: &Observation,
-    block: &Block<'_>,
-    chunk: usize,
-) -> Pose<Column> {
-    if columns.mode() == Mode::Contact {
-        return shown_with_own_latency(columns, observation, block, chunk);
-    }
-    let Some(latency) = observation.latency else {
-        return load_pose(block, Columns::POSE, chunk);
-    };
-    let earlier = load_pose(block, columns.past_pose(latency.earlier), chunk);
-    let later = load_pose(block, columns.past_pose(latency.later), chunk);
-    let mut shown = earlier;
-    for (shown, later) in shown.fields_mut().into_iter().zip(later.fields()) {
-        *shown += (*later - *shown) * latency.fraction;
-    }
-    shown
+/// By how much the camera lags (contact mode).
+#[derive(Clone, Copy, Debug)]
+struct Latency {
+    /// What the scene says (s).
+    told: f64,
+    /// Upper limit of the rest (s).
+    most: f64,
 }
 
-/// The same where every particle has a latency of its own: its way through the kept poses, up to the
-/// time that the camera shows.
-#[inline(always)]
-fn shown_with_own_latency(
-    columns: Columns,
-    observation: &Observation,
-    block: &Block<'_>,
-    chunk: usize,
-) -> Pose<Column> {
-    let latency = load_chunk(block.column(columns.latency()), chunk, 0.0);
-    let time = Lanes::splat(observation.time) - latency;
-    let at = |slot: usize| load_pose(block, columns.past_pose(slot), chunk);
-    let Some((last, before)) = observation.past.split_last() else {
-        return load_pose(block, Columns::POSE, chunk);
-    };
-    // back from the latest pose: what lies before the time shown adds exactly nothing
-    let mut later = (last.0, at(last.1));
-    let mut shown = later.1;
-    for (earlier_time, slot) in before.iter().rev() {
-        let earlier = at(*slot);
-        let back = (Lanes::splat(later.0) - time) * (1.0 / (later.0 - earlier_time));
-        let back = back.max(Lanes::ZERO).min(Lanes::splat(1.0));
-        for ((shown, to), from) in shown
-            .fields_mut()
-            .into_iter()
-            .zip(later.1.fields())
-            .zip(earlier.fields())
-        {
-            *shown += (*from - *to) * back;
-        }
-        later = (*earlier_time, earlier);
+impl Latency {
+    /// That of one chunk's particles (s).
+    #[inline(always)]
+    fn of(&self, columns: Columns, block: &Block<'_>, chunk: usize) -> Column {
+        let rest = load_chunk(block.column(columns.latency()), chunk, 0.0);
+        let rougher = load_chunk(block.column(columns.roughness()), chunk, 0.0).exp();
+        (rest * rougher).min(Lanes::splat(self.most)) + Lanes::splat(self.told)
     }
-    shown
 }

@@ -9,13 +9,13 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel.
-const SINGLE: usize = 8;
+const SINGLE: usize = 9;
 
 /// Flags of each fixel.
 const FLAGS_PER_FIXEL: usize = 3;
 
 /// Columns of contact mode that do not belong to a fixel.
-const UNKNOWNS: usize = 9;
+const UNKNOWNS: usize = 13;
 
 /// Columns of contact mode for each fixel.
 const PER_FIXEL: usize = 4;
@@ -60,6 +60,9 @@ impl Columns {
     /// Whether nothing drove the particle in its last step: the pusher stood, or the particle rested
     /// out of its way.
     pub const IDLE: Flag = Self::flag(2);
+
+    /// Whether the pusher ever was so near that contacts with it were sought (contact mode).
+    pub const PUSHER_WAS_NEAR: Flag = Self::flag(8);
 
     /// For `fixels` fixels and `history` past poses.
     pub fn new(mode: Mode, fixels: usize, history: usize) -> Self {
@@ -107,8 +110,8 @@ impl Columns {
         Self::flag(SINGLE + self.fixels + fixel)
     }
 
-    /// Whether the object ever pressed on fixel j (contact mode).
-    pub fn met(&self, fixel: usize) -> Flag {
+    /// Whether fixel j ever was so near that contacts with it were sought (contact mode).
+    pub fn fixel_was_near(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + 2 * self.fixels + fixel)
     }
 
@@ -132,9 +135,20 @@ impl Columns {
         self.unknowns() + 4
     }
 
-    /// Time by which the camera lags (s) (contact mode).
+    /// Time by which the camera lags more than told (s) (contact mode).
     pub fn latency(&self) -> usize {
+        self.unknowns() + 9
+    }
+
+    /// By how much the object's outline lies outside its shape, in standard deviations (contact mode).
+    pub fn growth(&self) -> usize {
         self.unknowns() + 6
+    }
+
+    /// What [`CameraNoise`](crate::particle::camera_noise::CameraNoise) keeps: 3 columns (contact
+    /// mode).
+    pub fn camera_noise(&self) -> usize {
+        self.unknowns() + 10
     }
 
     /// log-likelihood of what is known of the latest row without the camera: the pusher's place and

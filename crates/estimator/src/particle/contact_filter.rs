@@ -14,6 +14,7 @@ use crate::particle::history::PoseHistory;
 use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
+use crate::particle::replay::Replay;
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
 use crate::particle::sums::Reference;
@@ -50,12 +51,15 @@ pub(crate) struct ContactFilter<'o> {
     observation: Observation,
     latest: EstimateRow,
     collapses: u32,
+    /// Whether the latest row drew the particles anew.
+    collapsed: bool,
     /// ln of what the particles gave to the rows so far.
     log_evidence: f64,
     /// Camera poses in a row that no particle explained (contact mode).
     unexplained: u32,
     /// The latest camera pose.
     shown: Option<Pose>,
+    replay: Replay,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -119,9 +123,11 @@ impl<'o> ContactFilter<'o> {
             observation: Observation::default(),
             latest: EstimateRow::default(),
             collapses: 0,
+            collapsed: false,
             log_evidence: 0.0,
             unexplained: 0,
             shown: None,
+            replay: Replay::default(),
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -133,6 +139,7 @@ impl<'o> ContactFilter<'o> {
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
         let measured = self.without_repeats(measured);
         self.plan_step(&measured, drive);
+        self.remember_observation();
         self.observation.pose = measured.object;
         self.look_back(measured.time);
         self.observation.latency = self.history.at(measured.time - self.latency);
@@ -141,12 +148,17 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.extend(tactile);
         self.observation.felt = self.filter.model().columns().mode() == Mode::Contact;
 
+        let seen = self.observation.pose.is_some();
+        self.replay.before(&self.filter, seen);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
-        self.collapses += u32::from(report.collapsed());
+        self.collapsed = report.collapsed();
+        self.collapses += u32::from(self.collapsed);
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.log_evidence += log_evidence;
         }
+        let row = (&self.plan, &self.observation);
+        self.log_evidence += self.replay.after(&mut self.filter, row, &report);
         self.judge_camera(&report);
         self.report(&report, measured.object.is_some());
         &self.latest
@@ -154,6 +166,7 @@ impl<'o> ContactFilter<'o> {
 
     /// Goes on with another number of particles.
     pub fn resize(&mut self, particles: NonZero<u32>) {
+        self.replay.forget();
         let resized = self.filter.resize(particles.get() as usize);
         resized.expect("a u32 from 1 up is a number of particles");
     }
@@ -173,6 +186,15 @@ impl<'o> ContactFilter<'o> {
         Measured {
             object: measured.object.filter(|_| !repeated),
             ..measured
+        }
+    }
+
+    /// Keeps what weighed the particles last for them to learn of, in contact mode.
+    fn remember_observation(&mut self) {
+        std::mem::swap(&mut self.plan.seen, &mut self.observation);
+        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        if !contact || self.collapsed {
+            self.plan.seen.pose = None;
         }
     }
 
@@ -237,6 +259,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         let _ = self.filter.observe(&self.plan, &self.observation);
+        self.replay.forget();
         summarise(&self.filter, &self.plan.reference, &mut self.latest);
         &self.latest
     }
@@ -262,6 +285,11 @@ impl<'o> ContactFilter<'o> {
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
     pub fn collapses(&self) -> u32 {
         self.collapses
+    }
+
+    /// How often the steps since a blackout were made again.
+    pub fn second_tries(&self) -> u32 {
+        self.replay.tries()
     }
 
     /// ln of the evidence of the rows so far: what the particles expected of them, up to a constant of

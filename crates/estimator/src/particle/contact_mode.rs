@@ -14,11 +14,15 @@ use crate::particle::touch_channel::{TouchChannel, felt};
 /// Numbers for what is unknown: behind those of all substeps.
 const VARIATION_PAIR: u32 = 1 << 20;
 const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
-const FIXEL_PAIR: u32 = OFFSET_PAIR + 2;
+const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
+const FIXEL_PAIR: u32 = LATENCY_PAIR + 2;
 
-/// Share of their spread by which offsets and latency wander from row to row: copies of a particle
-/// are to differ.
-const OFFSET_STEP: f64 = 0.05;
+/// Share of their spread by which offsets wander from row to row where the rig is as told: copies of a
+/// particle are to differ.
+const OFFSET_STEP: f64 = 0.1;
+
+/// Share of its mean by which the camera's latency wanders.
+const LATENCY_STEP: f64 = 0.1;
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
 const NEAR: f64 = 2.0;
@@ -43,10 +47,10 @@ impl Propagation {
             self.draw_normals(draw, FIXEL_PAIR + 2 * j as u32, block);
             self.draw_fixel_offset(transition, plan, j, block);
         }
-        if plan.unknowns_wander() {
-            self.draw_normals(draw, OFFSET_PAIR, block);
-            self.draw_offsets(transition, block);
-        }
+        self.draw_normals(draw, OFFSET_PAIR, block);
+        self.draw_offsets(transition, plan, block);
+        self.draw_normals(draw, LATENCY_PAIR, block);
+        self.draw_latency(transition, plan, block);
         self.load_offsets(transition, block);
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
@@ -124,7 +128,7 @@ impl Propagation {
         }
     }
 
-    /// Where fixel j stands: drawn anew until it is met.
+    /// Where fixel j stands: drawn anew until the object comes near.
     fn draw_fixel_offset(
         &self,
         Transition { columns, .. }: &Transition<'_>,
@@ -133,10 +137,10 @@ impl Propagation {
         block: &mut BlockMut<'_>,
     ) {
         for (i, _) in block.particles() {
-            let met = is_set(&block.as_block(), columns.met(j), i);
-            let step = match (met, plan.unknowns_wander()) {
+            let near = is_set(&block.as_block(), columns.fixel_was_near(j), i);
+            let step = match (near, plan.unknowns_wander()) {
                 (false, _) => 1.0,
-                (true, true) => OFFSET_STEP,
+                (true, true) => offset_step(block.column(columns.roughness())[i]),
                 (true, false) => continue,
             };
             for axis in 0..2 {
@@ -146,25 +150,63 @@ impl Propagation {
         }
     }
 
-    /// Where the pusher stands, how rough the rig is, how late the camera.
+    /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
+    /// pusher comes near. After that the rig stays as rough as it is: a particle whose offsets wander
+    /// less would be favoured for that.
     fn draw_offsets(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
         let unsure = &setup.uncertainty;
-        let told = setup.camera.map_or(0.0, |camera| camera.latency);
         for (i, _) in block.particles() {
-            let [x, y, late, rough] = self.normals.each_ref().map(|column| column[i]);
-            for (axis, normal) in [x, y].into_iter().enumerate() {
-                let offset = &mut block.column_mut(columns.pusher_offset() + axis)[i];
-                *offset = wandered(*offset, OFFSET_STEP, normal);
-            }
+            let [x, y, grown, rough] = self.normals.each_ref().map(|column| column[i]);
+            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
             let roughness = &mut block.column_mut(columns.roughness())[i];
-            *roughness = wandered(*roughness, OFFSET_STEP, unsure.roughness * rough);
+            let step = match (near, plan.unknowns_wander()) {
+                (false, _) => {
+                    *roughness = unsure.roughness * rough;
+                    1.0
+                }
+                (true, true) => offset_step(*roughness),
+                (true, false) => continue,
+            };
+            let offsets = [
+                (columns.pusher_offset(), x),
+                (columns.pusher_offset() + 1, y),
+                (columns.growth(), grown),
+            ];
+            for (column, normal) in offsets {
+                let offset = &mut block.column_mut(column)[i];
+                *offset = wandered(*offset, step, normal);
+            }
+        }
+    }
+
+    /// How late the camera is: drawn anew until the pusher comes near; then a random walk that keeps
+    /// the prior (Metropolis).
+    fn draw_latency(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let mean = setup.uncertainty.latency;
+        for (i, _) in block.particles() {
+            let [a, b, step, _] = self.normals.each_ref().map(|column| column[i]);
+            // half the sum of squares of two normal numbers is exponential
+            let fresh = mean * 0.5 * (a * a + b * b);
+            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
             let latency = &mut block.column_mut(columns.latency())[i];
-            let more = (*latency - told + OFFSET_STEP * unsure.latency * late).abs();
-            *latency = told + more.min(unsure.most_latency());
+            let proposed = match (near, plan.unknowns_wander()) {
+                (false, _) => fresh,
+                (true, true) => (*latency + LATENCY_STEP * mean * step).abs(),
+                (true, false) => continue,
+            };
+            if !near || proposed - *latency < fresh {
+                *latency = proposed;
+            }
         }
     }
 
@@ -182,6 +224,7 @@ impl Propagation {
         };
         self.pusher_offsets.clear();
         self.fixel_offsets.clear();
+        self.growth.clear();
         for chunk in 0..block.len().div_ceil(LANES) {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
@@ -193,6 +236,9 @@ impl Propagation {
             let fixels = 0..columns.fixels();
             let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
             self.fixel_offsets.extend(fixels);
+            let mut growth = Lanes::ZERO;
+            load_columns(block, columns.growth(), chunk, [&mut growth]);
+            self.growth.push(growth * (rougher * unsure.outline));
         }
     }
 
@@ -206,6 +252,7 @@ impl Propagation {
         let offsets = Offsets {
             pusher: &self.pusher_offsets,
             fixels: &self.fixel_offsets,
+            growth: &self.growth,
         };
         let particles = &mut self.particles[..chunks];
         let dynamics = &transition.dynamics;
@@ -224,6 +271,13 @@ impl Propagation {
             Mode::Contact => !self.work.gaps(chunk, body).gt(Lanes::splat(TOUCHING)),
             Mode::Paper => Mask::splat(false),
         }
+    }
+
+    /// Where contacts with a body were sought and found, touching or not.
+    #[inline(always)]
+    pub(super) fn near(&self, chunk: usize, body: Body) -> Mask<LANES> {
+        let far = Lanes::splat(f64::INFINITY);
+        self.work.gaps(chunk, body).lt(far)
     }
 
     /// Weighs what is known without the camera at the end of the step: where the pusher is, and what
@@ -303,6 +357,12 @@ fn squared([x, y]: [Column; 2]) -> Column {
 /// distribution, `step` is the share of it.
 fn wandered(before: f64, step: f64, fresh: f64) -> f64 {
     (1.0 - step * step).sqrt() * before + step * fresh
+}
+
+/// Share of their spread by which a particle's offsets wander in a row: by the same way (m), however
+/// rough its rig is.
+fn offset_step(roughness: f64) -> f64 {
+    (OFFSET_STEP * libm::exp(-roughness)).min(1.0)
 }
 
 /// Notes in a chunk's flags which parameters took part, and keeps besides them those that never did:

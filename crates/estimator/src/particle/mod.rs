@@ -2,6 +2,7 @@
 
 mod camera_clock;
 mod camera_likelihood;
+mod camera_noise;
 mod chunk;
 mod columns;
 pub(crate) mod contact_filter;
@@ -11,6 +12,7 @@ mod model;
 mod observation;
 pub(crate) mod observer;
 mod propagation;
+mod replay;
 mod step_plan;
 mod summary;
 mod sums;

@@ -6,7 +6,7 @@ use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::wrapped;
 use crate::mode::Mode;
-use crate::particle::camera_likelihood::{CameraLikelihood, shown};
+use crate::particle::camera_likelihood::CameraLikelihood;
 use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
@@ -49,7 +49,7 @@ impl<'o> ContactModel<'o> {
             },
             camera,
             start,
-            camera_likelihood: CameraLikelihood::new(&camera, &setup.filter, columns),
+            camera_likelihood: CameraLikelihood::new(&camera, setup, columns),
             tactile_likelihood: TactileLikelihood::new(&setup.tactile, columns),
         }
     }
@@ -91,11 +91,25 @@ impl<'o> ContactModel<'o> {
         }
     }
 
+    /// Lets the particles learn of the camera's noise from the pose that weighed them last (contact
+    /// mode).
+    fn learn_of_camera(&self, seen: &Observation, block: &mut BlockMut<'_>) {
+        on_widest(
+            Level::new(),
+            #[inline(always)]
+            || {
+                for chunk in 0..block.len().div_ceil(LANES) {
+                    self.camera_likelihood.learn(seen, block, chunk);
+                }
+            },
+        );
+    }
+
     /// What contact mode does not know, drawn from its priors.
     fn draw_unknowns(&self, draw: Draw, particle: u32, block: &mut BlockMut<'_>, i: usize) {
         let Transition { setup, columns, .. } = &self.transition;
         let prior = &setup.uncertainty;
-        let normals = draw.normals::<11>(particle, 4);
+        let normals = draw.normals::<14>(particle, 4);
         let friction = setup.drawn_friction([0, 1, 2, 3].map(|k| normals[k]));
         write(block, Columns::FRICTION, i, friction.fields());
         for k in 0..4 {
@@ -105,13 +119,16 @@ impl<'o> ContactModel<'o> {
             block.column_mut(columns.pusher_offset() + axis)[i] = normals[8 + axis];
         }
         block.column_mut(columns.roughness())[i] = prior.roughness * normals[10];
-        let late = -libm::log(draw.uniform(particle, 15));
-        block.column_mut(columns.latency())[i] =
-            self.camera.latency + (prior.latency * late).min(prior.most_latency());
+        block.column_mut(columns.growth())[i] = normals[11];
+        let [a, b] = [normals[12], normals[13]];
+        block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
+        for k in 0..3 {
+            block.column_mut(columns.camera_noise() + k)[i] = 0.0;
+        }
         let start = TouchChannel::new(&setup.tactile).start();
         for j in 0..columns.fixels() {
             write(block, columns.stuck(j), i, [&start[0], &start[1]]);
-            let offset = draw.normals::<2>(particle, 16 + 2 * j as u32);
+            let offset = draw.normals::<2>(particle, 18 + 2 * j as u32);
             write(block, columns.fixel_offset(j), i, [&offset[0], &offset[1]]);
         }
     }
@@ -158,6 +175,9 @@ impl Model for ContactModel<'_> {
         block: &mut BlockMut<'_>,
         scratch: &mut Propagation,
     ) {
+        if plan.seen.pose.is_some() {
+            self.learn_of_camera(&plan.seen, block);
+        }
         scratch.propagate(&self.transition, plan, draw, block);
     }
 
@@ -224,7 +244,8 @@ impl Model for ContactModel<'_> {
             return;
         };
         for (i, particle) in block.particles() {
-            let chunk = shown(self.columns(), observation, &block.as_block(), i / LANES);
+            let camera = &self.camera_likelihood;
+            let chunk = camera.shown(observation, &block.as_block(), i / LANES);
             let shown = chunk.map(|column| column.0[i % LANES]);
             let drawn = self.drawn_around(&measured, draw.normals::<3>(particle, 0));
             let shift = Pose {

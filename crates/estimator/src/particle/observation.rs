@@ -33,6 +33,16 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// Becomes a copy of `other`, in the memory that it has.
+    pub(crate) fn overwrite(&mut self, other: &Self) {
+        self.pose = other.pose;
+        self.time = other.time;
+        self.past.clone_from(&other.past);
+        self.latency = other.latency;
+        self.tactile.clone_from(&other.tactile);
+        self.felt = other.felt;
+    }
+
     /// True where nothing was read.
     pub fn is_empty(&self) -> bool {
         self.pose.is_none() && !self.felt && self.tactile.iter().all(Option::is_none)

@@ -51,6 +51,8 @@ pub struct Propagation {
     /// Where each particle's pusher and fixels stand beside their poses (contact mode).
     pub(super) pusher_offsets: Vec<[Column; 2]>,
     pub(super) fixel_offsets: Vec<[Column; 2]>,
+    /// How much larger than its shape each particle's object is (contact mode).
+    pub(super) growth: Vec<Column>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
     involved: [Involved; CHUNKS],
@@ -100,6 +102,7 @@ impl Default for Propagation {
             proposed: [Friction::default(); CHUNKS],
             pusher_offsets: Vec::new(),
             fixel_offsets: Vec::new(),
+            growth: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
@@ -352,6 +355,9 @@ impl Propagation {
                 .gt(Lanes::ZERO);
             let close = self.close(transition, chunk, Body::Pusher);
             flags.set(Columns::CONTACT_PUSHER, pusher | close);
+            let before = flags.get(Columns::PUSHER_WAS_NEAR);
+            let near = before | self.near(chunk, Body::Pusher);
+            flags.set(Columns::PUSHER_WAS_NEAR, near);
             let pressed = moving(&particles.twist, rho) | pusher;
             flags.set(Columns::IDLE, !(pressed & driven));
             for j in 0..transition.setup.scene.fixels.len() {
@@ -360,9 +366,9 @@ impl Propagation {
                 let close = self.close(transition, chunk, Body::Fixel(j));
                 flags.set(transition.columns.contact_fixel(j), touches | close);
                 let against = transition.columns.driven_contact_fixel(j);
-                let met = transition.columns.met(j);
-                let met_before = flags.get(met);
-                flags.set(met, met_before | impulse.gt(Lanes::ZERO));
+                let near = transition.columns.fixel_was_near(j);
+                let before = flags.get(near);
+                flags.set(near, before | self.near(chunk, Body::Fixel(j)));
                 let before = flags.get(against);
                 flags.set(against, pressed & touches | !pressed & before);
             }

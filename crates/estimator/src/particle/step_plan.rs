@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::StepInput;
 
+use crate::particle::observation::Observation;
 use crate::particle::sums::Reference;
 
 /// Whether the friction parameters take a random step.
@@ -24,6 +25,9 @@ pub struct StepPlan {
     pub parameter_noise: ParameterNoise,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
+    /// What weighed the particles at the row before, of which they learn how noisy the camera is;
+    /// without a pose in paper mode.
+    pub seen: Observation,
     /// Tactile readings at the end of the step, one per sensor.
     pub tactile: Vec<Option<bool>>,
     /// Values near the estimate, about which sums are taken.
@@ -31,6 +35,17 @@ pub struct StepPlan {
 }
 
 impl StepPlan {
+    /// Becomes a copy of `other`, in the memory that it has.
+    pub(crate) fn overwrite(&mut self, other: &Self) {
+        self.substeps.clone_from(&other.substeps);
+        self.driven = other.driven;
+        self.parameter_noise = other.parameter_noise;
+        self.slot = other.slot;
+        self.seen.overwrite(&other.seen);
+        self.tactile.clone_from(&other.tactile);
+        self.reference = other.reference;
+    }
+
     /// Length of the step (s).
     pub(crate) fn duration(&self) -> f64 {
         self.substeps.iter().map(|step| step.h).sum()
@@ -50,6 +65,7 @@ impl StepPlan {
             driven: false,
             parameter_noise: ParameterNoise::Frozen,
             slot: 0,
+            seen: Observation::default(),
             tactile: Vec::new(),
             reference,
         }

@@ -73,9 +73,21 @@ const FIXEL_POSITION: Quantity = Quantity::new(
     Unit::Metre,
     Rule::NotNegative,
 );
+const OUTLINE: Quantity = Quantity::new(
+    "outline",
+    "the standard deviation of the distance by which the object's outline lies outside its shape",
+    Unit::Metre,
+    Rule::NotNegative,
+);
+const CAMERA_NOISE: Quantity = Quantity::new(
+    "camera_noise",
+    "the relative standard deviation of the camera's noise",
+    Unit::None,
+    Rule::NotNegative,
+);
 const ROUGHNESS: Quantity = Quantity::new(
     "roughness",
-    "the relative standard deviation of a factor of both offsets",
+    "the relative standard deviation of a factor of these offsets",
     Unit::None,
     Rule::NotNegative,
 );
@@ -110,7 +122,9 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
         pusher_offset: number(&PUSHER_OFFSET, default.pusher_offset)?,
         pusher_lag: number(&PUSHER_LAG, default.pusher_lag)?,
         fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,
+        outline: number(&OUTLINE, default.outline)?,
         roughness: number(&ROUGHNESS, default.roughness)?,
+        camera_noise: number(&CAMERA_NOISE, default.camera_noise)?,
         latency: number(&LATENCY, default.latency)?,
         touch_gap: number(&TOUCH_GAP, default.touch_gap)?,
     })

@@ -1,0 +1,121 @@
+//! Steps in the dark that can be made again: [`Replay`] (contact mode).
+
+use stickslip_filter::{Checkpoint, ParticleFilter, StepReport, WeightUpdate};
+
+use crate::mode::Mode;
+use crate::particle::model::ContactModel;
+use crate::particle::observation::Observation;
+use crate::particle::step_plan::StepPlan;
+
+/// What happened since the camera last saw the object, so that it can be tried again.
+///
+/// In the dark particles go different ways at a bifurcation, and nothing brings them back: where none
+/// went the way of the object, pusher and touch sensors go on contradicting all of them. Then the
+/// steps since the blackout are made again with other random numbers, and the two sets share the
+/// particles by their evidence.
+#[derive(Debug, Default)]
+pub(crate) struct Replay {
+    checkpoint: Option<Checkpoint>,
+    /// Whether the object is hidden, and `checkpoint` is where that began.
+    dark: bool,
+    /// The steps since, of which the first `made` count.
+    steps: Vec<(StepPlan, Observation)>,
+    made: usize,
+    /// ln of the evidence of these steps.
+    log_evidence: f64,
+    /// Evidence below which they are made again.
+    limit: f64,
+    /// How often that was done since the blackout, and ever.
+    attempts: u32,
+    tries: u32,
+}
+
+/// Steps that are made again at most: what a row can cost.
+const LONGEST: usize = 120;
+
+/// Times that the steps of a blackout are made again at most.
+const ATTEMPTS: u32 = 8;
+
+/// Fall of ln of the evidence at which they are: 1 in 3000.
+const WORSE: f64 = 8.0;
+
+impl Replay {
+    /// Before a step: remembers the particles where it is the first one in the dark, or where the
+    /// memory is full.
+    pub fn before(&mut self, filter: &ParticleFilter<ContactModel<'_>>, seen: bool) {
+        if seen || filter.model().columns().mode() == Mode::Paper {
+            self.dark = false;
+            return;
+        }
+        let columns = filter.particles().columns();
+        let saved = self.checkpoint.as_ref();
+        let same = saved.is_some_and(|saved| saved.columns() == columns);
+        if self.dark && same && self.made < LONGEST {
+            return;
+        }
+        match &mut self.checkpoint {
+            Some(checkpoint) => filter.save(checkpoint),
+            none => *none = Some(filter.checkpoint()),
+        }
+        if !self.dark {
+            self.attempts = 0;
+        }
+        self.dark = true;
+        self.made = 0;
+        self.log_evidence = 0.0;
+        self.limit = -WORSE;
+    }
+
+    /// After it. Where the particles explain what was measured in the dark too badly, makes all its
+    /// steps again; returns by how much ln of the evidence has changed.
+    pub fn after(
+        &mut self,
+        filter: &mut ParticleFilter<ContactModel<'_>>,
+        (plan, observation): (&StepPlan, &Observation),
+        report: &StepReport,
+    ) -> f64 {
+        if !self.dark {
+            return 0.0;
+        }
+        self.remember(plan, observation);
+        if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
+            self.log_evidence += log_evidence;
+        }
+        if self.log_evidence >= self.limit || self.attempts == ATTEMPTS {
+            return 0.0;
+        }
+        let Some(checkpoint) = &self.checkpoint else {
+            return 0.0;
+        };
+        self.attempts += 1;
+        self.tries += 1;
+        let steps = self.steps[..self.made].iter();
+        let steps = steps.map(|(plan, observation)| (plan, Some(observation)));
+        let before = self.log_evidence;
+        let tried = filter.try_again(checkpoint, steps, before, u64::from(self.attempts));
+        self.log_evidence = tried.pooled;
+        self.limit = self.log_evidence - WORSE;
+        self.log_evidence - before
+    }
+
+    /// Forgets the blackout: something else was learnt of it.
+    pub fn forget(&mut self) {
+        self.dark = false;
+    }
+
+    /// How often steps were made again.
+    pub fn tries(&self) -> u32 {
+        self.tries
+    }
+
+    fn remember(&mut self, plan: &StepPlan, observation: &Observation) {
+        match self.steps.get_mut(self.made) {
+            Some((kept_plan, kept_observation)) => {
+                kept_plan.overwrite(plan);
+                kept_observation.overwrite(observation);
+            }
+            None => self.steps.push((plan.clone(), observation.clone())),
+        }
+        self.made += 1;
+    }
+}

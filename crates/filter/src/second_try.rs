@@ -1,0 +1,132 @@
+//! Going back: where the particles come to explain what they observe ever worse, the steps since a
+//! [`Checkpoint`] are made again with other random numbers, see [`ParticleFilter::try_again`].
+
+use crate::filter::ParticleFilter;
+use crate::model::Model;
+use crate::particles::{BLOCK, ParticleSet};
+use crate::report::WeightUpdate;
+use crate::streams::{Purpose, Streams};
+use crate::weights::LogWeights;
+
+/// The particles and weights of one step.
+#[derive(Clone, Debug)]
+pub struct Checkpoint {
+    step: u64,
+    particles: ParticleSet,
+    weights: LogWeights,
+}
+
+/// What a second try was worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondTry {
+    /// ln of the evidence of the steps since the checkpoint under the new particles; −∞ where they
+    /// explained some step not at all.
+    pub log_evidence: f64,
+    /// ln of the mean of both, that of the particles now.
+    pub pooled: f64,
+    /// Share of the particles that are new ones now.
+    pub share: f64,
+}
+
+impl Checkpoint {
+    /// Columns of its particles.
+    pub fn columns(&self) -> usize {
+        self.particles.columns()
+    }
+}
+
+impl<M: Model> ParticleFilter<M> {
+    /// The particles as they are now.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            step: self.step,
+            particles: self.particles.clone(),
+            weights: self.weights.clone(),
+        }
+    }
+
+    /// Keeps the particles as they are now in `checkpoint`; allocates nothing where as many were kept.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.step = self.step;
+        checkpoint.particles.copy_from(&self.particles);
+        checkpoint.weights.clone_from(&self.weights);
+    }
+
+    /// Makes all steps since `checkpoint` again, with the random numbers of attempt number `attempt`
+    /// (from 1 on), and draws as many particles from the new set as its evidence is worth beside
+    /// that of the present one, `log_evidence`, the sum over the same steps: two independent
+    /// particle filters of the same observations, each weighed by its estimate of their likelihood,
+    /// are one of twice as many particles (Del Moral 2004, section 7.4). The weights become equal.
+    ///
+    /// # Panics
+    /// If the checkpoint is not as many steps old as there are `steps`, or of another number of
+    /// particles or columns.
+    pub fn try_again<'a>(
+        &mut self,
+        checkpoint: &Checkpoint,
+        steps: impl ExactSizeIterator<Item = (&'a M::Input, Option<&'a M::Observation>)>,
+        log_evidence: f64,
+        attempt: u64,
+    ) -> SecondTry
+    where
+        M::Input: 'a,
+        M::Observation: 'a,
+    {
+        let now = self.step;
+        assert_eq!(checkpoint.step + steps.len() as u64, now, "all steps since");
+        assert_eq!(
+            (checkpoint.particles.len(), checkpoint.particles.columns()),
+            (self.particles.len(), self.particles.columns()),
+            "particles as they are now"
+        );
+
+        // go back, and come again
+        let mut rivals = checkpoint.clone();
+        std::mem::swap(&mut self.particles, &mut rivals.particles);
+        std::mem::swap(&mut self.weights, &mut rivals.weights);
+        self.step = checkpoint.step;
+        self.streams = Streams::new(self.settings.seed).attempt(attempt);
+        let mut again = 0.0;
+        let mut last = None;
+        for (input, observation) in steps {
+            again += match self.step(input, observation).weight_update {
+                WeightUpdate::Unobserved => 0.0,
+                WeightUpdate::Weighed { log_evidence } => log_evidence,
+                WeightUpdate::Collapsed { .. } => f64::NEG_INFINITY,
+            };
+            last = Some(input);
+        }
+        self.streams = Streams::new(self.settings.seed);
+
+        // as many of each as their evidence is worth
+        let share = 1.0 / (1.0 + libm::exp(log_evidence - again));
+        self.keep_failed_out();
+        let before = rivals.weights.weights().iter();
+        let weights: Vec<f64> = (self.weights.weights().iter().map(|w| w * share))
+            .chain(before.map(|w| w * (1.0 - share)))
+            .collect();
+        let mut ancestors = vec![0; self.particles.len()];
+        let draw = self.draw(Purpose::SecondTry);
+        let resampling = self.settings.resampling;
+        resampling.ancestors(&weights, draw, &mut ancestors);
+        self.particles.gather_from(&rivals.particles, &ancestors);
+        self.weights.reset();
+        if let Some(input) = last {
+            self.recompute_sums(input);
+        }
+        let best = again.max(log_evidence);
+        let sum = libm::exp(again - best) + libm::exp(log_evidence - best);
+        SecondTry {
+            log_evidence: again,
+            pooled: best + libm::log(0.5 * sum),
+            share,
+        }
+    }
+
+    fn keep_failed_out(&mut self) {
+        let (model, particles) = (&self.model, &self.particles);
+        self.weights.keep_only(|particle| {
+            model.may_be_copied(&particles.block(particle / BLOCK), particle % BLOCK)
+        });
+    }
+}

@@ -1,0 +1,130 @@
+//! Steps made again with other random numbers, and what the two sets are worth together.
+
+use stickslip_filter::{Block, BlockMut, Draw, Model, ParticleFilter, Settings, WeightedSums};
+
+/// A fork in the road: the first step leads a particle to 1 with probability [`RIGHT`], else to 0, for
+/// good; an observation o says that ln L is o at 0, and 0 at 1.
+struct Fork;
+
+const RIGHT: f64 = 0.01;
+
+#[derive(Default)]
+struct Mean(f64);
+
+impl WeightedSums for Mean {
+    fn clear(&mut self) {
+        self.0 = 0.0;
+    }
+    fn add(&mut self, other: &Self, scale: f64) {
+        self.0 += scale * other.0;
+    }
+}
+
+impl Model for Fork {
+    /// Whether the step comes to the fork.
+    type Input = bool;
+    type Observation = f64;
+    type Scratch = ();
+    type Sums = Mean;
+
+    fn columns(&self) -> usize {
+        1
+    }
+    fn scratch(&self) {}
+    fn initialise(&self, _: Draw, _: &mut BlockMut<'_>) {}
+    fn propagate(&self, fork: &bool, draw: Draw, block: &mut BlockMut<'_>, (): &mut ()) {
+        for (i, particle) in block.particles().collect::<Vec<_>>() {
+            if *fork {
+                let right = draw.uniform(particle, 0) < RIGHT;
+                block.column_mut(0)[i] = f64::from(u8::from(right));
+            }
+        }
+    }
+    fn log_likelihood(&self, observation: &f64, block: &Block<'_>, out: &mut [f64]) {
+        for (out, place) in out.iter_mut().zip(block.column(0)) {
+            *out = observation * (1.0 - place);
+        }
+    }
+    fn sum(&self, _: &bool, block: &Block<'_>, weights: &[f64], mean: &mut Mean) {
+        let places = block.column(0).iter().zip(weights);
+        mean.0 = places.map(|(place, weight)| place * weight).sum();
+    }
+    fn reinitialise(&self, _: &f64, _: Draw, _: &mut BlockMut<'_>) {}
+}
+
+const ROWS: [(bool, f64); 3] = [(true, -1.0), (false, -2.0), (false, -1.0)];
+
+/// ln of the evidence of [`ROWS`] by first and second try, and the mean place after both.
+fn twice(seed: u64, particles: usize) -> (f64, f64, f64) {
+    let settings = Settings {
+        particles,
+        seed,
+        ..Settings::default()
+    };
+    let mut filter = ParticleFilter::new(Fork, settings).expect("settings");
+    let checkpoint = filter.checkpoint();
+    let mut log_evidence = 0.0;
+    for (fork, observation) in &ROWS {
+        let report = filter.step(fork, Some(observation));
+        let stickslip_filter::WeightUpdate::Weighed {
+            log_evidence: of_row,
+        } = report.weight_update
+        else {
+            panic!("{report:?}")
+        };
+        log_evidence += of_row;
+    }
+    let rows = ROWS
+        .iter()
+        .map(|(fork, observation)| (fork, Some(observation)));
+    let tried = filter.try_again(&checkpoint, rows, log_evidence, 1);
+    assert_eq!(filter.steps(), ROWS.len() as u64);
+    (log_evidence, tried.log_evidence, filter.sums().0)
+}
+
+#[test]
+fn the_mean_of_both_evidences_is_the_likelihood_and_their_share_bayes_rule() {
+    let exact = RIGHT + (1.0 - RIGHT) * libm::exp(-4.0);
+    let runs: Vec<(f64, f64, f64)> = (0..400).map(|seed| twice(seed, 64)).collect();
+    let mean =
+        |of: &dyn Fn(&(f64, f64, f64)) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
+    // the evidence of a particle filter has no bias, nor have both; tries are independent
+    let evidence = mean(&|run| 0.5 * (libm::exp(run.0) + libm::exp(run.1)));
+    assert!((evidence / exact - 1.0).abs() < 0.08, "{evidence}, {exact}");
+    let (first, second) = (mean(&|run| libm::exp(run.0)), mean(&|run| libm::exp(run.1)));
+    let product = mean(&|run| (libm::exp(run.0) - first) * (libm::exp(run.1) - second));
+    assert!(product.abs() < 0.1 * exact * exact, "{product}");
+    // weighed by the evidence, as tries are, the place is the posterior's
+    let right = mean(&|run| 0.5 * (libm::exp(run.0) + libm::exp(run.1)) * run.2) / evidence;
+    let posterior = RIGHT / exact;
+    assert!((right - posterior).abs() < 0.05, "{right}, {posterior}");
+}
+
+#[test]
+fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
+    // e^-40 of the evidence on the wrong way: whoever has one particle on the right one, wins
+    let settings = Settings {
+        particles: 64,
+        seed: 3,
+        ..Settings::default()
+    };
+    let mut filter = ParticleFilter::new(Fork, settings).expect("settings");
+    let checkpoint = filter.checkpoint();
+    let _ = filter.step(&true, Some(&-40.0));
+    let mut log_evidence = if filter.sums().0 > 0.0 { -4.0 } else { -40.0 };
+    let mut attempt = 0;
+    while filter.sums().0 < 0.5 && attempt < 20 {
+        attempt += 1;
+        let row = [(&true, Some(&-40.0))];
+        let tried = filter.try_again(&checkpoint, row.into_iter(), log_evidence, attempt);
+        log_evidence = tried.pooled;
+    }
+    assert!(
+        filter.sums().0 > 0.999,
+        "after {attempt}: {}",
+        filter.sums().0
+    );
+    let places: Vec<f64> = filter.particles().column(0).collect();
+    assert!(places.iter().all(|place| *place == 1.0), "{places:?}");
+    assert!(attempt > 0, "the first set had it: choose another seed");
+}
