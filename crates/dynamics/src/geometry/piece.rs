@@ -76,7 +76,8 @@ fn uncovered(parts: &mut [ConvexPart], tolerance: f64) -> Vec<Piece> {
 }
 
 /// The stretches of an edge of part `i` that no other part covers. Where two parts share a stretch
-/// of boundary, the first one keeps it.
+/// of boundary, the first one keeps it. What a sibling leaves of an edge is rounding where it is
+/// short; an edge that none of them covers is kept, however short it is.
 fn open_stretches(edge: &Edge, i: usize, parts: &[ConvexPart], tolerance: f64) -> Vec<[f64; 2]> {
     let mut open = vec![[0.0, edge.length]];
     for (j, sibling) in parts.iter().enumerate().filter(|(j, _)| *j != i) {
@@ -88,14 +89,20 @@ fn open_stretches(edge: &Edge, i: usize, parts: &[ConvexPart], tolerance: f64) -
                 .collect();
         }
     }
-    open.retain(|[low, high]| high - low > 2.0 * tolerance);
+    let whole = [0.0, edge.length];
+    open.retain(|stretch| *stretch == whole || stretch[1] - stretch[0] > 2.0 * tolerance);
     open
 }
 
-/// Finds for each piece the one that goes on where it ends; where several do, the one that turns
-/// most to the left.
+/// Finds for each piece the one that goes on where it ends: that of its own part which starts at the
+/// same corner, else of those that start nearby the one that turns most to the left.
 fn chain(pieces: &mut [Piece], tolerance: f64) {
     for i in 0..pieces.len() {
+        let follows_exactly = |j: &usize| {
+            *j != i
+                && pieces[*j].parts[0] == pieces[i].parts[1]
+                && pieces[*j].ends[0] == pieces[i].ends[1]
+        };
         let follows = |j: &usize| {
             *j != i && length(sub(pieces[*j].ends[0], pieces[i].ends[1])) <= 4.0 * tolerance
         };
@@ -103,9 +110,11 @@ fn chain(pieces: &mut [Piece], tolerance: f64) {
             let (t, u) = (pieces[i].direction(), pieces[j].direction());
             libm::atan2(cross(t, u), dot(t, u))
         };
-        pieces[i].next = (0..pieces.len())
-            .filter(follows)
-            .max_by(|a, b| turn(*a).total_cmp(&turn(*b)));
+        pieces[i].next = (0..pieces.len()).find(follows_exactly).or_else(|| {
+            (0..pieces.len())
+                .filter(follows)
+                .max_by(|a, b| turn(*a).total_cmp(&turn(*b)))
+        });
     }
     for i in 0..pieces.len() {
         if let Some(j) = pieces[i].next {

@@ -85,6 +85,33 @@ fn polygon_of(count: usize, random: &mut Random) -> Part {
     )
 }
 
+/// A polygon whose corners are rounded over `reach` (m) along both their edges, in so many steps.
+pub fn filleted(part: &Part, reach: f64, steps: usize) -> Part {
+    let Part::Polygon { vertices } = part else {
+        panic!("no polygon: {part:?}")
+    };
+    let n = vertices.len();
+    let fillet = |k: usize| {
+        let corner = vertices[k];
+        let towards = |other: [f64; 2]| {
+            let d = [other[0] - corner[0], other[1] - corner[1]];
+            let share = reach / d[0].hypot(d[1]);
+            [corner[0] + share * d[0], corner[1] + share * d[1]]
+        };
+        let (from, to) = (
+            towards(vertices[(k + n - 1) % n]),
+            towards(vertices[(k + 1) % n]),
+        );
+        // a parabola that leaves along one edge and arrives along the other
+        (0..=steps).map(move |i| {
+            let b = i as f64 / steps as f64;
+            let a = 1.0 - b;
+            [0, 1].map(|j| a * a * from[j] + 2.0 * a * b * corner[j] + b * b * to[j])
+        })
+    };
+    polygon(&(0..n).flat_map(fillet).collect::<Vec<_>>())
+}
+
 /// All contacts whose gap is below `search_distance` (m).
 pub fn contacts(object: (&Shape, Pose), other: (&Shape, Pose), search_distance: f64) -> Vec<Gap> {
     let mut gaps = Vec::new();

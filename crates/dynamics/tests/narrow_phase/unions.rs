@@ -2,7 +2,9 @@
 
 use stickslip_dynamics::{Gap, Part, Pose, Shape};
 
-use crate::shapes::{Random, contacts, disc, ellipse, polygon, rectangle, same, shape, smallest};
+use crate::shapes::{
+    Random, contacts, disc, ellipse, filleted, polygon, rectangle, same, shape, smallest,
+};
 
 /// A rectangle whole, cut along one seam, with a T of seams, along a diagonal, into overlapping
 /// parts, and with a nested part.
@@ -119,6 +121,40 @@ fn touch_alike(shapes: &[Shape], seed: u64) {
 #[test]
 fn a_rectangle_touches_alike_however_it_is_cut() {
     touch_alike(&rectangles(), 1);
+}
+
+/// A rectangle with fillets of 2 µm edges, whole, cut along a seam, and as overlapping parts.
+#[test]
+fn fillets_touch_alike_however_the_body_is_cut() {
+    let y = [-0.02, 0.02];
+    let whole = filleted(&rectangle([-0.03, 0.03], y), 1e-5, 8);
+    let Part::Polygon { vertices } = &whole else {
+        unreachable!()
+    };
+    let part = |x: [f64; 2], belongs: fn(&[f64; 2]) -> bool| {
+        let left = x[1] < 0.02;
+        let own = vertices.iter().copied().filter(|v| belongs(v));
+        // the fillets lie on one side; the cut closes the other
+        let (lower, upper): (Vec<_>, Vec<_>) = own.partition(|v| v[1] < 0.0);
+        let closed = if left {
+            [lower, vec![[x[1], y[0]], [x[1], y[1]]], upper]
+        } else {
+            [
+                vec![[x[0], y[0]]],
+                [lower, upper].concat(),
+                vec![[x[0], y[1]]],
+            ]
+        };
+        polygon(&closed.concat())
+    };
+    let (left, right): (fn(&[f64; 2]) -> bool, fn(&[f64; 2]) -> bool) =
+        (|v| v[0] < 0.0, |v| v[0] > 0.0);
+    let shapes = [
+        shape(vec![whole.clone()]),
+        shape(vec![part([-0.03, 0.004], left), part([0.004, 0.03], right)]),
+        shape(vec![part([-0.03, 0.01], left), part([-0.004, 0.03], right)]),
+    ];
+    touch_alike(&shapes, 3);
 }
 
 #[test]
