@@ -3,6 +3,7 @@
 
 mod engulfed;
 mod errors;
+mod fillets;
 mod fuzz;
 mod laws;
 mod parry;

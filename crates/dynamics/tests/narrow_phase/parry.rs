@@ -7,8 +7,7 @@ use parry2d_f64::shape::{Ball, ConvexPolygon, Shape as ParryShape};
 use stickslip_dynamics::{Part, Pose, Shape};
 
 use crate::shapes::{
-    Random, contacts, disc, filleted, random_polygon, random_polygon_of_many, rectangle, shape,
-    smallest,
+    Random, contacts, disc, random_polygon, random_polygon_of_many, rectangle, shape, smallest,
 };
 
 /// Parry's shape with its offset from the body frame.
@@ -127,15 +126,6 @@ fn polygons_of_many_corners_match_parry() {
     compare(8, 2_000, |r| {
         [random_polygon_of_many(r), random_polygon_of_many(r)]
     });
-}
-
-/// Edges of some 2 µm on bodies of 5 cm: a fillet as a drawing program writes it.
-#[test]
-fn fillets_of_micrometre_edges_match_parry() {
-    let filleted = |r: &mut Random| filleted(&random_polygon(r), 1e-5, 8);
-    compare(9, 5_000, |r| [filleted(r), random_disc(r)]);
-    compare(10, 5_000, |r| [random_polygon(r), filleted(r)]);
-    compare(11, 5_000, |r| [filleted(r), filleted(r)]);
 }
 
 #[test]
