@@ -13,7 +13,9 @@ use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Run, Setup, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{Experiment, write_estimate, write_estimate_mcap, write_estimate_tum};
-use stickslip_report::{Block, CloudSample, Report, ReportedExperiment, Table, number};
+use stickslip_report::{
+    Block, CloudSample, Report, ReportedExperiment, ReportedRun, Table, number,
+};
 
 use crate::args::{FilterArgs, MethodName, Program};
 use crate::experiment::{
@@ -79,19 +81,21 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let radius = radius.unwrap_or(experiment.setup.virtual_radius());
     let hidden = args.shared.occlusion();
     let scored = ScoredRun::of(args.variant(), run, &experiment, (hidden, radius));
+    let run = sample.into_run(scored);
+    let scored = &run.scored;
     let warnings: Vec<String> = misread(&experiment.setup, &experiment.log)
         .into_iter()
         .chain(collapsed(scored.collapses, scored.seen()))
         .map(|finding| finding.to_string())
         .collect();
-    let summary = Summary::new(&experiment, &scored, seconds, &warnings);
+    let summary = Summary::new(&experiment, scored, seconds, &warnings);
     show_result(args.shared.json, &summary, || {
         tables(args, &experiment, &scored.estimate, &summary)
     })?;
     let written = args
         .out
         .as_deref()
-        .map(|folder| write_all(args, folder, &scored.estimate, &experiment.setup))
+        .map(|folder| write_all(args, folder, &run, &experiment.setup))
         .transpose()?
         .unwrap_or_default();
     let reported = args
@@ -99,7 +103,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         .as_deref()
         .map(|path| {
             let inputs = (args, scene.as_path());
-            report(inputs, &experiment, &scored, &warnings, sample, path)
+            report(inputs, &experiment, run.clone(), &warnings, path)
         })
         .transpose()?;
     for path in written.into_iter().chain(reported) {
@@ -122,8 +126,7 @@ fn check_places(args: &FilterArgs, scene: &Path) -> Result<()> {
         .try_for_each(|path| ready_file(path, &inputs))
 }
 
-/// The run and the wall time of its loop (s); `sample` is shown the particles where a report wants
-/// them.
+/// The run and the wall time of its loop (s); `sample` is shown the particles where they are drawn.
 fn timed_run(
     args: &FilterArgs,
     experiment: &Experiment,
@@ -141,9 +144,10 @@ fn timed_run(
     let start = Instant::now();
     let Experiment { setup, log, .. } = experiment;
     let mut advance = |row: usize| progress.set_position(row as u64);
-    let mut track = || match args.report {
-        Some(_) => run_observed(setup, log, &options, sample, &mut advance),
-        None => run(setup, log, &options, &mut advance),
+    let drawn = args.report.is_some() || args.mcap;
+    let mut track = || match drawn {
+        true => run_observed(setup, log, &options, sample, &mut advance),
+        false => run(setup, log, &options, &mut advance),
     };
     let result = pool.install(|| keep_threads_awake(&mut track));
     let seconds = start.elapsed().as_secs_f64();
@@ -155,12 +159,10 @@ fn timed_run(
 fn report(
     (args, scene): (&FilterArgs, &Path),
     experiment: &Experiment,
-    scored: &ScoredRun,
+    run: ReportedRun,
     warnings: &[String],
-    sample: CloudSample,
     path: &Path,
 ) -> Result<PathBuf> {
-    let run = sample.into_run(scored.clone());
     let (name, title) = (experiment_name(&args.log), run.title());
     let occlusion = args.shared.occlusion();
     let reported = ReportedExperiment::new(&name, "", experiment, occlusion, vec![run]);
@@ -187,9 +189,10 @@ fn report(
 fn write_all(
     args: &FilterArgs,
     folder: &Path,
-    estimate: &Estimate,
+    run: &ReportedRun,
     setup: &Setup,
 ) -> Result<Vec<PathBuf>> {
+    let estimate = &run.scored.estimate;
     let mut written = vec![folder.join(ESTIMATE)];
     write_out(&written[0], |file| write_estimate(file, estimate))?;
     if args.tum {
@@ -200,7 +203,7 @@ fn write_all(
     if args.mcap {
         let path = folder.join("estimate.mcap");
         let mut bytes = Cursor::new(Vec::new());
-        write_estimate_mcap(&mut bytes, estimate, setup)?;
+        write_estimate_mcap(&mut bytes, estimate, &run.cloud, setup)?;
         write_out(&path, |file| file.write_all(bytes.get_ref()))?;
         written.push(path);
     }

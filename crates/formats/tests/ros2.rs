@@ -1,7 +1,7 @@
 //! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written
-//! here, and what rosbags writes is read here.
+//! here, and what rosbags writes is read here; evo reads trajectories.
 //!
-//! `cargo test -p stickslip-formats --test ros2 -- --ignored`, with both Python packages where
+//! `cargo test -p stickslip-formats --test ros2 -- --ignored`, with these Python packages where
 //! `python3` finds them.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
@@ -15,7 +15,7 @@ use stickslip::{Estimate, EstimateRow, Log, Setup, Spread};
 use stickslip_dynamics::Pose;
 use stickslip_formats::{
     BagOptions, Mounts, Topics, read_bag, read_bag_metadata, read_log, read_scene,
-    write_estimate_mcap, write_log_mcap,
+    write_estimate_mcap, write_estimate_tum, write_log_mcap,
 };
 
 /// Recorded experiments; the last one has forces, and poses of a real camera.
@@ -323,7 +323,9 @@ fn others_read_an_estimate() {
     let (pose, std) = (Pose::new(0.5, -0.25, 3.0), Pose::new(0.125, 0.25, 0.5));
     let (setup, estimate) = one_pose(pose, std);
     let path = folder("estimate").join("estimate.mcap");
-    write_estimate_mcap(File::create(&path).unwrap(), &estimate, &setup).unwrap();
+    // two particles at the row that has a pose
+    let cloud = [vec![], vec![pose, std]];
+    write_estimate_mcap(File::create(&path).unwrap(), &estimate, &cloud, &setup).unwrap();
     let told = peer(&[Path::new("estimate"), &path]);
     let (z, w) = (libm::sin(1.5), libm::cos(1.5));
     for program in ["ours", "humble"] {
@@ -346,6 +348,10 @@ fn others_read_an_estimate() {
                     assert_eq!(numbers, [&at[..], &covariance].concat());
                 }
                 ("/tf", child) => assert_eq!((child, &numbers[..]), ("stickslip_object", &at[..])),
+                ("/stickslip/particles", _) => {
+                    let other = [0.125, 0.25, libm::sin(0.25), libm::cos(0.25)];
+                    assert_eq!(numbers, [at, other].concat());
+                }
                 ("/stickslip/markers", "object") => {
                     let square = [
                         [-1.0, -1.0],
@@ -372,6 +378,25 @@ fn others_read_an_estimate() {
             .iter()
             .map(|fixel| fixel.shape.parts().len())
             .sum();
-        assert_eq!(topics.len(), 3 + fixel_parts, "{program}: {told}");
+        assert_eq!(topics.len(), 4 + fixel_parts, "{program}: {told}");
     }
+}
+
+#[test]
+#[ignore = "needs Python packages; .ci/run installs them and runs this"]
+fn evo_reads_a_trajectory() {
+    let pose = Pose::new(0.5, -0.25, 3.0);
+    let (_, estimate) = one_pose(pose, Pose::default());
+    let path = folder("trajectory").join("estimate.tum");
+    write_estimate_tum(File::create(&path).unwrap(), &estimate).unwrap();
+    let told = peer(&[Path::new("trajectory"), &path]);
+    let numbers: Vec<f64> = told
+        .split_whitespace()
+        .map(|word| word.parse().unwrap())
+        .collect();
+    let [time, x, y, z, yaw] = numbers[..] else {
+        panic!("{told}")
+    };
+    assert_eq!([time, x, y, z], [2.0, 0.5, -0.25, 0.0]);
+    assert!((yaw - 3.0).abs() < 1e-12, "{yaw}");
 }

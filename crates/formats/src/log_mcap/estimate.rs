@@ -2,12 +2,13 @@
 //! trajectory for evo: [`write_estimate_tum`].
 
 use std::io::{Seek, Write};
+use std::iter::repeat;
 
 use stickslip::{Estimate, EstimateRow, Setup};
 use stickslip_dynamics::{Part, Pose, Shape};
 
 use crate::log_mcap::message::{Header, Vector3};
-use crate::log_mcap::output_message::{Colour, LINE_STRIP, Marker, MarkerArray};
+use crate::log_mcap::output_message::{Colour, LINE_STRIP, Marker, MarkerArray, PoseArray};
 use crate::log_mcap::pose_message::{PoseWithCovarianceStamped, TfMessage, TransformStamped};
 use crate::log_mcap::write::{McapWriteError, Recorder, header, pose_parts, stamps};
 use crate::number;
@@ -32,7 +33,9 @@ const fn colour(r: f32, g: f32, b: f32) -> Colour {
 ///   covariances between its numbers are not known and 0, as all about z and the other two angles,
 /// - `/tf`, `tf2_msgs/msg/TFMessage`: the frame `stickslip_object` in `world`,
 /// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, and of the
-///   fixels, red where contact is likelier than not.
+///   fixels, red where contact is likelier than not,
+/// - `/stickslip/particles`, `geometry_msgs/msg/PoseArray`: row by row the poses of `cloud`, particles that
+///   count the same; none where the slice is shorter or the row has none.
 ///
 /// The same estimate gives the same bytes.
 ///
@@ -41,14 +44,20 @@ const fn colour(r: f32, g: f32, b: f32) -> Colour {
 pub fn write_estimate_mcap(
     writer: impl Write + Seek,
     estimate: &Estimate,
+    cloud: &[Vec<Pose>],
     setup: &Setup,
 ) -> Result<(), McapWriteError> {
     let mut recorder = Recorder::new(writer)?;
     let pose_channel = recorder.topic::<PoseWithCovarianceStamped>("/stickslip/pose")?;
     let tf_channel = recorder.topic::<TfMessage>("/tf")?;
     let marker_channel = recorder.topic::<MarkerArray>("/stickslip/markers")?;
+    let particle_channel = match cloud.iter().all(Vec::is_empty) {
+        true => None,
+        false => Some(recorder.topic::<PoseArray>("/stickslip/particles")?),
+    };
+    let clouds = cloud.iter().map(Vec::as_slice).chain(repeat(&[][..]));
     let stamps = stamps(&estimate.time)?;
-    for (stamp, row) in stamps.into_iter().zip(&estimate.rows) {
+    for ((stamp, row), cloud) in stamps.into_iter().zip(&estimate.rows).zip(clouds) {
         let Some(pose) = row.pose else { continue };
         let header = header(stamp);
         let (position, orientation) = pose_parts(pose);
@@ -69,6 +78,9 @@ pub fn write_estimate_mcap(
         recorder.write(Some(pose_channel), stamp, Some(message))?;
         let markers = markers(&header, pose, row, setup);
         recorder.write(Some(marker_channel), stamp, Some(MarkerArray { markers }))?;
+        let poses: Vec<_> = cloud.iter().map(|pose| pose_parts(*pose)).collect();
+        let particles = (!poses.is_empty()).then_some(PoseArray { header, poses });
+        recorder.write(particle_channel, stamp, particles)?;
     }
     recorder.finish()
 }

@@ -45,6 +45,13 @@ pub(crate) struct MarkerArray {
     pub markers: Vec<Marker>,
 }
 
+/// `geometry_msgs/msg/PoseArray`, its poses laid out flat.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PoseArray {
+    pub header: Header,
+    pub poses: Vec<(Vector3, Quaternion)>,
+}
+
 /// A line from point to point.
 pub(crate) const LINE_STRIP: i32 = 4;
 
@@ -59,6 +66,21 @@ macro_rules! definitions {
 
 impl Message for MarkerArray {
     const TYPE: &'static str = "visualization_msgs/msg/MarkerArray";
+}
+
+impl Message for PoseArray {
+    const TYPE: &'static str = "geometry_msgs/msg/PoseArray";
+}
+
+impl WrittenMessage for PoseArray {
+    const SCHEMA: &'static str = definitions!(
+        "std_msgs/Header header\ngeometry_msgs/Pose[] poses\n",
+        "std_msgs/Header": "builtin_interfaces/Time stamp\nstring frame_id\n",
+        "builtin_interfaces/Time": "int32 sec\nuint32 nanosec\n",
+        "geometry_msgs/Pose": "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n",
+        "geometry_msgs/Point": "float64 x\nfloat64 y\nfloat64 z\n",
+        "geometry_msgs/Quaternion": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
+    );
 }
 
 impl WrittenMessage for PoseWithCovarianceStamped {

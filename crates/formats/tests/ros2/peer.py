@@ -78,9 +78,22 @@ def show_estimate(program, topic, log_time, message):
         for t in message.transforms:
             p, q = t.transform.translation, t.transform.rotation
             print(program, topic, log_time, t.header.frame_id, t.child_frame_id, *(repr(float(n)) for n in [p.x, p.y, q.z, q.w]))
+    elif hasattr(message, "poses"):
+        numbers = [n for pose in message.poses for n in (pose.position.x, pose.position.y, pose.orientation.z, pose.orientation.w)]
+        print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for n in numbers))
     else:
         p, q, c = message.pose.pose.position, message.pose.pose.orientation, message.pose.covariance
         print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for n in [p.x, p.y, q.z, q.w, *c]))
+
+
+def trajectory(path):
+    from evo.tools import file_interface
+
+    read = file_interface.read_tum_trajectory_file(path)
+    valid, why = read.check()
+    assert valid, why
+    for time, position, (_, _, yaw) in zip(read.timestamps, read.positions_xyz, read.get_orientations_euler()):
+        print(*(repr(float(number)) for number in [time, *position, yaw]))
 
 
 class Bag:
@@ -243,5 +256,5 @@ def frames(path, folder):
 
 
 if __name__ == "__main__":
-    commands = {"decode": decode, "estimate": estimate, "record": record, "kinds": kinds, "frames": frames}
+    commands = {"decode": decode, "estimate": estimate, "trajectory": trajectory, "record": record, "kinds": kinds, "frames": frames}
     commands[sys.argv[1]](*sys.argv[2:])
