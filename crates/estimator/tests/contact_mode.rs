@@ -177,3 +177,33 @@ fn the_evidence_is_for_the_friction_that_was() {
     let kalman = run(&slippery, &log, &other, &mut |_| ()).expect("a run");
     assert_eq!(kalman.log_evidence, None);
 }
+
+/// Under a steady push, what the camera shows fixes o − v L, the pusher's offset less the way in the
+/// latency. On that line the priors N(0, σ²) of o and exponential of L leave a normal distribution of
+/// mean −σ²/(v L̄), cut off where L = 0, for where the object is.
+#[test]
+fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
+    let mut setup = setup(&[]);
+    setup.uncertainty.roughness = 0.0;
+    setup.uncertainty.outline = 0.0;
+    let (std, late) = (setup.uncertainty.pusher_offset, setup.uncertainty.latency);
+    let log = pushed(0.05);
+    let row = 85; // after 1.8 s of pushing
+    let (mut error, mut spread) = (0.0, 0.0);
+    const SEEDS: u64 = 12;
+    for seed in 0..SEEDS {
+        let options = RunOptions {
+            particles: 1000,
+            seed,
+            ..RunOptions::default()
+        };
+        let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+        let at = &run.estimate.rows[row];
+        let pose = at.pose.expect("a pose");
+        error += (pose.x - truth(run.estimate.time[row]).x) / SEEDS as f64;
+        spread += at.spread.expect("a spread").pose.x / SEEDS as f64;
+    }
+    let expected = -std * std / (SPEED * late);
+    assert!((spread / std - 1.0).abs() < 0.25, "{spread}, {std}");
+    assert!((error - expected).abs() < 0.4 * std, "{error}, {expected}");
+}

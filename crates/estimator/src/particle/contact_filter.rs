@@ -15,6 +15,7 @@ use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
 use crate::particle::replay::Replay;
+use crate::particle::steadiness::Steadiness;
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
 use crate::particle::sums::Reference;
@@ -60,6 +61,7 @@ pub(crate) struct ContactFilter<'o> {
     /// The latest camera pose.
     shown: Option<Pose>,
     replay: Replay,
+    steadiness: Steadiness,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -128,6 +130,7 @@ impl<'o> ContactFilter<'o> {
             unexplained: 0,
             shown: None,
             replay: Replay::default(),
+            steadiness: Steadiness::new(camera.latency + unknown),
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -243,6 +246,7 @@ impl<'o> ContactFilter<'o> {
         if let Some(reference) = Reference::of(&self.latest) {
             plan.reference = reference;
         }
+        plan.steady = self.steadiness.velocity(measured.time, drive.substeps);
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
         if slots > self.filter.model().columns().history() {

@@ -7,7 +7,7 @@ use stickslip_filter::{BlockMut, Draw};
 use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, is_set, store_chunk};
 use crate::particle::columns::Columns;
-use crate::particle::propagation::{NOISE_STEP, Propagation, Transition, load_columns};
+use crate::particle::propagation::{NOISE_STEP, Propagation, Transition};
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt};
 
@@ -15,14 +15,8 @@ use crate::particle::touch_channel::{TouchChannel, felt};
 const VARIATION_PAIR: u32 = 1 << 20;
 const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
 const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
-const FIXEL_PAIR: u32 = LATENCY_PAIR + 2;
-
-/// Share of their spread by which offsets wander from row to row where the rig is as told: copies of a
-/// particle are to differ.
-const OFFSET_STEP: f64 = 0.1;
-
-/// Share of its mean by which the camera's latency wanders.
-const LATENCY_STEP: f64 = 0.1;
+const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
+const FIXEL_PAIR: u32 = EXCHANGE_PAIR + 2;
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
 const NEAR: f64 = 2.0;
@@ -51,6 +45,10 @@ impl Propagation {
         self.draw_offsets(transition, plan, block);
         self.draw_normals(draw, LATENCY_PAIR, block);
         self.draw_latency(transition, plan, block);
+        if let Some(velocity) = plan.steady {
+            self.draw_normals(draw, EXCHANGE_PAIR, block);
+            self.exchange_latency(transition, plan, velocity, block);
+        }
         self.load_offsets(transition, block);
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
@@ -125,120 +123,6 @@ impl Propagation {
                 let here = friction.0[lane] * libm::exp(*variation);
                 friction.0[lane] = here.clamp(limits[k].min, limits[k].max);
             }
-        }
-    }
-
-    /// Where fixel j stands: drawn anew until the object comes near.
-    fn draw_fixel_offset(
-        &self,
-        Transition { columns, .. }: &Transition<'_>,
-        plan: &StepPlan,
-        j: usize,
-        block: &mut BlockMut<'_>,
-    ) {
-        for (i, _) in block.particles() {
-            let near = is_set(&block.as_block(), columns.fixel_was_near(j), i);
-            let step = match (near, plan.unknowns_wander()) {
-                (false, _) => 1.0,
-                (true, true) => offset_step(block.column(columns.roughness())[i]),
-                (true, false) => continue,
-            };
-            for axis in 0..2 {
-                let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
-                *offset = wandered(*offset, step, self.normals[axis][i]);
-            }
-        }
-    }
-
-    /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
-    /// pusher comes near. After that the rig stays as rough as it is: a particle whose offsets wander
-    /// less would be favoured for that.
-    fn draw_offsets(
-        &self,
-        Transition { setup, columns, .. }: &Transition<'_>,
-        plan: &StepPlan,
-        block: &mut BlockMut<'_>,
-    ) {
-        let unsure = &setup.uncertainty;
-        for (i, _) in block.particles() {
-            let [x, y, grown, rough] = self.normals.each_ref().map(|column| column[i]);
-            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
-            let roughness = &mut block.column_mut(columns.roughness())[i];
-            let step = match (near, plan.unknowns_wander()) {
-                (false, _) => {
-                    *roughness = unsure.roughness * rough;
-                    1.0
-                }
-                (true, true) => offset_step(*roughness),
-                (true, false) => continue,
-            };
-            let offsets = [
-                (columns.pusher_offset(), x),
-                (columns.pusher_offset() + 1, y),
-                (columns.growth(), grown),
-            ];
-            for (column, normal) in offsets {
-                let offset = &mut block.column_mut(column)[i];
-                *offset = wandered(*offset, step, normal);
-            }
-        }
-    }
-
-    /// How late the camera is: drawn anew until the pusher comes near; then a random walk that keeps
-    /// the prior (Metropolis).
-    fn draw_latency(
-        &self,
-        Transition { setup, columns, .. }: &Transition<'_>,
-        plan: &StepPlan,
-        block: &mut BlockMut<'_>,
-    ) {
-        let mean = setup.uncertainty.latency;
-        for (i, _) in block.particles() {
-            let [a, b, step, _] = self.normals.each_ref().map(|column| column[i]);
-            // half the sum of squares of two normal numbers is exponential
-            let fresh = mean * 0.5 * (a * a + b * b);
-            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
-            let latency = &mut block.column_mut(columns.latency())[i];
-            let proposed = match (near, plan.unknowns_wander()) {
-                (false, _) => fresh,
-                (true, true) => (*latency + LATENCY_STEP * mean * step).abs(),
-                (true, false) => continue,
-            };
-            if !near || proposed - *latency < fresh {
-                *latency = proposed;
-            }
-        }
-    }
-
-    /// Where each particle's pusher and fixels stand beside their poses, in all substeps.
-    fn load_offsets(
-        &mut self,
-        Transition { setup, columns, .. }: &Transition<'_>,
-        block: &BlockMut<'_>,
-    ) {
-        let unsure = &setup.uncertainty;
-        let offset = |column: usize, chunk: usize, scale: Column| {
-            let mut offset = [Lanes::ZERO; 2];
-            load_columns(block, column, chunk, offset.each_mut());
-            offset.map(|offset| offset * scale)
-        };
-        self.pusher_offsets.clear();
-        self.fixel_offsets.clear();
-        self.growth.clear();
-        for chunk in 0..block.len().div_ceil(LANES) {
-            let mut roughness = Lanes::ZERO;
-            load_columns(block, columns.roughness(), chunk, [&mut roughness]);
-            let rougher = Lanes(roughness.0.map(libm::exp));
-            let scale = rougher * unsure.pusher_offset;
-            let pusher = offset(columns.pusher_offset(), chunk, scale);
-            self.pusher_offsets.push(pusher);
-            let scale = rougher * unsure.fixel_position;
-            let fixels = 0..columns.fixels();
-            let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
-            self.fixel_offsets.extend(fixels);
-            let mut growth = Lanes::ZERO;
-            load_columns(block, columns.growth(), chunk, [&mut growth]);
-            self.growth.push(growth * (rougher * unsure.outline));
         }
     }
 
@@ -355,14 +239,8 @@ fn squared([x, y]: [Column; 2]) -> Column {
 
 /// One step of a random walk in a normal distribution that it keeps: `fresh` is drawn from that
 /// distribution, `step` is the share of it.
-fn wandered(before: f64, step: f64, fresh: f64) -> f64 {
+pub(super) fn wandered(before: f64, step: f64, fresh: f64) -> f64 {
     (1.0 - step * step).sqrt() * before + step * fresh
-}
-
-/// Share of their spread by which a particle's offsets wander in a row: by the same way (m), however
-/// rough its rig is.
-fn offset_step(roughness: f64) -> f64 {
-    (OFFSET_STEP * libm::exp(-roughness)).min(1.0)
 }
 
 /// Notes in a chunk's flags which parameters took part, and keeps besides them those that never did:

@@ -13,6 +13,8 @@ mod observation;
 pub(crate) mod observer;
 mod propagation;
 mod replay;
+mod rig;
+mod steadiness;
 mod step_plan;
 mod summary;
 mod sums;

@@ -23,6 +23,9 @@ pub struct StepPlan {
     pub driven: bool,
     /// Whether the parameters take a random step.
     pub parameter_noise: ParameterNoise,
+    /// The pusher's velocity (m/s), where it has been the same for as long as poses are kept (contact
+    /// mode).
+    pub steady: Option<[f64; 2]>,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
     /// What weighed the particles at the row before, of which they learn how noisy the camera is;
@@ -40,6 +43,7 @@ impl StepPlan {
         self.substeps.clone_from(&other.substeps);
         self.driven = other.driven;
         self.parameter_noise = other.parameter_noise;
+        self.steady = other.steady;
         self.slot = other.slot;
         self.seen.overwrite(&other.seen);
         self.tactile.clone_from(&other.tactile);
@@ -64,6 +68,7 @@ impl StepPlan {
             substeps: Vec::new(),
             driven: false,
             parameter_noise: ParameterNoise::Frozen,
+            steady: None,
             slot: 0,
             seen: Observation::default(),
             tactile: Vec::new(),

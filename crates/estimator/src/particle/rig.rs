@@ -1,0 +1,221 @@
+//! What the particles do not know of the rig (contact mode): where pusher and fixels stand, how large
+//! the object is, how late the camera (docs/method.md (36), (43)).
+
+use stickslip_dynamics::{Lanes, Particles};
+use stickslip_filter::{Block, BlockMut};
+
+use crate::particle::chunk::{Column, LANES, is_set};
+use crate::particle::columns::Columns;
+use crate::particle::contact_mode::wandered;
+use crate::particle::propagation::{Propagation, Transition, load_columns};
+use crate::particle::step_plan::StepPlan;
+
+/// Share of their spread by which offsets wander from row to row where the rig is as told: copies of a
+/// particle are to differ.
+const OFFSET_STEP: f64 = 0.1;
+
+/// Share of its mean by which the camera's latency wanders.
+const LATENCY_STEP: f64 = 0.1;
+
+impl Propagation {
+    /// Where fixel j stands: drawn anew until the object comes near.
+    pub(super) fn draw_fixel_offset(
+        &self,
+        Transition { columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        j: usize,
+        block: &mut BlockMut<'_>,
+    ) {
+        for (i, _) in block.particles() {
+            let near = is_set(&block.as_block(), columns.fixel_was_near(j), i);
+            let step = match (near, plan.unknowns_wander()) {
+                (false, _) => 1.0,
+                (true, true) => offset_step(block.column(columns.roughness())[i]),
+                (true, false) => continue,
+            };
+            for axis in 0..2 {
+                let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
+                *offset = wandered(*offset, step, self.normals[axis][i]);
+            }
+        }
+    }
+
+    /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
+    /// pusher comes near. After that the rig stays as rough as it is: a particle whose offsets wander
+    /// less would be favoured for that.
+    pub(super) fn draw_offsets(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let unsure = &setup.uncertainty;
+        for (i, _) in block.particles() {
+            let [x, y, grown, rough] = self.normals.each_ref().map(|column| column[i]);
+            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
+            let roughness = &mut block.column_mut(columns.roughness())[i];
+            let step = match (near, plan.unknowns_wander()) {
+                (false, _) => {
+                    *roughness = unsure.roughness * rough;
+                    1.0
+                }
+                (true, true) => offset_step(*roughness),
+                (true, false) => continue,
+            };
+            let offsets = [
+                (columns.pusher_offset(), x),
+                (columns.pusher_offset() + 1, y),
+                (columns.growth(), grown),
+            ];
+            for (column, normal) in offsets {
+                let offset = &mut block.column_mut(column)[i];
+                *offset = wandered(*offset, step, normal);
+            }
+        }
+    }
+
+    /// How late the camera is: drawn anew until the pusher comes near; then a random walk that keeps
+    /// the prior (Metropolis).
+    pub(super) fn draw_latency(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let mean = setup.uncertainty.latency;
+        for (i, _) in block.particles() {
+            let [a, b, step, _] = self.normals.each_ref().map(|column| column[i]);
+            // half the sum of squares of two normal numbers is exponential
+            let fresh = mean * 0.5 * (a * a + b * b);
+            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
+            let latency = &mut block.column_mut(columns.latency())[i];
+            let proposed = match (near, plan.unknowns_wander()) {
+                (false, _) => fresh,
+                (true, true) => (*latency + LATENCY_STEP * mean * step).abs(),
+                (true, false) => continue,
+            };
+            if !near || proposed - *latency < fresh {
+                *latency = proposed;
+            }
+        }
+    }
+
+    /// Exchanges latency for pusher offset: a pusher that is ahead by v τ under a steady push is one
+    /// that is early by τ, and so is all that touches nothing else; seen later by τ it shows the
+    /// camera the same. Metropolis' rule decides by the priors alone.
+    pub(super) fn exchange_latency(
+        &mut self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        velocity: [f64; 2],
+        block: &mut BlockMut<'_>,
+    ) {
+        let unsure = &setup.uncertainty;
+        let speed = libm::hypot(velocity[0], velocity[1]);
+        if !(unsure.pusher_offset > 0.0 && unsure.latency > 0.0 && plan.unknowns_wander()) {
+            return;
+        }
+        for (i, _) in block.particles() {
+            if !is_pushed_alone(columns, &block.as_block(), i) {
+                continue;
+            }
+            let [step, a, b, _] = self.normals.each_ref().map(|column| column[i]);
+            let rougher = libm::exp(block.column(columns.roughness())[i]);
+            let scale = unsure.pusher_offset * rougher;
+            let early = step * scale / speed;
+            let offset = [0, 1].map(|axis| block.column(columns.pusher_offset() + axis)[i]);
+            let moved = [0, 1].map(|axis| offset[axis] + velocity[axis] * early / scale);
+            let latency = block.column(columns.latency())[i] + early / rougher;
+            let squares = |[x, y]: [f64; 2]| x * x + y * y;
+            let loss = 0.5 * (squares(moved) - squares(offset)) + early / rougher / unsure.latency;
+            // half the sum of squares of two normal numbers is exponential, as −ln of a uniform one
+            let accepted = latency >= 0.0
+                && latency * rougher < unsure.most_latency()
+                && loss < 0.5 * (a * a + b * b);
+            if accepted {
+                block.column_mut(columns.latency())[i] = latency;
+                for axis in 0..2 {
+                    block.column_mut(columns.pusher_offset() + axis)[i] = moved[axis];
+                }
+                self.advance_trajectory(columns, plan, early, block, i);
+            }
+        }
+    }
+
+    /// Moves particle `i` to where it is `early` seconds later, its past included.
+    fn advance_trajectory(
+        &mut self,
+        columns: &Columns,
+        plan: &StepPlan,
+        early: f64,
+        block: &mut BlockMut<'_>,
+        i: usize,
+    ) {
+        let Particles { pose, twist, .. } = &mut self.particles[i / LANES];
+        let now = pose.map(|column| column.0[i % LANES]);
+        let twist = twist.map(|column| column.0[i % LANES]);
+        let at = |block: &BlockMut<'_>, slot: usize, k: usize| {
+            block.column(columns.past_pose(slot) + k)[i]
+        };
+        for pair in plan.seen.past.windows(2) {
+            let [(before, slot), (after, next)] = [pair[0], pair[1]];
+            for k in 0..3 {
+                let rate = (at(block, next, k) - at(block, slot, k)) / (after - before);
+                block.column_mut(columns.past_pose(slot) + k)[i] += rate * early;
+            }
+        }
+        let moved = now.advance(twist, early);
+        if let Some((_, slot)) = plan.seen.past.last() {
+            for (k, value) in moved.fields().into_iter().enumerate() {
+                block.column_mut(columns.past_pose(*slot) + k)[i] = *value;
+            }
+        }
+        for (to, from) in pose.fields_mut().into_iter().zip(moved.fields()) {
+            to.0[i % LANES] = *from;
+        }
+    }
+
+    /// Where each particle's pusher and fixels stand beside their poses, in all substeps.
+    pub(super) fn load_offsets(
+        &mut self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        block: &BlockMut<'_>,
+    ) {
+        let unsure = &setup.uncertainty;
+        let offset = |column: usize, chunk: usize, scale: Column| {
+            let mut offset = [Lanes::ZERO; 2];
+            load_columns(block, column, chunk, offset.each_mut());
+            offset.map(|offset| offset * scale)
+        };
+        self.pusher_offsets.clear();
+        self.fixel_offsets.clear();
+        self.growth.clear();
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let mut roughness = Lanes::ZERO;
+            load_columns(block, columns.roughness(), chunk, [&mut roughness]);
+            let rougher = Lanes(roughness.0.map(libm::exp));
+            let scale = rougher * unsure.pusher_offset;
+            let pusher = offset(columns.pusher_offset(), chunk, scale);
+            self.pusher_offsets.push(pusher);
+            let scale = rougher * unsure.fixel_position;
+            let fixels = 0..columns.fixels();
+            let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
+            self.fixel_offsets.extend(fixels);
+            let mut growth = Lanes::ZERO;
+            load_columns(block, columns.growth(), chunk, [&mut growth]);
+            self.growth.push(growth * (rougher * unsure.outline));
+        }
+    }
+}
+
+/// Whether the pusher, and nothing else, pushes particle `i`.
+fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
+    let fixel = (0..columns.fixels()).any(|j| is_set(block, columns.fixel_was_near(j), i));
+    !fixel && is_set(block, Columns::CONTACT_PUSHER, i) && !is_set(block, Columns::IDLE, i)
+}
+
+/// Share of their spread by which a particle's offsets wander in a row: by the same way (m), however
+/// rough its rig is.
+fn offset_step(roughness: f64) -> f64 {
+    (OFFSET_STEP * libm::exp(-roughness)).min(1.0)
+}
