@@ -59,7 +59,8 @@ def test_figures_are_drawn(demo, scene, estimate):
     curve = axes.lines[0].get_ydata()
     rows = np.searchsorted(truth["time"], estimate["time"])
     away = 1e3 * np.hypot(estimate["x"] - truth["x"][rows], estimate["y"] - truth["y"][rows])
-    np.testing.assert_allclose(curve, away, atol=1e-6)
+    # times of files are rounded to a microsecond, in which a slipping object moves some 1e-5 mm
+    np.testing.assert_allclose(curve, away, atol=2e-5)
     assert len(plot.friction(estimate).lines) == 4
     parts = sum(len(fixel) for fixel in outlines(scene).fixels)
     drawn = plot.poses(estimate, scene, rows=[0, 100], log=demo / "log.csv")
