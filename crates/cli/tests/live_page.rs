@@ -4,13 +4,15 @@
 
 mod common;
 
-use std::io::Write;
+use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::thread::{self, sleep};
 use std::time::Duration;
 
 use common::page_session::Session;
 use common::{Experiment, SLIDE};
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 use serde_json::Value;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, connect};
@@ -91,5 +93,62 @@ fn socket_shows_rows_and_the_session_survives_those_who_leave() {
     assert!(host.starts_with("127.0.0.1"));
     drop(silent);
     session.input = Some(feeder.join().unwrap());
+    assert_eq!(session.end(), Some(0));
+}
+
+/// The first thing that the server says to a request, if it says something before this side hangs up.
+fn first_answer(session: &Session, request: &[u8]) -> String {
+    let mut stream = TcpStream::connect(&session.host).unwrap();
+    stream
+        .set_read_timeout(Some(Duration::from_millis(300)))
+        .unwrap();
+    let _ = stream.write_all(request);
+    let mut answer = [0; 1 << 10];
+    let length = stream.read(&mut answer).unwrap_or(0);
+    String::from_utf8_lossy(&answer[..length]).into_owned()
+}
+
+#[test]
+fn damaged_handshakes_open_nothing_and_end_no_session() {
+    let case = Experiment::copy(SLIDE, "live_page/damaged");
+    let session = Session::start(&case);
+    let (host, token) = (&session.host, &session.token);
+    let good = format!(
+        "GET /socket?{token} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\n\
+         Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+    );
+    assert!(first_answer(&session, good.as_bytes()).starts_with("HTTP/1.1 101"));
+    let damage = (
+        any::<prop::sample::Index>(),
+        0..9_usize,
+        prop::collection::vec(any::<u8>(), 0..9),
+    );
+    let config = ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(100)
+    };
+    let tried = TestRunner::new(config).run(&damage, |(at, cut, insert)| {
+        let start = at.index(good.len());
+        let end = (start + cut).min(good.len());
+        let request = [&good.as_bytes()[..start], &insert, &good.as_bytes()[end..]].concat();
+        let answer = first_answer(&session, &request);
+        prop_assert!(
+            answer.is_empty() || answer.starts_with("HTTP/1.1 "),
+            "{answer}"
+        );
+        // who is let in named the token, and this host twice
+        let text = String::from_utf8_lossy(&request);
+        let named = text.contains(token) && text.matches(host.as_str()).count() == 2;
+        prop_assert!(named || !answer.starts_with("HTTP/1.1 101"), "{text}");
+        Ok(())
+    });
+    tried.unwrap();
+    // a request in part keeps its place for some seconds; then others are served again
+    let page = format!("GET /?{token} HTTP/1.1\r\nHost: {host}\r\n\r\n");
+    let mut answers = (0..300).map(|_| {
+        sleep(Duration::from_millis(100));
+        first_answer(&session, page.as_bytes())
+    });
+    assert!(answers.any(|answer| answer.starts_with("HTTP/1.1 200")));
     assert_eq!(session.end(), Some(0));
 }
