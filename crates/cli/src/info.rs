@@ -33,21 +33,23 @@ pub fn info(args: &InfoArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// How to check and filter the bag.
+/// How to check and filter the bag, from a scene beside it on, if there is none.
 fn commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
     let topics: String = suggestion
         .iter()
         .map(|topic| format!(" --topic {}", quoted(topic)))
         .collect();
-    let shown = quoted(&bag.display().to_string());
-    let (check, filter) = match scene_beside(bag) {
-        Ok(_) => (String::new(), String::new()),
-        Err(_) => ("scene.toml ".to_owned(), " --scene scene.toml".to_owned()),
-    };
-    vec![
-        format!("stickslip check {check}{shown}{topics}"),
-        format!("stickslip filter {shown}{filter}{topics} --out out --report report.html"),
-    ]
+    let word = |path: &Path| quoted(&path.display().to_string());
+    let folder = bag.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new("."));
+    let scene = scene_beside(bag).is_err();
+    let scene = scene.then(|| format!("stickslip new {}", word(folder)));
+    let bag = word(bag);
+    let use_it = [
+        format!("stickslip check {bag}{topics}"),
+        format!("stickslip filter {bag}{topics} --out out --report report.html"),
+    ];
+    scene.into_iter().chain(use_it).collect()
 }
 
 /// A word as a shell takes it.

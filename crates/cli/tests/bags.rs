@@ -204,3 +204,26 @@ fn info_names_what_would_do_and_the_command_that_it_prints_runs() {
         words(&table)
     );
 }
+
+#[test]
+fn info_without_a_scene_says_how_to_come_by_one() {
+    let (case, bag) = experiment("bags/no_scene");
+    // the command puts it where the next ones look
+    fs::remove_file(case.scene()).unwrap();
+    let info = json(stickslip().args(["info", "--json"]).arg(&bag));
+    let command = info["commands"][0].as_str().unwrap();
+    assert!(command.starts_with("stickslip new "), "{command}");
+    let command = command.replacen(
+        "stickslip",
+        &format!("'{}'", env!("CARGO_BIN_EXE_stickslip")),
+        1,
+    );
+    let shell = std::process::Command::new("sh")
+        .args(["-c", &command])
+        .output()
+        .unwrap();
+    assert!(
+        shell.status.success() && case.folder.join("scene.toml").is_file(),
+        "{command}"
+    );
+}
