@@ -107,7 +107,8 @@ class Player {
     const y = (mm) => 100 * (1 - (Math.log10(Math.max(mm, LOWEST)) - bottom) / (top - bottom));
     for (const [from, to] of data.dark) {
       // a row speaks of the time since the one before it
-      add(strip, "rect", { class: "dark", x: this.place(from - 1), y: 0, width: this.place(to - 1) - this.place(from - 1), height: 100 });
+      const x = this.place(Math.max(from - 1, 0));
+      add(strip, "rect", { class: "dark", x, y: 0, width: this.place(to - 1) - x, height: 100 });
     }
     for (let decade = bottom + 1; decade < top; decade += 1) {
       add(strip, "path", { class: "grid", d: `M0 ${y(10 ** decade)}H1000` });
