@@ -30,7 +30,7 @@ pub(crate) struct CameraLikelihood {
 }
 
 /// Likelihood of a wrong pose, relative to that of a perfect one.
-const WRONG: f64 = 3e-7;
+pub(crate) const WRONG: f64 = 3e-7;
 
 /// Squared distances of a measured pose from what particles show, in units of the told standard
 /// deviations.

@@ -20,6 +20,15 @@ impl NoisePrior {
         let freedom = 1.0 + 0.5 / (camera_noise * camera_noise);
         freedom.is_finite().then_some(Self { freedom })
     }
+
+    /// Variances of position and angle, in units of the told ones, after so many poses with these sums
+    /// of squared residuals.
+    pub fn variances(&self, poses: f64, position: f64, angle: f64) -> [f64; 2] {
+        [
+            (self.freedom + position) / (self.freedom + 2.0 * poses),
+            (self.freedom + angle) / (self.freedom + poses),
+        ]
+    }
 }
 
 /// Residuals of the poses that one chunk's particles have seen, in units of the told standard
@@ -32,9 +41,19 @@ pub(crate) struct CameraNoise {
 }
 
 /// Poses of which the newest one makes this one part: noise may change slowly.
-const MEMORY: f64 = 300.0;
+pub(crate) const MEMORY: f64 = 300.0;
 
 impl CameraNoise {
+    /// So many poses, with these sums of squares.
+    #[inline(always)]
+    pub fn of([poses, position, angle]: [Column; 3]) -> Self {
+        Self {
+            poses,
+            position,
+            angle,
+        }
+    }
+
     /// That of one chunk.
     #[inline(always)]
     pub fn load(columns: Columns, block: &Block<'_>, chunk: usize) -> Self {

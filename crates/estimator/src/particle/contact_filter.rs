@@ -15,6 +15,7 @@ use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::observer::Observer;
 use crate::particle::replay::Replay;
+use crate::particle::resting_pose::RestingPose;
 use crate::particle::steadiness::Steadiness;
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
@@ -62,6 +63,7 @@ pub(crate) struct ContactFilter<'o> {
     shown: Option<Pose>,
     replay: Replay,
     steadiness: Steadiness,
+    resting: RestingPose,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -131,6 +133,7 @@ impl<'o> ContactFilter<'o> {
             shown: None,
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
+            resting: RestingPose::new(start, &camera, setup),
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -163,6 +166,7 @@ impl<'o> ContactFilter<'o> {
         let row = (&self.plan, &self.observation);
         self.log_evidence += self.replay.after(&mut self.filter, row, &report);
         self.judge_camera(&report);
+        self.learn_where_it_rests();
         self.report(&report, measured.object.is_some());
         &self.latest
     }
@@ -199,6 +203,21 @@ impl<'o> ContactFilter<'o> {
         if !contact || self.collapsed {
             self.plan.seen.pose = None;
         }
+    }
+
+    /// Takes the camera's latest pose for one of an object that has not moved yet; where the particles
+    /// were drawn anew around it, it is the first one.
+    fn learn_where_it_rests(&mut self) {
+        self.plan.resting = None;
+        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        let Some(pose) = self.observation.pose.filter(|_| contact) else {
+            return;
+        };
+        match self.collapsed {
+            true => self.resting.start_at(pose),
+            false => self.resting.see(pose),
+        }
+        self.plan.resting = Some(self.resting);
     }
 
     /// Where each particle finds its past poses.
@@ -263,6 +282,8 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         let _ = self.filter.observe(&self.plan, &self.observation);
+        self.collapsed = false;
+        self.learn_where_it_rests();
         self.replay.forget();
         summarise(&self.filter, &self.plan.reference, &mut self.latest);
         &self.latest

@@ -5,9 +5,11 @@ use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist}
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::mode::Mode;
-use crate::particle::chunk::{Column, FlagsMut, LANES, is_set, store_chunk};
+use crate::particle::chunk::{Column, FlagsMut, LANES, flag, is_set, store_chunk};
 use crate::particle::columns::Columns;
+use crate::particle::model::write;
 use crate::particle::propagation::{NOISE_STEP, Propagation, Transition};
+use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt};
 
@@ -16,7 +18,8 @@ const VARIATION_PAIR: u32 = 1 << 20;
 const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
 const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
 const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
-const FIXEL_PAIR: u32 = EXCHANGE_PAIR + 2;
+const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
+const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
 const NEAR: f64 = 2.0;
@@ -33,6 +36,11 @@ impl Propagation {
         draw: Draw,
         block: &mut BlockMut<'_>,
     ) {
+        self.note_untouched(transition, block);
+        if let Some(resting) = &plan.resting {
+            self.draw_normals(draw, RESTING_PAIR, block);
+            self.draw_resting_pose(transition, resting, block);
+        }
         self.draw_normals(draw, 0, block);
         self.draw_friction(transition, plan, block);
         self.draw_normals(draw, VARIATION_PAIR, block);
@@ -52,6 +60,50 @@ impl Propagation {
         self.load_offsets(transition, block);
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
+        }
+    }
+
+    /// Which particles nothing has come near yet: their objects rest where they were first seen.
+    fn note_untouched(
+        &mut self,
+        Transition { columns, .. }: &Transition<'_>,
+        block: &BlockMut<'_>,
+    ) {
+        let block = &block.as_block();
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let Twist { vx, vy, omega } = self.particles[chunk].twist;
+            let speed = vx.abs() + vy.abs() + omega.abs();
+            let mut touched = flag(block, Columns::PUSHER_WAS_NEAR, chunk) | speed.gt(Lanes::ZERO);
+            for j in 0..columns.fixels() {
+                touched = touched | flag(block, columns.fixel_was_near(j), chunk);
+            }
+            self.untouched[chunk] = !touched;
+        }
+    }
+
+    /// Draws anew where an object rests that nothing has come near.
+    fn draw_resting_pose(
+        &mut self,
+        Transition { columns, .. }: &Transition<'_>,
+        resting: &RestingPose,
+        block: &mut BlockMut<'_>,
+    ) {
+        for (i, _) in block.particles() {
+            let (chunk, lane) = (i / LANES, i % LANES);
+            if !self.untouched[chunk].lane(lane) {
+                continue;
+            }
+            let [x, y, theta, _] = self.normals.each_ref().map(|column| column[i]);
+            let pose = resting.drawn([x, y, theta]);
+            let now = self.particles[chunk].pose.fields_mut();
+            for (now, drawn) in now.into_iter().zip(pose.fields()) {
+                now.0[lane] = *drawn;
+            }
+            for slot in 0..columns.history() {
+                write(block, columns.past_pose(slot), i, pose.fields());
+            }
+            let noise = resting.noise_seen_at(&pose);
+            write(block, columns.camera_noise(), i, noise.each_ref());
         }
     }
 

@@ -13,6 +13,7 @@ mod observation;
 pub(crate) mod observer;
 mod propagation;
 mod replay;
+mod resting_pose;
 mod rig;
 mod steadiness;
 mod step_plan;

@@ -277,7 +277,7 @@ fn by_chunk(out: &mut [f64], value: impl Fn(usize) -> Column) {
 }
 
 /// Writes neighbouring columns of particle `i`.
-fn write<const N: usize>(
+pub(super) fn write<const N: usize>(
     block: &mut BlockMut<'_>,
     first_column: usize,
     i: usize,

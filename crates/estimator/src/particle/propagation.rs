@@ -55,6 +55,8 @@ pub struct Propagation {
     pub(super) growth: Vec<Column>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
+    /// Particles that nothing has come near yet: no force disturbs them (contact mode).
+    pub(super) untouched: [Mask<LANES>; CHUNKS],
     involved: [Involved; CHUNKS],
     pub(super) normals: [[f64; BLOCK]; 4],
     level: Level,
@@ -104,6 +106,7 @@ impl Default for Propagation {
             fixel_offsets: Vec::new(),
             growth: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
+            untouched: [Mask::splat(false); CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
             level: Level::new(),
@@ -264,7 +267,8 @@ impl Propagation {
             .enumerate()
             .take(block.len().div_ceil(LANES))
         {
-            let std = particles.friction.mu_s * share;
+            let disturbed = !self.untouched[chunk];
+            let std = disturbed.zero_unless(particles.friction.mu_s * share);
             for (k, (impulse, arm)) in particles
                 .applied
                 .fields_mut()

@@ -3,6 +3,7 @@
 use stickslip_dynamics::StepInput;
 
 use crate::particle::observation::Observation;
+use crate::particle::resting_pose::RestingPose;
 use crate::particle::sums::Reference;
 
 /// Whether the friction parameters take a random step.
@@ -31,6 +32,9 @@ pub struct StepPlan {
     /// What weighed the particles at the row before, of which they learn how noisy the camera is;
     /// without a pose in paper mode.
     pub seen: Observation,
+    /// Where the object is if nothing has moved it yet, where the row before told more of that
+    /// (contact mode).
+    pub resting: Option<RestingPose>,
     /// Tactile readings at the end of the step, one per sensor.
     pub tactile: Vec<Option<bool>>,
     /// Values near the estimate, about which sums are taken.
@@ -46,6 +50,7 @@ impl StepPlan {
         self.steady = other.steady;
         self.slot = other.slot;
         self.seen.overwrite(&other.seen);
+        self.resting = other.resting;
         self.tactile.clone_from(&other.tactile);
         self.reference = other.reference;
     }
@@ -71,6 +76,7 @@ impl StepPlan {
             steady: None,
             slot: 0,
             seen: Observation::default(),
+            resting: None,
             tactile: Vec::new(),
             reference,
         }
