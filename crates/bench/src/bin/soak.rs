@@ -2,17 +2,19 @@
 //! with dropouts, bursts, repeats, garbage, late rows and pauses. Further arguments are the program's.
 //!
 //! Prints how long answers took from the sending of a row to the reading of its answer, how many
-//! lines had none, and the program's memory after the first tenth of the time and at the end. The
-//! rows are those of a demonstration log, sent at 100 Hz where it was recorded at 30 Hz, over and
-//! over: each time round begins with a pause of the source.
+//! lines had none, the program's memory after the first tenth of the time and at the end, its time on
+//! processors per row, and how loaded the machine was before and after. With `--page` among the
+//! arguments, Chromium (`STICKSLIP_CHROMIUM`, default `chromium`) has the page open. The rows are those of
+//! a demonstration log, sent at 100 Hz where it was recorded at 30 Hz, over and over: each time round
+//! begins with a pause of the source.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
@@ -34,12 +36,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         .ok_or("say which program: target/release/stickslip")?;
     let seconds: f64 = arguments.next().map_or(Ok(60.0), |text| text.parse())?;
     let scene = format!("{DEMO}/scene.toml");
+    let arguments: Vec<String> = arguments.collect();
+    let has_page = arguments
+        .iter()
+        .any(|argument| argument.starts_with("--page"));
+    println!("load before: {}", load());
     let mut child = Command::new(&program)
         .args(["live", &scene])
-        .args(arguments)
+        .args(&arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
         .spawn()?;
+    let told = child.stderr.take().ok_or("no standard error")?;
+    let (address, page) = channel();
+    let talk = thread::spawn(move || pass_on(BufReader::new(told), &address));
+    let mut browser = match has_page {
+        true => Some(open_page(&page.recv_timeout(Duration::from_secs(10))?)?),
+        false => None,
+    };
     let (mut input, output) = (
         child.stdin.take().ok_or("no standard input")?,
         child.stdout.take().ok_or("no standard output")?,
@@ -48,6 +63,56 @@ fn main() -> Result<(), Box<dyn Error>> {
     let reader = thread::spawn(move || read_answers(BufReader::new(output), &when_sent));
 
     let ticks = ticks(&fs::read_to_string(format!("{DEMO}/log.csv"))?);
+    let begin = Instant::now();
+    let memory = send(&ticks, seconds, (&mut input, &sent), child.id())?;
+    let busy = processor_seconds(child.id());
+    let load_after = load();
+    drop((input, sent));
+    let status = child.wait()?;
+    talk.join()
+        .map_err(|_| "the reader of messages broke down")?;
+    if let Some(browser) = &mut browser {
+        println!(
+            "the page was open to the end: {}",
+            browser.try_wait()?.is_none()
+        );
+        browser.kill()?;
+        browser.wait()?;
+    }
+    let answers = reader
+        .join()
+        .map_err(|_| "the reader of answers broke down")?;
+    let early = memory.get(memory.len() / 10).copied().flatten();
+    let last = memory.last().copied().flatten();
+    print!("{}", summary(&answers, early, last));
+    if let Some(busy) = busy {
+        let share = 100.0 * busy / begin.elapsed().as_secs_f64();
+        let row = 1e3 * busy / answers.len() as f64;
+        println!("processors: {busy:.1} s, {share:.0} % of one, {row:.2} ms a row");
+    }
+    println!("load after: {load_after}");
+    println!("exit code {:?}", status.code());
+    Ok(())
+}
+
+/// Passes on what the program says, and the address of its page.
+fn pass_on(told: impl BufRead, address: &Sender<String>) {
+    for line in told.lines().map_while(Result::ok) {
+        if let Some(at) = line.find("http://") {
+            let _ = address.send(line[at..].trim().to_owned());
+        }
+        println!("| {line}");
+    }
+}
+
+/// Sends the rows for so many seconds, and when each was sent; returns the program's memory (MB), second
+/// by second.
+fn send(
+    ticks: &[Tick],
+    seconds: f64,
+    (input, sent): (&mut impl Write, &Sender<Instant>),
+    program: u32,
+) -> Result<Vec<Option<f64>>, Box<dyn Error>> {
     let begin = Instant::now();
     let mut memory = Vec::new();
     let mut tick = 0_u64;
@@ -60,22 +125,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             writeln!(input, "{line}")?;
         }
         if tick.is_multiple_of(100) {
-            memory.push(resident_megabytes(child.id()));
+            memory.push(resident_megabytes(program));
         }
         tick += 1;
         let next = PERIOD * tick as u32;
         sleep(next.saturating_sub(begin.elapsed()));
     }
-    drop((input, sent));
-    let status = child.wait()?;
-    let answers = reader
-        .join()
-        .map_err(|_| "the reader of answers broke down")?;
-    let early = memory.get(memory.len() / 10).copied().flatten();
-    let last = memory.last().copied().flatten();
-    print!("{}", summary(&answers, early, last));
-    println!("exit code {:?}", status.code());
-    Ok(())
+    Ok(memory)
 }
 
 /// The log's rows, tick by tick, as a bad day at the laboratory has them.
@@ -134,6 +190,46 @@ fn read_answers(output: impl BufRead, sent: &Receiver<Instant>) -> Vec<Answer> {
             estimate: !line.contains("\"error\""),
         })
         .collect()
+}
+
+/// A browser that has the page open.
+fn open_page(address: &str) -> Result<Child, Box<dyn Error>> {
+    let chromium = std::env::var("STICKSLIP_CHROMIUM").unwrap_or("chromium".to_owned());
+    let profile = std::env::temp_dir().join(format!("stickslip-soak-{}", std::process::id()));
+    let mut command = Command::new(chromium);
+    command.args([
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--remote-debugging-port=0",
+    ]);
+    command
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg(address);
+    let browser = command
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()?;
+    sleep(Duration::from_secs(3));
+    Ok(browser)
+}
+
+/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux tells it.
+fn load() -> String {
+    let told = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    told.split(' ').take(3).collect::<Vec<_>>().join(" ")
+}
+
+/// Time that all threads of a process were on a processor (s), where Linux tells it.
+fn processor_seconds(process: u32) -> Option<f64> {
+    /// What the system counts in (1/s).
+    const TICKS: f64 = 100.0;
+    let stat =
+        fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat")).ok()?;
+    // behind the name in brackets: state, ten more, then the times in user and system mode
+    let numbers: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let [user, system] = [numbers.get(11)?, numbers.get(12)?];
+    Some((user.parse::<f64>().ok()? + system.parse::<f64>().ok()?) / TICKS)
 }
 
 /// Memory of a process that is in use (MB), where Linux tells it.
