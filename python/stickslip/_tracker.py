@@ -13,6 +13,17 @@ from stickslip._files import log_of
 from stickslip._native import Scene
 
 
+#: Columns of a log that say how noisy the object's pose is.
+COVARIANCE = (
+    "object_var_x",
+    "object_var_y",
+    "object_var_theta",
+    "object_cov_x_y",
+    "object_cov_x_theta",
+    "object_cov_y_theta",
+)
+
+
 class Row(TypedDict):
     """What one instant brings; None where nothing was measured."""
 
@@ -20,6 +31,9 @@ class Row(TypedDict):
     time: float
     #: Pose of the object (m, m, rad), as the camera measured it.
     object: Sequence[float] | None
+    #: How noisy that pose is: variances of x, y, theta (m^2, m^2, rad^2), then covariances of x with y, x with theta, y
+    #: with theta; None for as noisy as the scene's camera.
+    object_covariance: Sequence[float] | None
     #: Pose of the pusher (m, m, rad).
     pusher: Sequence[float] | None
     #: Readings of the sensors on the fixels over the interval that ends here.
@@ -68,10 +82,12 @@ class Tracker:
         pusher: Sequence[float] | None = None,
         tactile: Sequence[bool | None] = (),
         force: Sequence[float] | None = None,
+        object_covariance: Sequence[float] | None = None,
     ) -> dict[str, float]:
         """Takes what was measured at ``time`` (s): poses of object and pusher (m, m, rad), readings of the
         tactile sensors, sensor k on fixel k, and the force of the pusher on the object (N), None where
-        there is none.
+        there is none. ``object_covariance`` says how noisy the object's pose is, where that is told: the
+        variances of x, y and theta, then the covariances of x with y, x with theta and y with theta.
 
         Returns the estimate at the latest row under the names of ``estimate.csv`` (see
         :func:`stickslip.filter`); NaN before the first object pose. A row without an object pose is blacked
@@ -79,7 +95,14 @@ class Tracker:
 
         Raises :class:`stickslip.Error` where the row cannot be used; the tracker then is as it was before.
         """
-        row = {"time": time, "object": object, "pusher": pusher, "tactile": list(tactile), "force": force}
+        row = {
+            "time": time,
+            "object": object,
+            "object_covariance": object_covariance,
+            "pusher": pusher,
+            "tactile": list(tactile),
+            "force": force,
+        }
         return self._tracker.push(row)
 
     @property
@@ -109,6 +132,7 @@ def rows(log: Log) -> Iterator[Row]:
         yield {
             "time": float(time),
             "object": group(row, "object_x", "object_y", "object_theta"),
+            "object_covariance": group(row, *COVARIANCE),
             "pusher": group(row, "pusher_x", "pusher_y", "pusher_theta"),
             "tactile": [reading(columns[sensor][row]) for sensor in sensors],
             "force": group(row, "pusher_force_x", "pusher_force_y"),

@@ -58,6 +58,7 @@ fn part(log: &Log) -> Log {
     Log {
         time: log.time[ROWS].to_vec(),
         object: log.object[ROWS].to_vec(),
+        object_covariance: Vec::new(),
         pusher: log.pusher[ROWS].to_vec(),
         tactile: log
             .tactile

@@ -41,7 +41,7 @@ pub enum Command {
     Reproduce(ReproduceArgs),
     /// Write a scene to begin with, every key explained, and its JSON schema for editors
     New(NewArgs),
-    /// Draw tags and the calibration board to scale, with a ruler, as SVG to be printed
+    /// Draw tags and the calibration board to scale, with a ruler, as PDF or SVG to be printed
     Print(PrintArgs),
     /// Look into a ROS 2 bag: topics, types, rates, gaps, which would do, and what to type next
     Info(InfoArgs),
@@ -63,6 +63,15 @@ pub enum Command {
 pub struct NewArgs {
     /// The folder of the experiment, where scene.toml and scene.schema.json are written
     pub folder: PathBuf,
+    /// Take the object's outline from this drawing, seen from above: a closed line in SVG or DXF
+    #[arg(long, value_name = "DRAWING")]
+    pub outline: Option<PathBuf>,
+    /// Metres that one unit of the drawing is, 0.001 for millimetres [default: as the drawing says]
+    #[arg(long, value_name = "M", value_parser = positive, requires = "outline")]
+    pub scale: Option<f64>,
+    /// How far the outline may lie from the drawing's curves, in metres
+    #[arg(long, value_name = "M", value_parser = positive, default_value_t = 2e-5, requires = "outline")]
+    pub tolerance: f64,
 }
 
 /// Arguments of `stickslip demo`.

@@ -1,9 +1,17 @@
 //! `stickslip calibrate`: a camera from frames of a tag board.
 
-use anyhow::{Context, Result};
-use serde::Serialize;
-use stickslip_vision::{Calibration, read_board, search_board, write_camera};
+use std::path::Path;
 
+use anyhow::{Context, Result};
+use image::GrayImage;
+use serde::Serialize;
+use stickslip_report::Table;
+use stickslip_vision::{
+    BoardOnTable, Calibration, Camera, Lens, TableFit, find_table, read_board, read_camera_info,
+    read_lens, search_board, write_camera,
+};
+
+use crate::bag_images::BagImages;
 use crate::camera_args::CalibrateArgs;
 use crate::experiment::text_of;
 use crate::failure::hinted;
@@ -12,7 +20,6 @@ use crate::frames::FrameFolder;
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-use stickslip_report::Table;
 
 /// Names of a lens's numbers, in the order of their standard deviations.
 const LENS: [&str; 8] = [
@@ -31,22 +38,49 @@ struct Summary {
     camera_height_m: f64,
 }
 
+/// What is printed of a table that was found alone.
+#[derive(Debug, Serialize)]
+struct TableSummary {
+    tags: usize,
+    tags_left_out: usize,
+    misfit_px: f64,
+    camera_height_m: f64,
+    place_std_mm: [f64; 3],
+    turn_std_deg: [f64; 3],
+}
+
 /// Runs the command.
 pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
     let board = read_board(
         &text_of(&args.board, "board")?,
         &args.board.display().to_string(),
     )?;
-    ready_file(&args.out, &[&args.board])?;
+    let inputs: Vec<&Path> = [Some(args.board.as_path()), args.lens.as_deref()]
+        .into_iter()
+        .flatten()
+        .collect();
+    ready_file(&args.out, &inputs)?;
+    let bag = BagImages::find(&args.frames, &args.topics)?;
+    let lens = args.lens.as_deref().map(lens_of).transpose()?;
+    match (bag, lens) {
+        (Some(bag), lens) => {
+            let lens = lens.map_or_else(|| bag_lens(args, &bag), Ok)?;
+            let number = args.flat.as_deref().map_or(Ok(1), number)?;
+            table(args, &board, &lens, bag.frame(number)?)
+        }
+        (None, Some(lens)) => {
+            let folder = FrameFolder::list(&args.frames)?;
+            let frame = folder.load(flat(args, &folder)?)?;
+            table(args, &board, &lens, frame)
+        }
+        (None, None) => lens_and_table(args, &board),
+    }
+}
+
+/// Finds the lens and the table from a folder of images.
+fn lens_and_table(args: &CalibrateArgs, board: &BoardOnTable) -> Result<Verdict> {
     let folder = FrameFolder::list(&args.frames)?;
-    let flat = match &args.flat {
-        None => 0,
-        Some(name) => folder
-            .names
-            .iter()
-            .position(|other| other == name)
-            .ok_or_else(|| no_such_frame(name, &folder))?,
-    };
+    let flat = flat(args, &folder)?;
     let progress = bar(folder.names.len(), "frames", Work::Long);
     let pool = args.threads.pool()?;
     let load = |index: usize| {
@@ -55,33 +89,98 @@ pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
     };
     let recording = pool.install(|| search_board(folder.names.len(), load));
     progress.finish_and_clear();
-    let calibration = stickslip_vision::calibrate(&recording?, &board, flat)
+    let calibration = stickslip_vision::calibrate(&recording?, board, flat)
         .with_context(|| args.frames.display().to_string())?;
-    write_file(&args.out, write_camera(&calibration.camera).as_bytes())?;
+    write(args, &calibration.camera)?;
     let summary = Summary::new(&calibration);
     show_result(args.json, &summary, || summary.text())?;
     talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
 }
 
-fn no_such_frame(name: &str, folder: &FrameFolder) -> anyhow::Error {
-    let (first, last) = (&folder.names[0], &folder.names[folder.names.len() - 1]);
-    hinted(
-        format!("--flat {name}: there is no such frame; they go from {first} to {last}"),
-        "give the name of one without its folder",
-    )
+/// Finds the table from one image, through a lens that is known.
+fn table(
+    args: &CalibrateArgs,
+    board: &BoardOnTable,
+    lens: &Lens,
+    frame: (String, GrayImage),
+) -> Result<Verdict> {
+    let recording = search_board(1, |_| anyhow::Ok(frame.clone()))?;
+    let fit =
+        find_table(&recording, board, lens).with_context(|| args.frames.display().to_string())?;
+    write(args, &fit.camera)?;
+    let summary = TableSummary::new(&fit);
+    show_result(args.json, &summary, || summary.text())?;
+    talk(format_args!("wrote {}", args.out.display()));
+    Ok(Verdict::Done)
+}
+
+fn write(args: &CalibrateArgs, camera: &Camera) -> Result<()> {
+    write_file(&args.out, write_camera(camera).as_bytes())
+}
+
+/// The lens that a file tells.
+fn lens_of(path: &Path) -> Result<Lens> {
+    let (text, name) = (text_of(path, "lens")?, path.display().to_string());
+    if path.extension().is_some_and(|ending| ending == "toml") {
+        return Ok(read_lens(&text, &name)?);
+    }
+    let lens = read_camera_info(&text, &name)?.lens(&name)?;
+    lens.ok_or_else(|| {
+        hinted(
+            format!("{name}: the camera was not calibrated: its focal length is 0"),
+            "leave --lens out, and give a folder with frames of the board tilted to all sides",
+        )
+    })
+}
+
+/// The lens that a bag tells.
+fn bag_lens(args: &CalibrateArgs, bag: &BagImages) -> Result<Lens> {
+    bag.lens()?.ok_or_else(|| {
+        hinted(
+            format!(
+                "{}: no CameraInfo tells the lens, and a bag gives the table alone",
+                args.frames.display()
+            ),
+            "give it with --lens FILE, or give a folder of images, with the board tilted to all sides",
+        )
+    })
+}
+
+/// The number of an image of a bag.
+fn number(text: &str) -> Result<usize> {
+    let number = text.parse().ok().filter(|number| *number > 0);
+    number.ok_or_else(|| {
+        hinted(
+            format!("--flat {text}: images of a bag have no names"),
+            "give the number of one, from 1 on",
+        )
+    })
+}
+
+/// Which of a folder's images shows the board on the table.
+fn flat(args: &CalibrateArgs, folder: &FrameFolder) -> Result<usize> {
+    let Some(name) = &args.flat else {
+        return Ok(0);
+    };
+    let names = &folder.names;
+    names.iter().position(|other| other == name).ok_or_else(|| {
+        let (first, last) = (&names[0], &names[names.len() - 1]);
+        hinted(
+            format!("--flat {name}: there is no such frame; they go from {first} to {last}"),
+            "give the name of one without its folder",
+        )
+    })
 }
 
 impl Summary {
     fn new(calibration: &Calibration) -> Self {
-        let lens = calibration.camera.lens();
-        let pairs = [lens.focal, lens.centre, lens.radial, lens.tangential];
         Self {
             frames: calibration.frames,
             tags: calibration.tags,
             tags_left_out: calibration.left_out,
             misfit_px: calibration.rms,
-            lens: std::array::from_fn(|k| pairs[k / 2][k % 2]),
+            lens: calibration.camera.lens().calibrated(),
             lens_std: calibration.lens_std,
             camera_height_m: calibration.camera.centre()[2],
         }
@@ -107,6 +206,45 @@ impl Summary {
         format!(
             "{frames} frames, {tags} tags, {tags_left_out} tags left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the \
              table\n\n{table}"
+        )
+    }
+}
+
+impl TableSummary {
+    fn new(fit: &TableFit) -> Self {
+        Self {
+            tags: fit.tags,
+            tags_left_out: fit.left_out,
+            misfit_px: fit.rms,
+            camera_height_m: fit.camera.centre()[2],
+            place_std_mm: fit.translation_std.map(|std| 1e3 * std),
+            turn_std_deg: fit.rotation_std.map(f64::to_degrees),
+        }
+    }
+
+    fn text(&self) -> String {
+        let Self {
+            tags,
+            tags_left_out,
+            misfit_px,
+            camera_height_m,
+            place_std_mm,
+            turn_std_deg,
+        } = self;
+        let mut table = Table::new(["board before the camera", "std mm", "std deg"]);
+        for (axis, (place, turn)) in ["x", "y", "z"]
+            .iter()
+            .zip(place_std_mm.iter().zip(turn_std_deg))
+        {
+            table.push([
+                (*axis).to_owned(),
+                format!("{place:.4}"),
+                format!("{turn:.4}"),
+            ]);
+        }
+        format!(
+            "{tags} tags, {tags_left_out} tags left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the table, for the lens as \
+             told\n\n{table}"
         )
     }
 }

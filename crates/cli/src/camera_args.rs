@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use stickslip_formats::CameraMapping;
 
 use crate::arg_values::{Rows, ThreadArgs, positive};
 
@@ -10,13 +11,22 @@ use crate::arg_values::{Rows, ThreadArgs, positive};
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
     /// Folder with images of the board: lying on the table in one, held and tilted to all sides in
-    /// the others
+    /// the others; or a bag of images, which gives the table alone, through the lens of its
+    /// CameraInfo or of --lens
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
+    /// Take the lens from this file, and find the table alone, from the image in which the board
+    /// lies on it: ROS' camera_info.yaml, the YAML of OpenCV's calibration, or a calibration.toml
+    #[arg(long, value_name = "FILE")]
+    pub lens: Option<PathBuf>,
+    /// Topics of a bag of images, as for `track`
+    #[arg(long = "topic", value_name = "KEY=TOPIC")]
+    pub topics: Vec<CameraMapping>,
     /// The board (board.toml): rows, columns, tag_size, gap, and how it lies on the table
     #[arg(long, value_name = "TOML")]
     pub board: PathBuf,
-    /// The image in which the board lies on the table [default: the first one]
+    /// The image in which the board lies on the table; of a bag, its number from 1 on [default: the
+    /// first one]
     #[arg(long, value_name = "NAME")]
     pub flat: Option<String>,
     /// Write the calibration into this file
@@ -33,10 +43,17 @@ pub struct CalibrateArgs {
 /// Arguments of `stickslip track`.
 #[derive(Debug, Args)]
 pub struct TrackArgs {
-    /// Folder with the images, and their times in frames.csv (time,file)
+    /// Folder with the images, and their times in frames.csv (time,file); or a bag of images, its
+    /// folder or an .mcap file
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
-    /// The calibrated camera (calibration.toml)
+    /// Topics of a bag: image=/camera/image_raw (needed); info=TOPIC for CameraInfo elsewhere than
+    /// beside the images, info= to leave it out; fixel_1=TOPIC, ..., wrench=TOPIC for what sensors
+    /// felt; may be repeated
+    #[arg(long = "topic", value_name = "KEY=TOPIC")]
+    pub topics: Vec<CameraMapping>,
+    /// The calibrated camera (calibration.toml); with the CameraInfo of a bag, [lens] may be left out
+    /// of it
     #[arg(long, value_name = "TOML")]
     pub calibration: PathBuf,
     /// Which tag is on which body, and where (tags.toml)

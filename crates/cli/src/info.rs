@@ -20,6 +20,8 @@ struct Shown {
     info: BagInfo,
     /// Commands to go on with, in their order.
     commands: Vec<String>,
+    /// Those that find the poses in the bag's images; none without images.
+    image_commands: Vec<String>,
 }
 
 /// Runs the command.
@@ -27,18 +29,40 @@ pub fn info(args: &InfoArgs) -> Result<Verdict> {
     let (info, verdict) = LogFiles::find(&args.bag)?.info()?;
     let shown = Shown {
         commands: commands(&args.bag, &info.suggestion),
+        image_commands: image_commands(&args.bag, &info.image_suggestion),
         info,
     };
     show_result(args.json, &shown, || text(&shown))?;
     Ok(verdict)
 }
 
+/// How to find object and pusher in the bag's images.
+fn image_commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
+    if suggestion.is_empty() {
+        return Vec::new();
+    }
+    let (topics, bag) = (
+        topic_options(suggestion),
+        quoted(&bag.display().to_string()),
+    );
+    vec![
+        format!(
+            "stickslip track {bag}{topics} --calibration calibration.toml --tags tags.toml --out tracked"
+        ),
+        "stickslip filter tracked/log.csv --scene scene.toml --out out --report report.html"
+            .to_owned(),
+    ]
+}
+
+/// Mappings as options of a command.
+fn topic_options(mappings: &[String]) -> String {
+    let option = |topic: &String| format!(" --topic {}", quoted(topic));
+    mappings.iter().map(option).collect()
+}
+
 /// How to check and filter the bag, from a scene beside it on, if there is none.
 fn commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
-    let topics: String = suggestion
-        .iter()
-        .map(|topic| format!(" --topic {}", quoted(topic)))
-        .collect();
+    let topics = topic_options(suggestion);
     let word = |path: &Path| quoted(&path.display().to_string());
     let folder = bag.parent().filter(|folder| *folder != Path::new(""));
     let folder = folder.unwrap_or(Path::new("."));
@@ -69,14 +93,20 @@ fn text(shown: &Shown) -> String {
     }
     parts.extend(problems(poses));
     let missing = missing(&shown.info);
-    parts.push(if missing.is_empty() {
-        format!("Go on with\n  {}", shown.commands.join("\n  "))
+    if missing.is_empty() {
+        parts.push(format!("Go on with\n  {}", shown.commands.join("\n  ")));
     } else {
-        format!(
+        parts.push(format!(
             "Nothing that moves on the table is left for {}: record its poses, or put the transform from a frame of the table to the camera on /tf_static",
             missing.join(" and ")
-        )
-    });
+        ));
+    }
+    if !shown.image_commands.is_empty() {
+        parts.push(format!(
+            "Or find object and pusher in the images by their tags, with a calibration.toml of `stickslip calibrate`\n  {}",
+            shown.image_commands.join("\n  ")
+        ));
+    }
     parts.join("\n")
 }
 

@@ -122,18 +122,24 @@ impl LogFiles {
 
     /// Looks through a bag; warnings go to standard error.
     pub fn info(&self) -> Result<(BagInfo, Verdict)> {
-        if !self.is_bag {
-            return Err(hinted(
-                format!("{}: this is no bag", self.shown.display()),
-                "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
-            ));
-        }
+        self.require_bag()?;
         let (info, warnings) = read_bag_info(self.open_all()?)?;
         Ok((info, self.told(&warnings)))
     }
 
+    /// Refuses what is no bag.
+    pub fn require_bag(&self) -> Result<()> {
+        match self.is_bag {
+            true => Ok(()),
+            false => Err(hinted(
+                format!("{}: this is no bag", self.shown.display()),
+                "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
+            )),
+        }
+    }
+
     /// All files by name.
-    fn open_all(&self) -> Result<Vec<(String, BufReader<File>)>> {
+    pub fn open_all(&self) -> Result<Vec<(String, BufReader<File>)>> {
         let open = |path: &PathBuf| {
             let file = BufReader::new(self.opened(path)?);
             Ok((path.display().to_string(), file))
@@ -142,7 +148,7 @@ impl LogFiles {
     }
 
     /// Tells warnings, and whether they are about lost input.
-    fn told(&self, warnings: &[LogWarning]) -> Verdict {
+    pub fn told(&self, warnings: &[LogWarning]) -> Verdict {
         for warning in warnings {
             talk(format_args!("warning: {warning}"));
         }

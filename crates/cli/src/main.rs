@@ -9,6 +9,7 @@
 
 mod arg_values;
 mod args;
+mod bag_images;
 mod calibrate;
 mod camera_args;
 mod camera_setup;

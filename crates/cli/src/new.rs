@@ -1,12 +1,18 @@
 //! `stickslip new`: a scene to begin with.
 
+use std::path::Path;
+
 use anyhow::Result;
-use stickslip_formats::{NEW_SCENE, scene_assumptions, scene_schema};
+use stickslip_formats::{
+    NEW_SCENE, Outline, OutlineOptions, read_dxf_outline, read_svg_outline, scene_assumptions,
+    scene_schema,
+};
 
 use crate::args::NewArgs;
+use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::files::write_file;
-use crate::output::show;
+use crate::output::{show, talk};
 use crate::verdict::Verdict;
 
 /// Runs the command.
@@ -21,10 +27,30 @@ pub fn new(args: &NewArgs) -> Result<Verdict> {
             "name another folder",
         ));
     }
+    let outline = args.outline.as_deref().map(|path| outline(args, path));
+    let outline = outline.transpose()?;
+    let text = outline
+        .as_ref()
+        .map_or(NEW_SCENE.to_owned(), Outline::scene);
     write_file(&schema, scene_schema().as_bytes())?;
-    write_file(&scene, NEW_SCENE.as_bytes())?;
+    write_file(&scene, text.as_bytes())?;
     let name = scene.display().to_string();
-    let assumed = scene_assumptions(NEW_SCENE, &name)?;
+    if let Some(outline) = &outline {
+        show(format_args!("{}", described(outline, args.tolerance)))?;
+        if outline.holes > 0 {
+            talk(format_args!(
+                "warning: {} holes are not part of the outline that others touch; give inertia and tripod_radius, which are not those of a full plate",
+                outline.holes
+            ));
+        }
+    }
+    // a plate with holes has no middle of its own that could be assumed
+    let full = outline.as_ref().is_none_or(|outline| outline.holes == 0);
+    let assumed = if full {
+        scene_assumptions(&text, &name)?
+    } else {
+        Vec::new()
+    };
     let assumed = assumed.iter().map(|line| format!("\n  {line}"));
     show(format_args!(
         "wrote {name} and, for editors, {}\nPut in your own numbers. As it is:{}",
@@ -32,4 +58,54 @@ pub fn new(args: &NewArgs) -> Result<Verdict> {
         assumed.collect::<String>()
     ))?;
     Ok(Verdict::Done)
+}
+
+/// The outline of a drawing, by the ending of its name.
+fn outline(args: &NewArgs, path: &Path) -> Result<Outline> {
+    let options = OutlineOptions {
+        scale: args.scale,
+        tolerance: args.tolerance,
+    };
+    let name = path.display().to_string();
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    match ending.unwrap_or("").to_ascii_lowercase().as_str() {
+        "svg" => Ok(read_svg_outline(
+            &text_of(path, "drawing")?,
+            &name,
+            &options,
+        )?),
+        "dxf" => Ok(read_dxf_outline(
+            &text_of(path, "drawing")?,
+            &name,
+            &options,
+        )?),
+        _ => Err(hinted(
+            format!("{name}: only drawings whose names end in .svg or .dxf can be read"),
+            "save the drawing as one of them",
+        )),
+    }
+}
+
+/// What was made of a drawing.
+fn described(outline: &Outline, tolerance: f64) -> String {
+    let Outline {
+        parts,
+        vertices,
+        size: [width, height],
+        area,
+        centre: [x, y],
+        unit,
+        ..
+    } = outline;
+    format!(
+        "outline: {:.3} x {:.3} mm, {:.1} mm^2, {vertices} vertices in {} convex parts, within {} mm of the drawing's curves; the drawing is in {unit}\n\
+         its middle, at ({:.3}, {:.3}) mm in the drawing with y up, is taken for the centre of mass: the origin",
+        1e3 * width,
+        1e3 * height,
+        1e6 * area,
+        parts.len(),
+        1e3 * tolerance,
+        1e3 * x,
+        1e3 * y
+    )
 }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use anyhow::{Context, Result};
-use stickslip_vision::{board_svg, read_board, tags_svg};
+use stickslip_vision::{print_board, print_tags, read_board};
 
 use crate::failure::hinted;
 use crate::files::{ready_file, write_file};
@@ -15,17 +15,21 @@ use crate::verdict::Verdict;
 pub fn print(args: &PrintArgs) -> Result<Verdict> {
     let board = args.board.as_deref();
     ready_file(&args.out, board.as_slice())?;
-    let svg = match board {
+    let sheet = match board {
         Some(path) => {
             let name = path.display().to_string();
             let text = fs::read_to_string(path).with_context(|| name.clone())?;
-            board_svg(&read_board(&text, &name)?.board, args.paper)
+            print_board(&read_board(&text, &name)?.board, args.paper)
         }
-        None => tags_svg(&args.tags, args.size, args.paper),
+        None => print_tags(&args.tags, args.size, args.paper),
     };
-    let svg =
-        svg.map_err(|error| hinted(error.to_string(), "see --size, --paper and board.toml"))?;
-    write_file(&args.out, svg.as_bytes())?;
+    let sheet =
+        sheet.map_err(|error| hinted(error.to_string(), "see --size, --paper and board.toml"))?;
+    let ending = args.out.extension().and_then(|ending| ending.to_str());
+    match ending.unwrap_or("").to_ascii_lowercase().as_str() {
+        "pdf" => write_file(&args.out, &sheet.pdf())?,
+        _ => write_file(&args.out, sheet.svg().as_bytes())?,
+    }
     show(format_args!(
         "wrote {}; print it at 100 %, measure the ruler: 100 mm, and the black squares",
         args.out.display()

@@ -10,8 +10,8 @@ use crate::arg_values::positive;
 /// Arguments of `stickslip print`.
 #[derive(Debug, Args)]
 pub struct PrintArgs {
-    /// The SVG file to write
-    #[arg(value_name = "SVG")]
+    /// The file to write: PDF where its name ends in .pdf, else SVG
+    #[arg(value_name = "FILE")]
     pub out: PathBuf,
     /// Numbers of the tags to draw, as 0,1
     #[arg(

@@ -17,6 +17,15 @@ pub fn bar(length: usize, unit: &str, work: Work) -> ProgressBar {
     }
 }
 
+/// A count of `unit` of which nobody knows how many there will be.
+pub fn spinner(unit: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    match ProgressStyle::with_template(&format!("{{spinner}} {{pos}} {unit}, {{elapsed}}")) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
 /// Whether a person would wait for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {

@@ -6,13 +6,14 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use stickslip::{Log, quantile};
-use stickslip_formats::{BagOptions, Topics, write_log, write_log_mcap};
+use stickslip_formats::{BagOptions, Readings, Topics, write_log, write_log_mcap};
 use stickslip_report::{Table, number};
 use stickslip_vision::{
-    BodyTag, Camera, FrameSighting, Measurement, Sighting, Tags, Track, TrackError, read_camera,
-    read_tags, write_poses,
+    BodyTag, Camera, ConfigError, ConfigProblem, FrameSighting, Measurement, Sighting, Tags, Track,
+    TrackError, read_camera, read_camera_with, read_tags, write_poses,
 };
 
+use crate::bag_images::{BagImages, TrackedBag};
 use crate::camera_args::TrackArgs;
 use crate::experiment::text_of;
 use crate::failure::hinted;
@@ -51,27 +52,30 @@ struct Summary {
 
 /// Runs the command.
 pub fn track(args: &TrackArgs) -> Result<Verdict> {
-    let camera = read_camera(
-        &text_of(&args.calibration, "calibration")?,
-        &args.calibration.display().to_string(),
-    )?;
     let tags = read_tags(
         &text_of(&args.tags, "tags file")?,
         &args.tags.display().to_string(),
     )?;
     ready_folder(&args.out)?;
-    let folder = FrameFolder::list(&args.frames)?;
-    let time = times(args, &folder)?;
-    let found = found(args, &folder, &camera, &tags)?;
-    let (log, verdict) = with_sensors(
-        args,
-        Log {
-            object: found.object(),
-            pusher: found.pusher(),
-            time,
-            ..Log::default()
-        },
-    )?;
+    let TrackedBag {
+        time,
+        track: found,
+        readings,
+        verdict,
+    } = match BagImages::find(&args.frames, &args.topics)? {
+        Some(bag) => of_bag(args, &bag, &tags)?,
+        None => of_folder(args, &tags)?,
+    };
+    let log = Log {
+        object: found.object(),
+        object_covariance: Vec::new(),
+        pusher: found.pusher(),
+        time,
+        tactile: readings.tactile,
+        force: readings.force,
+    };
+    let (log, sensors) = with_sensors(args, log)?;
+    let verdict = verdict.and(sensors);
     write(&args.out, &log, &found)?;
     let summary = Summary::new(&found);
     show_result(args.json, &summary, || summary.text())?;
@@ -86,6 +90,61 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
         args.out.join("log.csv").display()
     ));
     Ok(verdict)
+}
+
+/// What a bag of images shows.
+fn of_bag(args: &TrackArgs, bag: &BagImages, tags: &Tags) -> Result<TrackedBag> {
+    if let Some(rate) = args.rate {
+        return Err(hinted(
+            format!(
+                "{}: the bag's images have times, and --rate {rate} gives others",
+                args.frames.display()
+            ),
+            "leave --rate out",
+        ));
+    }
+    let camera = match bag.lens()? {
+        None => camera(args)?,
+        Some(lens) => {
+            let (text, name) = calibration(args)?;
+            read_camera_with(&text, &name, &lens).map_err(other_lens)?
+        }
+    };
+    bag.track(&camera, tags, &args.threads)
+}
+
+/// How to say on the command line through which lens the images are seen.
+fn other_lens(error: ConfigError) -> anyhow::Error {
+    match error.problem {
+        ConfigProblem::OtherLens { .. } => hinted(
+            error.to_string(),
+            "or take the lens of the calibration for the images, too, with --topic info=",
+        ),
+        _ => error.into(),
+    }
+}
+
+/// What a folder of images shows.
+fn of_folder(args: &TrackArgs, tags: &Tags) -> Result<TrackedBag> {
+    let camera = camera(args)?;
+    let folder = FrameFolder::list(&args.frames)?;
+    Ok(TrackedBag {
+        time: times(args, &folder)?,
+        track: found(args, &folder, &camera, tags)?,
+        readings: Readings::default(),
+        verdict: Verdict::Done,
+    })
+}
+
+/// The calibration's text and name.
+fn calibration(args: &TrackArgs) -> Result<(String, String)> {
+    let text = text_of(&args.calibration, "calibration")?;
+    Ok((text, args.calibration.display().to_string()))
+}
+
+fn camera(args: &TrackArgs) -> Result<Camera> {
+    let (text, name) = calibration(args)?;
+    Ok(read_camera(&text, &name)?)
 }
 
 /// Times of the frames: those of frames.csv, else by the rate.

@@ -16,6 +16,14 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// How two parts ended together, neither of which failed: input is lost where one of them lost some.
+    pub fn and(self, other: Self) -> Self {
+        match self {
+            Self::Done => other,
+            worse => worse,
+        }
+    }
+
     /// The process's exit code.
     pub fn exit_code(self) -> ExitCode {
         match self {

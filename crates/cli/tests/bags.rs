@@ -18,6 +18,7 @@ fn rows(log: &Log, from: usize, to: usize) -> Log {
     Log {
         time: log.time[from..to].to_vec(),
         object: log.object[from..to].to_vec(),
+        object_covariance: Vec::new(),
         pusher: log.pusher[from..to].to_vec(),
         tactile: log
             .tactile

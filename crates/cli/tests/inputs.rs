@@ -6,7 +6,7 @@ mod common;
 
 use std::fs;
 
-use common::{Experiment, SLIDE, stickslip, succeeds};
+use common::{Experiment, SLIDE, empty_folder, stickslip, succeeds};
 
 /// What `filter` says to a log under another name or with other content.
 fn refusal(case: &Experiment, log: &str) -> String {
@@ -156,6 +156,8 @@ fn new_scene_and_prints_are_ready_to_use() {
     .unwrap();
     succeeds(stickslip().args(["print", &at("board.svg"), "--board", &at("board.toml")]));
     succeeds(stickslip().args(["print", &at("tags.svg"), "--tags", "0,1", "--size", "0.03"]));
+    succeeds(stickslip().args(["print", &at("tags.pdf"), "--tags", "0,1", "--size", "0.03"]));
+    assert!(fs::read(at("tags.pdf")).unwrap().starts_with(b"%PDF-1.4"));
     for (file, tags) in [("board.svg", 6), ("tags.svg", 2)] {
         let svg = fs::read_to_string(at(file)).unwrap();
         assert_eq!(svg.matches("id=\"tag").count(), tags, "{file}");
@@ -169,4 +171,62 @@ fn new_scene_and_prints_are_ready_to_use() {
         large.status.code() == Some(1) && told.contains("the paper has"),
         "{told}"
     );
+}
+
+#[test]
+fn new_takes_an_outline_from_a_drawing() {
+    let folder = empty_folder("inputs/outline");
+    let at = |name: &str| folder.join(name).display().to_string();
+    fs::write(
+        at("ell.svg"),
+        "<svg xmlns='http://www.w3.org/2000/svg' width='80mm' height='60mm' viewBox='0 0 80 60'><path d='M10 10h40v20h-20v20h-20z'/></svg>",
+    )
+    .unwrap();
+    let run = succeeds(stickslip().args(["new", &at("my"), "--outline", &at("ell.svg")]));
+    let told = String::from_utf8(run.stdout).unwrap();
+    for words in [
+        "outline: 40.000 x 40.000 mm, 1200.0 mm^2, 6 vertices in 2 convex parts",
+        "the drawing is in mm, as it says",
+        "`object.inertia` is missing",
+    ] {
+        assert!(told.contains(words), "{words} is not in\n{told}");
+    }
+    let scene = fs::read_to_string(folder.join("my/scene.toml")).unwrap();
+    let shape = stickslip_formats::read_scene(&scene, "scene.toml").unwrap();
+    assert_eq!(shape.scene.object.shape.parts().len(), 2);
+
+    fs::write(at("hole.svg"), "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0h40v40h-40z M25 5h10v10h-10z'/></svg>").unwrap();
+    let run = succeeds(stickslip().args([
+        "new",
+        &at("other"),
+        "--outline",
+        &at("hole.svg"),
+        "--scale",
+        "0.001",
+    ]));
+    let warned = String::from_utf8(run.stderr).unwrap();
+    assert!(warned.contains("1 holes are not part"), "{warned}");
+
+    for (arguments, words) in [
+        (
+            &["--outline", "part.step"][..],
+            "only drawings whose names end in .svg or .dxf",
+        ),
+        (&["--outline", &at("none.dxf")], "none.dxf"),
+    ] {
+        let run = stickslip()
+            .args(["new", &at("third")])
+            .args(arguments)
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(
+            run.status.code() == Some(1) && told.contains(words),
+            "{told}"
+        );
+        assert!(
+            !folder.join("third").exists(),
+            "nothing is written where a drawing is refused"
+        );
+    }
 }

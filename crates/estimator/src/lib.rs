@@ -5,6 +5,7 @@
 
 mod angle;
 mod baseline;
+mod covariance;
 pub mod diagnosis;
 mod error;
 mod estimate;
@@ -28,6 +29,7 @@ mod uncertainty;
 
 pub use angle::wrapped;
 pub use baseline::predictor::{NominalPrediction, NominalPredictor};
+pub use covariance::PoseCovariance;
 pub use error::RunError;
 pub use estimate::{Estimate, EstimateRow, Spread};
 pub use log::Log;

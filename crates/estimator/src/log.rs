@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::quantile::quantile;
 use crate::row::{LONGEST_PAUSE, Row, unit_of_times};
@@ -13,6 +14,9 @@ pub struct Log {
     pub time: Vec<f64>,
     /// Measured object poses.
     pub object: Vec<Option<Pose>>,
+    /// How noisy each of them is, `None`: as the scene's camera says; empty where the log says it of
+    /// none.
+    pub object_covariance: Vec<Option<PoseCovariance>>,
     /// Measured pusher poses.
     pub pusher: Vec<Option<Pose>>,
     /// Tactile readings: one column per fixel sensor, over the interval that ends at the row.
@@ -41,6 +45,7 @@ impl Log {
         Row {
             time: self.time[row],
             object: self.object[row],
+            object_covariance: self.object_covariance.get(row).copied().flatten(),
             pusher: self.pusher[row],
             tactile: self.tactile.iter().map(|sensor| sensor[row]).collect(),
             force: self.force.get(row).copied().flatten(),
@@ -92,8 +97,11 @@ impl Log {
         ];
         let tactile = self.tactile.iter().zip(1..);
         columns.extend(tactile.map(|(column, k)| (format!("tactile {k}"), column.len())));
-        let force = Some(("force".to_owned(), self.force.len()));
-        columns.extend(force.filter(|(_, entries)| *entries > 0));
+        let optional = [
+            ("object_covariance".to_owned(), self.object_covariance.len()),
+            ("force".to_owned(), self.force.len()),
+        ];
+        columns.extend(optional.into_iter().filter(|(_, entries)| *entries > 0));
         match columns.into_iter().find(|(_, entries)| *entries != rows) {
             None => Ok(()),
             Some((column, entries)) => Err(RunError::Columns {

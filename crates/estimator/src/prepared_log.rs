@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
@@ -57,6 +58,12 @@ impl<'a> PreparedLog<'a> {
     /// The object pose of a row, where it was measured and is not hidden.
     pub fn visible(&self, row: usize) -> Option<Pose> {
         self.log.object[row].filter(|_| !self.hidden[row])
+    }
+
+    /// How noisy that pose is, where the log says it.
+    pub fn covariance(&self, row: usize) -> Option<PoseCovariance> {
+        let covariance = self.log.object_covariance.get(row).copied().flatten();
+        covariance.filter(|_| self.visible(row).is_some())
     }
 
     /// Empty rows for every row of the log.

@@ -79,6 +79,11 @@ impl Unit {
 }
 
 impl Unit {
+    /// The smallest positive number that can be meant.
+    pub(crate) const fn least(self) -> f64 {
+        self.limits()[0]
+    }
+
     /// Whether a coordinate in it is one that can be.
     pub(crate) fn holds(self, coordinate: f64) -> bool {
         coordinate.abs() <= self.limits()[1]

@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::covariance::PoseCovariance;
 use crate::range::Unit;
 
 /// Longest time between two rows (s): a log that pauses longer is in milliseconds, or mixes two clocks
@@ -28,6 +29,8 @@ pub struct Row {
     pub time: f64,
     /// Pose of the object as the camera measured it; it shows the object one latency earlier.
     pub object: Option<Pose>,
+    /// How noisy that pose is; `None`: as the scene's camera says. It says nothing without a pose.
+    pub object_covariance: Option<PoseCovariance>,
     /// Pose of the pusher.
     pub pusher: Option<Pose>,
     /// Tactile readings over the interval that ends here, sensor k on fixel k; sensors past the end
@@ -72,6 +75,16 @@ pub enum RowError {
         time: f64,
         /// The pose found.
         pose: Pose,
+    },
+    /// A covariance that is none.
+    #[error(
+        "the covariance of the object's pose at {time} s is {covariance:?}; it must be finite and positive definite, with standard deviations between 1e-9 and 1e6; give None where it is not known"
+    )]
+    Covariance {
+        /// Time of the row (s).
+        time: f64,
+        /// The covariance found.
+        covariance: PoseCovariance,
     },
     /// More sensors than fixels.
     #[error(
@@ -126,6 +139,12 @@ impl Row {
             if !(places && Unit::Radian.holds(pose.theta)) {
                 return Err(RowError::Far { body, time, pose });
             }
+        }
+        if let Some(covariance) = self.object_covariance
+            && self.object.is_some()
+            && !covariance.is_valid()
+        {
+            return Err(RowError::Covariance { time, covariance });
         }
         let sensors = self.tactile.len();
         if sensors > fixels {

@@ -6,6 +6,7 @@ use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
 use crate::options::{Method, RunOptions, TactileUse};
 use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
 use crate::prepared_log::PreparedLog;
 use crate::pusher::track::Tracking;
@@ -159,7 +160,11 @@ fn track_smoothed(
         late: 0.0,
         observer: *observer,
     };
-    let start = (log.time[*first], *start);
+    let start = PoseAt {
+        time: log.time[*first],
+        pose: *start,
+        covariance: prepared.covariance(*first),
+    };
     let mut filter = ContactFilter::new(setup, camera, start, &filter_options)?;
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[*first].clone_from(filter.latest());
@@ -172,6 +177,7 @@ fn track_smoothed(
         let measured = Measured {
             time: row_at.time,
             object: row_at.object,
+            covariance: row_at.object_covariance,
             tactile: &row_at.tactile,
         };
         let drive = Drive {
@@ -226,6 +232,7 @@ impl PreparedLog<'_> {
     fn read(&self, row: usize, tactile: TactileUse, to: &mut Row) {
         to.time = self.log.time[row];
         to.object = self.visible(row);
+        to.object_covariance = self.covariance(row);
         to.pusher = self.log.pusher[row];
         to.force = self.log.force.get(row).copied().flatten();
         to.tactile.clear();

@@ -9,6 +9,7 @@ use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
 use crate::particle::view::ParticleView;
 use crate::pusher::causal::CausalTrack;
@@ -247,6 +248,7 @@ impl<'o> Tracker<'o> {
                 let measured = Measured {
                     time: row.time,
                     object,
+                    covariance: row.object_covariance,
                     tactile,
                 };
                 let substeps = &self.substeps;
@@ -258,7 +260,11 @@ impl<'o> Tracker<'o> {
             }
             (None, Some(pose)) => {
                 let options = self.filter_options();
-                let start = (row.time, pose);
+                let start = PoseAt {
+                    time: row.time,
+                    pose,
+                    covariance: row.object_covariance,
+                };
                 let filter = ContactFilter::new(&self.setup, self.camera, start, &options);
                 self.filter = Some(filter.expect("the settings were checked"));
             }
@@ -290,7 +296,11 @@ impl<'o> Tracker<'o> {
             });
         }
         if let (Some(filter), Some(pose)) = (&mut self.filter, row.object) {
-            filter.weigh_late(row.time, pose);
+            filter.weigh_late(PoseAt {
+                time: row.time,
+                pose,
+                covariance: row.object_covariance,
+            });
         }
         Ok(self.estimate())
     }

@@ -5,7 +5,9 @@ mod common;
 
 use common::{log, setup};
 use stickslip::dynamics::Pose;
-use stickslip::{Camera, Log, RunOptions, Setup, Tracker, TrackerOptions, Tracking, run};
+use stickslip::{
+    Camera, Log, PoseCovariance, RunOptions, Setup, Tracker, TrackerOptions, Tracking, run,
+};
 
 type Change<T> = fn(&mut T);
 
@@ -46,7 +48,7 @@ fn refusal(setup: &Setup, log: &Log, options: &RunOptions) -> String {
 
 #[test]
 fn run_refuses_logs_that_cannot_be() {
-    let cases: [(Change<Log>, &str); 9] = [
+    let cases: [(Change<Log>, &str); 11] = [
         (
             |log| log.object.truncate(39),
             "`object` has 39 entries and `time` 40",
@@ -78,6 +80,14 @@ fn run_refuses_logs_that_cannot_be() {
         (
             |log| log.pusher[5] = Some(Pose::new(f64::NAN, 0.0, 0.0)),
             "row 5: the pusher's pose at 0.16666666666666666 s is (NaN, 0, 0)",
+        ),
+        (
+            |log| log.object_covariance = vec![Some(PoseCovariance::default()); log.len()],
+            "row 0: the covariance of the object's pose at 0 s is PoseCovariance { x: 0.0,",
+        ),
+        (
+            |log| log.object_covariance = vec![None],
+            "object_covariance",
         ),
         (
             |log| log.pusher[5] = Some(Pose::new(1e30, 0.0, 0.0)),

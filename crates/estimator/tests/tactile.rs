@@ -83,6 +83,7 @@ fn log(readings: impl Fn(usize) -> bool) -> Log {
         .map(|&t| Some(Pose::new((pushed(t) - 0.005).clamp(0.0, 0.005), 0.0, 0.0)));
     let tactile = vec![(0..time.len()).map(|row| Some(readings(row))).collect()];
     Log {
+        object_covariance: Vec::new(),
         pusher: pusher.collect(),
         object: object.collect(),
         tactile,

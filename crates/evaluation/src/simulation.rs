@@ -176,6 +176,7 @@ fn log(trace: &Trace, measurements: &[CameraMeasurement]) -> Log {
     Log {
         time: frames.iter().map(|frame| frame.time).collect(),
         object: measurements.iter().map(|seen| Some(seen.object)).collect(),
+        object_covariance: Vec::new(),
         pusher: measurements.iter().map(|seen| Some(seen.pusher)).collect(),
         tactile: (0..sensors).map(|k| reading(k).collect()).collect(),
         force: Vec::new(),

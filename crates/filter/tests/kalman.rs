@@ -102,22 +102,30 @@ fn filter_agrees_with_batch_least_squares_over_the_rows_so_far() {
 /// ln p(measurements after the first | the first) from their joint covariance: initial position and
 /// velocity, the twice-integrated white noise q (m^3/3 + m^2 |t - s|/2) with m = min(t, s), and the
 /// measurement noise.
-fn joint_log_density(axis: &ConstantVelocity, times: &[f64], measurements: &[Option<f64>]) -> f64 {
-    let seen: Vec<(f64, f64)> = times
+fn joint_log_density(
+    axis: &ConstantVelocity,
+    times: &[f64],
+    measurements: &[Option<f64>],
+    std: impl Fn(usize) -> f64,
+) -> f64 {
+    let seen: Vec<(f64, f64, f64)> = times
         .iter()
         .zip(measurements)
+        .enumerate()
         .skip(1)
-        .filter_map(|(t, z)| z.map(|z| (t - times[0], z)))
+        .filter_map(|(row, (t, z))| z.map(|z| (t - times[0], z, std(row).powi(2))))
         .collect();
     let first = measurements[0].unwrap();
-    let r = axis.measurement_std.powi(2);
+    let r = std(0).powi(2);
     let covariance = DMatrix::from_fn(seen.len(), seen.len(), |i, j| {
         let (t, s) = (seen[i].0, seen[j].0);
         let m = if t < s { t } else { s };
         let motion = axis.process_noise * (m.powi(3) / 3.0 + m * m * (t - s).abs() / 2.0);
-        r + axis.initial_velocity_std.powi(2) * t * s + motion + if i == j { r } else { 0.0 }
+        r + axis.initial_velocity_std.powi(2) * t * s
+            + motion
+            + if i == j { seen[i].2 } else { 0.0 }
     });
-    let residual = DVector::from_iterator(seen.len(), seen.iter().map(|(_, z)| z - first));
+    let residual = DVector::from_iterator(seen.len(), seen.iter().map(|(_, z, _)| z - first));
     let factor = covariance.cholesky().unwrap();
     let log_determinant: f64 = factor
         .l()
@@ -133,12 +141,43 @@ fn joint_log_density(axis: &ConstantVelocity, times: &[f64], measurements: &[Opt
 fn log_likelihood_agrees_with_the_joint_density() {
     let (times, measurements) = series(40, 6);
     let filtered = AXIS.filter(&times, &measurements).unwrap();
-    let exact = joint_log_density(&AXIS, &times, &measurements);
+    let exact = joint_log_density(&AXIS, &times, &measurements, |_| AXIS.measurement_std);
     assert!(
         (filtered.log_likelihood - exact).abs() < 1e-9 * exact.abs(),
         "{}, not {exact}",
         filtered.log_likelihood
     );
+}
+
+/// Every third measurement has a noise of its own, from much smaller to much larger than the model's.
+#[test]
+fn measurements_may_have_a_noise_of_their_own() {
+    let (times, measurements) = series(40, 6);
+    let own = |row: usize| {
+        row.is_multiple_of(3)
+            .then(|| AXIS.measurement_std * libm::exp(0.2 * (row as f64 - 20.0)))
+    };
+    let stds: Vec<Option<f64>> = (0..times.len()).map(own).collect();
+    let filtered = AXIS.filter_with_stds(&times, &measurements, &stds).unwrap();
+    let std = |row: usize| own(row).unwrap_or(AXIS.measurement_std);
+    let exact = joint_log_density(&AXIS, &times, &measurements, std);
+    assert!(
+        (filtered.log_likelihood - exact).abs() < 1e-9 * exact.abs(),
+        "{}, not {exact}",
+        filtered.log_likelihood
+    );
+    for (stds, words) in [
+        (
+            vec![Some(0.0); 40],
+            "`standard deviation of a measurement` is 0",
+        ),
+        (vec![None; 39], "40 times but 39 measurements"),
+    ] {
+        let refused = AXIS
+            .filter_with_stds(&times, &measurements, &stds)
+            .unwrap_err();
+        assert!(refused.to_string().contains(words), "{refused}");
+    }
 }
 
 #[test]

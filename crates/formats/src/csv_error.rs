@@ -125,6 +125,14 @@ pub enum CsvProblem {
         /// The rule.
         rule: String,
     },
+    /// A covariance that is none.
+    #[error(
+        "the covariance {found} (variances of x, y, theta, then of x with y, x with theta, y with theta) cannot be; it must be positive definite, with standard deviations of at least 1e-9. Leave all six cells empty where it is not known"
+    )]
+    Covariance {
+        /// Its numbers.
+        found: String,
+    },
     /// A cell that must be filled.
     #[error("the cell is empty; every row needs a value here")]
     EmptyCell,

@@ -23,6 +23,7 @@ mod mounts;
 mod named_columns;
 mod nearest;
 mod number;
+mod outline;
 mod recorder;
 mod row_json;
 mod scene;
@@ -39,14 +40,20 @@ pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
-    BagInfo, BagOptions, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place,
-    PosesInfo, Topic, TopicError, TopicInfo, TopicMapping, Topics, read_bag, read_bag_info,
-    read_log_mcap, write_estimate_mcap, write_estimate_tum, write_log_mcap,
+    BagCameraInfo, BagImage, BagInfo, BagOptions, BagPicture, CameraMapping, CameraRecording,
+    CameraTopics, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place, PosesInfo,
+    Readings, Topic, TopicError, TopicInfo, TopicMapping, Topics, read_bag, read_bag_camera_info,
+    read_bag_images, read_bag_info, read_log_mcap, write_estimate_mcap, write_estimate_tum,
+    write_log_mcap,
 };
 pub use log_warning::LogWarning;
 pub use mounts::Mounts;
 pub use named_columns::{ColumnError, NamedColumns};
 pub use nearest::nearest;
+pub use outline::{
+    DrawnUnit, Outline, OutlineError, OutlineOptions, OutlineProblem, read_dxf_outline,
+    read_svg_outline,
+};
 pub use recorder::{CsvRecorder, McapRecorder};
 pub use row_json::{RowJsonError, read_row_json};
 pub use scene::{

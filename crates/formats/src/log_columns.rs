@@ -1,9 +1,12 @@
 //! A log as columns of numbers, named as in `log.csv`: [`log_columns`], [`log_of_columns`].
 
-use stickslip::Log;
+use stickslip::{Log, PoseCovariance};
 use stickslip_dynamics::Pose;
 
-use crate::log_csv::{FORCE, OBJECT, PUSHER, TACTILE, header};
+use crate::log_csv::{
+    COVARIANCE, FORCE, OBJECT, PUSHER, TACTILE, covariance, covariance_numbers, forget_empty,
+    header,
+};
 use crate::log_warning::LogWarning;
 use crate::named_columns::{ColumnError, NamedColumns};
 
@@ -33,12 +36,25 @@ pub fn log_columns(log: &Log) -> Vec<(String, Vec<f64>)> {
         let number = |force: &Option<[f64; 2]>| force.map_or(f64::NAN, |force| force[axis]);
         log.force.iter().map(number).collect()
     });
+    let covariance = (0..if log.object_covariance.is_empty() {
+        0
+    } else {
+        6
+    })
+        .map(|k| {
+            let number = |own: &Option<PoseCovariance>| {
+                own.as_ref()
+                    .map_or(f64::NAN, |own| covariance_numbers(own)[k])
+            };
+            log.object_covariance.iter().map(number).collect()
+        });
     let columns = [log.time.clone()]
         .into_iter()
         .chain(of_poses(&log.object))
         .chain(of_poses(&log.pusher))
         .chain(tactile)
-        .chain(force);
+        .chain(force)
+        .chain(covariance);
     header(log).into_iter().zip(columns).collect()
 }
 
@@ -46,7 +62,7 @@ pub fn log_columns(log: &Log) -> Vec<(String, Vec<f64>)> {
 /// `name` for the file.
 ///
 /// # Errors
-/// A column is missing, time does not rise, sensors are not numbered from 1 on, a pose or force is given in part, or a
+/// A column is missing, time does not rise, sensors are not numbered from 1 on, a pose, force or covariance is given in part, or a
 /// reading is neither 0, 1 nor NaN.
 ///
 /// ```
@@ -81,15 +97,25 @@ pub fn log_of_columns(
             forces.collect::<Result<_, _>>()?
         }
     };
+    let mut object_covariance = match columns.find_all(COVARIANCE)? {
+        None => Vec::new(),
+        Some(group) => {
+            let own = (0..time.len()).map(|row| Ok(columns.group(group, row)?.map(covariance)));
+            own.collect::<Result<_, ColumnError>>()?
+        }
+    };
+    forget_empty(&mut object_covariance);
     let log = Log {
         time: time.to_vec(),
         object,
+        object_covariance,
         pusher,
         tactile: tactile.collect::<Result<_, _>>()?,
         force,
     };
     let known = header(&log);
-    let is_extra = |column: &&str| !known.iter().any(|known| known == column);
+    let is_extra =
+        |column: &&str| !known.iter().any(|known| known == column) && !COVARIANCE.contains(column);
     let extra: Vec<String> = columns
         .names()
         .filter(is_extra)

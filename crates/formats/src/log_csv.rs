@@ -1,13 +1,13 @@
 //! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and its sensors against the
 //! scene's fixels: [`check_sensors`].
 //!
-//! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y]`,
+//! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y][,object_var_x,...]`,
 //! the columns found by name, in any order. An empty cell is a missing measurement.
 
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
 
-use stickslip::{Log, Rule, Setup, Unit};
+use stickslip::{Log, PoseCovariance, Rule, Setup, Unit};
 use stickslip_dynamics::Pose;
 
 use crate::csv_error::{CsvProblem, LogError};
@@ -18,6 +18,14 @@ use crate::number;
 pub(crate) const OBJECT: [&str; 3] = ["object_x", "object_y", "object_theta"];
 pub(crate) const PUSHER: [&str; 3] = ["pusher_x", "pusher_y", "pusher_theta"];
 pub(crate) const FORCE: [&str; 2] = ["pusher_force_x", "pusher_force_y"];
+pub(crate) const COVARIANCE: [&str; 6] = [
+    "object_var_x",
+    "object_var_y",
+    "object_var_theta",
+    "object_cov_x_y",
+    "object_cov_x_theta",
+    "object_cov_y_theta",
+];
 pub(crate) const TACTILE: &str = "tactile_";
 
 /// A log has more tactile sensors than its scene has fixels.
@@ -40,14 +48,15 @@ struct Columns {
     pusher: [usize; 3],
     tactile: Vec<usize>,
     force: Option<[usize; 2]>,
+    covariance: Option<[usize; 6]>,
 }
 
 /// Reads a log; `name` is shown in errors and warnings.
 ///
 /// # Errors
 /// A required column is missing or named twice, a row has a wrong number of cells, a cell is no
-/// finite number, time does not rise, a pose or force is given in part, a tactile cell is neither 0
-/// nor 1, or there is no row.
+/// finite number, time does not rise, a pose, force or covariance is given in part, a covariance is
+/// none, a tactile cell is neither 0 nor 1, or there is no row.
 ///
 /// ```
 /// let text = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta\n0,0.1,0,0,0,0,0\n0.03,,,,0.01,0,0\n";
@@ -65,7 +74,40 @@ pub fn read_log(reader: impl Read, name: &str) -> Result<(Log, Vec<LogWarning>),
     for row in table.rows()? {
         columns.read_row(&row?, &mut log)?;
     }
+    forget_empty(&mut log.object_covariance);
     Ok((log, columns.warnings(&table)))
+}
+
+/// A column in which nothing stands is none.
+pub(crate) fn forget_empty<T>(column: &mut Vec<Option<T>>) {
+    if column.iter().all(Option::is_none) {
+        column.clear();
+    }
+}
+
+/// A covariance of six numbers in the order of the columns.
+pub(crate) fn covariance([x, y, theta, x_y, x_theta, y_theta]: [f64; 6]) -> PoseCovariance {
+    PoseCovariance {
+        x,
+        y,
+        theta,
+        x_y,
+        x_theta,
+        y_theta,
+    }
+}
+
+/// The six numbers of a covariance.
+pub(crate) fn covariance_numbers(covariance: &PoseCovariance) -> [f64; 6] {
+    let PoseCovariance {
+        x,
+        y,
+        theta,
+        x_y,
+        x_theta,
+        y_theta,
+    } = *covariance;
+    [x, y, theta, x_y, x_theta, y_theta]
 }
 
 /// Checks that the log has no more tactile sensors than the scene has fixels; fewer are allowed.
@@ -106,10 +148,9 @@ pub(crate) fn assert_equal_columns(log: &Log) {
         log.tactile.iter().all(|column| column.len() == rows),
         "columns of equal length"
     );
-    assert!(
-        log.force.is_empty() || log.force.len() == rows,
-        "columns of equal length"
-    );
+    for optional in [log.force.len(), log.object_covariance.len()] {
+        assert!(optional == 0 || optional == rows, "columns of equal length");
+    }
 }
 
 impl Columns {
@@ -119,7 +160,8 @@ impl Columns {
             object: table.require_all(OBJECT)?,
             pusher: table.require_all(PUSHER)?,
             tactile: tactile_columns(table)?,
-            force: force_columns(table)?,
+            force: optional_columns(table, FORCE)?,
+            covariance: optional_columns(table, COVARIANCE)?,
         })
     }
 
@@ -134,17 +176,21 @@ impl Columns {
         if let Some(force) = self.force {
             log.force.push(row.group(&force)?.map(|f| [f[0], f[1]]));
         }
+        if let Some(covariance) = self.covariance {
+            log.object_covariance.push(own_covariance(row, covariance)?);
+        }
         Ok(())
     }
 
     fn warnings(&self, table: &CsvTable) -> Vec<LogWarning> {
-        let force = self.force.iter().flatten();
+        let optional = self.force.iter().flatten();
+        let optional = optional.chain(self.covariance.iter().flatten());
         let used: BTreeSet<usize> = self
             .object
             .iter()
             .chain(&self.pusher)
             .chain(&self.tactile)
-            .chain(force)
+            .chain(optional)
             .copied()
             .chain([self.time])
             .collect();
@@ -197,12 +243,31 @@ fn tactile_columns(table: &CsvTable) -> Result<Vec<usize>, LogError> {
     in_order.collect()
 }
 
-/// The two force columns, or none where neither is there.
-fn force_columns(table: &CsvTable) -> Result<Option<[usize; 2]>, LogError> {
-    if FORCE.iter().any(|name| table.find(name).is_some()) {
-        table.require_all(FORCE).map(Some)
+/// Columns that are all there, or none where none is.
+fn optional_columns<const N: usize>(
+    table: &CsvTable,
+    names: [&'static str; N],
+) -> Result<Option<[usize; N]>, LogError> {
+    if names.iter().any(|name| table.find(name).is_some()) {
+        table.require_all(names).map(Some)
     } else {
         Ok(None)
+    }
+}
+
+/// What a row says of its pose's noise.
+fn own_covariance(row: &Row<'_>, columns: [usize; 6]) -> Result<Option<PoseCovariance>, LogError> {
+    let numbers = row.group(&columns)?;
+    let numbers = numbers.and_then(|numbers| <[f64; 6]>::try_from(numbers).ok());
+    let Some(covariance) = numbers.map(covariance) else {
+        return Ok(None);
+    };
+    match covariance.is_valid() {
+        true => Ok(Some(covariance)),
+        false => {
+            let found = covariance_numbers(&covariance).map(number::text).join(", ");
+            Err(row.error(columns[0], CsvProblem::Covariance { found }))
+        }
     }
 }
 
@@ -224,11 +289,14 @@ fn pose(row: &Row<'_>, columns: [usize; 3]) -> Result<Option<Pose>, LogError> {
 pub(crate) fn header(log: &Log) -> Vec<String> {
     let tactile = (1..=log.tactile.len()).map(|k| format!("{TACTILE}{k}"));
     let force = FORCE.into_iter().filter(|_| !log.force.is_empty());
+    let covariance = COVARIANCE
+        .into_iter()
+        .filter(|_| !log.object_covariance.is_empty());
     let poses = ["time"].into_iter().chain(OBJECT).chain(PUSHER);
     poses
         .map(str::to_owned)
         .chain(tactile)
-        .chain(force.map(str::to_owned))
+        .chain(force.chain(covariance).map(str::to_owned))
         .collect()
 }
 
@@ -246,6 +314,10 @@ pub(crate) fn cells(log: &Log, row: usize) -> Vec<String> {
         .force
         .get(row)
         .map(|force| force.map_or(Default::default(), |f| f.map(number::text)));
+    let covariance = log.object_covariance.get(row).map(|covariance| {
+        let numbers = covariance.as_ref().map(covariance_numbers);
+        numbers.map_or(Default::default(), |numbers| numbers.map(number::text))
+    });
     let poses = [number::text(log.time[row])]
         .into_iter()
         .chain(pose_cells(log.object[row]))
@@ -253,5 +325,6 @@ pub(crate) fn cells(log: &Log, row: usize) -> Vec<String> {
     poses
         .chain(tactile)
         .chain(force.into_iter().flatten())
+        .chain(covariance.into_iter().flatten())
         .collect()
 }

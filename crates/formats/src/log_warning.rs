@@ -48,6 +48,17 @@ pub enum LogWarning {
         /// Of how many.
         of: usize,
     },
+    /// Covariances that are none; their poses count as if nothing were said of their noise.
+    NoCovariance {
+        /// Display name of the bag.
+        file: String,
+        /// Name of the topic.
+        topic: String,
+        /// How many there are.
+        count: usize,
+        /// Of how many poses.
+        of: usize,
+    },
     /// A topic whose messages are all at other times than the poses; its cells are empty.
     Elsewhere {
         /// Display name of the file.
@@ -107,6 +118,15 @@ impl fmt::Display for LogWarning {
             } => write!(
                 f,
                 "{file}: {place}: at {count} of {of} stamps the transforms between are not known within 0.2 s; these poses are left out. Record all transforms by one clock"
+            ),
+            Self::NoCovariance {
+                file,
+                topic,
+                count,
+                of,
+            } => write!(
+                f,
+                "{file}: {topic}: {count} of {of} covariances of x, y and the turn about z are not symmetric and positive definite, with standard deviations of at least 1e-9; these poses are taken to be as noisy as the scene's [camera] says. Publish zeros where the covariance is not known"
             ),
             Self::Elsewhere {
                 file,

@@ -20,7 +20,7 @@ pub struct McapRecorder<W: Write + Seek> {
 }
 
 impl<W: Write> CsvRecorder<W> {
-    /// Writes the header of a log with forces and this many tactile sensors.
+    /// Writes the header of a log with forces, covariances and this many tactile sensors.
     ///
     /// # Errors
     /// Those of `writer`.
@@ -46,7 +46,7 @@ impl<W: Write> CsvRecorder<W> {
 }
 
 impl<W: Write + Seek> McapRecorder<W> {
-    /// Begins a recording with forces and this many tactile sensors.
+    /// Begins a recording with forces, covariances and this many tactile sensors.
     ///
     /// # Errors
     /// Those of `writer`.
@@ -88,6 +88,7 @@ fn one_row(row: &Row, sensors: usize) -> Log {
     Log {
         time: vec![row.time],
         object: vec![row.object],
+        object_covariance: vec![row.object_covariance],
         pusher: vec![row.pusher],
         tactile: (0..sensors).map(reading).collect(),
         force: vec![row.force],

@@ -8,7 +8,7 @@ use serde_json::Value;
 use stickslip::Row;
 use stickslip_dynamics::Pose;
 
-use crate::log_csv::{FORCE, OBJECT, PUSHER, TACTILE};
+use crate::log_csv::{COVARIANCE, FORCE, OBJECT, PUSHER, TACTILE, covariance};
 use crate::nearest::nearest;
 
 /// Most tactile sensors of a row.
@@ -91,6 +91,7 @@ pub fn read_row_json(line: &str) -> Result<Row, RowJsonError> {
     let mut row = Row {
         time: number("time")?.ok_or(RowJsonError::NoTime)?,
         object: whole(OBJECT, number)?.map(pose),
+        object_covariance: whole(COVARIANCE, number)?.map(covariance),
         pusher: whole(PUSHER, number)?.map(pose),
         tactile: Vec::new(),
         force: whole(FORCE, number)?,
@@ -117,6 +118,7 @@ fn check_key(key: &str) -> Result<(), RowJsonError> {
             .chain(OBJECT)
             .chain(PUSHER)
             .chain(FORCE)
+            .chain(COVARIANCE)
     };
     if known().any(|name| name == key) || sensor(key).is_some() {
         return Ok(());

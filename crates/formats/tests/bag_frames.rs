@@ -8,8 +8,7 @@ mod bag;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use bag::{
-    Line, MS, Transform, file, file_with, longer, object, pusher, topics, touch, transforms,
-    wrench, xs,
+    Line, MS, Transform, file, file_with, object, pusher, topics, touch, transforms, wrench,
 };
 use mcap::Compression;
 use stickslip::Log;
@@ -310,22 +309,22 @@ fn frames_are_refused_with_place_value_rule_and_next_step() {
 }
 
 #[test]
-fn poses_are_read_from_four_messages() {
-    for (kind, child, extra) in [
-        ("geometry_msgs/msg/PoseWithCovarianceStamped", None, 36),
-        ("geometry_msgs/msg/TransformStamped", Some("box"), 0),
-        ("nav_msgs/msg/Odometry", Some("box"), 36 + 6 + 36),
+fn detections_of_tags_are_refused_with_where_their_poses_are() {
+    for kind in [
+        "apriltag_msgs/msg/AprilTagDetectionArray",
+        "isaac_ros_apriltag_interfaces/msg/AprilTagDetectionArray",
     ] {
-        let lines: Vec<Line> = (0..5)
-            .map(|k| longer(kind, 40 * MS * k, k as f64, child, extra))
-            .chain([pusher(0, 0.0)])
-            .collect();
-        let (log, warnings) = read(&lines, &BagOptions::default()).unwrap();
-        assert_eq!(warnings, []);
-        assert_eq!(
-            xs(&log.object),
-            [0.0, 1.0, 2.0, 3.0, 4.0].map(Some),
-            "{kind}"
+        let detections = Line {
+            topic: "/detections".to_owned(),
+            kind,
+            ..object(0, 0.0)
+        };
+        let options = options(&["object=/detections"]);
+        let lines = [detections, pusher(0, 0.0)];
+        refused(
+            &lines,
+            &options,
+            "/detections: it carries where tags are in the image, and no poses",
         );
     }
 }

@@ -201,6 +201,7 @@ fn recorded() -> Log {
         object: (0..40)
             .map(|k| if k == 7 { None } else { pose(f64::from(k)) })
             .collect(),
+        object_covariance: Vec::new(),
         pusher: (0..40).map(|k| pose(f64::from(k) - 3.0)).collect(),
         tactile: vec![
             (0..40).map(|k| Some(k > 20)).collect(),

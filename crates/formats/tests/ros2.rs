@@ -11,7 +11,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use stickslip::{Estimate, EstimateRow, Log, Setup, Spread};
+use stickslip::{Estimate, EstimateRow, Log, PoseCovariance, Setup, Spread};
 use stickslip_dynamics::Pose;
 use stickslip_formats::{
     BagOptions, Mounts, Topics, read_bag, read_bag_metadata, read_log, read_scene,
@@ -40,6 +40,16 @@ fn peer(arguments: &[&Path]) -> String {
     );
     String::from_utf8(run.stdout).unwrap()
 }
+
+/// What the script says of the noise of poses.
+const TOLD: PoseCovariance = PoseCovariance {
+    x: 1e-6,
+    y: 1e-6 * 2.0,
+    theta: 1e-6 * 6.0,
+    x_y: 1e-7 / 2.0,
+    x_theta: 1e-7 / 6.0,
+    y_theta: 1e-7 / 7.0,
+};
 
 /// An empty folder of this test.
 fn folder(name: &str) -> PathBuf {
@@ -237,6 +247,40 @@ fn assert_same(read: &Log, log: &Log, tolerance: f64) {
 
 #[test]
 #[ignore = "needs Python packages; .ci/run installs them and runs this"]
+fn others_read_covariances_that_are_written() {
+    let (_, mut log) = recorded(LOGS[0]);
+    log.object_covariance = (0..log.len())
+        .map(|row| (row % 2 == 0).then_some(TOLD))
+        .collect();
+    let path = folder("covariances").join("log.mcap");
+    write_log_mcap(File::create(&path).unwrap(), &log, &Topics::default()).unwrap();
+    let told = peer(&[Path::new("estimate"), &path]);
+    for program in ["ours", "humble"] {
+        let lines = told.lines().map(|line| line.split(' ').collect::<Vec<_>>());
+        let lines: Vec<_> = lines.filter(|words| words[0] == program).collect();
+        assert_eq!(lines.len(), log.object.iter().flatten().count());
+        let rows = (0..log.len()).filter(|row| log.object[*row].is_some());
+        for (row, words) in rows.zip(lines) {
+            let numbers: Vec<f64> = words[5..]
+                .iter()
+                .map(|word| word.parse().unwrap())
+                .collect();
+            let at = |i: usize, j: usize| numbers[4 + 6 * i + j];
+            let found = PoseCovariance {
+                x: at(0, 0),
+                y: at(1, 1),
+                theta: at(5, 5),
+                x_y: at(1, 0),
+                x_theta: at(5, 0),
+                y_theta: at(1, 5),
+            };
+            assert_eq!(found, log.object_covariance[row].unwrap_or_default());
+        }
+    }
+}
+
+#[test]
+#[ignore = "needs Python packages; .ci/run installs them and runs this"]
 fn what_others_write_is_read() {
     for name in LOGS {
         let (csv, log) = recorded(name);
@@ -261,7 +305,11 @@ fn other_messages_of_others_are_read() {
         let (csv, log) = recorded(name);
         let bag = folder(&format!("kinds/{name}")).join("bag");
         peer(&[Path::new("kinds"), &csv, &bag]);
-        assert_same(&read_folder(&bag, &BagOptions::default()), &log, 0.0);
+        let read = read_folder(&bag, &BagOptions::default());
+        assert_same(&read, &log, 0.0);
+        for (own, pose) in read.object_covariance.iter().zip(&log.object) {
+            assert_eq!(*own, pose.map(|_| TOLD));
+        }
     }
 }
 

@@ -2,13 +2,25 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip::{Estimate, Row, TrackerOptions};
+use stickslip::{Estimate, PoseCovariance, Row, TrackerOptions};
 use stickslip_dynamics::Pose;
 use stickslip_formats::estimate_columns;
 
 use crate::error::refused;
 use crate::run_options::{mode, touch};
 use crate::scene::Scene;
+
+/// Variances of x, y, θ, then the covariances of x with y, x with θ, y with θ.
+fn covariance([x, y, theta, x_y, x_theta, y_theta]: [f64; 6]) -> PoseCovariance {
+    PoseCovariance {
+        x,
+        y,
+        theta,
+        x_y,
+        x_theta,
+        y_theta,
+    }
+}
 
 /// A particle filter that takes one row at a time, on the caller's thread.
 #[pyclass(module = "stickslip._native")]
@@ -38,6 +50,7 @@ type Numbers = [f64; 3];
 struct Measured {
     time: f64,
     object: Option<Numbers>,
+    object_covariance: Option<[f64; 6]>,
     pusher: Option<Numbers>,
     tactile: Vec<Option<bool>>,
     force: Option<[f64; 2]>,
@@ -69,6 +82,7 @@ impl Tracker {
         let row = Row {
             time: row.time,
             object: row.object.map(pose),
+            object_covariance: row.object_covariance.map(covariance),
             pusher: row.pusher.map(pose),
             tactile: row.tactile,
             force: row.force,

@@ -19,7 +19,7 @@ fn main() {
         calibration.frames, calibration.tags, calibration.left_out, calibration.rms
     );
     let (lens, truth) = (calibration.camera.lens(), true_camera());
-    let numbers = [lens.focal, lens.centre, lens.radial, lens.tangential];
+    let numbers = lens.calibrated();
     let true_lens = truth.lens();
     let expected = [
         true_lens.focal,
@@ -31,11 +31,7 @@ fn main() {
         .iter()
         .enumerate()
     {
-        let (number, expected, std) = (
-            numbers[k / 2][k % 2],
-            expected[k / 2][k % 2],
-            calibration.lens_std[k],
-        );
+        let (number, expected, std) = (numbers[k], expected[k / 2][k % 2], calibration.lens_std[k]);
         println!(
             "  {name} {number:10.4}, true {expected:10.4}, error {:6.2} standard deviations",
             (number - expected) / std

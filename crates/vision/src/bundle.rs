@@ -13,7 +13,7 @@ use crate::motion::{Motion, rotation};
 
 type LensBlock = SMatrix<f64, PARAMETERS, PARAMETERS>;
 
-const RULES: Rules = Rules {
+pub(crate) const RULES: Rules = Rules {
     damping: 1e-4,
     most_damping: 1e8,
     least_decrease: 1e-12,
@@ -51,10 +51,10 @@ pub(crate) struct Adjusted {
 pub(crate) struct ViewEquations {
     lens: LensBlock,
     mixed: SMatrix<f64, PARAMETERS, 6>,
-    view: SMatrix<f64, 6, 6>,
+    pub(crate) view: SMatrix<f64, 6, 6>,
     lens_gradient: SVector<f64, PARAMETERS>,
-    view_gradient: SVector<f64, 6>,
-    squares: f64,
+    pub(crate) view_gradient: SVector<f64, 6>,
+    pub(crate) squares: f64,
 }
 
 impl Bundle {
@@ -105,15 +105,7 @@ impl LeastSquares for Bundle {
         let moved = |(view, equations): (&View, &ViewEquations)| {
             let rest = equations.view_gradient - equations.mixed.transpose() * by_lens;
             let by = damped(equations.view, damping).cholesky()?.solve(&rest);
-            let turn = rotation(Vector3::new(by[0], by[1], by[2]));
-            let translation = view.motion.translation + Vector3::new(by[3], by[4], by[5]);
-            Some(View {
-                motion: Motion {
-                    rotation: turn * view.motion.rotation,
-                    translation,
-                },
-                matches: view.matches.clone(),
-            })
+            Some(view.moved(&by))
         };
         let views = self
             .views
@@ -129,6 +121,19 @@ impl LeastSquares for Bundle {
 }
 
 impl View {
+    /// The same view with its motion turned and moved by six numbers.
+    pub(crate) fn moved(&self, by: &SVector<f64, 6>) -> Self {
+        let turn = rotation(Vector3::new(by[0], by[1], by[2]));
+        let translation = self.motion.translation + Vector3::new(by[3], by[4], by[5]);
+        Self {
+            motion: Motion {
+                rotation: turn * self.motion.rotation,
+                translation,
+            },
+            matches: self.matches.clone(),
+        }
+    }
+
     /// Misfits (px): seen less predicted; `None` where a point is behind the camera.
     pub(crate) fn misfits(&self, lens: &Lens) -> Option<Vec<Vector2<f64>>> {
         let misfit = |(point, seen): &Match| {
@@ -138,7 +143,8 @@ impl View {
         self.matches.iter().map(misfit).collect()
     }
 
-    fn equations(&self, lens: &Lens) -> Option<ViewEquations> {
+    /// Its equations by the lens and by its motion; `None` where a point is behind the camera.
+    pub(crate) fn equations(&self, lens: &Lens) -> Option<ViewEquations> {
         let mut sum = ViewEquations {
             lens: SMatrix::zeros(),
             mixed: SMatrix::zeros(),
@@ -191,7 +197,10 @@ fn reduce(
 }
 
 /// Diagonal raised by a share of itself (Marquardt).
-fn damped<const N: usize>(matrix: SMatrix<f64, N, N>, damping: f64) -> SMatrix<f64, N, N> {
+pub(crate) fn damped<const N: usize>(
+    matrix: SMatrix<f64, N, N>,
+    damping: f64,
+) -> SMatrix<f64, N, N> {
     matrix + SMatrix::from_diagonal(&(matrix.diagonal() * damping))
 }
 
@@ -215,7 +224,7 @@ mod tests {
             size: [640, 480],
             focal: [810.0, 805.0],
             centre: [330.0, 236.0],
-            radial: [-0.25, 0.1],
+            radial: [-0.25, 0.1, 0.0],
             tangential: [1e-3, -1e-3],
         }
     }
@@ -266,16 +275,12 @@ mod tests {
         .unwrap()
     }
 
-    fn numbers(lens: &Lens) -> [f64; PARAMETERS] {
-        let pairs = [lens.focal, lens.centre, lens.radial, lens.tangential];
-        std::array::from_fn(|k| pairs[k / 2][k % 2])
-    }
-
     #[test]
     fn adjust_finds_the_lens_of_exact_points() {
         let found = adjusted(0.0, 0);
-        let truth = numbers(&truth());
-        for (k, (number, expected)) in numbers(&found.bundle.lens).iter().zip(truth).enumerate() {
+        let truth = truth().calibrated();
+        for (k, (number, expected)) in found.bundle.lens.calibrated().iter().zip(truth).enumerate()
+        {
             assert!(
                 (number - expected).abs() < 1e-6 * expected.abs().max(1.0),
                 "{k}: {number} {expected}"
@@ -292,9 +297,12 @@ mod tests {
         for seed in 0..DRAWS {
             let found = adjusted(STD, seed);
             assert!((found.rms / STD - 1.0).abs() < 0.12, "{}", found.rms);
-            let errors = numbers(&found.bundle.lens)
+            let errors = found
+                .bundle
+                .lens
+                .calibrated()
                 .into_iter()
-                .zip(numbers(&truth()))
+                .zip(truth().calibrated())
                 .zip(found.lens_std);
             mean_square += errors.fold(0.0, |sum, ((n, t), std)| sum + ((n - t) / std).powi(2))
                 / (DRAWS as f64 * PARAMETERS as f64);

@@ -147,7 +147,7 @@ fn refitted(adjusted: &Adjusted, views: &[BoardView<'_>], board: &BoardOnTable) 
             matches: matches_of(board_view.tags, board, &lens),
             motion: view.motion,
         };
-        without_outliers(view, adjusted)
+        without_outliers(view, &lens, adjusted.rms)
     };
     Bundle {
         lens,
@@ -206,7 +206,7 @@ fn moved(a: &BoardView<'_>, b: &BoardView<'_>) -> f64 {
 }
 
 /// The board's tags in each frame, but for those that are there twice.
-fn board_tags<'a>(
+pub(crate) fn board_tags<'a>(
     frames: &'a [CalibrationFrame],
     board: &BoardOnTable,
 ) -> Result<Vec<Vec<&'a FoundTag>>, CalibrationError> {
@@ -246,7 +246,7 @@ fn board_tags<'a>(
 }
 
 /// Corners fitted in the image that `lens` straightens, and where they are seen through it.
-fn matches_of(tags: &[&FoundTag], board: &BoardOnTable, lens: &Lens) -> Vec<Match> {
+pub(crate) fn matches_of(tags: &[&FoundTag], board: &BoardOnTable, lens: &Lens) -> Vec<Match> {
     let of_tag = |tag: &&FoundTag| -> Option<[Match; 4]> {
         let on_board = board.board.corners(tag.id)?;
         let square = tag.outline.fit(lens)?;
@@ -291,14 +291,12 @@ fn first_bundle<'a>(
 }
 
 /// The view without tags that have a corner far off.
-fn without_outliers(view: View, adjusted: &Adjusted) -> View {
-    let Some(misfits) = view.misfits(&adjusted.bundle.lens) else {
+pub(crate) fn without_outliers(view: View, lens: &Lens, rms: f64) -> View {
+    let Some(misfits) = view.misfits(lens) else {
         return view;
     };
     let good = |tag: &(&[Match], &[Vector2<f64>])| {
-        tag.1
-            .iter()
-            .all(|misfit| misfit.amax() < OUTLIER * adjusted.rms)
+        tag.1.iter().all(|misfit| misfit.amax() < OUTLIER * rms)
     };
     let kept: Vec<Match> = view
         .matches
@@ -318,7 +316,7 @@ fn without_outliers(view: View, adjusted: &Adjusted) -> View {
     }
 }
 
-fn world_to_camera(flat: &View, board: &BoardOnTable) -> Motion {
+pub(crate) fn world_to_camera(flat: &View, board: &BoardOnTable) -> Motion {
     let to_world = Motion::planar(
         board.pose.theta,
         Vector3::new(board.pose.x, board.pose.y, board.thickness),

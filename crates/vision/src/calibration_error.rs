@@ -55,6 +55,26 @@ pub enum CalibrationError {
         /// Usable tags in it.
         found: usize,
     },
+    /// A frame that the lens was not calibrated for.
+    #[error(
+        "{name}: the image has {found} pixels, the lens was calibrated at {expected}. Use a frame of the same camera at its full size, or the numbers of this one"
+    )]
+    LensSize {
+        /// The frame.
+        name: String,
+        /// Its columns x rows.
+        found: String,
+        /// Those of the lens.
+        expected: String,
+    },
+    /// The board is seen where no place of it is.
+    #[error(
+        "{name}: no place of the board explains where its tags are seen. Look whether it is the right board, and the lens that of this camera"
+    )]
+    NoPlace {
+        /// The frame.
+        name: String,
+    },
     /// Too few frames.
     #[error(
         "{usable} of {frames} frames show at least {FEWEST_TAGS} usable tags of the board; at least {FEWEST_FRAMES} must, better 20. Record more"

@@ -1,12 +1,16 @@
 //! A calibrated camera over the table: [`Camera`], and its file: [`read_camera`], [`write_camera`].
 
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use crate::config::{ConfigError, Document};
 use crate::lens::Lens;
 use crate::motion::{Motion, nearest_rotation};
 
+/// What to do about a file that is no calibration.
+const MAKE_IT: &str = "Make the file with `stickslip calibrate`";
+/// Lenses that see every direction at most this far apart are one (px).
+const SAME_LENS: f64 = 0.5;
 /// A rotation matrix from a file may be off by this much: files have rounded numbers.
 const ROUNDED: f64 = 1e-6;
 
@@ -19,24 +23,25 @@ pub struct Camera {
 }
 
 /// calibration.toml as it stands.
-#[derive(Deserialize, Serialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CalibrationFile {
-    lens: LensTable,
+    lens: Option<LensTable>,
     table: PlaneTable,
 }
 
-#[derive(Deserialize, Serialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LensTable {
     size: [u32; 2],
     focal: [f64; 2],
     centre: [f64; 2],
-    radial: [f64; 2],
+    /// k1, k2 and, where it is not 0, k3
+    radial: Vec<f64>,
     tangential: [f64; 2],
 }
 
-#[derive(Deserialize, Serialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PlaneTable {
     rotation: [[f64; 3]; 3],
@@ -106,8 +111,67 @@ impl Camera {
 /// with file and line.
 pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
     let document = Document { name, text };
-    let file: CalibrationFile = document.parse("Make the file with `stickslip calibrate`")?;
-    let camera = Camera::new(file.lens.check(&document)?, file.table.check(&document)?);
+    let CalibrationFile { lens, table } = document.parse(MAKE_IT)?;
+    let lens = lens.map(|lens| lens.check(&document)).transpose()?;
+    let Some(lens) = lens else {
+        return Err(no_lens(&document));
+    };
+    camera(&document, lens, table)
+}
+
+/// Reads a calibration for images that come with a lens of their own: the file's may be left out, and
+/// must else be the same.
+///
+/// # Errors
+/// Those of [`read_camera`]; the file's lens and `lens` see some direction more than half a pixel apart.
+pub fn read_camera_with(text: &str, name: &str, lens: &Lens) -> Result<Camera, ConfigError> {
+    let document = Document { name, text };
+    let CalibrationFile { lens: own, table } = document.parse(MAKE_IT)?;
+    let own = own.map(|own| own.check(&document)).transpose()?;
+    if let Some(own) = own {
+        let pixels = |[columns, rows]: [u32; 2]| format!("{columns} x {rows} pixels");
+        let rule = format!(
+            "that of the images' own lens, {}, through which the table must be seen",
+            pixels(lens.size)
+        );
+        document.require(own.size == lens.size, "size", pixels(own.size), &rule)?;
+        let apart = own.apart(lens);
+        if apart > SAME_LENS {
+            return Err(document.other_lens(apart));
+        }
+    }
+    camera(&document, *lens, table)
+}
+
+/// Reads the lens of a calibration, whatever the table is; `name` is shown in errors.
+///
+/// # Errors
+/// Those of [`read_camera`], but those of the table.
+pub fn read_lens(text: &str, name: &str) -> Result<Lens, ConfigError> {
+    /// The table may be anything.
+    #[derive(Deserialize)]
+    struct LensFile {
+        lens: Option<LensTable>,
+    }
+    let document = Document { name, text };
+    match document.parse::<LensFile>(MAKE_IT)?.lens {
+        Some(lens) => lens.check(&document),
+        None => Err(no_lens(&document)),
+    }
+}
+
+fn no_lens(document: &Document<'_>) -> ConfigError {
+    let found = String::new();
+    document.form(
+        1,
+        found,
+        "there is no [lens]".to_owned(),
+        "Make the file with `stickslip calibrate`, or track a bag that has CameraInfo",
+    )
+}
+
+fn camera(document: &Document<'_>, lens: Lens, table: PlaneTable) -> Result<Camera, ConfigError> {
+    let camera = Camera::new(lens, table.check(document)?);
     let height = camera.centre()[2];
     document.require(
         height > 0.0,
@@ -127,9 +191,9 @@ impl LensTable {
             radial,
             tangential,
         } = self;
-        let numbers = [focal, centre, radial, tangential];
+        let numbers = [&focal[..], &centre, &radial, &tangential].concat();
         document.require(
-            numbers.as_flattened().iter().all(|n| n.is_finite()),
+            numbers.iter().all(|n| n.is_finite()),
             "lens",
             "not finite",
             "finite numbers",
@@ -146,11 +210,14 @@ impl LensTable {
             format!("{focal:?}"),
             "positive, in pixels",
         )?;
+        let rule = "two or three numbers, k1, k2 and k3";
+        let known = (2..=3).contains(&radial.len());
+        document.require(known, "radial", format!("{radial:?}"), rule)?;
         Ok(Lens {
             size,
             focal,
             centre,
-            radial,
+            radial: std::array::from_fn(|k| radial.get(k).copied().unwrap_or(0.0)),
             tangential,
         })
     }
@@ -197,13 +264,20 @@ pub fn write_camera(camera: &Camera) -> String {
         .map(|row| format!("  [{}, {}, {}],\n", row[0], row[1], row[2]))
         .collect();
     let [x, y, z] = camera.to_camera.translation.into();
+    let known = if radial[2] == 0.0 {
+        &radial[..2]
+    } else {
+        &radial
+    };
+    let radial: Vec<String> = known.iter().map(f64::to_string).collect();
+    let radial = radial.join(", ");
     format!(
         "# A calibrated camera over the table. Pixels: the centre of the first one is (0, 0).\n\n\
-         [lens]                      # Brown-Conrady, as OpenCV has it with k3 = 0\n\
+         [lens]                      # Brown-Conrady, as OpenCV has it\n\
          size = [{}, {}]            # columns, rows\n\
          focal = [{}, {}]           # fx, fy (px)\n\
          centre = [{}, {}]          # cx, cy (px)\n\
-         radial = [{}, {}]          # k1, k2\n\
+         radial = [{radial}]          # k1, k2, and k3 where it is not 0\n\
          tangential = [{}, {}]      # p1, p2\n\n\
          [table]                     # from the world to the camera (x right, y down, z forwards): rotation x + translation (m)\n\
          rotation = [\n{}]\n\
@@ -214,8 +288,6 @@ pub fn write_camera(camera: &Camera) -> String {
         focal[1],
         centre[0],
         centre[1],
-        radial[0],
-        radial[1],
         tangential[0],
         tangential[1],
         rotation.concat(),
@@ -233,7 +305,7 @@ pub(crate) mod tests {
             size: [640, 480],
             focal: [1210.0, 1200.0],
             centre: [330.0, 236.0],
-            radial: [-0.2, 0.1],
+            radial: [-0.2, 0.1, 0.05],
             tangential: [1e-3, -1e-3],
         };
         let down = rotation(Vector3::new(std::f64::consts::PI, 0.0, 0.0));

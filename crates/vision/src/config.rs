@@ -28,6 +28,14 @@ pub enum ConfigProblem {
         /// What to do.
         next: String,
     },
+    /// A lens that is not that of the images.
+    #[error(
+        "`lens` sees some direction {apart} px from where the images' own lens, that of CameraInfo, sees it; the table was found through one lens and the images are seen through the other. Find the table anew with `stickslip calibrate --lens`"
+    )]
+    OtherLens {
+        /// How far apart (px).
+        apart: String,
+    },
     /// A value against its rule.
     #[error("`{key}` is {found}; it must be {rule}. Correct it")]
     Rule {
@@ -61,15 +69,34 @@ impl Document<'_> {
                 .trim()
                 .to_owned();
             let message = error.message().lines().collect::<Vec<_>>().join(", ");
-            self.error(
-                line,
-                ConfigProblem::Form {
-                    found,
-                    message,
-                    next: next.to_owned(),
-                },
-            )
+            self.form(line, found, message, next)
         })
+    }
+
+    /// An error about a line that has not the right form.
+    pub(crate) fn form(
+        &self,
+        line: usize,
+        found: String,
+        message: String,
+        next: &str,
+    ) -> ConfigError {
+        let next = next.to_owned();
+        self.error(
+            line,
+            ConfigProblem::Form {
+                found,
+                message,
+                next,
+            },
+        )
+    }
+
+    /// The error about a lens that sees directions `apart` (px) from where another one does.
+    pub(crate) fn other_lens(&self, apart: f64) -> ConfigError {
+        let line = self.line_of(|line| line.trim() == "[lens]") + 1;
+        let apart = format!("{apart:.1}");
+        self.error(line, ConfigProblem::OtherLens { apart })
     }
 
     /// An error unless `kept`: the value of `key` is `found` and must be what `rule` says.

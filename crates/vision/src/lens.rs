@@ -5,11 +5,11 @@ use nalgebra::{Matrix2, SMatrix, Vector2};
 /// Numbers of a lens that a calibration finds.
 pub(crate) const PARAMETERS: usize = 8;
 
-/// A pinhole with Brown–Conrady distortion, as OpenCV has it with k3 = 0.
+/// A pinhole with Brown–Conrady distortion, as OpenCV and ROS (`plumb_bob`) have it.
 ///
 /// A point with the direction (x, y, 1) in the camera's frame (x right, y down), r² = x² + y², is
-/// seen at x' = x (1 + k1 r² + k2 r⁴) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2 r⁴) + p1
-/// (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy). Without distortion it
+/// seen at x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2 r⁴ + k3 r⁶) +
+/// p1 (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy). Without distortion it
 /// would be at (fx x + cx, fy y + cy), its *ideal* pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
@@ -19,8 +19,8 @@ pub struct Lens {
     pub focal: [f64; 2],
     /// Principal point cx, cy (px).
     pub centre: [f64; 2],
-    /// Radial distortion k1, k2.
-    pub radial: [f64; 2],
+    /// Radial distortion k1, k2, k3; a calibration leaves k3 as it is.
+    pub radial: [f64; 3],
     /// Tangential distortion p1, p2.
     pub tangential: [f64; 2],
 }
@@ -33,7 +33,7 @@ impl Lens {
             size,
             focal: [focal; 2],
             centre,
-            radial: [0.0; 2],
+            radial: [0.0; 3],
             tangential: [0.0; 2],
         }
     }
@@ -80,6 +80,39 @@ impl Lens {
         None
     }
 
+    /// How far apart this lens and another one see the same directions, at most over the image (px);
+    /// infinite for another size.
+    pub fn apart(&self, other: &Self) -> f64 {
+        /// Pixels that are looked at, along each side.
+        const SAMPLES: u32 = 9;
+        if self.size != other.size {
+            return f64::INFINITY;
+        }
+        let at = |side: usize, k: u32| {
+            f64::from(self.size[side] - 1) * f64::from(k) / f64::from(SAMPLES - 1)
+        };
+        let mut most: f64 = 0.0;
+        for (column, row) in (0..SAMPLES * SAMPLES).map(|k| (k % SAMPLES, k / SAMPLES)) {
+            let pixel = [at(0, column), at(1, row)];
+            let Some(ideal) = self.undistort(pixel) else {
+                continue;
+            };
+            let direction = self.direction(ideal.into());
+            let seen = other.ideal(other.bend(direction).0) - Vector2::from(pixel);
+            most = if seen.norm() > most {
+                seen.norm()
+            } else {
+                most
+            };
+        }
+        most
+    }
+
+    /// Whether it bends anything.
+    pub fn is_distorted(&self) -> bool {
+        self.radial != [0.0; 3] || self.tangential != [0.0; 2]
+    }
+
     /// The pixel of the direction (x, y, 1), with its derivatives by direction and by the lens's
     /// eight numbers.
     pub(crate) fn project(
@@ -101,25 +134,34 @@ impl Lens {
         )
     }
 
+    /// The numbers that a calibration finds: fx, fy, cx, cy (px), k1, k2, p1, p2.
+    pub fn calibrated(&self) -> [f64; PARAMETERS] {
+        let ([fx, fy], [cx, cy]) = (self.focal, self.centre);
+        let ([k1, k2, _], [p1, p2]) = (self.radial, self.tangential);
+        [fx, fy, cx, cy, k1, k2, p1, p2]
+    }
+
     /// The same lens with its eight numbers (fx, fy, cx, cy, k1, k2, p1, p2) moved.
     pub(crate) fn moved(&self, by: &[f64]) -> Self {
         let add = |pair: [f64; 2], at: usize| [pair[0] + by[at], pair[1] + by[at + 1]];
+        let [k1, k2, k3] = self.radial;
+        let [k1, k2] = add([k1, k2], 4);
         Self {
             size: self.size,
             focal: add(self.focal, 0),
             centre: add(self.centre, 2),
-            radial: add(self.radial, 4),
+            radial: [k1, k2, k3],
             tangential: add(self.tangential, 6),
         }
     }
 
     /// (x', y') of (x, y), with derivatives.
     fn bend(&self, direction: Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
-        let ([k1, k2], [p1, p2]) = (self.radial, self.tangential);
+        let ([k1, k2, k3], [p1, p2]) = (self.radial, self.tangential);
         let (x, y) = (direction.x, direction.y);
         let r2 = x * x + y * y;
-        let radial = 1.0 + r2 * (k1 + r2 * k2);
-        let slope = 2.0 * (k1 + 2.0 * k2 * r2); // by r², twice: times x or y it is the derivative by x or y
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3))); // by r², twice: times x or y it is the derivative by x or y
         let bent = Vector2::new(
             x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
             y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
@@ -144,7 +186,7 @@ mod tests {
             size: [640, 480],
             focal: [610.0, 605.0],
             centre: [330.0, 236.0],
-            radial: [-0.3, 0.1],
+            radial: [-0.3, 0.1, -0.05],
             tangential: [2e-3, -1e-3],
         }
     }
@@ -160,10 +202,45 @@ mod tests {
         }
     }
 
+    /// OpenCV's formula, written out for one point: x = 0.5, y = -0.25, r² = 0.3125.
+    #[test]
+    fn distort_is_the_formula_of_opencv() {
+        let lens = Lens {
+            size: [100, 100],
+            focal: [100.0, 200.0],
+            centre: [50.0, 40.0],
+            radial: [0.5, -0.25, 2.0],
+            tangential: [0.125, -0.0625],
+        };
+        let [r2, r4, r6] = [0.3125, 0.097_656_25, 0.030_517_578_125];
+        let radial = 1.0 + 0.5 * r2 - 0.25 * r4 + 2.0 * r6;
+        let x = 0.5 * radial + 2.0 * 0.125 * (0.5 * -0.25) - 0.0625 * (r2 + 2.0 * 0.25);
+        let y = -0.25 * radial + 0.125 * (r2 + 2.0 * 0.0625) + 2.0 * -0.0625 * (0.5 * -0.25);
+        let seen = lens.distort([100.0, -10.0]);
+        assert!((seen[0] - (100.0 * x + 50.0)).abs() < 1e-12, "{seen:?}");
+        assert!((seen[1] - (200.0 * y + 40.0)).abs() < 1e-12, "{seen:?}");
+    }
+
+    #[test]
+    fn apart_is_how_far_one_lens_is_moved() {
+        let lens = lens();
+        let moved = Lens {
+            centre: [lens.centre[0] + 3.0, lens.centre[1] - 4.0],
+            ..lens
+        };
+        assert!((lens.apart(&moved) - 5.0).abs() < 1e-9);
+        assert!(lens.apart(&lens) < 1e-9);
+        let other = Lens {
+            size: [320, 240],
+            ..lens
+        };
+        assert_eq!(lens.apart(&other), f64::INFINITY);
+    }
+
     #[test]
     fn undistort_past_a_fold_is_none() {
         let folded = Lens {
-            radial: [-2.0, 0.0],
+            radial: [-2.0, 0.0, 0.0],
             ..lens()
         };
         assert_eq!(folded.undistort([639.0, 479.0]), None);

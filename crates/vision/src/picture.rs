@@ -26,6 +26,29 @@ pub enum PictureError {
         /// What the decoder says.
         reason: String,
     },
+    /// A compressed image of a bag whose bytes are no image of a known kind.
+    #[error(
+        "{file}: the compressed image, of the format `{format}`, is none that can be read; JPEG and PNG can. {}",
+        if .format.contains("Depth") { "This is an image of depths; take the topic of grey or colour images" } else { "Record the raw images, or those of image_transport's plain `compressed`" }
+    )]
+    Compressed {
+        /// Display name of the message.
+        file: String,
+        /// What its publisher says it is.
+        format: String,
+    },
+    /// A compressed image of a bag that cannot be decoded.
+    #[error(
+        "{file}: the compressed image, of the format `{format}`, cannot be decoded: {reason}. Leave the message out of the bag, or record anew"
+    )]
+    Undecodable {
+        /// Display name of the message.
+        file: String,
+        /// What its publisher says it is.
+        format: String,
+        /// What the decoder says.
+        reason: String,
+    },
 }
 
 /// Reads a PNG, JPEG, BMP or PNM image as grey levels; `name` is shown in errors.
@@ -58,9 +81,58 @@ pub fn read_picture(bytes: &[u8], name: &str) -> Result<GrayImage, PictureError>
         .into_luma8())
 }
 
+/// Reads a compressed image of a bag, JPEG or PNG whatever its `format` is called; `name` is shown in
+/// errors.
+///
+/// # Errors
+/// [`PictureError`], with the message's name and what is wrong with it.
+pub fn read_compressed(bytes: &[u8], format: &str, name: &str) -> Result<GrayImage, PictureError> {
+    let kind = image::guess_format(bytes).ok();
+    let Some(kind) = kind.filter(|kind| [ImageFormat::Png, ImageFormat::Jpeg].contains(kind))
+    else {
+        return Err(PictureError::Compressed {
+            file: name.to_owned(),
+            format: format.to_owned(),
+        });
+    };
+    let image = image::load_from_memory_with_format(bytes, kind);
+    let image = image.map_err(|error| PictureError::Undecodable {
+        file: name.to_owned(),
+        format: format.to_owned(),
+        reason: error.to_string(),
+    })?;
+    Ok(image.into_luma8())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn read_compressed_goes_by_the_bytes_and_names_what_is_wrong() {
+        let mut png = std::io::Cursor::new(Vec::new());
+        let image = GrayImage::from_pixel(3, 2, image::Luma([77]));
+        image.write_to(&mut png, ImageFormat::Png).unwrap();
+        let png = png.into_inner();
+        let read = read_compressed(&png, "mono8; png compressed mono8", "m").unwrap();
+        assert_eq!(read, image);
+        for (bytes, format, words) in [
+            (
+                &b"P5 1 1 255\n\x07"[..],
+                "ppm",
+                "of the format `ppm`, is none that can be read",
+            ),
+            (&[0; 20], "16UC1; compressedDepth", "an image of depths"),
+            (&png[..40], "png", "cannot be decoded"),
+        ] {
+            let text = read_compressed(bytes, format, "bag: /image, message 3");
+            let text = text.unwrap_err().to_string();
+            assert!(
+                text.starts_with("bag: /image, message 3: ") && text.contains(words),
+                "{text}"
+            );
+        }
+    }
 
     #[test]
     fn read_picture_takes_grey_and_colour() {

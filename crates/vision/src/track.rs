@@ -1,4 +1,5 @@
-//! From frames to the poses of object and pusher: [`track`].
+//! From frames to the poses of object and pusher: [`track`], and [`FrameTracker`] for frames that come
+//! one after the other.
 
 use image::GrayImage;
 use rayon::prelude::*;
@@ -103,30 +104,77 @@ pub fn track<E: From<TrackError> + Send>(
     camera: &Camera,
     tags: &Tags,
 ) -> Result<Track, E> {
-    let chunk = |chunk: usize| {
-        let detector = Detector::new(camera.lens().size);
-        let frames = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
-        frames
-            .map(|index| process(&detector, load(index)?, camera, tags).map_err(E::from))
-            .collect::<Result<Vec<ProcessedFrame>, E>>()
-    };
-    let seen: Vec<Vec<ProcessedFrame>> = (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(chunk)
-        .collect::<Result<_, E>>()?;
-    let mut before = None;
-    let frames = seen.into_iter().flatten().map(|seen| {
-        let repeated = before.replace(seen.digest) == Some(seen.digest);
-        FrameSighting {
-            repeated,
-            ..seen.sighting
+    let mut tracker = FrameTracker::new(camera, tags);
+    tracker.push(count, load)?;
+    Ok(tracker.finish(0..count)?)
+}
+
+/// Tracks object and pusher through frames that come in parts, so that not all of them need to be in
+/// memory. However they are parted, the track is the same.
+pub struct FrameTracker<'c> {
+    camera: &'c Camera,
+    tags: &'c Tags,
+    seen: Vec<ProcessedFrame>,
+}
+
+impl<'c> FrameTracker<'c> {
+    /// Before the first frame.
+    pub fn new(camera: &'c Camera, tags: &'c Tags) -> Self {
+        Self {
+            camera,
+            tags,
+            seen: Vec::new(),
         }
-    });
-    let track = Track {
-        frames: frames.collect(),
-    };
-    track.check(tags)?;
-    Ok(track)
+    }
+
+    /// Takes `count` more frames, which `load` brings by their number among these, as a name and an
+    /// image, from any thread.
+    ///
+    /// # Errors
+    /// Those of `load`; a frame of another size.
+    pub fn push<E: From<TrackError> + Send>(
+        &mut self,
+        count: usize,
+        load: impl Fn(usize) -> Result<(String, GrayImage), E> + Sync,
+    ) -> Result<(), E> {
+        let (camera, tags) = (self.camera, self.tags);
+        let chunk = |chunk: usize| {
+            let detector = Detector::new(camera.lens().size);
+            let frames = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
+            frames
+                .map(|index| process(&detector, load(index)?, camera, tags).map_err(E::from))
+                .collect::<Result<Vec<ProcessedFrame>, E>>()
+        };
+        let seen: Vec<Vec<ProcessedFrame>> = (0..count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(chunk)
+            .collect::<Result<_, E>>()?;
+        self.seen.extend(seen.into_iter().flatten());
+        Ok(())
+    }
+
+    /// The track, with the frames in the order of their numbers in `order`.
+    ///
+    /// # Errors
+    /// No tag, or a body's tag, in no frame at all.
+    ///
+    /// # Panics
+    /// If a number in `order` is that of no frame.
+    pub fn finish(self, order: impl IntoIterator<Item = usize>) -> Result<Track, TrackError> {
+        let mut before = None;
+        let frames = order.into_iter().map(|index| {
+            let ProcessedFrame { digest, sighting } = &self.seen[index];
+            FrameSighting {
+                repeated: before.replace(*digest) == Some(*digest),
+                ..sighting.clone()
+            }
+        });
+        let track = Track {
+            frames: frames.collect(),
+        };
+        track.check(self.tags)?;
+        Ok(track)
+    }
 }
 
 /// What one image shows.

@@ -8,21 +8,14 @@ use common::{BOARD, BOARD_THICKNESS, CALIBRATION, true_camera};
 use image::GrayImage;
 use stickslip_vision::{
     Board, BoardOnTable, BoardRecording, Calibration, CalibrationError, CalibrationFrame, Lens,
-    calibrate, search_board,
+    calibrate, find_table, search_board,
 };
 
 /// Two implementations of the same lens.
 #[test]
 fn lens_is_that_of_the_renderer() {
     let truth = true_camera();
-    let lens = truth.lens();
-    let same = Lens {
-        size: lens.size,
-        focal: lens.focal,
-        centre: lens.centre,
-        radial: lens.radial,
-        tangential: lens.tangential,
-    };
+    let (lens, same) = (truth.lens(), true_lens());
     for pixel in [[0.0, 0.0], [639.0, 479.0], [200.0, 400.0], [320.0, 240.0]] {
         let direction = lens.direction(pixel).unwrap();
         let ideal = same.undistort(pixel).unwrap();
@@ -66,6 +59,88 @@ fn calibrate_finds_the_camera() {
     }
     let off = [0, 1, 2].map(|k| (camera.centre()[k] - true_camera().centre()[k]).abs());
     assert!(off.iter().all(|off| *off < 1e-3), "{off:?}");
+}
+
+/// The lens of the renderer, as this crate has it.
+fn true_lens() -> Lens {
+    let camera = true_camera();
+    let lens = camera.lens();
+    Lens {
+        size: lens.size,
+        focal: lens.focal,
+        centre: lens.centre,
+        radial: [lens.radial[0], lens.radial[1], 0.0],
+        tangential: lens.tangential,
+    }
+}
+
+/// With the true lens, one frame of the flat board puts every point over the plate where it is seen.
+#[test]
+fn find_table_finds_the_table_of_a_known_lens() {
+    let (recording, board) = &*BOARD;
+    let fit = find_table(recording, board, &true_lens()).unwrap();
+    assert!(
+        fit.rms < 0.03 && fit.tags >= 30,
+        "{} px, {} tags",
+        fit.rms,
+        fit.tags
+    );
+    for x in [-0.10, 0.02, 0.14] {
+        for y in [-0.09, 0.0, 0.09] {
+            for z in [0.0, BOARD_THICKNESS, 0.04] {
+                let (found, truth) = (
+                    fit.camera.project([x, y, z]).unwrap(),
+                    true_camera().project([x, y, z]),
+                );
+                let off = (found[0] - truth[0]).hypot(found[1] - truth[1]);
+                assert!(off < 0.03, "({x}, {y}, {z}): {off} px");
+            }
+        }
+    }
+    // the height is off by what the place along the axis is said to be off by, within four of it
+    let off = (fit.camera.centre()[2] - true_camera().centre()[2]).abs();
+    assert!(
+        off < 4.0 * fit.translation_std[2],
+        "{off} {:?}",
+        fit.translation_std
+    );
+    assert!(fit.translation_std[2] < 1e-3, "{:?}", fit.translation_std);
+}
+
+#[test]
+fn find_table_says_what_the_frame_lacks() {
+    let (recording, board) = &*BOARD;
+    let of = |frame: CalibrationFrame, lens: Lens| {
+        let recording = BoardRecording {
+            frames: vec![frame],
+            size: recording.size,
+        };
+        find_table(&recording, board, &lens)
+            .unwrap_err()
+            .to_string()
+    };
+    let flat = &recording.frames[0];
+    let small = Lens {
+        size: [320, 240],
+        ..true_lens()
+    };
+    let text = of(flat.clone(), small);
+    assert!(
+        text.contains(
+            "0.png: the image has 640 x 480 pixels, the lens was calibrated at 320 x 240"
+        ),
+        "{text}"
+    );
+    let mut few = flat.clone();
+    few.tags.truncate(3);
+    let text = of(few, true_lens());
+    assert!(text.contains("3 of the board's tags are usable"), "{text}");
+    let bent = Lens {
+        radial: [1.5, 0.0, 0.0],
+        ..true_lens()
+    };
+    let text = of(flat.clone(), bent);
+    assert!(text.contains("px is good. Measure tag_size"), "{text}");
 }
 
 /// Why a calibration from some frames of the recording is refused.

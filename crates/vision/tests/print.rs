@@ -5,7 +5,7 @@
 
 use image::GrayImage;
 use resvg::{tiny_skia, usvg};
-use stickslip_vision::{Board, Detector, Paper, PrintError, board_svg, tags_svg};
+use stickslip_vision::{Board, Detector, Paper, PrintError, print_board, print_tags};
 
 const PER_MM: f32 = 4.0;
 const A4: Paper = Paper {
@@ -53,7 +53,7 @@ fn edges(corners: [[f64; 2]; 4]) -> [f64; 4] {
 
 #[test]
 fn tags_are_found_with_their_size() {
-    let tags = found(&tags_svg(&[0, 1, 586, 42], 0.028, A4).unwrap());
+    let tags = found(&print_tags(&[0, 1, 586, 42], 0.028, A4).unwrap().svg());
     assert_eq!(
         tags.iter().map(|tag| tag.0).collect::<Vec<_>>(),
         [0, 1, 42, 586]
@@ -74,7 +74,7 @@ fn board_is_found_where_its_frame_says() {
         gap: 0.008,
         first_tag: 100,
     };
-    let tags = found(&board_svg(&board, A4).unwrap());
+    let tags = found(&print_board(&board, A4).unwrap().svg());
     assert_eq!(
         tags.iter().map(|tag| tag.0).collect::<Vec<_>>(),
         (100..124).collect::<Vec<_>>()
@@ -100,7 +100,7 @@ fn board_is_found_where_its_frame_says() {
 
 #[test]
 fn ruler_is_as_long_as_it_says() {
-    let image = drawn(&tags_svg(&[0], 0.028, A4).unwrap());
+    let image = drawn(&print_tags(&[0], 0.028, A4).unwrap().svg());
     // its line, with half a stroke at both ends, is the longest dark run near the paper's foot
     let dark = |row: u32| {
         (0..image.width())
@@ -120,12 +120,43 @@ fn ruler_is_as_long_as_it_says() {
 #[test]
 fn what_does_not_fit_or_is_no_tag_is_refused() {
     assert!(matches!(
-        tags_svg(&[0], 0.2, A4),
+        print_tags(&[0], 0.2, A4),
         Err(PrintError::TooLarge { .. })
     ));
-    let error = tags_svg(&[587], 0.02, A4).unwrap_err();
+    let error = print_tags(&[587], 0.02, A4).unwrap_err();
     assert_eq!(
         error.to_string(),
         "tag 587 is none of the family 36h11, which has 0 to 586. Choose another number"
     );
+}
+
+/// The table at a PDF's end leads to its objects, and the page's stream is as long as it says.
+#[test]
+fn pdf_is_built_as_its_table_says() {
+    let pdf = print_tags(&[0, 1], 0.028, A4).unwrap().pdf();
+    let text = String::from_utf8(pdf).unwrap();
+    let table: usize = text.lines().rev().nth(1).unwrap().parse().unwrap();
+    let rows: Vec<&str> = text[table..].lines().collect();
+    assert_eq!(rows[..2], ["xref", "0 6"]);
+    for (number, row) in (1..).zip(&rows[3..8]) {
+        let at: usize = row[..10].parse().unwrap();
+        assert!(
+            text[at..].starts_with(&format!("{number} 0 obj\n")),
+            "{row}"
+        );
+        assert_eq!(row.len() + 1, 20);
+    }
+    let length = text
+        .split("/Length ")
+        .nth(1)
+        .unwrap()
+        .split(' ')
+        .next()
+        .unwrap();
+    let stream = text.split("stream\n").nth(1).unwrap();
+    let drawn = stream.strip_suffix("end").unwrap();
+    assert_eq!(drawn.len(), length.parse::<usize>().unwrap());
+    // A4 in points
+    assert!(text.contains("/MediaBox [0 0 841.8898 595.2756]"), "{text}");
+    assert!(text.contains("(36h11, tag 1, 28.0 mm) Tj"), "{text}");
 }

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 pub mod page_session;
+pub mod rendered;
 
 use std::fs;
 use std::path::{Path, PathBuf};

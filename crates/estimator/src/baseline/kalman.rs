@@ -3,12 +3,14 @@
 //!
 //! Each of x, y, θ follows a white-noise acceleration whose level is the one of greatest likelihood
 //! on the visible part of the log, so that it is a fair rival. While the camera is dark it goes on
-//! at its last velocity.
+//! at its last velocity. Poses that say themselves how noisy they are count with their own variances, axis
+//! by axis.
 
 use stickslip_dynamics::{Pose, Twist};
 use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::angle::unwrapped;
+use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow, Spread};
 use crate::prepared_log::PreparedLog;
@@ -21,11 +23,22 @@ pub(crate) fn track(
     prepared: &PreparedLog<'_>,
 ) -> Result<Estimate, RunError> {
     let poses = unwrapped_poses(prepared);
-    let axis =
-        |pick: fn(&Pose) -> f64, std: f64| track_axis(prepared, &poses, pick, std, camera.latency);
-    let x = axis(|p| p.x, camera.position_std)?;
-    let y = axis(|p| p.y, camera.position_std)?;
-    let theta = axis(|p| p.theta, camera.orientation_std)?;
+    let axis = |axis: &Axis| track_axis(prepared, &poses, axis, camera.latency);
+    let x = axis(&Axis {
+        pick: |p| p.x,
+        variance: |c| c.x,
+        std: camera.position_std,
+    })?;
+    let y = axis(&Axis {
+        pick: |p| p.y,
+        variance: |c| c.y,
+        std: camera.position_std,
+    })?;
+    let theta = axis(&Axis {
+        pick: |p| p.theta,
+        variance: |c| c.theta,
+        std: camera.orientation_std,
+    })?;
     let mut estimate = prepared.empty_estimate(setup);
     for row in prepared.first..prepared.log.len() {
         let (Some(x), Some(y), Some(theta)) = (x[row], y[row], theta[row]) else {
@@ -67,14 +80,30 @@ fn unwrapped_poses(prepared: &PreparedLog<'_>) -> Vec<Option<Pose>> {
     rows.collect()
 }
 
+/// One of x, y, θ.
+struct Axis {
+    /// Of a pose.
+    pick: fn(&Pose) -> f64,
+    /// Its variance, of a pose that says itself how noisy it is.
+    variance: fn(&PoseCovariance) -> f64,
+    /// Its standard deviation of the others.
+    std: f64,
+}
+
 fn track_axis(
     prepared: &PreparedLog<'_>,
     poses: &[Option<Pose>],
-    pick: fn(&Pose) -> f64,
-    std: f64,
+    axis: &Axis,
     latency: f64,
 ) -> Result<Vec<Option<AxisEstimate>>, RunError> {
+    let &Axis {
+        pick,
+        variance,
+        std,
+    } = axis;
     let measured: Vec<Option<f64>> = poses.iter().map(|pose| pose.as_ref().map(pick)).collect();
+    let own = |row| prepared.covariance(row).map(|c| variance(&c).sqrt());
+    let stds: Vec<Option<f64>> = (0..poses.len()).map(own).collect();
     // Newton's first law from rest where too few poses tell a noise level
     let mut model = ConstantVelocity {
         process_noise: 1e-6,
@@ -83,11 +112,13 @@ fn track_axis(
     };
     let time = &prepared.log.time;
     if measured.iter().flatten().count() >= 3 {
-        model.process_noise = model.fit_process_noise(time, &measured)?.process_noise;
+        model.process_noise = model
+            .fit_process_noise_with_stds(time, &measured, &stds)?
+            .process_noise;
     } else {
         model.initial_velocity_std = 1e-9;
     }
-    let rows = model.filter(time, &measured)?.rows;
+    let rows = model.filter_with_stds(time, &measured, &stds)?.rows;
     // a pose in row k shows the object one latency earlier: the estimate of the present is
     // predicted from it
     Ok(rows

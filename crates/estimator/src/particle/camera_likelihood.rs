@@ -4,6 +4,7 @@ use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::{Block, BlockMut};
 
 use crate::angle::nearest_zero;
+use crate::covariance::Factor;
 use crate::mode::Mode;
 use crate::particle::camera_noise::{CameraNoise, NoisePrior};
 use crate::particle::chunk::{Column, load_chunk, load_pose};
@@ -11,8 +12,8 @@ use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
 use crate::setup::{Camera, Setup};
 
-/// Likelihood of a camera pose: normal, its standard deviations widened by `likelihood_scale`; in
-/// contact mode with a noise that is learned, and a floor.
+/// Likelihood of a camera pose: normal, with the row's own covariance or the camera's, the standard
+/// deviations widened by `likelihood_scale`; in contact mode with a noise that is learned, and a floor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraLikelihood {
     /// 1 / (scaled standard deviation): per m of position, per rad of angle.
@@ -118,6 +119,9 @@ impl CameraLikelihood {
     ) -> Option<Residual> {
         let measured = observation.pose?;
         let shown = self.shown(observation, block, chunk);
+        if let Some(factor) = observation.covariance.and_then(|c| c.factor()) {
+            return Some(self.told_residual(&factor, shown, measured));
+        }
         let dx = (shown.x - measured.x) * self.per_metre;
         let dy = (shown.y - measured.y) * self.per_metre;
         let turn = nearest_zero(shown.theta - measured.theta) * self.per_radian;
@@ -125,6 +129,22 @@ impl CameraLikelihood {
             position: dx * dx + dy * dy,
             angle: turn * turn,
         })
+    }
+
+    /// The same of a pose that says itself how noisy it is: the squares of its whitened error, those of
+    /// x and y given the angle.
+    #[inline(always)]
+    fn told_residual(&self, factor: &Factor, shown: Pose<Column>, measured: Pose) -> Residual {
+        let [angle, x, y] = factor.whitened(Pose {
+            x: shown.x - measured.x,
+            y: shown.y - measured.y,
+            theta: nearest_zero(shown.theta - measured.theta),
+        });
+        let scale = 1.0 / (self.widened * self.widened);
+        Residual {
+            position: (x * x + y * y) * scale,
+            angle: angle * angle * scale,
+        }
     }
 
     /// ln of the likelihood of a pose that is not wrong, relative to that of a perfect one.

@@ -6,13 +6,14 @@ use std::num::NonZero;
 use stickslip_dynamics::{Pose, StepInput};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
 
+use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
 use crate::particle::model::ContactModel;
-use crate::particle::observation::Observation;
+use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::observer::Observer;
 use crate::particle::replay::Replay;
 use crate::particle::resting_pose::RestingPose;
@@ -30,6 +31,8 @@ pub(crate) struct Measured<'a> {
     pub time: f64,
     /// Pose of the object, where the camera saw it.
     pub object: Option<Pose>,
+    /// How noisy that pose is, where it says so itself.
+    pub covariance: Option<PoseCovariance>,
     /// Tactile readings that count, one per sensor.
     pub tactile: &'a [Option<bool>],
 }
@@ -100,24 +103,25 @@ impl FilterOptions<'_> {
 }
 
 impl<'o> ContactFilter<'o> {
-    /// Particles around `start`, the first pose, which is measured at `time` (s).
+    /// Particles around `start`.
     ///
     /// # Errors
     /// Where the filter's settings are out of range.
     pub fn new(
         setup: &Setup,
         camera: Camera,
-        (time, start): (f64, Pose),
+        start: PoseAt,
         options: &FilterOptions<'o>,
     ) -> Result<Self, RunError> {
         let unknown = match options.mode {
             Mode::Contact => setup.uncertainty.most_latency(),
             Mode::Paper => 0.0,
         };
+        let PoseAt { time, pose, .. } = start;
         let history = PoseHistory::new(camera.latency + unknown + options.late, time);
         let model = ContactModel::new(options.mode, setup, camera, start, history.slots());
         let model = model.observed(options.observer);
-        let reference = Reference::new(start, setup.scene.nominal);
+        let reference = Reference::new(pose, setup.scene.nominal);
         let mut this = Self {
             filter: ParticleFilter::new(model, options.settings(setup))?,
             history,
@@ -133,7 +137,7 @@ impl<'o> ContactFilter<'o> {
             shown: None,
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
-            resting: RestingPose::new(start, &camera, setup),
+            resting: RestingPose::new((pose, start.covariance), &camera, setup),
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -147,6 +151,7 @@ impl<'o> ContactFilter<'o> {
         self.plan_step(&measured, drive);
         self.remember_observation();
         self.observation.pose = measured.object;
+        self.observation.covariance = measured.covariance;
         self.look_back(measured.time);
         self.observation.latency = self.history.at(measured.time - self.latency);
         self.observation.tactile.clear();
@@ -213,9 +218,10 @@ impl<'o> ContactFilter<'o> {
         let Some(pose) = self.observation.pose.filter(|_| contact) else {
             return;
         };
+        let seen = (pose, self.observation.covariance);
         match self.collapsed {
-            true => self.resting.start_at(pose),
-            false => self.resting.see(pose),
+            true => self.resting = self.resting.started_at(seen),
+            false => self.resting.see(seen),
         }
         self.plan.resting = Some(self.resting);
     }
@@ -273,10 +279,12 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
-    /// Weighs the particles by a pose that arrives late, against their own poses at `time` (s), from
+    /// Weighs the particles by a pose that arrives late, against their own poses at its time, from
     /// which the latency has not been taken yet. A pose that no particle explains changes nothing.
-    pub fn weigh_late(&mut self, time: f64, pose: Pose) -> &EstimateRow {
+    pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
+        let PoseAt { time, pose, .. } = late;
         self.observation.pose = Some(pose);
+        self.observation.covariance = late.covariance;
         self.look_back(time);
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();

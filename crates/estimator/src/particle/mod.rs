@@ -9,7 +9,7 @@ pub(crate) mod contact_filter;
 mod contact_mode;
 mod history;
 mod model;
-mod observation;
+pub(crate) mod observation;
 pub(crate) mod observer;
 mod propagation;
 mod replay;

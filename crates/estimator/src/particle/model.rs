@@ -5,11 +5,12 @@ use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
 use stickslip_filter::{Block, BlockMut, Draw, Model};
 
 use crate::angle::wrapped;
+use crate::covariance::PoseCovariance;
 use crate::mode::Mode;
 use crate::particle::camera_likelihood::CameraLikelihood;
 use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
-use crate::particle::observation::Observation;
+use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::observer::Observer;
 use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::step_plan::StepPlan;
@@ -31,14 +32,14 @@ const COLLAPSED: f64 = -6.0;
 pub struct ContactModel<'o> {
     transition: Transition<'o>,
     camera: Camera,
-    start: Pose,
+    start: PoseAt,
     camera_likelihood: CameraLikelihood,
     tactile_likelihood: TactileLikelihood,
 }
 
 impl<'o> ContactModel<'o> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
-    pub fn new(mode: Mode, setup: &Setup, camera: Camera, start: Pose, history: usize) -> Self {
+    pub fn new(mode: Mode, setup: &Setup, camera: Camera, start: PoseAt, history: usize) -> Self {
         let columns = Columns::new(mode, setup.scene.fixels.len(), history);
         Self {
             transition: Transition {
@@ -81,8 +82,20 @@ impl<'o> ContactModel<'o> {
         self.camera_likelihood.set_trust(trusted);
     }
 
-    /// A camera pose's worth of noise around `pose`.
-    fn drawn_around(&self, pose: &Pose, [x, y, theta]: [f64; 3]) -> Pose {
+    /// A camera pose's worth of noise around `pose`, by its own covariance where it has one.
+    fn drawn_around(
+        &self,
+        (pose, covariance): (&Pose, Option<PoseCovariance>),
+        [x, y, theta]: [f64; 3],
+    ) -> Pose {
+        if let Some(factor) = covariance.and_then(|c| c.factor()) {
+            let error = factor.drawn([x, y, theta]);
+            return Pose {
+                x: pose.x + error.x,
+                y: pose.y + error.y,
+                theta: pose.theta + error.theta,
+            };
+        }
         let camera = &self.camera;
         Pose {
             x: pose.x + camera.position_std * x,
@@ -150,8 +163,9 @@ impl Model for ContactModel<'_> {
 
     /// Poses as noisy as the camera's first one, at rest, all with the nominal friction.
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
+        let start = (&self.start.pose, self.start.covariance);
         for (i, particle) in block.particles() {
-            let pose = self.drawn_around(&self.start, draw.normals::<3>(particle, 0));
+            let pose = self.drawn_around(start, draw.normals::<3>(particle, 0));
             write(block, Columns::POSE, i, pose.fields());
             write(
                 block,
@@ -247,7 +261,10 @@ impl Model for ContactModel<'_> {
             let camera = &self.camera_likelihood;
             let chunk = camera.shown(observation, &block.as_block(), i / LANES);
             let shown = chunk.map(|column| column.0[i % LANES]);
-            let drawn = self.drawn_around(&measured, draw.normals::<3>(particle, 0));
+            let drawn = self.drawn_around(
+                (&measured, observation.covariance),
+                draw.normals::<3>(particle, 0),
+            );
             let shift = Pose {
                 x: drawn.x - shown.x,
                 y: drawn.y - shown.y,

@@ -2,6 +2,19 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::covariance::PoseCovariance;
+
+/// A pose of the object at its time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PoseAt {
+    /// When it was measured (s).
+    pub time: f64,
+    /// The pose.
+    pub pose: Pose,
+    /// How noisy it is, where it says so itself.
+    pub covariance: Option<PoseCovariance>,
+}
+
 /// Where in a particle's past the camera looks: between two slots of its history (docs/method.md
 /// (29)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +32,8 @@ pub struct LatencyCompensation {
 pub struct Observation {
     /// Camera pose.
     pub pose: Option<Pose>,
+    /// How noisy it is, where it says so itself.
+    pub covariance: Option<PoseCovariance>,
     /// Time of the row (s).
     pub time: f64,
     /// Times (s) and slots of the past poses that every particle keeps, in order of time (contact
@@ -36,6 +51,7 @@ impl Observation {
     /// Becomes a copy of `other`, in the memory that it has.
     pub(crate) fn overwrite(&mut self, other: &Self) {
         self.pose = other.pose;
+        self.covariance = other.covariance;
         self.time = other.time;
         self.past.clone_from(&other.past);
         self.latency = other.latency;

@@ -4,6 +4,7 @@
 use stickslip_dynamics::{Lanes, Pose};
 
 use crate::angle::wrapped;
+use crate::covariance::PoseCovariance;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::camera_noise::{CameraNoise, MEMORY, NoisePrior};
 use crate::setup::{Camera, Setup};
@@ -15,104 +16,128 @@ use crate::setup::{Camera, Setup};
 /// them out while the object waits for the pusher.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestingPose {
-    /// Mean.
-    pub(crate) mean: Pose,
-    /// Variances of x and y (m²), and of θ (rad²).
-    variance: [f64; 2],
+    mean: Pose,
+    /// Variances of x, y (m²) and θ (rad²).
+    variance: [f64; 3],
     /// Number of the poses seen, each by how likely it is not wrong.
     poses: f64,
-    /// Their mean.
+    /// Sums of their precisions as told, axis by axis.
+    precision: [f64; 3],
+    /// Their mean, each by its precision.
     centre: Pose,
-    /// Sums of the squares of their distances from it, in units of the told standard deviations.
+    /// Sums of the squares of their distances from it, in told standard deviations: of the position, of
+    /// the angle.
     squares: [f64; 2],
     camera: Camera,
     /// What the camera's standard deviations are widened by.
     widened: f64,
+    /// What is unknown of its noise.
     noise: Option<NoisePrior>,
 }
 
+/// Which of position and angle an axis belongs to.
+const GROUP: [usize; 3] = [0, 0, 1];
+
 impl RestingPose {
-    /// Around `start`, as well as one camera pose tells.
-    pub fn new(start: Pose, camera: &Camera, setup: &Setup) -> Self {
-        Self {
-            mean: start,
-            variance: told(camera),
+    /// Around `start`, as well as that pose tells.
+    pub fn new(start: (Pose, Option<PoseCovariance>), camera: &Camera, setup: &Setup) -> Self {
+        let unset = Self {
+            mean: start.0,
+            variance: [0.0; 3],
             poses: 0.0,
-            centre: start,
+            precision: [0.0; 3],
+            centre: start.0,
             squares: [0.0; 2],
             camera: *camera,
             widened: setup.filter.likelihood_scale,
             noise: NoisePrior::new(setup.uncertainty.camera_noise),
-        }
+        };
+        unset.started_at(start)
     }
 
-    /// Begins again at `pose`.
-    pub fn start_at(&mut self, pose: Pose) {
-        *self = Self {
-            mean: pose,
-            variance: told(&self.camera),
+    /// The same before anything but `start` is seen.
+    pub fn started_at(self, (start, covariance): (Pose, Option<PoseCovariance>)) -> Self {
+        Self {
+            mean: start,
+            variance: self.told(covariance),
             poses: 0.0,
-            centre: pose,
+            precision: [0.0; 3],
+            centre: start,
             squares: [0.0; 2],
-            ..*self
-        };
+            ..self
+        }
     }
 
     /// Bayes' rule with one more pose of the camera, whose noise is what the poses before say. By as
     /// much as the pose may be wrong, it counts less.
-    pub fn see(&mut self, pose: Pose) {
-        let kept = 1.0 - 1.0 / MEMORY;
-        let noise = self.noise_levels();
-        let told = told(&self.camera).map(|variance| variance * self.widened * self.widened);
-        let away = difference(&pose, &self.mean);
-        let right = self.is_right(away, told, noise);
+    pub fn see(&mut self, (pose, covariance): (Pose, Option<PoseCovariance>)) {
+        let told = self.told(covariance);
+        let levels = self.noise_levels();
+        let wide = self.widened * self.widened;
+        let measured: [f64; 3] = std::array::from_fn(|k| told[k] * wide * levels[GROUP[k]]);
+        let right = self.is_right(&pose, told, measured);
 
         // the pose
+        let away = difference(&pose, &self.mean);
         let mean = self.mean.fields_mut().into_iter().zip(away.fields());
-        for (axis, (mean, away)) in mean.enumerate() {
-            let group = axis / 2;
-            let prior = self.variance[group];
-            *mean += prior * right / (prior * right + told[group] * noise[group]) * away;
-        }
-        for group in 0..2 {
-            let (prior, measured) = (self.variance[group], told[group] * noise[group]);
-            self.variance[group] = prior * measured / (prior * right + measured);
+        for (k, (mean, away)) in mean.enumerate() {
+            let evidence = self.variance[k] * right + measured[k];
+            *mean += self.variance[k] * right / evidence * away;
+            self.variance[k] *= measured[k] / evidence;
         }
 
         // the camera's noise
-        let poses = kept * self.poses + right;
+        let kept = 1.0 - 1.0 / MEMORY;
+        self.poses = kept * self.poses + right;
+        self.squares = self.squares.map(|sum| kept * sum);
         let away = difference(&pose, &self.centre);
-        let share = if poses > 0.0 { right / poses } else { 0.0 };
-        let squares = self.squared(&away);
-        for (sum, square) in self.squares.iter_mut().zip(squares) {
-            *sum = kept * *sum + share * kept * self.poses * square;
+        let centre = self.centre.fields_mut().into_iter().zip(away.fields());
+        for (k, (centre, away)) in centre.enumerate() {
+            let (before, new) = (kept * self.precision[k], right / told[k]);
+            self.precision[k] = before + new;
+            if new > 0.0 {
+                self.squares[GROUP[k]] += before * new / (before + new) * away * away;
+                *centre += new / (before + new) * away;
+            }
         }
-        for (centre, away) in self.centre.fields_mut().into_iter().zip(away.fields()) {
-            *centre += share * away;
-        }
-        self.poses = poses;
     }
 
     /// A pose drawn from the belief, by three normal numbers.
     pub fn drawn(&self, [x, y, theta]: [f64; 3]) -> Pose {
-        let [position, angle] = self.variance.map(f64::sqrt);
+        let [std_x, std_y, std_theta] = self.variance.map(f64::sqrt);
         Pose {
-            x: self.mean.x + position * x,
-            y: self.mean.y + position * y,
-            theta: self.mean.theta + angle * theta,
+            x: self.mean.x + std_x * x,
+            y: self.mean.y + std_y * y,
+            theta: self.mean.theta + std_theta * theta,
         }
     }
 
     /// What a particle that has rested at `pose` all the time knows of the camera's noise: the number
     /// of the poses seen, and the sums of the squares of their distances from it.
     pub fn noise_seen_at(&self, pose: &Pose) -> [f64; 3] {
-        let [position, angle] = self.squared(&difference(&self.centre, pose));
-        let [squares, turns] = self.squares;
-        let poses = self.poses;
-        [poses, squares + poses * position, turns + poses * angle]
+        let away = difference(&self.centre, pose);
+        let [mut position, mut angle] = self.squares;
+        position += self.precision[0] * away.x * away.x + self.precision[1] * away.y * away.y;
+        angle += self.precision[2] * away.theta * away.theta;
+        [self.poses, position, angle]
     }
 
-    /// Variances of the camera's noise, in units of the told ones.
+    /// Variances of x, y and θ of a pose, by itself or as the camera's are told.
+    fn told(&self, covariance: Option<PoseCovariance>) -> [f64; 3] {
+        match covariance {
+            Some(of) => [of.x, of.y, of.theta],
+            None => {
+                let Camera {
+                    position_std,
+                    orientation_std,
+                    ..
+                } = self.camera;
+                [position_std, position_std, orientation_std].map(|std| std * std)
+            }
+        }
+    }
+
+    /// Variances of the camera's noise, in units of the told ones: of positions, of angles.
     fn noise_levels(&self) -> [f64; 2] {
         let Some(prior) = self.noise else {
             return [1.0; 2];
@@ -121,36 +146,30 @@ impl RestingPose {
         prior.variances(poses, position, angle)
     }
 
-    /// Probability that a pose so far from the mean is not wrong.
-    fn is_right(&self, away: Pose, told: [f64; 2], noise: [f64; 2]) -> f64 {
-        let squares = [away.x * away.x + away.y * away.y, away.theta * away.theta];
-        let expected = [0, 1].map(|k| self.variance[k] / (told[k] * noise[k]) + 1.0);
-        let [position, angle] = [0, 1].map(|k| squares[k] / (told[k] * expected[k]));
+    /// Probability that a pose is not wrong, by its distance from the mean; `measured` are its variances.
+    fn is_right(&self, pose: &Pose, told: [f64; 3], measured: [f64; 3]) -> f64 {
+        let away = difference(pose, &self.mean);
+        let wide = self.widened * self.widened;
+        let mut squares = [0.0; 2];
+        for (k, away) in away.fields().into_iter().enumerate() {
+            // as far as the mean is unknown, the pose may be away
+            let unknown = 1.0 + self.variance[k] / measured[k];
+            squares[GROUP[k]] += away * away / (told[k] * wide * unknown);
+        }
+        let [position, angle] = squares;
         let right = match self.noise {
             Some(prior) => {
                 let seen = self.noise_seen_at(&self.mean).map(Lanes::splat);
-                let noise = CameraNoise::of(seen);
-                let [position, angle] = [position, angle].map(Lanes::splat);
-                noise.log_likelihood(prior, position, angle).0[0]
+                let [position, angle] = squares.map(Lanes::splat);
+                CameraNoise::of(seen)
+                    .log_likelihood(prior, position, angle)
+                    .0[0]
             }
             None => -0.5 * (position + angle),
         };
         let right = libm::exp(right);
         right / (right + WRONG)
     }
-
-    /// Squares of a difference of poses in units of the told standard deviations: of the position, of
-    /// the angle.
-    fn squared(&self, away: &Pose) -> [f64; 2] {
-        let [position, angle] = told(&self.camera);
-        let square = away.x * away.x + away.y * away.y;
-        [square / position, away.theta * away.theta / angle]
-    }
-}
-
-/// Variances of the camera as told.
-fn told(camera: &Camera) -> [f64; 2] {
-    [camera.position_std, camera.orientation_std].map(|std| std * std)
 }
 
 /// From `from` to `to`, θ on the circle.
@@ -178,16 +197,18 @@ mod tests {
 
     /// Before the first pose is seen; the camera's noise is as told.
     fn told_noise(start: Pose, widened: f64) -> RestingPose {
-        RestingPose {
+        let unset = RestingPose {
             mean: start,
-            variance: told(&CAMERA),
+            variance: [0.0; 3],
             poses: 0.0,
+            precision: [0.0; 3],
             centre: start,
             squares: [0.0; 2],
             camera: CAMERA,
             widened,
             noise: None,
-        }
+        };
+        unset.started_at((start, None))
     }
 
     /// Noisy poses of an object that rests at `at`.
@@ -206,7 +227,7 @@ mod tests {
         let (start, widened) = (Pose::new(0.1, -0.2, 3.1), 1.5);
         let seen = poses(Pose::new(0.1003, -0.2002, 3.102), 40, 1.0);
         let mut resting = told_noise(start, widened);
-        seen.iter().for_each(|pose| resting.see(*pose));
+        seen.iter().for_each(|pose| resting.see((*pose, None)));
         // the start with weight 1, every pose with that of its wider noise
         let weight = 1.0 / (widened * widened);
         let total = 1.0 + 40.0 * weight;
@@ -225,10 +246,10 @@ mod tests {
         let start = Pose::new(0.0, 0.0, 3.1);
         let mut resting = told_noise(start, 1.0);
         let before = resting;
-        resting.see(Pose::new(0.05, 0.0, 3.1));
+        resting.see((Pose::new(0.05, 0.0, 3.1), None));
         let moved = resting.mean.x - before.mean.x;
         assert!(moved.abs() < 1e-9, "{moved}");
-        resting.see(Pose::new(0.0, 0.0, 3.1 - std::f64::consts::TAU));
+        resting.see((Pose::new(0.0, 0.0, 3.1 - std::f64::consts::TAU), None));
         assert!((resting.mean.theta - 3.1).abs() < 1e-9);
     }
 
@@ -242,7 +263,7 @@ mod tests {
         let (mut position, mut angle, mut count) = (0.0, 0.0, 0.0);
         let kept = 1.0 - 1.0 / MEMORY;
         for pose in &seen {
-            resting.see(*pose);
+            resting.see((*pose, None));
             let (dx, dy) = (pose.x - particle.x, pose.y - particle.y);
             let turn = (pose.theta - particle.theta) / CAMERA.orientation_std;
             let std = CAMERA.position_std;
@@ -254,6 +275,32 @@ mod tests {
         for (found, expected) in found.into_iter().zip([count, position, angle]) {
             // poses far from the mean count a little less than 1
             assert!((found / expected - 1.0).abs() < 1e-3, "{found}, {expected}");
+        }
+    }
+
+    /// A pose with standard deviations of its own counts by these.
+    #[test]
+    fn poses_count_by_their_own_covariance() {
+        let covariance = PoseCovariance {
+            x: 1e-8,
+            y: 4e-8,
+            theta: 1e-6,
+            ..PoseCovariance::default()
+        };
+        let mut resting = told_noise(Pose::default(), 1.0);
+        let seen = Pose::new(2e-4, -3e-4, 2e-3);
+        resting.see((seen, Some(covariance)));
+        let prior = [
+            CAMERA.position_std,
+            CAMERA.position_std,
+            CAMERA.orientation_std,
+        ];
+        let own = [covariance.x, covariance.y, covariance.theta];
+        let seen = seen.fields();
+        for (k, found) in resting.mean.fields().into_iter().enumerate() {
+            let prior = prior[k] * prior[k];
+            let expected = seen[k] * prior / (prior + own[k]);
+            assert!((found / expected - 1.0).abs() < 1e-5, "{found}, {expected}");
         }
     }
 }

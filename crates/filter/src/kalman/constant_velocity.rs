@@ -106,8 +106,22 @@ impl ConstantVelocity {
         times: &[f64],
         measurements: &[Option<f64>],
     ) -> Result<Filtered, SeriesError> {
+        self.filter_with_stds(times, measurements, &[])
+    }
+
+    /// The same where measurements have standard deviations of their own, one per row or none at all;
+    /// those without have the model's.
+    ///
+    /// # Errors
+    /// If the model or the series is out of range, or a standard deviation is.
+    pub fn filter_with_stds(
+        &self,
+        times: &[f64],
+        measurements: &[Option<f64>],
+        stds: &[Option<f64>],
+    ) -> Result<Filtered, SeriesError> {
         self.check()?;
-        let series = Series::new(times, measurements)?;
+        let series = Series::new(times, measurements)?.with_stds(stds)?;
         let mut log_likelihood = 0.0;
         let mut rows = vec![None; times.len()];
         self.forward(&series, |row, step| {
@@ -169,11 +183,15 @@ impl ConstantVelocity {
     fn forward(&self, series: &Series<'_>, mut visit: impl FnMut(usize, Step)) {
         let mut before: Option<(f64, Gaussian<2>)> = None;
         for (row, time, measurement) in series.rows() {
+            let model = Self {
+                measurement_std: series.std(row).unwrap_or(self.measurement_std),
+                ..*self
+            };
             let step = match (before, measurement) {
                 (Some((then, state)), _) => {
-                    self.step(&self.predict(&state, time - then), measurement)
+                    model.step(&self.predict(&state, time - then), measurement)
                 }
-                (None, Some(position)) => Step::at_start(self.start(position)),
+                (None, Some(position)) => Step::at_start(model.start(position)),
                 (None, None) => continue,
             };
             visit(row, step);

@@ -7,8 +7,8 @@ use crate::kalman::series::{Series, SeriesError};
 /// Decades of process noise searched either side of the centre.
 const DECADES: usize = 9;
 
-/// Innovation variances whose product is taken before its logarithm: each is at least 1, and a
-/// product of so many below 1e77 is finite.
+/// Innovation variances whose product is taken before its logarithm: a product of so many between
+/// 1e-77 and 1e77 is a number.
 const FACTORS: u32 = 4;
 
 /// The process noise that makes a series of measurements most probable.
@@ -48,12 +48,27 @@ impl ConstantVelocity {
         times: &[f64],
         measurements: &[Option<f64>],
     ) -> Result<ProcessNoiseFit, SeriesError> {
+        self.fit_process_noise_with_stds(times, measurements, &[])
+    }
+
+    /// The same where measurements have standard deviations of their own, one per row or none at all;
+    /// those without have the model's.
+    ///
+    /// # Errors
+    /// If the model or the series is out of range or has fewer than 3 measurements, or a standard
+    /// deviation is.
+    pub fn fit_process_noise_with_stds(
+        &self,
+        times: &[f64],
+        measurements: &[Option<f64>],
+        stds: &[Option<f64>],
+    ) -> Result<ProcessNoiseFit, SeriesError> {
         let axis = ConstantVelocity {
             process_noise: 0.0,
             ..*self
         };
         axis.check()?;
-        let series = Series::new(times, measurements)?;
+        let series = Series::new(times, measurements)?.with_stds(stds)?;
         let measurements = series.measured();
         if measurements < 3 {
             return Err(SeriesError::TooFew { measurements });
@@ -189,20 +204,22 @@ fn log_likelihoods<const W: usize>(
     series: &Series<'_>,
 ) -> [f64; W] {
     let unit = 1.0 / axis.measurement_std;
+    let variance = |row| series.std(row).map_or(1.0, |std| std * unit * std * unit);
     let mut rows = series
         .rows()
-        .filter_map(|(_, time, measurement)| Some((time, measurement?)));
-    let Some((mut before, first)) = rows.next() else {
+        .filter_map(|(row, time, measurement)| Some((time, measurement?, variance(row))));
+    let Some((mut before, first, variance)) = rows.next() else {
         return [0.0; W];
     };
     let mut filters = Filters::start(
         process_noise.map(|q| q * unit * unit),
+        variance,
         axis.initial_velocity_std * unit,
     );
     let mut count = 0;
-    for (time, position) in rows {
+    for (time, position, variance) in rows {
         filters.predict(time - before);
-        filters.update((position - first) * unit);
+        filters.update((position - first) * unit, variance);
         count += 1;
         if count % FACTORS == 0 {
             filters.add_logarithm();
@@ -215,8 +232,8 @@ fn log_likelihoods<const W: usize>(
 }
 
 /// The filters of [`ConstantVelocity`] for `W` levels of process noise side by side, written out
-/// for their two numbers, in units of measurement_std (so that R = 1) and relative to the first
-/// measurement.
+/// for their two numbers, in units of measurement_std (so that R = 1, but for measurements with a noise
+/// of their own) and relative to the first measurement.
 struct Filters<const W: usize> {
     process_noise: [f64; W],
     position: [f64; W],
@@ -231,13 +248,14 @@ struct Filters<const W: usize> {
 }
 
 impl<const W: usize> Filters<W> {
-    /// At the first measurement, 0, at rest with a standard deviation of `velocity_std`.
-    fn start(process_noise: [f64; W], velocity_std: f64) -> Self {
+    /// At the first measurement, 0, whose variance is `variance`, at rest with a standard deviation of
+    /// `velocity_std`.
+    fn start(process_noise: [f64; W], variance: f64, velocity_std: f64) -> Self {
         Self {
             process_noise,
             position: [0.0; W],
             velocity: [0.0; W],
-            position_variance: [1.0; W],
+            position_variance: [variance; W],
             covariance: [0.0; W],
             velocity_variance: [velocity_std * velocity_std; W],
             sum: [0.0; W],
@@ -259,11 +277,11 @@ impl<const W: usize> Filters<W> {
         }
     }
 
-    /// The states given a position too.
+    /// The states given a position too, whose variance is `noise`.
     #[inline(always)]
-    fn update(&mut self, measured: f64) {
+    fn update(&mut self, measured: f64, noise: f64) {
         for k in 0..W {
-            let variance = self.position_variance[k] + 1.0;
+            let variance = self.position_variance[k] + noise;
             let innovation = measured - self.position[k];
             let inverse = 1.0 / variance;
             let gain = [
@@ -273,8 +291,8 @@ impl<const W: usize> Filters<W> {
             self.position[k] += gain[0] * innovation;
             self.velocity[k] += gain[1] * innovation;
             self.velocity_variance[k] -= gain[1] * self.covariance[k];
-            self.position_variance[k] = gain[0];
-            self.covariance[k] = gain[1];
+            self.position_variance[k] = gain[0] * noise;
+            self.covariance[k] = gain[1] * noise;
             self.sum[k] += innovation * innovation * inverse;
             self.product[k] *= variance;
         }
@@ -351,6 +369,50 @@ mod tests {
             assert!(
                 (value - expected).abs() < 1e-9 * expected.abs(),
                 "{q}: {value}, not {expected}"
+            );
+        }
+    }
+
+    /// Noise of its own for every third row: the likelihood is that of the filter that is written with
+    /// matrices.
+    #[test]
+    fn log_likelihoods_take_the_noise_of_each_measurement() {
+        let axis = ConstantVelocity {
+            process_noise: 0.0,
+            measurement_std: 1e-3,
+            initial_velocity_std: 0.3,
+        };
+        let times: Vec<f64> = (0..90).map(|row| 0.03 * f64::from(row)).collect();
+        let measurements: Vec<Option<f64>> = times
+            .iter()
+            .map(|t| Some(0.1 * libm::sin(9.0 * t)))
+            .collect();
+        let stds: Vec<Option<f64>> = (0..90)
+            .map(|row| (row % 3 == 0).then_some(2e-5 * f64::from(1 + row)))
+            .collect();
+        let series = Series::new(&times, &measurements).and_then(|s| s.with_stds(&stds));
+        let series = series.expect("a series");
+        let levels = [1e-8, 1e-2, 10.0];
+        for (q, value) in levels
+            .into_iter()
+            .zip(log_likelihoods(&axis, levels, &series))
+        {
+            let axis = ConstantVelocity {
+                process_noise: q,
+                ..axis
+            };
+            let filtered = axis.filter_with_stds(&times, &measurements, &stds);
+            let expected = filtered.expect("a series").log_likelihood;
+            let plain = axis.filter(&times, &measurements).expect("a series");
+            assert!(
+                (value - expected).abs() < 1e-9 * expected.abs(),
+                "{q}: {value} {expected}"
+            );
+            // the noise matters a thousand times more than the two may differ
+            let without = plain.log_likelihood;
+            assert!(
+                (value - without).abs() > 1e-6 * expected.abs(),
+                "{q}: {value} {without}"
             );
         }
     }

@@ -70,6 +70,8 @@ pub enum SeriesError {
 pub(crate) struct Series<'a> {
     times: &'a [f64],
     measurements: &'a [Option<f64>],
+    /// Standard deviations of the measurements, where they have their own; none at all, or one per row.
+    stds: &'a [Option<f64>],
 }
 
 impl<'a> Series<'a> {
@@ -88,7 +90,32 @@ impl<'a> Series<'a> {
         Ok(Series {
             times,
             measurements,
+            stds: &[],
         })
+    }
+
+    /// The same with standard deviations of single measurements; none at all, or one per row.
+    pub(crate) fn with_stds(self, stds: &'a [Option<f64>]) -> Result<Self, SeriesError> {
+        if !stds.is_empty() && stds.len() != self.times.len() {
+            return Err(SeriesError::Length {
+                times: self.times.len(),
+                measurements: stds.len(),
+            });
+        }
+        let wrong = |std: &&f64| !((*std * *std).is_normal() && **std > 0.0);
+        match stds.iter().flatten().find(wrong) {
+            Some(value) => Err(SeriesError::Parameter {
+                name: "standard deviation of a measurement",
+                value: *value,
+                rule: "> 0",
+            }),
+            None => Ok(Self { stds, ..self }),
+        }
+    }
+
+    /// The standard deviation that the measurement of a row has of its own.
+    pub(crate) fn std(&self, row: usize) -> Option<f64> {
+        self.stds.get(row).copied().flatten()
     }
 
     /// (row, time, measurement) of every row in order.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use stickslip::PoseCovariance;
 use stickslip_dynamics::Pose;
 
 use crate::log_mcap::error::{McapError, McapProblem};
@@ -9,7 +10,7 @@ use crate::log_mcap::place::Frames;
 use crate::log_mcap::planar::{Tilt, ZAxis, planar, wrapped};
 use crate::log_mcap::rows::MERGED;
 use crate::log_mcap::series::{Series, Timed, unwrap};
-use crate::log_mcap::source::{CommonFrame, Source};
+use crate::log_mcap::source::{CommonFrame, Source, TopicPoses};
 use crate::log_mcap::topics::Topic;
 use crate::log_mcap::transforms::Transforms;
 use crate::mounts::body_of;
@@ -22,6 +23,10 @@ pub(crate) struct BodyPoses {
     pub tilt: Tilt,
     /// Stamps whose pose is not known.
     pub unlinked: usize,
+    /// How noisy the poses are, by stamp (ns), where that is told.
+    pub covariances: BTreeMap<i64, PoseCovariance>,
+    /// How many are told to be noisy by numbers that are no covariance.
+    pub impossible: usize,
 }
 
 /// A body whose tags are mounted as the scene says.
@@ -40,11 +45,18 @@ impl BodyPoses {
         source: &Source<'_>,
         frame: &mut CommonFrame,
     ) -> Result<Self, McapError> {
-        let (poses, tilt) = source.poses(frame)?;
+        let TopicPoses {
+            poses,
+            tilt,
+            covariances,
+            impossible,
+        } = source.poses(frame)?;
         Ok(Self {
             poses,
             tilt,
             unlinked: 0,
+            covariances,
+            impossible,
         })
     }
 
@@ -74,6 +86,8 @@ impl BodyPoses {
             poses,
             tilt,
             unlinked: chain.unlinked,
+            covariances: BTreeMap::new(),
+            impossible: 0,
         })
     }
 }

@@ -100,6 +100,29 @@ pub enum McapProblem {
         /// All topics of the recording.
         found: Vec<String>,
     },
+    /// A camera's topic that must be there is not.
+    #[error(
+        "the topic `{name}` ({key}) is not there. Say which topic it is with {key}=TOPIC; {}",
+        if .found.is_empty() { "the recording has none of its type".to_owned() } else { format!("of its type the recording has {}", .found.join(", ")) }
+    )]
+    NoCameraTopic {
+        /// Its key.
+        key: &'static str,
+        /// Its name.
+        name: String,
+        /// Topics that could be meant.
+        found: Vec<String>,
+    },
+    /// A camera that changes while it looks.
+    #[error(
+        "CameraInfo changes from a focal length of {before} px to {now} px; a camera must stay as it is. Switch autofocus and zoom off, or leave CameraInfo out with info="
+    )]
+    CameraChanged {
+        /// fx of the first message (px).
+        before: f64,
+        /// fx of this one (px).
+        now: f64,
+    },
     /// Fixels are misnumbered.
     #[error(
         "sensors are numbered fixel_1, fixel_2, ... without gaps, and fixel_{missing} is not there. Map fixel_{missing} to a topic, in the order of the [[fixel]] tables"
@@ -121,6 +144,11 @@ pub enum McapProblem {
     /// Transforms without saying whose.
     #[error("it carries transforms between frames. Say which two, as object=/tf:table.tag_7")]
     FramesNeeded,
+    /// Detections of tags, which have no pose on the table.
+    #[error(
+        "it carries where tags are in the image, and no poses on the table (those of Isaac ROS are in the camera's frame). The node that finds tags puts their poses on /tf: record it with /tf_static, and name the frames, as object=/tf:table.tag_7; `stickslip info` lists them"
+    )]
+    Detections,
     /// Frames that no transforms join.
     #[error(
         "no transforms lead from `{child}` to `{parent}`. Name two frames that are joined; the recording has {}",

@@ -6,6 +6,7 @@ use serde::Serialize;
 use stickslip_dynamics::Pose;
 
 use crate::log_mcap::error::McapError;
+use crate::log_mcap::image_message::{IMAGE_TYPES, INFO_TYPE};
 use crate::log_mcap::message::{Bool, Message, SECOND, WrenchStamped};
 use crate::log_mcap::place::{Frames, Place};
 use crate::log_mcap::planar::{ZAxis, planar};
@@ -30,6 +31,9 @@ pub struct BagInfo {
     pub poses: Vec<PosesInfo>,
     /// What of it would do for a log, as `--topic` takes it; keys are left out where nothing would.
     pub suggestion: Vec<String>,
+    /// What of it would do to find the poses in images, as `stickslip track --topic` takes it; empty
+    /// without images.
+    pub image_suggestion: Vec<String>,
 }
 
 /// A topic.
@@ -108,7 +112,7 @@ pub fn read_bag_info<R: Read>(
             .map_or("", |kind| kind.schema.as_str());
         if PoseKind::of(schema).is_some() {
             let read = source.poses(&mut CommonFrame::default());
-            let motion = read.map(|(poses, tilt)| (poses, tilt.largest));
+            let motion = read.map(|found| (found.poses, found.tilt.largest));
             moving.push((
                 Place::topic(name.clone()),
                 motion.map_err(|error| error.problem.to_string()),
@@ -135,6 +139,7 @@ pub fn read_bag_info<R: Read>(
         .collect();
     let suggestion = suggestion::suggestion(&topics, &poses);
     let info = BagInfo {
+        image_suggestion: suggestion::images(&topics),
         topics,
         poses,
         suggestion,
@@ -151,6 +156,8 @@ fn topic((name, seen): (&String, &Seen)) -> TopicInfo {
         TfMessage::TYPE if !name.ends_with("_static") => &["object", "pusher"],
         WrenchStamped::TYPE => &["wrench", "fixel"],
         Bool::TYPE => &["fixel"],
+        schema if IMAGE_TYPES.contains(&schema) => &["image"],
+        INFO_TYPE => &["info"],
         _ => &[],
     };
     TopicInfo {

@@ -10,7 +10,7 @@ use crate::log_mcap::error::McapProblem;
 pub(crate) const SECOND: i64 = 1_000_000_000;
 
 /// Bytes that a message may be longer than its type: what writers pad it with.
-const PADDING: usize = 8;
+pub(crate) const PADDING: usize = 8;
 
 /// A ROS 2 message type.
 pub(crate) trait Message: DeserializeOwned {
@@ -160,12 +160,16 @@ pub(crate) fn encode<M: WrittenMessage>(message: &M) -> Vec<u8> {
 
 /// A message from little- or big-endian CDR.
 pub(crate) fn decode<M: Message>(bytes: &[u8]) -> Result<M, McapProblem> {
-    let wrong = |why: String| McapProblem::Message {
-        expected: M::TYPE,
-        why,
-    };
+    match decode_front(bytes)? {
+        (message, rest) if rest.len() < PADDING => Ok(message),
+        (_, rest) => Err(wrong::<M>(format!("{} bytes are left over", rest.len()))),
+    }
+}
+
+/// What a message begins with, and the bytes that follow.
+pub(crate) fn decode_front<M: Message>(bytes: &[u8]) -> Result<(M, &[u8]), McapProblem> {
     let Some((&[first, second, _, _], body)) = bytes.split_first_chunk() else {
-        return Err(wrong(format!(
+        return Err(wrong::<M>(format!(
             "it has {} bytes and CDR begins with four of its own",
             bytes.len()
         )));
@@ -179,10 +183,14 @@ pub(crate) fn decode<M: Message>(bytes: &[u8]) -> Result<M, McapProblem> {
             });
         }
     };
-    let (message, used) = read.map_err(|error| wrong(error.to_string()))?;
-    match body.len() - used {
-        rest if rest < PADDING => Ok(message),
-        rest => Err(wrong(format!("{rest} bytes are left over"))),
+    let (message, used) = read.map_err(|error| wrong::<M>(error.to_string()))?;
+    Ok((message, body.get(used..).unwrap_or_default()))
+}
+
+fn wrong<M: Message>(why: String) -> McapProblem {
+    McapProblem::Message {
+        expected: M::TYPE,
+        why,
     }
 }
 

@@ -1,15 +1,19 @@
 //! A log as MCAP recordings of ROS 2 messages: [`read_bag`], [`read_log_mcap`], [`write_log_mcap`].
 //!
-//! `recording` takes the files apart into messages by topic, `records` into records, `message` and `pose_message` have their
-//! types. `source` makes measurements of a topic, `transforms` of frames and `body` of a body's;
+//! `records` takes the files apart into records, `messages` into messages, `recording` keeps those of the needed topics;
+//! `message`, `pose_message` and `image_message` have their types. `source` makes measurements of a topic, `transforms` of frames and `body` of a body's;
 //! `planar` projects poses on the table, `rows` makes a log's rows. `topics` and `place` say which
-//! topic is which. `info` looks at a whole bag, `suggestion` which of its topics would do.
+//! topic is which. `sensors` fills in what was felt, `images` shows images one by one, by their `camera_topics`. `info` looks at a whole bag, `suggestion` which of its topics would do.
 
 mod body;
+mod camera_topics;
 mod error;
 mod estimate;
+mod image_message;
+mod images;
 mod info;
 mod message;
+mod messages;
 mod output_message;
 mod place;
 mod planar;
@@ -18,6 +22,7 @@ mod read;
 mod recording;
 mod records;
 mod rows;
+mod sensors;
 mod series;
 mod source;
 mod suggestion;
@@ -25,11 +30,15 @@ mod topics;
 mod transforms;
 mod write;
 
+pub use camera_topics::{CameraMapping, CameraTopics};
 pub use error::{McapError, McapPlace, McapProblem};
 pub use estimate::{write_estimate_mcap, write_estimate_tum};
+pub use image_message::{BagCameraInfo, BagImage, BagPicture};
+pub use images::{CameraRecording, read_bag_camera_info, read_bag_images};
 pub use info::{BagInfo, PosesInfo, TopicInfo, read_bag_info};
 pub use place::{Frames, Place};
 pub use read::{BagOptions, read_bag, read_log_mcap};
+pub use sensors::Readings;
 pub use topics::{Topic, TopicError, TopicMapping, Topics};
 pub(crate) use write::LogMessages;
 pub use write::{McapWriteError, write_log_mcap};

@@ -1,6 +1,7 @@
 //! Messages that carry one pose, whatever else they say: [`StampedPose`].
 
 use serde::{Deserialize, Serialize};
+use stickslip::PoseCovariance;
 
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::message::{Header, Message, PoseStamped, Quaternion, Vector3, decode};
@@ -8,8 +9,7 @@ use crate::log_mcap::message::{Header, Message, PoseStamped, Quaternion, Vector3
 /// Six by six numbers, row by row.
 pub(crate) type Covariance = [[f64; 6]; 6];
 
-/// `geometry_msgs/msg/PoseWithCovarianceStamped`, laid out flat; where one is read, the covariance is
-/// not used.
+/// `geometry_msgs/msg/PoseWithCovarianceStamped`, laid out flat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PoseWithCovarianceStamped {
     pub header: Header,
@@ -26,8 +26,7 @@ struct Odometry {
     _child: String,
     position: Vector3,
     orientation: Quaternion,
-    #[serde(rename = "covariance")]
-    _covariance: Covariance,
+    covariance: Covariance,
     #[serde(rename = "twist")]
     _twist: [f64; 6],
     #[serde(rename = "twist_covariance")]
@@ -71,6 +70,65 @@ pub(crate) struct StampedPose {
     pub header: Header,
     pub position: Vector3,
     pub orientation: Quaternion,
+    pub noise: ToldNoise,
+}
+
+/// What a message says of its pose's noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ToldNoise {
+    /// Nothing: its type has no covariance, or that is 0 throughout, as where it is not known.
+    Unknown,
+    /// The covariance of x, y and the turn about z.
+    Known(PoseCovariance),
+    /// Numbers that are no covariance.
+    Impossible,
+}
+
+impl ToldNoise {
+    /// Of the covariance of x, y, z and turns about the three axes.
+    fn of(covariance: &Covariance) -> Self {
+        /// Where x, y and the turn about z are.
+        const PLANAR: [usize; 3] = [0, 1, 5];
+        let [x, y, theta] = PLANAR.map(|k| covariance[k][k]);
+        let [x_y, x_theta, y_theta] = [(0, 1), (0, 5), (1, 5)].map(|(i, j)| covariance[i][j]);
+        let planar = PoseCovariance {
+            x,
+            y,
+            theta,
+            x_y,
+            x_theta,
+            y_theta,
+        };
+        let symmetric = [(0, 1), (0, 5), (1, 5)].into_iter().all(|(i, j)| {
+            let (a, b) = (covariance[i][j], covariance[j][i]);
+            (a - b).abs() <= ASYMMETRY * (covariance[i][i] * covariance[j][j]).abs().sqrt()
+        });
+        match planar {
+            planar if planar.is_unknown() && symmetric => Self::Unknown,
+            planar if planar.is_valid() && symmetric => Self::Known(planar),
+            _ => Self::Impossible,
+        }
+    }
+}
+
+/// How far the two halves of a covariance may differ, as a correlation.
+const ASYMMETRY: f64 = 1e-6;
+
+/// A covariance of x, y and the turn about z in that of a pose in space, 0 elsewhere.
+pub(crate) fn spatial_covariance(planar: &PoseCovariance) -> Covariance {
+    let mut covariance = [[0.0; 6]; 6];
+    for (i, j, number) in [
+        (0, 0, planar.x),
+        (1, 1, planar.y),
+        (5, 5, planar.theta),
+        (0, 1, planar.x_y),
+        (0, 5, planar.x_theta),
+        (1, 5, planar.y_theta),
+    ] {
+        covariance[i][j] = number;
+        covariance[j][i] = number;
+    }
+    covariance
 }
 
 /// A message type that carries one pose.
@@ -105,6 +163,7 @@ impl PoseKind {
 
     /// The pose of a message.
     pub(crate) fn decode(self, bytes: &[u8]) -> Result<StampedPose, McapProblem> {
+        let mut noise = ToldNoise::Unknown;
         let (header, position, orientation) = match self {
             Self::Stamped => {
                 let m: PoseStamped = decode(bytes)?;
@@ -112,6 +171,7 @@ impl PoseKind {
             }
             Self::WithCovariance => {
                 let m: PoseWithCovarianceStamped = decode(bytes)?;
+                noise = ToldNoise::of(&m.covariance);
                 (m.header, m.position, m.orientation)
             }
             Self::Transform => {
@@ -120,6 +180,7 @@ impl PoseKind {
             }
             Self::Odometry => {
                 let m: Odometry = decode(bytes)?;
+                noise = ToldNoise::of(&m.covariance);
                 (m.header, m.position, m.orientation)
             }
         };
@@ -127,6 +188,7 @@ impl PoseKind {
             header,
             position,
             orientation,
+            noise,
         })
     }
 }

@@ -1,20 +1,21 @@
 //! From a bag to a log: [`read_bag`], [`read_log_mcap`].
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::iter::once;
 
-use stickslip::{Log, Tactile};
+use stickslip::{Log, PoseCovariance, Tactile};
 use stickslip_dynamics::Pose;
 
 use crate::log_mcap::body::{BodyPoses, TaggedBody, joined};
 use crate::log_mcap::error::{McapError, McapProblem};
 use crate::log_mcap::message::SECOND;
+use crate::log_mcap::messages::Damage;
 use crate::log_mcap::place::Place;
 use crate::log_mcap::planar::Tilt;
-use crate::log_mcap::recording::{Damage, Recording};
+use crate::log_mcap::recording::Recording;
 use crate::log_mcap::rows::Rows;
-use crate::log_mcap::series::{Series, Timed, seconds_text};
+use crate::log_mcap::series::Series;
 use crate::log_mcap::source::{CommonFrame, Source};
 use crate::log_mcap::topics::{Topic, Topics};
 use crate::log_mcap::transforms::Transforms;
@@ -63,8 +64,8 @@ pub fn read_log_mcap(
 /// Reads a log from the MCAP files of a bag of ROS 2 messages, each with the name to show in errors
 /// and warnings.
 ///
-/// Poses are `geometry_msgs/msg/PoseStamped`, `PoseWithCovarianceStamped` (its covariance is not
-/// used), `TransformStamped` or `nav_msgs/msg/Odometry`, or the way between two frames of
+/// Poses are `geometry_msgs/msg/PoseStamped`, `PoseWithCovarianceStamped`,
+/// `TransformStamped` or `nav_msgs/msg/Odometry`, or the way between two frames of
 /// `tf2_msgs/msg/TFMessage`; forces are `geometry_msgs/msg/WrenchStamped`, tactile readings
 /// `std_msgs/msg/Bool` or a force that is compared with a threshold. Time (s) is `header.stamp`, of
 /// Bool the log time; messages may come in any order.
@@ -75,6 +76,9 @@ pub fn read_log_mcap(
 /// reading in the interval that ends at its row is true, 0 if there are only false ones, without any
 /// the last one if it is at most 0.5 s old; a force cell is the interval's mean. The first row's
 /// interval is as long as the second's. θ = 2 atan2(q_z, q_w), unwrapped.
+///
+/// Where messages of the object have a covariance, that of x, y and the turn about z is the row's; one
+/// of zeros is not known, and so is one that is none, with a warning.
 ///
 /// Files are read piece by piece; memory is taken for one chunk of at most 256 MiB, and for the
 /// messages of the needed topics. Files, chunks and messages may be packed with zstd.
@@ -113,37 +117,37 @@ pub fn read_bag<R: Read>(
     let mut frame = CommonFrame::default();
     let mut transforms = BTreeMap::new();
     let mut poses = |topic| reader.poses(topic, (&mut frame, &mut transforms), &mut warnings);
-    let (object, pusher) = (poses(Topic::Object)?, poses(Topic::Pusher)?);
+    let ((object, covariances), (pusher, _)) = (poses(Topic::Object)?, poses(Topic::Pusher)?);
     let rows = Rows::new(&object, &pusher);
     let time = reader
         .times(&rows)
         .map_err(|problem| reader.whole(problem))?;
 
     // sensors fill cells in them
-    let mut tactile = Vec::new();
-    for topic in (1..=sensors).map(Topic::Fixel) {
-        let touches = reader
-            .source(topic)
-            .map_or(Ok(Vec::new()), |source| source.touches(options.touch_force))?;
-        tactile.push(rows.touches(&touches));
-        warnings.extend(reader.elsewhere(topic, &touches, &rows));
-    }
-    let force = match reader.source(Topic::Wrench) {
-        Some(wrench) => {
-            let forces = wrench.forces(&mut frame)?;
-            warnings.extend(reader.elsewhere(Topic::Wrench, &forces, &rows));
-            rows.forces(&forces)
-        }
-        None => Vec::new(),
-    };
+    let readings = reader.readings(sensors, &rows, &mut frame)?;
+    warnings.extend(readings.warnings);
     let log = Log {
         time,
+        object_covariance: own_covariances(&rows, &covariances),
         object: rows.object,
         pusher: rows.pusher,
-        tactile,
-        force,
+        tactile: readings.tactile,
+        force: readings.force,
     };
     Ok((log, warnings))
+}
+
+/// How noisy the object's poses are row by row; nothing where none is told to be.
+fn own_covariances(
+    rows: &Rows,
+    told: &BTreeMap<i64, PoseCovariance>,
+) -> Vec<Option<PoseCovariance>> {
+    if told.is_empty() {
+        return Vec::new();
+    }
+    let seen = rows.time.iter().zip(&rows.object);
+    seen.map(|(time, pose)| pose.and_then(|_| told.get(time).copied()))
+        .collect()
 }
 
 /// An error of the whole bag, told of its latest file.
@@ -167,10 +171,10 @@ pub(crate) fn damage_warnings(recording: &Recording, files: &[String]) -> Vec<Lo
 }
 
 /// A bag with the names of its files and how it is read.
-struct Reader<'a> {
-    files: &'a [String],
-    options: &'a BagOptions,
-    recording: &'a Recording,
+pub(crate) struct Reader<'a> {
+    pub files: &'a [String],
+    pub options: &'a BagOptions,
+    pub recording: &'a Recording,
 }
 
 /// Transforms by the topic that they are on.
@@ -178,34 +182,25 @@ type ByTopic<'a> = BTreeMap<String, Transforms<'a>>;
 
 impl<'a> Reader<'a> {
     /// An error of the whole bag.
-    fn whole(&self, problem: McapProblem) -> McapError {
+    pub(crate) fn whole(&self, problem: McapProblem) -> McapError {
         whole(&self.files[..self.files.len().min(1)], problem)
     }
 
     /// All needed topics are there; the number of sensors.
     fn check_topics(&self) -> Result<usize, McapProblem> {
-        let topics = &self.options.topics;
-        let recorded = self.recording.topics.keys();
-        let fixels: BTreeSet<usize> = recorded
-            .filter_map(|name| fixel(topics.carries(name)?))
-            .chain(topics.mapped_fixels())
-            .collect();
-        let mapped = fixels
-            .iter()
-            .map(|k| Topic::Fixel(*k))
-            .chain([Topic::Wrench])
-            .filter(|topic| topics.is_mapped(*topic));
-        for topic in [Topic::Object, Topic::Pusher].into_iter().chain(mapped) {
-            for place in topics.places(topic) {
-                if !self.recording.topics.contains_key(&place.topic) {
-                    return Err(self.missing(topic, place.topic));
-                }
+        self.require(Topic::Object)?;
+        self.require(Topic::Pusher)?;
+        self.sensors()
+    }
+
+    /// Refuses a bag that lacks a topic.
+    pub(crate) fn require(&self, topic: Topic) -> Result<(), McapProblem> {
+        for place in self.options.topics.places(topic) {
+            if !self.recording.topics.contains_key(&place.topic) {
+                return Err(self.missing(topic, place.topic));
             }
         }
-        match (1..).zip(&fixels).find(|(expected, k)| expected != *k) {
-            Some((missing, _)) => Err(McapProblem::SensorNumber { missing }),
-            None => Ok(fixels.len()),
-        }
+        Ok(())
     }
 
     fn missing(&self, topic: Topic, name: String) -> McapProblem {
@@ -235,12 +230,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn name(&self, topic: Topic) -> String {
+    pub(crate) fn name(&self, topic: Topic) -> String {
         self.options.topics.name(topic).unwrap_or_default()
     }
 
     /// A topic that is read as a whole, if it is there.
-    fn source(&self, topic: Topic) -> Option<Source<'a>> {
+    pub(crate) fn source(&self, topic: Topic) -> Option<Source<'a>> {
         let place = self.options.topics.places(topic).into_iter().next()?;
         self.source_of(&place.topic)
     }
@@ -260,7 +255,7 @@ impl<'a> Reader<'a> {
         topic: Topic,
         (frame, transforms): (&mut CommonFrame, &mut ByTopic<'a>),
         warnings: &mut Vec<LogWarning>,
-    ) -> Result<Series<Pose>, McapError> {
+    ) -> Result<(Series<Pose>, BTreeMap<i64, PoseCovariance>), McapError> {
         let places = self.options.topics.places(topic);
         let mounts = &self.options.mounts;
         let body = TaggedBody {
@@ -272,7 +267,7 @@ impl<'a> Reader<'a> {
             },
             frames: places.len(),
         };
-        let mut all = Vec::new();
+        let (mut all, mut covariances) = (Vec::new(), BTreeMap::new());
         for place in &places {
             let Some(source) = self.source_of(&place.topic) else {
                 continue;
@@ -287,9 +282,11 @@ impl<'a> Reader<'a> {
                 }
             };
             warnings.extend(self.pose_warnings(place, &read));
+            // of several places, none has a covariance
+            covariances = read.covariances;
             all.push(read.poses);
         }
-        Ok(joined(all))
+        Ok((joined(all), covariances))
     }
 
     /// The transforms of a topic, read once.
@@ -323,7 +320,14 @@ impl<'a> Reader<'a> {
             count: read.unlinked,
             of: read.poses.len() + read.unlinked,
         });
-        tilted.into_iter().chain(unlinked).collect()
+        let impossible = (read.impossible > 0).then(|| LogWarning::NoCovariance {
+            file: file(),
+            topic: place.to_string(),
+            count: read.impossible,
+            of: read.poses.len(),
+        });
+        let warnings = [tilted, unlinked, impossible];
+        warnings.into_iter().flatten().collect()
     }
 
     /// Times of the rows (s).
@@ -344,35 +348,5 @@ impl<'a> Reader<'a> {
             Some([time, _]) => Err(McapProblem::SameTime { time: *time }),
             None => Ok(time),
         }
-    }
-
-    /// The warning about a topic none of whose measurements is at any row's time.
-    fn elsewhere<T>(&self, topic: Topic, series: &[Timed<T>], rows: &Rows) -> Option<LogWarning> {
-        let (first, last, begin, end) = (
-            series.first()?.time,
-            series.last()?.time,
-            *rows.time.first()?,
-            *rows.time.last()?,
-        );
-        let apart = last < begin.saturating_sub(SECOND) || first > end;
-        let text = |from, to| format!("{} to {} s", seconds_text(from), seconds_text(to));
-        let (file, topic) = (
-            self.files.first().cloned().unwrap_or_default(),
-            self.name(topic),
-        );
-        apart.then(|| LogWarning::Elsewhere {
-            file,
-            topic,
-            at: text(first, last),
-            rows: text(begin, end),
-        })
-    }
-}
-
-fn fixel(topic: Topic) -> Option<usize> {
-    if let Topic::Fixel(k) = topic {
-        Some(k)
-    } else {
-        None
     }
 }

@@ -12,7 +12,7 @@ use crate::log_mcap::error::McapProblem;
 
 /// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large image
 /// takes 50. No more than this of a file is in memory at a time.
-const CHUNK_LIMIT: u64 = 1 << 28;
+pub(crate) const CHUNK_LIMIT: u64 = 1 << 28;
 
 /// Most bytes that are taken from a file at once: a record may claim more than there is.
 const LARGEST_READ: usize = 1 << 20;
@@ -23,6 +23,8 @@ pub(crate) enum Stop {
     Damage(String),
     /// It cannot be read.
     Refused(McapProblem),
+    /// Whoever looks has seen enough.
+    Enough,
 }
 
 impl From<mcap::McapError> for Stop {

@@ -1,11 +1,14 @@
 //! A topic of a bag with its messages: [`Source`].
 
+use std::collections::BTreeMap;
+
+use stickslip::PoseCovariance;
 use stickslip_dynamics::Pose;
 
 use crate::log_mcap::error::{McapError, McapPlace, McapProblem};
 use crate::log_mcap::message::{Bool, Message, SECOND, Time, WrenchStamped, decode};
 use crate::log_mcap::planar::{Tilt, ZAxis, finite, planar};
-use crate::log_mcap::pose_message::{PoseKind, TfMessage};
+use crate::log_mcap::pose_message::{PoseKind, TfMessage, ToldNoise};
 use crate::log_mcap::recording::{Content, RawMessage};
 use crate::log_mcap::series::{Series, Timed, seconds_text};
 
@@ -27,6 +30,19 @@ pub(crate) struct Source<'a> {
     pub content: &'a Content,
 }
 
+/// The poses of a topic.
+#[derive(Default)]
+pub(crate) struct TopicPoses {
+    /// By stamp, angles in [−π, π).
+    pub poses: Series<Pose>,
+    /// How they are tilted.
+    pub tilt: Tilt,
+    /// How noisy they are, by stamp (ns), where their messages say it.
+    pub covariances: BTreeMap<i64, PoseCovariance>,
+    /// How many messages say it by numbers that are no covariance.
+    pub impossible: usize,
+}
+
 /// A measurement with the message that it is from.
 #[derive(Clone, Copy)]
 pub(crate) struct FromMessage<'a, T> {
@@ -37,24 +53,30 @@ pub(crate) struct FromMessage<'a, T> {
 }
 
 impl<'a> Source<'a> {
-    /// Poses by stamp, angles in [−π, π), and how they are tilted.
-    pub(crate) fn poses(&self, frame: &mut CommonFrame) -> Result<(Series<Pose>, Tilt), McapError> {
+    /// Poses by stamp, angles in [−π, π), with what their messages say of them.
+    pub(crate) fn poses(&self, frame: &mut CommonFrame) -> Result<TopicPoses, McapError> {
         let schema = self.kind(&PoseKind::TYPES)?;
+        let mut found = TopicPoses::default();
         let Some(kind) = PoseKind::of(schema) else {
-            return Ok((Vec::new(), Tilt::default()));
+            return Ok(found);
         };
-        let mut tilt = Tilt::default();
         let read = self.read(|data| {
             let message = kind.decode(data)?;
             frame.check(&message.header.frame_id, self.name, false)?;
             let (pose, leans) = planar(&message.position, &message.orientation, ZAxis::Up)?;
-            tilt.add(leans);
-            Ok(Timed {
-                time: stamp(&message.header.stamp)?,
-                value: pose,
-            })
+            found.tilt.add(leans);
+            let time = stamp(&message.header.stamp)?;
+            match message.noise {
+                ToldNoise::Known(covariance) => {
+                    found.covariances.insert(time, covariance);
+                }
+                ToldNoise::Impossible => found.impossible += 1,
+                ToldNoise::Unknown => {}
+            }
+            Ok(Timed { time, value: pose })
         })?;
-        Ok((self.by_stamp(read)?, tilt))
+        found.poses = self.by_stamp(read)?;
+        Ok(found)
     }
 
     /// Forces by stamp (N).
@@ -125,6 +147,9 @@ impl<'a> Source<'a> {
             }
             if kind.schema == TfMessage::TYPE {
                 return Err(self.error(None, McapProblem::FramesNeeded));
+            }
+            if kind.schema.ends_with("/AprilTagDetectionArray") {
+                return Err(self.error(None, McapProblem::Detections));
             }
             let found = match kind.schema.as_str() {
                 "" => "without a type".to_owned(),

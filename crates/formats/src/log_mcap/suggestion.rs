@@ -1,5 +1,6 @@
 //! Which topics of a bag would do for a log, by their names and by what moves: [`suggestion`].
 
+use crate::log_mcap::camera_topics::{CameraMapping, CameraTopics};
 use crate::log_mcap::info::{PosesInfo, TopicInfo};
 use crate::log_mcap::topics::Topic;
 
@@ -53,6 +54,29 @@ pub(crate) fn suggestion(topics: &[TopicInfo], poses: &[PosesInfo]) -> Vec<Strin
     }
     suggested.extend(sensors(topics));
     suggested
+}
+
+/// Mappings of a bag with images: of several cameras the one whose numbers are there, and whose images
+/// are as its lens made them; nothing without images.
+pub(crate) fn images(topics: &[TopicInfo]) -> Vec<String> {
+    let camera = |info: &TopicInfo| CameraTopics::new([CameraMapping::Image(info.name.clone())]);
+    let with_images = topics.iter().filter(|info| info.keys.contains(&"image"));
+    let cameras = with_images.filter_map(|info| Some((info, camera(info).ok()?)));
+    let best = cameras.min_by_key(|(info, camera)| {
+        let has_info = topics
+            .iter()
+            .any(|other| Some(other.name.as_str()) == camera.info());
+        (
+            !has_info,
+            camera.is_rectified(),
+            std::cmp::Reverse(info.messages),
+        )
+    });
+    let Some((image, _)) = best else {
+        return Vec::new();
+    };
+    let image = format!("image={}", image.name);
+    [image].into_iter().chain(sensors(topics)).collect()
 }
 
 /// Whether a frame is named as that of a table.

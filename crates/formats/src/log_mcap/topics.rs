@@ -75,6 +75,36 @@ pub enum TopicError {
         /// The second one.
         second: String,
     },
+    /// A key that a bag of images does not have.
+    #[error(
+        "`{found}` is none of the keys image, info, wrench, fixel_1, fixel_2, ...; the nearest is {nearest}"
+    )]
+    UnknownCameraKey {
+        /// The key.
+        found: String,
+        /// A key that is one.
+        nearest: String,
+    },
+    /// Poses that are not read but found.
+    #[error(
+        "{0} is found in the images by its tag. Leave the mapping out, or filter the bag itself where it has poses"
+    )]
+    InImages(String),
+    /// Nothing to look at.
+    #[error(
+        "no topic of images is named. Write image=/camera/image_raw; `stickslip info` lists the topics of a bag"
+    )]
+    NoImages,
+    /// A camera's key, two names.
+    #[error("{key} is mapped to `{first}` and to `{second}`; map it once")]
+    CameraTwice {
+        /// The key.
+        key: &'static str,
+        /// The first name.
+        first: String,
+        /// The second one.
+        second: String,
+    },
     /// Two keys, one name.
     #[error("{first} and {second} are both mapped to `{name}`; a topic carries one thing")]
     Shared {

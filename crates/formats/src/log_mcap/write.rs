@@ -5,7 +5,7 @@ use std::io::{Seek, Write};
 
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
-use stickslip::Log;
+use stickslip::{Log, PoseCovariance};
 use stickslip_dynamics::Pose;
 
 use crate::log_csv::assert_equal_columns;
@@ -13,6 +13,7 @@ use crate::log_mcap::message::{
     Bool, Header, PoseStamped, Quaternion, SECOND, Time, Vector3, WrenchStamped, WrittenMessage,
     encode,
 };
+use crate::log_mcap::pose_message::{PoseWithCovarianceStamped, spatial_covariance};
 use crate::log_mcap::source::ENCODING;
 use crate::log_mcap::topics::{Topic, Topics};
 
@@ -68,7 +69,8 @@ impl From<mcap::McapError> for McapWriteError {
     }
 }
 
-/// Writes a log as an MCAP recording of ROS 2 messages: poses as `geometry_msgs/msg/PoseStamped`,
+/// Writes a log as an MCAP recording of ROS 2 messages: poses as `geometry_msgs/msg/PoseStamped`, the
+/// object's as `PoseWithCovarianceStamped` where the log has covariances (zeros in rows without),
 /// tactile readings as `std_msgs/msg/Bool`, forces as `geometry_msgs/msg/WrenchStamped`, all in the
 /// frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no message. The
 /// same log gives the same bytes.
@@ -109,7 +111,10 @@ impl<W: Write + Seek> LogMessages<W> {
     /// Begins a recording with a channel for each column that `log` has.
     pub(crate) fn new(writer: W, log: &Log, topics: &Topics) -> Result<Self, McapWriteError> {
         let mut recorder = Recorder::new(writer)?;
-        let object = recorder.channel::<PoseStamped>(topics, Topic::Object)?;
+        let object = match log.object_covariance.is_empty() {
+            true => recorder.channel::<PoseStamped>(topics, Topic::Object)?,
+            false => recorder.channel::<PoseWithCovarianceStamped>(topics, Topic::Object)?,
+        };
         let pusher = recorder.channel::<PoseStamped>(topics, Topic::Pusher)?;
         let touches = (1..=log.tactile.len())
             .map(|k| recorder.channel::<Bool>(topics, Topic::Fixel(k)))
@@ -140,7 +145,14 @@ impl<W: Write + Seek> LogMessages<W> {
     fn write_row(&mut self, log: &Log, row: usize, stamp: i64) -> Result<(), McapWriteError> {
         let pose = |pose: Pose| pose_message(stamp, pose);
         let recorder = &mut self.recorder;
-        recorder.write(self.object, stamp, log.object[row].map(pose))?;
+        match log.object_covariance.get(row) {
+            None => recorder.write(self.object, stamp, log.object[row].map(pose))?,
+            Some(own) => {
+                let noisy =
+                    log.object[row].map(|pose| noisy_pose_message(stamp, pose, own.as_ref()));
+                recorder.write(self.object, stamp, noisy)?;
+            }
+        }
         recorder.write(self.pusher, stamp, log.pusher[row].map(pose))?;
         for (channel, column) in self.touches.iter().zip(&log.tactile) {
             recorder.write(*channel, stamp, column[row].map(|data| Bool { data }))?;
@@ -259,6 +271,20 @@ fn pose_message(stamp: i64, pose: Pose) -> PoseStamped {
         header: header(stamp),
         position,
         orientation,
+    }
+}
+
+fn noisy_pose_message(
+    stamp: i64,
+    pose: Pose,
+    own: Option<&PoseCovariance>,
+) -> PoseWithCovarianceStamped {
+    let (position, orientation) = pose_parts(pose);
+    PoseWithCovarianceStamped {
+        header: header(stamp),
+        position,
+        orientation,
+        covariance: own.map_or([[0.0; 6]; 6], spatial_covariance),
     }
 }
 

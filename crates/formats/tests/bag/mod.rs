@@ -18,6 +18,9 @@ pub const POSE: &str = "geometry_msgs/msg/PoseStamped";
 pub const WRENCH: &str = "geometry_msgs/msg/WrenchStamped";
 pub const TF: &str = "tf2_msgs/msg/TFMessage";
 pub const BOOL: &str = "std_msgs/msg/Bool";
+pub const IMAGE: &str = "sensor_msgs/msg/Image";
+pub const COMPRESSED: &str = "sensor_msgs/msg/CompressedImage";
+pub const INFO: &str = "sensor_msgs/msg/CameraInfo";
 
 /// One message.
 #[derive(Clone)]
@@ -82,6 +85,65 @@ impl Cdr {
     }
 }
 
+/// An image of 3 x 2 grey levels with two spare bytes a row, on a topic; its log time is 3 ms late.
+pub fn raw_image(topic: &str, stamp: i64, encoding: &str, bytes: &[u8]) -> Line {
+    let mut cdr = Cdr::new(Order::Little);
+    cdr.header(stamp, "camera");
+    for number in [2_u32, 3] {
+        cdr.number(number.to_le_bytes());
+    }
+    cdr.text(encoding);
+    cdr.number([0_u8]);
+    cdr.number(5_u32.to_le_bytes());
+    cdr.number(u32::try_from(bytes.len()).unwrap().to_le_bytes());
+    cdr.bytes.extend(bytes);
+    Line {
+        topic: topic.to_owned(),
+        kind: IMAGE,
+        encoding: "cdr",
+        log_time: (stamp + 3 * MS).max(0),
+        data: cdr.bytes,
+    }
+}
+
+/// A compressed image in either byte order.
+pub fn compressed_image(topic: &str, order: Order, stamp: i64, bytes: &[u8]) -> Line {
+    let mut cdr = Cdr::new(order);
+    cdr.header(stamp, "camera");
+    cdr.text("jpeg");
+    cdr.number(u32::try_from(bytes.len()).unwrap().to_le_bytes());
+    cdr.bytes.extend(bytes);
+    Line {
+        kind: COMPRESSED,
+        data: cdr.bytes,
+        ..raw_image(topic, stamp, "mono8", &[])
+    }
+}
+
+/// CameraInfo of 640 x 480 pixels with a focal length and these numbers of plumb_bob.
+pub fn camera_info(topic: &str, stamp: i64, focal: f64, distortion: &[f64]) -> Line {
+    let mut cdr = Cdr::new(Order::Little);
+    cdr.header(stamp, "camera");
+    for number in [480_u32, 640] {
+        cdr.number(number.to_le_bytes());
+    }
+    cdr.text("plumb_bob");
+    cdr.number(u32::try_from(distortion.len()).unwrap().to_le_bytes());
+    let k = [focal, 0.0, 320.0, 0.0, focal, 240.0, 0.0, 0.0, 1.0];
+    for number in distortion.iter().chain(&k).chain(&[7.0; 9 + 12]) {
+        cdr.number(number.to_le_bytes());
+    }
+    for number in [1_u32, 1, 11, 12, 13, 14] {
+        cdr.number(number.to_le_bytes());
+    }
+    cdr.number([0_u8]);
+    Line {
+        kind: INFO,
+        data: cdr.bytes,
+        ..raw_image(topic, stamp, "mono8", &[])
+    }
+}
+
 /// A transform: stamp, parent, child, translation and quaternion (x, y, z, w).
 pub type Transform<'a> = (i64, &'a str, &'a str, [f64; 7]);
 
@@ -115,11 +177,19 @@ pub fn longer(kind: &'static str, stamp: i64, x: f64, child: Option<&str>, extra
     for number in [x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0] {
         cdr.number(number.to_le_bytes());
     }
-    (0..extra).for_each(|_| cdr.number(7.0_f64.to_le_bytes()));
+    (0..extra).for_each(|k| cdr.number(told(k / 6 % 6, k % 6).to_le_bytes()));
     Line {
         kind,
         data: cdr.bytes,
         ..object(stamp, x)
+    }
+}
+
+/// An entry of the covariance in such a line, of x, y, z and turns about the axes.
+pub fn told(i: usize, j: usize) -> f64 {
+    match i == j {
+        true => 0.25 * (1 + i) as f64,
+        false => 0.0625 / (1 + i + j) as f64,
     }
 }
 

@@ -6,13 +6,20 @@
     peer.py kinds LOG.csv FOLDER    the same with other messages: PoseWithCovarianceStamped, Odometry, WrenchStamped as a touch
     peer.py frames LOG.csv FOLDER   the same with both bodies on /tf only: the object by two tags in front of a camera, each
                                     hidden now and then, the pusher by a robot's flange
+    peer.py images FRAMES CALIBRATION.toml FOLDER
+                                    a folder of grey PNG frames as a bag of images, packed and not, grey and in colour, the latest
+                                    ones first, with CameraInfo and a touch every third frame
 
 Times are integers in nanoseconds; numbers are written as Python does, so that they read back to the same bits.
 """
 
 import csv
+import functools
 import math
+import struct
 import sys
+import tomllib
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -81,7 +88,7 @@ def show_estimate(program, topic, log_time, message):
     elif hasattr(message, "poses"):
         numbers = [n for pose in message.poses for n in (pose.position.x, pose.position.y, pose.orientation.z, pose.orientation.w)]
         print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for n in numbers))
-    else:
+    elif hasattr(message, "pose") and hasattr(message.pose, "covariance"):
         p, q, c = message.pose.pose.position, message.pose.pose.orientation, message.pose.covariance
         print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for n in [p.x, p.y, q.z, q.w, *c]))
 
@@ -94,6 +101,11 @@ def trajectory(path):
     assert valid, why
     for time, position, (_, _, yaw) in zip(read.timestamps, read.positions_xyz, read.get_orientations_euler()):
         print(*(repr(float(number)) for number in [time, *position, yaw]))
+
+
+def told():
+    """A covariance of x, y, z and turns about the axes."""
+    return np.array([1e-6 * (1 + i) if i == j else 1e-7 / (1 + i + j) for i in range(6) for j in range(6)])
 
 
 class Bag:
@@ -123,7 +135,7 @@ class Bag:
 
     def pose_with_covariance(self, time, x, y, theta):
         types = self.types
-        pose = types["geometry_msgs/msg/PoseWithCovariance"](pose=self.pose(time, x, y, theta).pose, covariance=np.arange(36.0))
+        pose = types["geometry_msgs/msg/PoseWithCovariance"](pose=self.pose(time, x, y, theta).pose, covariance=told())
         return types["geometry_msgs/msg/PoseWithCovarianceStamped"](header=self.header(time), pose=pose)
 
     def odometry(self, time, x, y, theta):
@@ -255,6 +267,89 @@ def frames(path, folder):
         write_touches(bag, log)
 
 
+@functools.cache
+def grey_pixels(png):
+    """The pixels of a grey PNG file of 8 bits, by its specification."""
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    at, packed = 8, b""
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at : at + 8])
+        body = png[at + 8 : at + 8 + length]
+        if kind == b"IHDR":
+            width, height, depth, colour, _, _, interlace = struct.unpack(">IIBBBBB", body)
+            assert (depth, colour, interlace) == (8, 0, 0)
+        elif kind == b"IDAT":
+            packed += body
+        at += length + 12
+    lines = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, width + 1)
+    above = np.zeros(width, np.uint8)
+    rows = []
+    for line in lines:
+        row = unfiltered(line[0], line[1:], above)
+        rows.append(row)
+        above = row
+    return np.array(rows)
+
+
+def unfiltered(kind, line, above):
+    """A row of a PNG file from what stands for it and the row above."""
+    if kind == 0:
+        return line.copy()
+    if kind == 2:
+        return line + above
+    row = np.zeros_like(line)
+    for x in range(len(line)):
+        left, up, corner = (int(row[x - 1]) if x else 0), int(above[x]), (int(above[x - 1]) if x else 0)
+        guess = left + up - corner
+        paeth = min([left, up, corner], key=lambda side: abs(guess - side))
+        row[x] = (int(line[x]) + {1: left, 3: (left + up) // 2, 4: paeth}[int(kind)]) % 256
+    return row
+
+
+def images(frames, calibration, folder):
+    lens = tomllib.loads(Path(calibration).read_text())["lens"]
+    rows = list(csv.DictReader(open(Path(frames) / "frames.csv")))
+    shots = [(round(float(row["time"]) * SECOND), (Path(frames) / row["file"]).read_bytes()) for row in rows]
+    with writing(folder) as writer:
+        bag = Bag(writer)
+        types = bag.types
+
+        def packed(time, png):
+            data = np.frombuffer(png, np.uint8)
+            return types["sensor_msgs/msg/CompressedImage"](header=bag.header(time), format="mono8; png compressed mono8", data=data)
+
+        def raw(time, png, encoding):
+            pixels = grey_pixels(png)
+            if encoding == "mono16":
+                rows = np.pad(pixels.astype(">u2") * 257, ((0, 0), (0, 3)))
+            else:
+                rows = np.pad(np.repeat(pixels, {"mono8": 1, "bgr8": 3}[encoding], axis=1), ((0, 0), (0, 16)), constant_values=9)
+            data = np.frombuffer(rows.tobytes(), np.uint8)
+            height, width = pixels.shape
+            return types["sensor_msgs/msg/Image"](
+                header=bag.header(time), height=height, width=width, encoding=encoding, is_bigendian=int(encoding == "mono16"),
+                step=len(data) // height, data=data,
+            )  # fmt: skip
+
+        def info(time):
+            (fx, fy), (cx, cy), size = lens["focal"], lens["centre"], lens["size"]
+            (k1, k2, *k3), (p1, p2) = lens["radial"], lens["tangential"]
+            roi = types["sensor_msgs/msg/RegionOfInterest"](x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
+            return types["sensor_msgs/msg/CameraInfo"](
+                header=bag.header(time), height=size[1], width=size[0], distortion_model="plumb_bob",
+                d=np.array([k1, k2, p1, p2, *(k3 or [0.0])]), k=np.array([fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]),
+                r=np.eye(3).flatten(), p=np.array([fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0]), binning_x=0, binning_y=0, roi=roi,
+            )  # fmt: skip
+
+        times = [time for time, _ in shots]
+        bag.topic("/cam/image_raw/compressed", "sensor_msgs/msg/CompressedImage", [(time, packed(time, png)) for time, png in shots])
+        for name, encoding in [("cam", "mono8"), ("colour", "bgr8"), ("deep", "mono16")]:
+            bag.topic(f"/{name}/image_raw", "sensor_msgs/msg/Image", [(time, raw(time, png, encoding)) for time, png in shots])
+            bag.topic(f"/{name}/camera_info", "sensor_msgs/msg/CameraInfo", [(time, info(time)) for time in times])
+        boolean = types["std_msgs/msg/Bool"]
+        bag.topic("/fixel_1/contact", "std_msgs/msg/Bool", [(time, boolean(data=k % 3 == 0)) for k, time in enumerate(times)])
+
+
 if __name__ == "__main__":
-    commands = {"decode": decode, "estimate": estimate, "trajectory": trajectory, "record": record, "kinds": kinds, "frames": frames}
+    commands = {"decode": decode, "estimate": estimate, "trajectory": trajectory, "record": record, "kinds": kinds, "frames": frames, "images": images}
     commands[sys.argv[1]](*sys.argv[2:])

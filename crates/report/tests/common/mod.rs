@@ -75,6 +75,7 @@ pub fn log(rows: usize) -> Log {
     Log {
         time: (0..rows).map(|row| row as f64 / 30.0).collect(),
         object: (0..rows).map(|row| Some(truth(row, rows))).collect(),
+        object_covariance: Vec::new(),
         pusher: (0..rows).map(pusher).collect(),
         tactile: vec![(0..rows).map(|row| Some(row * 10 >= 7 * rows)).collect()],
         force: Vec::new(),
