@@ -259,11 +259,13 @@ pub struct Block<'a> {
 #[expect(clippy::len_without_is_empty, reason = "a block is never empty")]
 impl<'a> Block<'a> {
     /// The number of particles, in 1..=BLOCK; every column slice has this length.
+    #[inline]
     pub fn len(&self) -> usize {
         self.span.len
     }
 
     /// The index of the first particle in its set.
+    #[inline]
     pub fn first_particle(&self) -> u32 {
         self.span.first as u32
     }
@@ -274,6 +276,7 @@ impl<'a> Block<'a> {
     }
 
     /// One column.
+    #[inline]
     pub fn column(&self, column: usize) -> &'a [f64] {
         &self.data[column * BLOCK..][..self.span.len]
     }
@@ -289,23 +292,27 @@ pub struct BlockMut<'a> {
 #[expect(clippy::len_without_is_empty, reason = "a block is never empty")]
 impl BlockMut<'_> {
     /// The number of particles, in 1..=BLOCK; every column slice has this length.
+    #[inline]
     pub fn len(&self) -> usize {
         self.span.len
     }
 
     /// The index of the first particle in its set.
+    #[inline]
     pub fn first_particle(&self) -> u32 {
         self.span.first as u32
     }
 
     /// (lane, index in the set) of the block's particles; the index is the random streams'
     /// `particle`.
+    #[inline]
     pub fn particles(&self) -> impl ExactSizeIterator<Item = (usize, u32)> + use<> {
         let first = self.first_particle();
         (0..self.span.len).map(move |lane| (lane, first + lane as u32))
     }
 
     /// The block, read-only.
+    #[inline]
     pub fn as_block(&self) -> Block<'_> {
         Block {
             data: self.data,
@@ -314,11 +321,13 @@ impl BlockMut<'_> {
     }
 
     /// One column.
+    #[inline]
     pub fn column(&self, column: usize) -> &[f64] {
         &self.data[column * BLOCK..][..self.span.len]
     }
 
     /// One column, mutable.
+    #[inline]
     pub fn column_mut(&mut self, column: usize) -> &mut [f64] {
         &mut self.data[column * BLOCK..][..self.span.len]
     }

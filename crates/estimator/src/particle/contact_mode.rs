@@ -1,17 +1,18 @@
 //! What contact mode adds to a step (docs/method.md, "Contact mode"): every particle has its own
 //! friction, offsets and latency, and its own view of the tactile sensors.
 
-use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist};
+use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::mode::Mode;
-use crate::particle::chunk::{Column, FlagsMut, LANES, flag, is_set, store_chunk};
+use crate::particle::chunk::{Column, FlagsMut, LANES, flag, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::model::write;
 use crate::particle::propagation::{NOISE_STEP, Propagation, Transition};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt};
+use crate::setup::Limits;
 
 /// Numbers for what is unknown: behind those of all substeps.
 const VARIATION_PAIR: u32 = 1 << 20;
@@ -38,29 +39,46 @@ impl Propagation {
     ) {
         self.note_untouched(transition, block);
         if let Some(resting) = &plan.resting {
-            self.draw_normals(draw, RESTING_PAIR, block);
+            self.normals_of(draw, RESTING_PAIR, block);
             self.draw_resting_pose(transition, resting, block);
         }
-        self.draw_normals(draw, 0, block);
-        self.draw_friction(transition, plan, block);
-        self.draw_normals(draw, VARIATION_PAIR, block);
-        self.vary_friction(transition, plan, block);
+        self.normals_of(draw, 0, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.draw_friction(transition, plan, block),
+        );
+        self.normals_of(draw, VARIATION_PAIR, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.vary_friction(transition, plan, block),
+        );
         for j in 0..transition.columns.fixels() {
-            self.draw_normals(draw, FIXEL_PAIR + 2 * j as u32, block);
+            self.normals_of(draw, FIXEL_PAIR + 2 * j as u32, block);
             self.draw_fixel_offset(transition, plan, j, block);
         }
-        self.draw_normals(draw, OFFSET_PAIR, block);
+        self.normals_of(draw, OFFSET_PAIR, block);
         self.draw_offsets(transition, plan, block);
-        self.draw_normals(draw, LATENCY_PAIR, block);
+        self.normals_of(draw, LATENCY_PAIR, block);
         self.draw_latency(transition, plan, block);
         if let Some(velocity) = plan.steady {
-            self.draw_normals(draw, EXCHANGE_PAIR, block);
+            self.normals_of(draw, EXCHANGE_PAIR, block);
             self.exchange_latency(transition, plan, velocity, block);
         }
         self.load_offsets(transition, block);
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
         }
+    }
+
+    /// Fills the columns of normals, on the widest instructions.
+    fn normals_of(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.draw_normals(draw, pair, block),
+        );
     }
 
     /// Which particles nothing has come near yet: their objects rest where they were first seen.
@@ -109,6 +127,7 @@ impl Propagation {
 
     /// The object's friction: what nothing was felt of is drawn anew from its prior; what was felt
     /// takes a random step that keeps the prior.
+    #[inline(always)]
     fn draw_friction(
         &mut self,
         Transition { setup, .. }: &Transition<'_>,
@@ -122,36 +141,31 @@ impl Propagation {
         };
         let priors = setup.uncertainty.friction.fields();
         let (nominal, limits) = (setup.scene.nominal.fields(), setup.filter.limits.fields());
-        for (i, _) in block.particles() {
-            let friction = &mut self.particles[i / LANES].friction;
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let friction = &mut self.particles[chunk].friction;
             for (k, value) in friction.fields_mut().into_iter().enumerate() {
-                let value = &mut value.0[i % LANES];
                 let (prior, nominal) = (*priors[k], *nominal[k]);
                 if prior <= 0.0 || nominal <= 0.0 {
                     continue;
                 }
-                let step = match is_set(&block.as_block(), Columns::felt(k), i) {
-                    true => (drift / prior).min(1.0),
-                    false => 1.0,
-                };
-                if step == 0.0 {
-                    continue;
-                }
-                let before = match step < 1.0 {
-                    true => libm::log(*value / nominal),
-                    false => 0.0,
-                };
-                let log = wandered(before, step, prior * self.normals[k][i]);
-                *value = (nominal * libm::exp(log)).clamp(limits[k].min, limits[k].max);
+                let felt = flag(&block.as_block(), Columns::felt(k), chunk);
+                let fresh = load_chunk(&self.normals[k], chunk, 0.0) * prior;
+                let step = (drift / prior).min(1.0);
+                let before = (*value * (1.0 / nominal)).ln();
+                let wandered = before * (1.0 - step * step).sqrt() + fresh * step;
+                let drawn = felt.select(wandered, fresh).exp() * nominal;
+                let drawn = within(drawn, limits[k]);
+                // where nothing wanders, what was felt stays, to the bit
+                let stays = felt & Mask::splat(step == 0.0);
+                *value = stays.select(*value, drawn);
             }
-        }
-        for (proposed, particles) in self.proposed.iter_mut().zip(&self.particles) {
-            *proposed = particles.friction;
+            self.proposed[chunk] = *friction;
         }
     }
 
     /// Friction at this place: it differs from the object's by a logarithm that forgets itself along
     /// the way.
+    #[inline(always)]
     fn vary_friction(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -162,18 +176,20 @@ impl Propagation {
         let h = plan.duration();
         let rho = setup.scene.object.gyration_radius();
         let limits = setup.filter.limits.fields();
-        for (i, _) in block.particles() {
-            let lane = i % LANES;
-            let particles = &mut self.particles[i / LANES];
-            let Twist { vx, vy, omega } = particles.twist.map(|x| x.0[lane]);
-            let way = h * (vx * vx + vy * vy + rho * rho * omega * omega).sqrt();
-            let kept = libm::exp(-way / unsure.variation_length);
-            let fresh = (1.0 - kept * kept).sqrt();
+        let one = Lanes::splat(1.0);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let particles = &mut self.particles[chunk];
+            let Twist { vx, vy, omega } = particles.twist;
+            let turn = omega * rho;
+            let way = (vx * vx + vy * vy + turn * turn).sqrt() * h;
+            let kept = (way * (-1.0 / unsure.variation_length)).exp();
+            let fresh = (one - kept * kept).sqrt() * unsure.variation;
             for (k, friction) in particles.friction.fields_mut().into_iter().enumerate() {
-                let variation = &mut block.column_mut(columns.variation() + k)[i];
-                *variation = kept * *variation + fresh * unsure.variation * self.normals[k][i];
-                let here = friction.0[lane] * libm::exp(*variation);
-                friction.0[lane] = here.clamp(limits[k].min, limits[k].max);
+                let column = columns.variation() + k;
+                let before = load_chunk(block.column(column), chunk, 0.0);
+                let variation = kept * before + fresh * load_chunk(&self.normals[k], chunk, 0.0);
+                store_chunk(block.column_mut(column), chunk, &variation);
+                *friction = within(*friction * variation.exp(), limits[k]);
             }
         }
     }
@@ -283,6 +299,14 @@ impl Propagation {
             }
         }
     }
+}
+
+/// A parameter within its limits.
+#[inline(always)]
+fn within(value: Column, limits: &Limits) -> Column {
+    value
+        .max(Lanes::splat(limits.min))
+        .min(Lanes::splat(limits.max))
 }
 
 fn squared([x, y]: [Column; 2]) -> Column {

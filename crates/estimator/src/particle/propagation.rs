@@ -59,7 +59,7 @@ pub struct Propagation {
     pub(super) untouched: [Mask<LANES>; CHUNKS],
     involved: [Involved; CHUNKS],
     pub(super) normals: [[f64; BLOCK]; 4],
-    level: Level,
+    pub(super) level: Level,
 }
 
 /// What took part in a step (Φ) and how it ended, by lane of a chunk.
