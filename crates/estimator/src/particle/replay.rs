@@ -34,7 +34,7 @@ pub(crate) struct Replay {
 const LONGEST: usize = 120;
 
 /// Times that the steps of a blackout are made again at most.
-const ATTEMPTS: u32 = 8;
+const ATTEMPTS: u32 = 16;
 
 /// Fall of ln of the evidence at which they are: 1 in 3000.
 const WORSE: f64 = 8.0;
