@@ -70,6 +70,9 @@ def particles(
 def fit(
     pushes: Sequence[tuple[str, Scene, dict[str, NDArray[np.float64]]]], options: Mapping[str, Any]
 ) -> tuple[str, str, dict[str, NDArray[np.float64]], str]: ...
+def program(words: Sequence[str]) -> int:
+    """Runs the program with the words of a command line, those after its name; its exit code."""
+
 def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> dict[str, Any]: ...
 def simulate(
     scene: Scene, options: Mapping[str, Any]

@@ -112,6 +112,7 @@ pub const CRATES: [Rules; 16] = [
             "crates/formats",
             "crates/evaluation",
             "crates/fit",
+            "crates/cli",
         ],
     ),
     Rules::of(

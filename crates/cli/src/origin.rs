@@ -1,9 +1,22 @@
 //! What made a report: [`origin`].
 
+use std::ffi::OsString;
+use std::sync::OnceLock;
+
+/// The words of the command line. A process runs one program, but its own arguments may be another
+/// one's, Python's.
+static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Keeps the words of the command line for [`origin`]; those of the first call count.
+pub fn keep_words(words: Vec<OsString>) -> Vec<OsString> {
+    let _ = WORDS.set(words.clone());
+    words
+}
+
 /// Program, command line and what else is to be known, name by name.
 pub fn origin(more: impl IntoIterator<Item = (&'static str, String)>) -> Vec<(String, String)> {
-    let arguments = std::env::args_os().skip(1);
-    let words = arguments.map(|word| quoted(&word.to_string_lossy()));
+    let words = WORDS.get().into_iter().flatten();
+    let words = words.map(|word| quoted(&word.to_string_lossy()));
     let command: Vec<String> = ["stickslip".to_owned()].into_iter().chain(words).collect();
     let own = [
         (

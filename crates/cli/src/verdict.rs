@@ -1,7 +1,5 @@
 //! How the program ended: [`Verdict`], an exit code.
 
-use std::process::ExitCode;
-
 /// How the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -25,12 +23,12 @@ impl Verdict {
     }
 
     /// The process's exit code.
-    pub fn exit_code(self) -> ExitCode {
+    pub fn code(self) -> u8 {
         match self {
-            Self::Done => ExitCode::SUCCESS,
-            Self::Failed => ExitCode::from(1),
-            Self::BadArguments => ExitCode::from(2),
-            Self::InputLost => ExitCode::from(3),
+            Self::Done => 0,
+            Self::Failed => 1,
+            Self::BadArguments => 2,
+            Self::InputLost => 3,
         }
     }
 }
