@@ -28,9 +28,9 @@ class Fit:
 
     #: Names of what was learnt, in the order of all arrays; a name like ``pusher_offset`` stands for two, x and y.
     names: tuple[str, ...]
-    #: Values that predict best; the first guess where the pushes do not determine one.
+    #: Values that predict best; the first guess where the pushes teach nothing of one (spread over 0.8 of the prior's).
     values: dict[str, float]
-    #: Standard deviations of those, in the same unit (m, s, or none); the prior's where not determined.
+    #: Standard deviations of those, in the same unit (m, s, or none); the prior's where nothing was learnt.
     stds: dict[str, float]
     #: First guesses.
     prior_values: dict[str, float]
@@ -44,9 +44,11 @@ class Fit:
     draws: dict[str, NDArray[np.float64]]
     #: Errors on pushes left out, as ``cross_validation`` of ``fit.json`` has them; None where none was left out.
     cross_validation: dict[str, Any] | None
-    #: The first push's scene with the learnt values and their spreads in place; ``scene.text`` is the file.
+    #: The first push's scene with the learnt values and their spreads in place, the first guesses where
+    #: ``cross_validation["pays"]`` is false; ``scene.text`` is the file.
     scene: Scene
-    #: All numbers, under the names of ``fit.json``.
+    #: All numbers, under the names of ``fit.json``; ``["parameters"][k]["constant"]`` is the constant of material or
+    #: support that the k-th value imitates, with its 90 % interval, or None.
     result: dict[str, Any]
 
 

@@ -3,12 +3,13 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::CommandFactory;
 use rayon::prelude::*;
 use serde::Serialize;
 use stickslip_fit::{
-    CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
+    Constant, CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
+    predict,
 };
 use stickslip_formats::Topics;
 use stickslip_report::{Block, Report, Section, Table};
@@ -23,6 +24,11 @@ use crate::origin::origin;
 use crate::output::{show_result, talk};
 use crate::verdict::Verdict;
 
+/// What values that predict best do not say.
+const CANNOT_KNOW: &str = "what the model cannot know: it is only nearly right, so the value that predicts best \
+    is not the constant of the material or the support; \"constant, 90 %\" says what that may be, as on virtual rigs \
+    whose predictions drift as much";
+
 /// What is written to fit.json.
 #[derive(Debug, Serialize)]
 struct FitResult {
@@ -33,6 +39,9 @@ struct FitResult {
     fit: Fit,
     /// None where there are too few pushes, or none was asked for.
     cross_validation: Option<CrossValidation>,
+    /// The pushes of `--test`, predicted by this fit; none where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    test: Option<CrossValidation>,
 }
 
 /// Runs the command.
@@ -43,12 +52,12 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
         seed: args.seed,
     };
     let folders = expand(&args.folders, &args.scene_name)?;
+    let test_folders = test_folders(args, &folders)?;
     let topics = args.topics.topics(Program::command())?;
     let pool = args.threads.pool()?;
-    let first_scene = folders[0].join(&args.scene_name);
     let [scene_out, json_out] = ["scene.toml", "fit.json"].map(|name| args.out.join(name));
-    let scenes = folders.iter().map(|folder| folder.join(&args.scene_name));
-    let scenes: Vec<PathBuf> = scenes.collect();
+    let all = folders.iter().chain(&test_folders);
+    let scenes: Vec<PathBuf> = all.map(|folder| folder.join(&args.scene_name)).collect();
     let scenes: Vec<&Path> = scenes.iter().map(PathBuf::as_path).collect();
     refuse_inputs(&scene_out, &scenes)?;
     if let Some(report) = &args.report {
@@ -56,28 +65,19 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     }
     ready_folder(&args.out)?;
 
-    let result: Result<(FitResult, Verdict)> = pool.install(|| {
+    let (result, verdict) = pool.install(|| -> Result<_> {
         let (pushes, verdict) = read_pushes(args, &topics, &folders)?;
-        let fit = stickslip_fit::fit(&pushes, &options)?;
-        let folds = args.folds.unwrap_or(default_folds(pushes.len()));
-        let validate = || stickslip_fit::cross_validate(&pushes, folds, &options);
-        let result = FitResult {
-            folders: folders
-                .iter()
-                .map(|path| path.display().to_string())
-                .collect(),
-            seed: args.seed,
-            fit,
-            cross_validation: (folds > 0).then(validate).transpose()?,
-        };
-        Ok((result, verdict))
-    });
-    let (result, verdict) = result?;
+        let (test, of_test) = read_pushes(args, &topics, &test_folders)?;
+        let result = learn(args, &folders, &pushes, &test, &options)?;
+        Ok((result, verdict.and(of_test)))
+    })?;
 
-    let name = first_scene.display().to_string();
-    let scene = result
-        .fit
-        .scene_text(&text_of(&first_scene, "scene")?, &name)?;
+    let name = scenes[0].display().to_string();
+    let scene = result.fit.scene_text(
+        &text_of(scenes[0], "scene")?,
+        &name,
+        result.cross_validation.as_ref(),
+    )?;
     let json = serde_json::to_string_pretty(&result)? + "\n";
     write_out(&scene_out, |file| file.write_all(scene.as_bytes()))?;
     write_out(&json_out, |file| file.write_all(json.as_bytes()))?;
@@ -92,6 +92,51 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
         json_out.display()
     ));
     Ok(verdict)
+}
+
+/// The folders of `--test`, none of which may be among `folders`: what was seen is not predicted blind.
+fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    if args.test.is_empty() {
+        return Ok(Vec::new());
+    }
+    let test = expand(&args.test, &args.scene_name)?;
+    let seen: Vec<PathBuf> = folders.iter().flat_map(std::fs::canonicalize).collect();
+    for folder in &test {
+        if std::fs::canonicalize(folder).is_ok_and(|folder| seen.contains(&folder)) {
+            bail!(
+                "{}: --test names a push that is learnt from, too; a push that was seen is not predicted blind. Leave it \
+                 out of one of the two",
+                folder.display()
+            );
+        }
+    }
+    Ok(test)
+}
+
+/// The fit to `pushes`, what it is worth on each of them left out, and on those of `test`.
+fn learn(
+    args: &FitArgs,
+    folders: &[PathBuf],
+    pushes: &[Push],
+    test: &[Push],
+    options: &FitOptions,
+) -> Result<FitResult> {
+    let fit = stickslip_fit::fit(pushes, options)?;
+    let folds = args.folds.unwrap_or(default_folds(pushes.len()));
+    let validate = || stickslip_fit::cross_validate(pushes, folds, options);
+    let cross_validation = (folds > 0).then(validate).transpose()?;
+    let predict = || predict(test, &fit, cross_validation.as_ref(), options);
+    let test = (!test.is_empty()).then(predict).transpose()?;
+    Ok(FitResult {
+        folders: folders
+            .iter()
+            .map(|path| path.display().to_string())
+            .collect(),
+        seed: args.seed,
+        fit,
+        cross_validation,
+        test,
+    })
 }
 
 /// All pushes, and whether all of their logs could be read. One that cannot be read is an error: left
@@ -125,10 +170,24 @@ fn text(result: &FitResult) -> String {
         parameters(&result.fit).to_string(),
         remarks(result).join("\n"),
     ];
-    if let Some(validation) = &result.cross_validation {
-        lines.push(format!("{}{}", errors(validation), coverage(validation)));
+    for (title, validation) in validations(result) {
+        lines.push(format!(
+            "{}{}",
+            errors(validation, title),
+            coverage(validation)
+        ));
     }
     lines.join("\n")
+}
+
+/// Pushes predicted by fits that have not seen them, and what to call them.
+fn validations(result: &FitResult) -> impl Iterator<Item = (&'static str, &CrossValidation)> {
+    let of = [
+        ("pushes left out", &result.cross_validation),
+        ("pushes of --test", &result.test),
+    ];
+    of.into_iter()
+        .filter_map(|(title, validation)| Some((title, validation.as_ref()?)))
 }
 
 /// The result as a page.
@@ -137,11 +196,14 @@ fn page(result: &FitResult, seed: u64) -> Report {
         title: "Learnt".to_owned(),
         blocks: vec![Block::Table(parameters(&result.fit), String::new())],
     }];
-    if let Some(validation) = &result.cross_validation {
+    for (title, validation) in validations(result) {
         sections.push(Section {
-            title: "On pushes left out".to_owned(),
+            title: format!("On {title}"),
             blocks: vec![
-                Block::Table(errors(validation), "Median over the pushes".to_owned()),
+                Block::Table(
+                    errors(validation, title),
+                    "Median over the pushes".to_owned(),
+                ),
                 Block::Text(coverage(validation)),
                 Block::Table(each(validation), "Each push".to_owned()),
             ],
@@ -165,7 +227,7 @@ fn headlines(result: &FitResult) -> Vec<String> {
         .fit
         .parameters
         .iter()
-        .partition(|fitted| fitted.determined);
+        .partition(|fitted| fitted.learnt);
     let mut lines: Vec<String> = learnt
         .into_iter()
         .map(|fitted| {
@@ -175,6 +237,9 @@ fn headlines(result: &FitResult) -> Vec<String> {
                 .trim_end()
                 .to_owned()
                 + &format!(", first guess {before}")
+                + &fitted.constant.map_or(String::new(), |constant| {
+                    format!("; the constant itself: {}", interval(&constant))
+                })
         })
         .collect();
     if !left.is_empty() {
@@ -211,6 +276,20 @@ fn remarks(result: &FitResult) -> Vec<String> {
             fit.sampling.split_rhat
         ));
     }
+    if fit
+        .parameters
+        .iter()
+        .any(|fitted| fitted.constant.is_some())
+    {
+        remarks.push(CANNOT_KNOW.to_owned());
+    }
+    if let Some(validation) = result.cross_validation.as_ref().filter(|v| !v.pays) {
+        let [gain, error] = validation.gain_mm;
+        remarks.push(format!(
+            "fitting does not pay: with what the others teach, pushes left out are predicted no better (gain {gain:.2} ± {error:.2} mm); \
+             scene.toml keeps the first guesses"
+        ));
+    }
     if fit.sampling.unsolved > 0 {
         remarks.push(format!("unsolved steps: {}", fit.sampling.unsolved));
     }
@@ -229,11 +308,13 @@ fn parameters(fit: &Fit) -> Table {
         "unit",
         "spread/prior",
         "",
+        "constant, 90 %",
     ]);
     for fitted in &fit.parameters {
-        let said = match fitted.determined {
-            true => "determined",
-            false => "not determined by these pushes",
+        let said = match (fitted.determined, fitted.learnt) {
+            (true, _) => "determined",
+            (false, true) => "a hint, not determined",
+            (false, false) => "not determined by these pushes",
         };
         table.push([
             fitted.name.to_owned(),
@@ -243,9 +324,19 @@ fn parameters(fit: &Fit) -> Table {
             fitted.unit.to_owned(),
             format!("{:.2}", fitted.std_ratio),
             said.to_owned(),
+            fitted
+                .constant
+                .as_ref()
+                .map_or("unknown".to_owned(), interval),
         ]);
     }
     table
+}
+
+/// A constant with its 90 % interval.
+fn interval(constant: &Constant) -> String {
+    let [value, low, high] = [constant.value, constant.low_90, constant.high_90].map(digits);
+    format!("{value} ({low} to {high})")
 }
 
 /// A number with four digits after its leading zeros.
@@ -268,8 +359,9 @@ fn strongest_correlation(fit: &Fit) -> Option<[String; 3]> {
     })
 }
 
-fn errors(validation: &CrossValidation) -> Table {
-    let mut table = Table::new(["held-out pushes, median", "unfitted", "fitted", "ratio"]);
+fn errors(validation: &CrossValidation, title: &str) -> Table {
+    let title = format!("{title}, median");
+    let mut table = Table::new([title.as_str(), "unfitted", "fitted", "ratio"]);
     for (name, [unfitted, fitted]) in [
         ("final position (mm)", validation.median_final_mm),
         ("WMSE (mm)", validation.median_wmse_mm),

@@ -33,6 +33,9 @@ pub struct FitArgs {
     /// fewer than 8 pushes, 0 for fewer than 4]
     #[arg(long, value_name = "K")]
     pub folds: Option<usize>,
+    /// Predict the pushes of these folders, too, blind by what the others taught
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    pub test: Vec<PathBuf>,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,

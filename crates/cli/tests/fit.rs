@@ -101,10 +101,17 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
             .arg(out.join("scene.toml")),
     );
 
-    // as text
-    let output =
-        succeeds(fit(&folder.join("pushes"), &out).args(["--free", "mu_f", "--folds", "0"]));
+    // as text, with a push of --test
+    let named = |k: usize| folder.join(format!("pushes/push-{k}"));
+    let output = succeeds(
+        fit(&named(0), &out)
+            .arg(named(1))
+            .arg(named(2))
+            .args(["--free", "mu_f", "--folds", "0", "--test"])
+            .arg(named(3)),
+    );
     let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("pushes of --test, median"), "{text}");
     assert!(text.contains("not determined by these pushes"), "{text}");
 }
 
@@ -131,6 +138,11 @@ fn fit_refuses_with_the_next_step() {
     assert!(text.contains("nowhere"), "{text}");
     let text = refusal(fit(&pushes, &pushes.join("push-0")).args(["--folds", "0"]));
     assert!(text.contains("would destroy what is read"), "{text}");
+    let text = refusal(fit(&pushes, &out).arg("--test").arg(pushes.join("push-1")));
+    assert!(
+        text.contains("push-1: --test names a push that is learnt from"),
+        "{text}"
+    );
     let text = refusal(fit(&pushes, &out).args(["--folds", "2"]));
     assert!(text.contains("at least 4"), "{text}");
 

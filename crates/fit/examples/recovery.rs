@@ -1,6 +1,7 @@
-//! How often 90 % intervals of learnt friction hold the truth, over sets of simulated pushes whose friction
-//! is drawn from the prior: `cargo run --release -p stickslip-fit --example recovery -- 30 model`; `testbed` is
-//! another physics, and a third argument the number of pushes in a set.
+//! How often 90 % intervals hold the truth, those of the values that predict best and those of the constants,
+//! over sets of simulated pushes of one plate whose friction is drawn from the prior:
+//! `cargo run --release -p stickslip-fit --example recovery -- 30 model`; `testbed` is another physics, and a third
+//! argument the number of pushes in a set.
 #![allow(
     clippy::unwrap_used,
     reason = "a simulated set that cannot be made ends it"
@@ -33,6 +34,7 @@ fn main() {
         seed: 0,
     };
     let mut errors: [Vec<[f64; 2]>; 2] = Default::default();
+    let mut held = [0; 2];
     for set in 0..sets {
         let truth = setup().drawn_friction(Streams::new(1000 + set).normals(0, 0, 0));
         let seed = 100 * set;
@@ -43,15 +45,19 @@ fn main() {
             Physics::Testbed => rig_tripod_radius(truth, seed),
         };
         for (k, truth) in [truth.mu_p, d_tri].into_iter().enumerate() {
-            errors[k].push(error(&fit.parameters[k], truth));
+            let fitted = &fit.parameters[k];
+            let constant = fitted.constant.expect("a constant");
+            held[k] += usize::from((constant.low_90..=constant.high_90).contains(&truth));
+            errors[k].push(error(fitted, truth));
         }
         println!(
             "set {set}: mu_p {:.3}, tripod_radius {:.4}; errors and spreads of logarithms {:.3?} {:.3?}, drift {:.4}",
             truth.mu_p, d_tri, errors[0][set as usize], errors[1][set as usize], fit.noise.drift
         );
     }
-    for (name, errors) in ["mu_p", "tripod_radius"].into_iter().zip(&errors) {
-        println!("{name}: {}", summary(errors));
+    for (k, name) in ["mu_p", "tripod_radius"].into_iter().enumerate() {
+        let (said, held) = (summary(&errors[k]), held[k]);
+        println!("{name}: {said}; the constant is in its 90 % interval in {held}");
     }
 }
 

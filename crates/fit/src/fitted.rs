@@ -6,6 +6,7 @@ use stickslip_dynamics::ShapeError;
 use stickslip_filter::Streams;
 
 use crate::chain::Chain;
+use crate::discrepancy::{Constant, is_known};
 use crate::error::FitError;
 use crate::likelihood::Noise;
 use crate::optimum::optima;
@@ -17,6 +18,10 @@ use crate::sampler::sample;
 
 /// Posterior over prior standard deviation below which a parameter counts as determined.
 const DETERMINED: f64 = 0.5;
+
+/// The same up to which it takes the value that predicts best; above, the pushes say next to nothing, and it
+/// keeps its first guess.
+const LEARNT: f64 = 0.8;
 
 /// Vectors drawn from the prior, the best of which start searches.
 const SCREENED: usize = 256;
@@ -67,9 +72,9 @@ pub struct FittedParameter {
     pub parameter: Parameter,
     /// Symbol of its unit; empty for a bare number.
     pub unit: &'static str,
-    /// The value that predicts best; the prior's centre where the pushes do not determine it.
+    /// The value that predicts best; the prior's centre where nothing was learnt of it.
     pub value: f64,
-    /// Standard deviation; that of the prior where the pushes do not determine it.
+    /// Standard deviation; that of the prior where nothing was learnt of it.
     pub std: f64,
     /// What was believed before.
     pub prior: Prior,
@@ -81,6 +86,11 @@ pub struct FittedParameter {
     pub std_ratio: f64,
     /// Whether `std_ratio` is below 0.5.
     pub determined: bool,
+    /// Whether it is below 0.8, and `value` the fit's.
+    pub learnt: bool,
+    /// What the constant of the rig is, which `value` imitates. It is known of `mu_p` and `tripod_radius` where both
+    /// are free and at most `mu_s` and `mu_f` beside them: for other fits nobody knows how far apart they are.
+    pub constant: Option<Constant>,
 }
 
 /// How the posterior was explored.
@@ -136,14 +146,21 @@ pub(crate) fn fit_prepared(
     let free = options.parameters.len();
     let stds: Vec<f64> = (0..free).map(|k| covariance[k][k].sqrt()).collect();
 
-    // what is not determined keeps its prior, and the others go with that
+    // what nothing was learnt of keeps its prior, and the others go with that
     let (values, noise, refined) = settle(pushes, options, &posterior, optimum, &stds)?;
 
     let parameters = posterior.parameters.iter().zip(&values).zip(&stds);
     let fit = Fit {
         pushes: pushes.len(),
         parameters: parameters
-            .map(|((&(parameter, prior), &z), &std)| fitted(parameter, prior, z, std))
+            .map(|((&(parameter, prior), &z), &std)| {
+                let constant = Constant::behind(parameter, &prior, [z, std], noise.drift);
+                let constant = constant.filter(|_| is_known(&options.parameters));
+                FittedParameter {
+                    constant,
+                    ..fitted(parameter, prior, [z, std])
+                }
+            })
             .collect(),
         correlation: correlation(&covariance, free),
         noise,
@@ -181,7 +198,7 @@ fn settle(
     stds: &[f64],
 ) -> Result<(Vec<f64>, Noise, u64), FitError> {
     let free = stds.len();
-    let kept: Vec<usize> = (0..free).filter(|k| stds[*k] < DETERMINED).collect();
+    let kept: Vec<usize> = (0..free).filter(|k| stds[*k] < LEARNT).collect();
     if kept.len() == free {
         return Ok((optimum[..free].to_vec(), posterior.noise(optimum), 0));
     }
@@ -197,20 +214,24 @@ fn settle(
     Ok((values, smaller.noise(&best[0]), tried))
 }
 
-fn fitted(parameter: Parameter, prior: Prior, z: f64, std: f64) -> FittedParameter {
-    let determined = std < DETERMINED;
+/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; what it says of the
+/// constant is left open.
+fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
+    let learnt = std < LEARNT;
     let value = prior.value(z);
     FittedParameter {
         name: parameter.name(),
         parameter,
         unit: parameter.unit(),
         value,
-        std: prior.spread(value, if determined { std } else { 1.0 }),
+        std: prior.spread(value, if learnt { std } else { 1.0 }),
         prior,
         prior_value: prior.value(0.0),
         prior_std: prior.spread(prior.value(0.0), 1.0),
         std_ratio: std,
-        determined,
+        determined: std < DETERMINED,
+        learnt,
+        constant: None,
     }
 }
 

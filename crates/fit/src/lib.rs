@@ -6,6 +6,7 @@
 //! pushes that it has not seen.
 
 mod chain;
+mod discrepancy;
 mod error;
 mod fitted;
 mod likelihood;
@@ -18,10 +19,11 @@ mod sampler;
 mod scene_text;
 mod validation;
 
+pub use discrepancy::Constant;
 pub use error::FitError;
 pub use fitted::{Fit, FitOptions, FittedParameter, Sampling, fit};
 pub use likelihood::Noise;
 pub use parameter::Parameter;
 pub use prior::Prior;
 pub use push::Push;
-pub use validation::{CrossValidation, HeldOut, cross_validate, default_folds};
+pub use validation::{CrossValidation, HeldOut, cross_validate, default_folds, predict};

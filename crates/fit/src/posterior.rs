@@ -74,6 +74,11 @@ impl<'a> Posterior<'a> {
         self.parameters.len() + NUISANCES
     }
 
+    /// Whether vectors have scenes of their own, so that their predictions do not run side by side.
+    pub fn is_costly(&self) -> bool {
+        !self.side_by_side
+    }
+
     /// The noise that a vector stands for.
     pub fn noise(&self, vector: &[f64]) -> Noise {
         noise_of(&vector[self.parameters.len()..])

@@ -20,11 +20,12 @@ const FIRST_MOVE: u64 = 1 << 32;
 /// Draws of one walker in one move: its partner, its stretch, whether it is accepted.
 const DRAWS: [u32; 3] = [0, 1, 2];
 
-/// Moves of every walker between two looks at whether the chains have settled.
-const ROUND: usize = 200;
+/// Moves of every walker between two looks at whether the chains have settled, and most rounds of them.
+const ROUNDS: [usize; 2] = [200, 6];
 
-/// Most rounds.
-const MOST_ROUNDS: usize = 6;
+/// The same where every vector has a scene of its own: its pushes are predicted one by one then, which takes
+/// ten times as long.
+const COSTLY_ROUNDS: [usize; 2] = [80, 4];
 
 /// Walkers for vectors of `dimension` numbers: four for each, and a multiple of two blocks of lanes.
 fn walkers(dimension: usize) -> usize {
@@ -32,7 +33,7 @@ fn walkers(dimension: usize) -> usize {
 }
 
 /// Samples `posterior` from around `start` until the second half of the chains has settled, by `settled`
-/// as split R̂, or for [`MOST_ROUNDS`]; also the number of vectors tried.
+/// as split R̂, or for the most rounds; also the number of vectors tried.
 pub(crate) fn sample(
     posterior: &Posterior<'_>,
     start: &[f64],
@@ -51,8 +52,12 @@ pub(crate) fn sample(
     let mut densities = posterior.log_densities(&vectors);
     let mut chain = Chain::new(count, dimension);
     let mut moves = 0;
-    for _ in 0..MOST_ROUNDS {
-        for _ in 0..ROUND {
+    let [round, most_rounds] = match posterior.is_costly() {
+        true => COSTLY_ROUNDS,
+        false => ROUNDS,
+    };
+    for _ in 0..most_rounds {
+        for _ in 0..round {
             let mut accepted = 0;
             let draw = streams.at(FIRST_MOVE + moves as u64);
             for half in 0..2 {

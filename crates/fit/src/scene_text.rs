@@ -6,20 +6,31 @@ use stickslip_formats::{SceneEdit, read_scene};
 use crate::error::FitError;
 use crate::fitted::{Fit, FittedParameter};
 use crate::parameter::Parameter;
+use crate::validation::CrossValidation;
 
 impl Fit {
-    /// A scene file with the fitted values and their spreads in place; what is not determined stays as it
-    /// is. Values without a key of their own (an offset, a scale) are worked into the outlines and feet,
-    /// and said in comments on top. `name` is shown in errors.
+    /// A scene file with the fitted values and their spreads in place; what nothing was learnt of stays as it
+    /// is, and so does all where `validation` says that fitting does not pay. Values without a key of their
+    /// own (an offset, a scale) are worked into the outlines and feet, and said in comments on top. `name` is
+    /// shown in errors.
     ///
     /// # Errors
     /// The text is no scene, or its outline is none once it is changed.
-    pub fn scene_text(&self, text: &str, name: &str) -> Result<String, FitError> {
+    pub fn scene_text(
+        &self,
+        text: &str,
+        name: &str,
+        validation: Option<&CrossValidation>,
+    ) -> Result<String, FitError> {
         let mut edit = SceneEdit::new(text, name)?;
+        if let Some(validation) = validation.filter(|validation| !validation.pays) {
+            edit.comment(&refusal(validation));
+            return Ok(edit.text());
+        }
         let learnt: Vec<&FittedParameter> = self
             .parameters
             .iter()
-            .filter(|fitted| fitted.determined)
+            .filter(|fitted| fitted.learnt)
             .collect();
         for line in self.comments() {
             edit.comment(&line);
@@ -61,24 +72,22 @@ impl Fit {
     /// What was learnt, for people.
     fn comments(&self) -> Vec<String> {
         let value = |fitted: &FittedParameter| {
-            format!(
+            let said = format!(
                 "{} = {:.6} +- {:.6} {}",
                 fitted.name, fitted.value, fitted.std, fitted.unit
-            )
+            );
+            let hint = if fitted.determined { "" } else { ", a hint" };
+            said.trim_end().to_owned() + hint
         };
         let (learnt, left): (Vec<_>, Vec<_>) =
-            self.parameters.iter().partition(|fitted| fitted.determined);
+            self.parameters.iter().partition(|fitted| fitted.learnt);
         let mut lines = Vec::new();
         if !learnt.is_empty() {
             lines.push(format!(
                 "learnt from {} pushes by `stickslip fit`:",
                 self.pushes
             ));
-            lines.extend(
-                learnt
-                    .into_iter()
-                    .map(|fitted| value(fitted).trim_end().to_owned()),
-            );
+            lines.extend(learnt.into_iter().map(value));
         }
         if !left.is_empty() {
             let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
@@ -86,4 +95,13 @@ impl Fit {
         }
         lines
     }
+}
+
+/// Why a scene keeps its first guesses.
+fn refusal(validation: &CrossValidation) -> String {
+    let [gain, error] = validation.gain_mm;
+    format!(
+        "first guesses: with what the others teach, `stickslip fit` predicts pushes left out no better \
+         (gain {gain:.2} +- {error:.2} mm in the mean)"
+    )
 }

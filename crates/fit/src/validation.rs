@@ -34,6 +34,11 @@ pub struct CrossValidation {
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
+    /// By how much the fitted scene is better than the unfitted one, in the final position error plus the
+    /// WMSE (mm): mean over the pushes, and its standard error.
+    pub gain_mm: [f64; 2],
+    /// Whether that mean is above 0. Where it is not, a scene keeps its first guesses.
+    pub pays: bool,
 }
 
 /// One push, predicted from its first pose by a fit to others.
@@ -90,10 +95,32 @@ pub fn cross_validate(
         }
     }
     held_out.sort_by_key(|(k, _)| *k);
-    Ok(summary(
-        folds,
-        held_out.into_iter().map(|(_, push)| push).collect(),
-    ))
+    let pushes = held_out.into_iter().map(|(_, push)| push).collect();
+    Ok(summary(folds, pushes))
+}
+
+/// Predicts `pushes` blind by a fit to others, as one fold. Where `validation` of that fit says that fitting
+/// does not pay, the fitted scene is the unfitted one; intervals are those of the fit all the same.
+///
+/// # Errors
+/// A push that cannot be simulated, or does not go with the fit.
+pub fn predict(
+    pushes: &[Push],
+    fit: &Fit,
+    validation: Option<&CrossValidation>,
+    options: &FitOptions,
+) -> Result<CrossValidation, FitError> {
+    let refused = validation.is_some_and(|validation| !validation.pays);
+    let predicted = pushes.iter().enumerate().map(|(k, push)| {
+        let prepared = PreparedPush::new(push.clone())?;
+        let mut predicted = predict_held_out(&prepared, k, 0, fit, options)?;
+        if refused {
+            predicted.final_mm[1] = predicted.final_mm[0];
+            predicted.wmse_mm[1] = predicted.wmse_mm[0];
+        }
+        Ok(predicted)
+    });
+    Ok(summary(1, predicted.collect::<Result<_, FitError>>()?))
 }
 
 fn summary(folds: usize, pushes: Vec<HeldOut>) -> CrossValidation {
@@ -103,13 +130,33 @@ fn summary(folds: usize, pushes: Vec<HeldOut>) -> CrossValidation {
     };
     let covered = pushes.iter().flat_map(|push| push.covered);
     let covered = covered.filter(|covered| *covered).count();
+    let gains: Vec<f64> = pushes.iter().map(HeldOut::gain_mm).collect();
+    let gain_mm = mean_and_error(&gains);
     CrossValidation {
         folds,
         median_final_mm: [0, 1].map(|k| median(&|push| push.final_mm[k])),
         median_wmse_mm: [0, 1].map(|k| median(&|push| push.wmse_mm[k])),
         coverage_90: covered as f64 / (3 * pushes.len()) as f64,
+        gain_mm,
+        pays: gain_mm[0] > 0.0,
         pushes,
     }
+}
+
+impl HeldOut {
+    /// By how much the fitted scene is better (mm).
+    fn gain_mm(&self) -> f64 {
+        let [unfitted, fitted] = [0, 1].map(|k| self.final_mm[k] + self.wmse_mm[k]);
+        unfitted - fitted
+    }
+}
+
+/// Mean and its standard error; that of one number is 0.
+fn mean_and_error(values: &[f64]) -> [f64; 2] {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+    [mean, (squares / (n - 1.0).max(1.0) / n).sqrt()]
 }
 
 fn predict_held_out(

@@ -56,7 +56,7 @@ fn centre_of_friction_is_found_and_written() {
     assert_found(&fit, &[x, y]);
 
     // the scene that is written has these feet
-    let text = fit.scene_text(common::SCENE, "scene.toml").unwrap();
+    let text = fit.scene_text(common::SCENE, "scene.toml", None).unwrap();
     let written = stickslip_formats::read_scene(&text, "scene.toml").unwrap();
     let (
         Feet::Known { positions, .. },

@@ -7,7 +7,10 @@ mod common;
 use common::{pushes, rig_tripod_radius};
 use stickslip_dynamics::Friction;
 use stickslip_evaluation::Physics;
-use stickslip_fit::{Fit, FitOptions, FittedParameter, Parameter, cross_validate, fit};
+use stickslip_fit::{
+    CrossValidation, Fit, FitOptions, FittedParameter, HeldOut, Parameter, cross_validate, fit,
+    predict,
+};
 
 const TRUTH: Friction = Friction {
     mu_s: 0.3,
@@ -61,6 +64,11 @@ fn friction_of_another_physics_is_found_nearly() {
             (fitted.value / truth - 1.0).abs() < 0.15,
             "{name} {truth} {fit:?}"
         );
+        let constant = fitted.constant.unwrap();
+        assert!(
+            (constant.low_90..=constant.high_90).contains(&truth),
+            "{name} {truth} {constant:?}"
+        );
     }
 }
 
@@ -89,6 +97,53 @@ fn held_out_pushes_are_predicted_better() {
         assert!(fitted < 0.6 * unfitted, "{validation:?}");
     }
     assert_eq!(validation.pushes.len(), 4);
+
+    // the gain is the mean of the pushes' own, and it pays
+    let sum = |of: fn(&HeldOut) -> [f64; 2]| -> f64 {
+        let each = validation.pushes.iter().map(of);
+        each.map(|[unfitted, fitted]| unfitted - fitted).sum()
+    };
+    let gain = (sum(|push| push.final_mm) + sum(|push| push.wmse_mm)) / 4.0;
+    assert!((validation.gain_mm[0] - gain).abs() < 1e-12 && validation.pays);
+}
+
+/// The fit of two pushes as one fold, and as a fit that predicts the other two.
+#[test]
+fn other_pushes_are_predicted_as_a_fold_is() {
+    let pushes = pushes(TRUTH, Physics::Model, 4, 40);
+    let options = options(&["mu_p"]);
+    let (train, test): (Vec<_>, Vec<_>) = pushes
+        .iter()
+        .cloned()
+        .enumerate()
+        .partition(|(k, _)| k % 2 == 1);
+    let of = |part: Vec<(usize, _)>| part.into_iter().map(|(_, push)| push).collect::<Vec<_>>();
+    let (train, test) = (of(train), of(test));
+    let taught = fit(&train, &options).unwrap();
+    let predicted = predict(&test, &taught, None, &options).unwrap();
+    let folds = cross_validate(&pushes, 2, &options).unwrap();
+    let first_fold = folds.pushes.iter().filter(|push| push.fold == 0);
+    for (push, of_fold) in predicted.pushes.iter().zip(first_fold) {
+        assert_eq!(push.push, of_fold.push);
+        assert_eq!(push.final_mm, of_fold.final_mm);
+        assert_eq!(push.wmse_mm, of_fold.wmse_mm);
+    }
+
+    // where fitting does not pay, all stays as it was
+    let refused = CrossValidation {
+        pays: false,
+        ..folds
+    };
+    let kept = predict(&test, &taught, Some(&refused), &options).unwrap();
+    assert_eq!(kept.median_final_mm[0], kept.median_final_mm[1]);
+    assert_eq!(kept.median_final_mm[0], predicted.median_final_mm[0]);
+    let text = taught
+        .scene_text(common::SCENE, "scene.toml", Some(&refused))
+        .unwrap();
+    let (said, scene): (Vec<&str>, Vec<&str>) =
+        text.lines().partition(|line| line.starts_with('#'));
+    assert_eq!(scene.join("\n").trim(), common::SCENE.trim());
+    assert!(said.concat().contains("first guesses"), "{text}");
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub fn fit<'py>(
     let columns = fit.draws().into_iter();
     let columns = columns.map(|(name, draws)| (name.to_owned(), draws));
     let scene = scene.expect("a fit has pushes");
-    let text = fit.scene_text(&scene.get().text, &scene.get().name);
+    let text = fit.scene_text(&scene.get().text, &scene.get().name, validation.as_ref());
     Ok((
         json(&fit)?,
         json(&validation)?,
