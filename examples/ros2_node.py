@@ -167,10 +167,12 @@ def _fill_place(position: Any, orientation: Any, estimate: dict[str, float]) -> 
 
 
 def fill_pose(message: Any, estimate: dict[str, float]) -> None:
-    """Fills a ``geometry_msgs/msg/PoseWithCovarianceStamped`` with pose and variances of an estimate."""
+    """Fills a ``geometry_msgs/msg/PoseWithCovarianceStamped`` with pose and covariance of an estimate."""
     _fill_place(message.pose.pose.position, message.pose.pose.orientation, estimate)
     for place, name in [(0, "std_x"), (7, "std_y"), (35, "std_theta")]:
         message.pose.covariance[place] = estimate[name] ** 2
+    for row, column, name in [(0, 1, "cov_x_y"), (0, 5, "cov_x_theta"), (1, 5, "cov_y_theta")]:
+        message.pose.covariance[6 * row + column] = message.pose.covariance[6 * column + row] = estimate[name]
 
 
 def fill_transform(message: Any, estimate: dict[str, float], child: str) -> None:
@@ -181,7 +183,7 @@ def fill_transform(message: Any, estimate: dict[str, float], child: str) -> None
 
 def words(estimate: dict[str, float]) -> list[tuple[str, str]]:
     """Friction, contacts and health of an estimate: what ``diagnostic_msgs/msg/KeyValue`` takes."""
-    placed = {"x", "y", "theta", "std_x", "std_y", "std_theta"}
+    placed = {"x", "y", "theta", "std_x", "std_y", "std_theta", "cov_x_y", "cov_x_theta", "cov_y_theta"}
     return [(name, f"{value:.6g}") for name, value in estimate.items() if name not in placed and not math.isnan(value)]
 
 

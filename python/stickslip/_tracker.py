@@ -12,7 +12,6 @@ from stickslip._columns import Log
 from stickslip._files import log_of
 from stickslip._native import Scene
 
-
 #: Columns of a log that say how noisy the object's pose is.
 COVARIANCE = (
     "object_var_x",

@@ -138,6 +138,7 @@ def test_touches_count_for_the_row_after_them():
 
 def test_messages_are_filled():
     estimate = {"x": 0.5, "y": -0.25, "theta": 3.0, "std_x": 0.1, "std_y": 0.2, "std_theta": 0.5}
+    estimate |= {"cov_x_y": 0.01, "cov_x_theta": -0.02, "cov_y_theta": 0.03}
     estimate |= {"mu_s": 0.25, "d_tri": math.nan, "ess": 123.0}
     position, orientation = _place()
     message = SimpleNamespace(
@@ -149,7 +150,8 @@ def test_messages_are_filled():
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1_700_000_000, 250_000_000)
     assert (position.x, position.y) == (0.5, -0.25)
     assert 2 * math.atan2(orientation.z, orientation.w) == pytest.approx(3.0)
-    assert {k: v for k, v in enumerate(message.pose.covariance) if v} == pytest.approx({0: 0.01, 7: 0.04, 35: 0.25})
+    expected = {0: 0.01, 7: 0.04, 35: 0.25, 1: 0.01, 6: 0.01, 5: -0.02, 30: -0.02, 11: 0.03, 31: 0.03}
+    assert {k: v for k, v in enumerate(message.pose.covariance) if v} == pytest.approx(expected)
     node.fill_header(message.header, "world", 0.9999999999)
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 0)
     assert node.words(estimate) == [("mu_s", "0.25"), ("ess", "123")]

@@ -47,7 +47,7 @@ fn rendered(name: &str) -> PathBuf {
 
 /// A bag of a folder's frames, by rosbags.
 fn bag(frames: &Path, calibration: &Path, bag: &Path) {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../formats/tests/ros2/peer.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../formats/tests/ros2_peer/peer.py");
     succeeds(
         Command::new("python3")
             .arg(script)

@@ -2,13 +2,49 @@
 
 use stickslip_dynamics::{Friction, Pose, Twist};
 
-/// Standard deviations of an estimate row.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use crate::covariance::PoseCovariance;
+
+/// Standard deviations of an estimate row, and how the errors of its pose go together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Of the pose (m, m, rad).
+    /// Standard deviations of the pose (m, m, rad).
     pub pose: Pose,
-    /// Of the friction parameters; `None` for methods that do not estimate them.
+    /// Covariances of the pose's numbers; `None` where they are not known.
+    pub cross: Option<CrossCovariance>,
+    /// Standard deviations of the friction parameters; `None` for methods that do not estimate them.
     pub friction: Option<Friction>,
+}
+
+/// The covariance of a pose off its diagonal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CrossCovariance {
+    /// Of x and y (m²).
+    pub x_y: f64,
+    /// Of x and θ (m rad).
+    pub x_theta: f64,
+    /// Of y and θ (m rad).
+    pub y_theta: f64,
+}
+
+impl Spread {
+    /// The covariance of the pose; what is not known off the diagonal counts as 0.
+    #[must_use]
+    pub fn covariance(&self) -> PoseCovariance {
+        let CrossCovariance {
+            x_y,
+            x_theta,
+            y_theta,
+        } = self.cross.unwrap_or_default();
+        let Pose { x, y, theta } = self.pose;
+        PoseCovariance {
+            x: x * x,
+            y: y * y,
+            theta: theta * theta,
+            x_y,
+            x_theta,
+            y_theta,
+        }
+    }
 }
 
 /// A method's estimate at one log row. `None` is an empty cell.
@@ -25,7 +61,7 @@ pub struct EstimateRow {
     pub contact_pusher: Option<f64>,
     /// Posterior probability of contact with each fixel.
     pub contact_fixels: Option<Vec<f64>>,
-    /// Standard deviations.
+    /// Standard deviations and covariances.
     pub spread: Option<Spread>,
     /// Effective sample size after weighing.
     pub ess: Option<f64>,

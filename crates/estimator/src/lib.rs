@@ -31,7 +31,7 @@ pub use angle::wrapped;
 pub use baseline::predictor::{NominalPrediction, NominalPredictor};
 pub use covariance::PoseCovariance;
 pub use error::RunError;
-pub use estimate::{Estimate, EstimateRow, Spread};
+pub use estimate::{CrossCovariance, Estimate, EstimateRow, Spread};
 pub use log::Log;
 pub use mode::Mode;
 pub use occlusion::Occlusion;

@@ -13,7 +13,7 @@ const ROWS: usize = 40;
 const FIRST: usize = 2;
 
 /// What the particles after one row come to, each weighted: sum of weights, means and standard
-/// deviations of x, y, θ and μ_s.
+/// deviations of x, y, θ and μ_s, covariances of x and y, x and θ, y and θ.
 #[derive(Debug)]
 struct Moments {
     row: usize,
@@ -21,6 +21,7 @@ struct Moments {
     weight: f64,
     means: [f64; 4],
     stds: [f64; 4],
+    cross: [f64; 3],
 }
 
 #[derive(Debug, Default)]
@@ -44,12 +45,15 @@ impl Observer for Sums {
         };
         let means = std::array::from_fn(|k| sum(&|x| x[k]));
         let stds = std::array::from_fn(|k| sum(&|x| (x[k] - means[k]).powi(2)).sqrt());
+        let pairs = [[0, 1], [0, 2], [1, 2]];
+        let cross = pairs.map(|[i, j]| sum(&|x| (x[i] - means[i]) * (x[j] - means[j])));
         let moments = Moments {
             row,
             particles: cloud.len(),
             weight: sum(&|_| 1.0),
             means,
             stds,
+            cross,
         };
         self.0.lock().expect("one thread").push(moments);
     }
@@ -141,6 +145,7 @@ fn an_observer_sees_the_particles_that_the_estimate_is_made_of() {
         weight,
         means,
         stds,
+        cross,
     } in sums
     {
         let told = &run.estimate.rows[row];
@@ -172,6 +177,19 @@ fn an_observer_sees_the_particles_that_the_estimate_is_made_of() {
             assert!(
                 (std - told).abs() < 1e-5 * std + 1e-10,
                 "row {row}: {std} and {told}"
+            );
+        }
+        let of = spread.cross.expect("covariances");
+        for ((k, found), [i, j]) in [of.x_y, of.x_theta, of.y_theta]
+            .into_iter()
+            .enumerate()
+            .zip([[0, 1], [0, 2], [1, 2]])
+        {
+            let tolerance = 1e-5 * stds[i] * stds[j] + 1e-16;
+            assert!(
+                (found - cross[k]).abs() < tolerance,
+                "row {row}: {found} and {}",
+                cross[k]
             );
         }
         assert!(stds[..3].iter().all(|std| *std > 1e-6), "{stds:?}");

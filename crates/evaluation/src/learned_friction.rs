@@ -175,8 +175,8 @@ mod tests {
             }),
             friction: Some(friction(mean)),
             spread: Some(Spread {
-                pose: Pose::default(),
                 friction: Some(friction(std)),
+                ..Spread::default()
             }),
             contact_pusher: Some(touches[0]),
             contact_fixels: Some(vec![0.0, touches[1]]),

@@ -4,7 +4,7 @@
 use stickslip::{Estimate, EstimateRow, Spread};
 use stickslip_dynamics::{Friction, Pose};
 
-use crate::estimate_csv::header;
+use crate::estimate_csv::{cross_numbers, header};
 use crate::named_columns::{ColumnError, NamedColumns};
 
 /// The columns of `estimate.csv`, one number per row; NaN where the method has no value.
@@ -56,6 +56,7 @@ pub fn estimate_of_columns(columns: &NamedColumns<'_>) -> Result<Estimate, Colum
             pose: columns.group(pose, row)?.map(pose_of),
             spread: spread.map(|std| Spread {
                 pose: pose_of(std),
+                cross: None,
                 friction: None,
             }),
             ..EstimateRow::default()
@@ -94,6 +95,8 @@ fn push_row(numbers: &mut Vec<f64>, row: &EstimateRow, estimate: &Estimate) {
     numbers.push(f64::from(row.visual));
     push(numbers, row.unsolved.map(|count| [f64::from(count)]));
     push(numbers, row.failed.map(|count| [f64::from(count)]));
+    let cross = row.spread.and_then(|spread| spread.cross);
+    push(numbers, cross.map(cross_numbers));
 }
 
 fn push<const N: usize>(numbers: &mut Vec<f64>, values: Option<[f64; N]>) {

@@ -2,12 +2,12 @@
 //! [`read_estimate`].
 //!
 //! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,
-//! std_d_tri,ess,resampled,visual,unsolved,failed`, in this order. A cell is empty where the method has no
+//! std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta`, in this order. A cell is empty where the method has no
 //! value; `d_tri` and `std_d_tri` are empty throughout where the feet are known.
 
 use std::io::{Read, Write};
 
-use stickslip::{Estimate, EstimateRow, Spread};
+use stickslip::{CrossCovariance, Estimate, EstimateRow, Spread};
 use stickslip_dynamics::{Friction, Pose, Twist};
 
 use crate::csv_error::{CsvError, CsvProblem};
@@ -28,7 +28,7 @@ const BEFORE_FIXELS: [&str; 12] = [
     "d_tri",
     "contact_pusher",
 ];
-const AFTER_FIXELS: [&str; 12] = [
+const AFTER_FIXELS: [&str; 15] = [
     "std_x",
     "std_y",
     "std_theta",
@@ -41,7 +41,13 @@ const AFTER_FIXELS: [&str; 12] = [
     "visual",
     "unsolved",
     "failed",
+    "cov_x_y",
+    "cov_x_theta",
+    "cov_y_theta",
 ];
+
+/// Columns that came later, all at the end; files of earlier versions end after this many of them.
+const LATER: [usize; 3] = [0, 1, 4];
 
 /// Column numbers; those after the fixels' contacts count from the first one after them.
 const TIME: usize = 0;
@@ -87,13 +93,14 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
         has_tripod: true,
         ..Estimate::default()
     };
-    let has_failed = table.columns().len() == header(estimate.fixels).len();
+    let oldest = header(estimate.fixels).len() - LATER[LATER.len() - 1];
+    let later = table.columns().len() - oldest;
     let mut tripod = None;
     for row in table.rows()? {
         let reader = RowReader {
             row: &row?,
             fixels: estimate.fixels,
-            has_failed,
+            later,
         };
         estimate
             .time
@@ -136,8 +143,11 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
         .filter(|name| is_contact(name))
         .count();
     let expected = header(fixels);
-    // files of earlier versions end before the last column
-    for name in &expected[..expected.len() - 1] {
+    // files of earlier versions end earlier
+    let oldest = expected.len() - LATER[LATER.len() - 1];
+    let later = table.columns().len().saturating_sub(oldest);
+    let begun = LATER.into_iter().find(|count| *count >= later);
+    for name in &expected[..oldest + begun.unwrap_or(0)] {
         table.require(name)?;
     }
     for (index, name) in table.columns().iter().enumerate() {
@@ -199,6 +209,8 @@ pub(crate) fn cells(time: f64, row: &EstimateRow, columns: EstimateColumns) -> V
     for count in [row.unsolved, row.failed] {
         cells.push(count.map_or(String::new(), |count| count.to_string()));
     }
+    let cross = row.spread.and_then(|spread| spread.cross);
+    push(&mut cells, cross.map(cross_numbers));
     cells
 }
 
@@ -214,6 +226,11 @@ fn push_friction(cells: &mut Vec<String>, friction: Option<Friction>, has_tripod
     push(cells, friction.filter(|_| has_tripod).map(|f| [f.d_tri]));
 }
 
+/// In the order of the columns.
+pub(crate) fn cross_numbers(cross: CrossCovariance) -> [f64; 3] {
+    [cross.x_y, cross.x_theta, cross.y_theta]
+}
+
 fn pose_numbers(pose: Pose) -> [f64; 3] {
     [pose.x, pose.y, pose.theta]
 }
@@ -222,7 +239,8 @@ fn pose_numbers(pose: Pose) -> [f64; 3] {
 struct RowReader<'r, 't> {
     row: &'r Row<'t>,
     fixels: usize,
-    has_failed: bool,
+    /// How many of the columns that came later there are.
+    later: usize,
 }
 
 impl RowReader<'_, '_> {
@@ -257,13 +275,27 @@ impl RowReader<'_, '_> {
         })
     }
 
-    /// The last column, which files of earlier versions do not have.
+    /// A column that files of earlier versions do not have.
     fn failed(&self) -> Result<Option<u32>, CsvError> {
-        if self.has_failed {
-            self.row.count(self.after(11))
-        } else {
-            Ok(None)
+        match self.later {
+            0 => Ok(None),
+            _ => self.row.count(self.after(11)),
         }
+    }
+
+    /// Columns that files of earlier versions do not have.
+    fn cross(&self) -> Result<Option<CrossCovariance>, CsvError> {
+        if self.later < 4 {
+            return Ok(None);
+        }
+        let numbers = self
+            .row
+            .group(&[12, 13, 14].map(|index| self.after(index)))?;
+        Ok(numbers.map(|c| CrossCovariance {
+            x_y: c[0],
+            x_theta: c[1],
+            y_theta: c[2],
+        }))
     }
 
     /// Index of a column of [`AFTER_FIXELS`].
@@ -285,7 +317,11 @@ impl RowReader<'_, '_> {
             tripod,
         )?;
         match self.pose([0, 1, 2].map(|index| self.after(index)))? {
-            Some(pose) => Ok(Some(Spread { pose, friction })),
+            Some(pose) => Ok(Some(Spread {
+                pose,
+                cross: self.cross()?,
+                friction,
+            })),
             None if friction.is_none() => Ok(None),
             None => Err(self.row.error(self.after(0), CsvProblem::EmptyCell)),
         }

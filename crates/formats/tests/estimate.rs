@@ -1,12 +1,12 @@
 //! `estimate.csv`: the contract's columns, empty cells, bad input, and the way there and back.
 
 use proptest::prelude::*;
-use stickslip::{Estimate, EstimateRow, Spread};
+use stickslip::{CrossCovariance, Estimate, EstimateRow, Spread};
 use stickslip_dynamics::{Friction, Pose, Twist};
 use stickslip_formats::{read_estimate, write_estimate};
 
 const HEADER: &str = "time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,contact_2,\
-                      std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed";
+                      std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta";
 
 fn full_row() -> EstimateRow {
     EstimateRow {
@@ -26,6 +26,11 @@ fn full_row() -> EstimateRow {
         contact_fixels: Some(vec![0.25, 0.75]),
         spread: Some(Spread {
             pose: Pose::new(7.0, 8.0, 9.0),
+            cross: Some(CrossCovariance {
+                x_y: 1.5,
+                x_theta: -2.5,
+                y_theta: 3.5,
+            }),
             friction: Some(Friction {
                 mu_s: 0.5,
                 mu_p: 0.6,
@@ -74,7 +79,7 @@ fn refused(text: &str, place: &str, words: &[&str]) {
 fn write_estimate_writes_the_contract() {
     let rows = vec![EstimateRow::default(), full_row()];
     let expected = format!(
-        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1\n"
+        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,,,,,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,-2.5,3.5\n"
     );
     assert_eq!(written(&estimate(rows, true)), expected);
 }
@@ -84,7 +89,9 @@ fn known_feet_leave_the_d_tri_columns_empty() {
     let text = written(&estimate(vec![full_row()], false));
     assert_eq!(
         text.lines().nth(1),
-        Some("0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3,1")
+        Some(
+            "0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3,1,1.5,-2.5,3.5"
+        )
     );
     let back = read_estimate(text.as_bytes(), "estimate.csv").expect("an estimate");
     assert!(!back.has_tripod);
@@ -117,7 +124,8 @@ fn estimate_without_fixels_has_no_contact_columns() {
 
 #[test]
 fn header_of_another_order_or_kind_is_refused() {
-    let row = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1";
+    let row =
+        "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,0,0,0";
     refused(
         &format!(
             "{}\n{row}\n",
@@ -133,8 +141,8 @@ fn header_of_another_order_or_kind_is_refused() {
     );
     refused(
         &format!("{HEADER},more\n{row},0\n"),
-        "1: column 27 (more)",
-        &["no such column", "`failed`"],
+        "1: column 30 (more)",
+        &["no such column", "`cov_y_theta`"],
     );
     refused(
         &format!("{}\n{row}\n", HEADER.replace("contact_2", "contact_3")),
@@ -145,7 +153,7 @@ fn header_of_another_order_or_kind_is_refused() {
 
 #[test]
 fn bad_cells_are_refused() {
-    let good = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1";
+    let good = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,2.5,3.5";
     let with = |from: &str, to: &str| format!("{HEADER}\n{}\n", good.replacen(from, to, 1));
     refused(&with("1,2,3", "1,,3"), "2: column 3 (y)", &["empty", "`x`"]);
     refused(
@@ -169,6 +177,11 @@ fn bad_cells_are_refused() {
         "2: column 21 (std_d_tri)",
         &["empty", "known"],
     );
+    refused(
+        &with("1.5,2.5", "1.5,"),
+        "2: column 28 (cov_x_theta)",
+        &["empty"],
+    );
     refused(&with("7,8,9", ",,"), "2: column 15 (std_x)", &["empty"]);
     refused(&with("0.1,0.2,0.3", ",,"), "2: column 8 (mu_s)", &["empty"]);
     refused(
@@ -185,6 +198,15 @@ fn number() -> impl Strategy<Value = f64> {
 
 fn any_pose() -> impl Strategy<Value = Pose> {
     (number(), number(), number()).prop_map(|(x, y, theta)| Pose::new(x, y, theta))
+}
+
+fn any_cross() -> impl Strategy<Value = Option<CrossCovariance>> {
+    let numbers = (number(), number(), number());
+    prop::option::of(numbers.prop_map(|(x_y, x_theta, y_theta)| CrossCovariance {
+        x_y,
+        x_theta,
+        y_theta,
+    }))
 }
 
 fn any_friction() -> impl Strategy<Value = Option<Friction>> {
@@ -205,7 +227,7 @@ prop_compose! {
         friction in any_friction(),
         contact_pusher in prop::option::of(number()),
         contact_fixels in prop::option::of(prop::collection::vec(number(), 2)),
-        spread in prop::option::of((any_pose(), any_friction())),
+        spread in prop::option::of((any_pose(), any_cross(), any_friction())),
         ess in prop::option::of(number()),
         (resampled, visual, unsolved, failed) in any::<(Option<bool>, bool, Option<u32>, Option<u32>)>(),
     ) -> EstimateRow {
@@ -215,7 +237,7 @@ prop_compose! {
             friction,
             contact_pusher,
             contact_fixels,
-            spread: spread.map(|(pose, friction)| Spread { pose, friction }),
+            spread: spread.map(|(pose, cross, friction)| Spread { pose, cross, friction }),
             ess,
             resampled,
             visual,
@@ -226,16 +248,28 @@ prop_compose! {
 }
 
 #[test]
-fn file_without_the_column_that_came_later_is_read() {
+fn files_without_the_columns_that_came_later_are_read() {
     let estimate = estimate(vec![full_row()], true);
     let text = written(&estimate);
-    let earlier: Vec<_> = text
-        .lines()
-        .map(|line| line.rsplit_once(',').expect("columns").0)
-        .collect();
-    let read = read_estimate(earlier.join("\n").as_bytes(), "estimate.csv").expect("sound");
-    assert_eq!(read.rows[0].unsolved, Some(3));
-    assert_eq!(read.rows[0].failed, None);
+    let without = |columns: usize| {
+        let cut = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            cells[..cells.len() - columns].join(",")
+        };
+        let earlier: Vec<_> = text.lines().map(cut).collect();
+        read_estimate(earlier.join("\n").as_bytes(), "estimate.csv")
+    };
+    for (columns, failed) in [(3, Some(1)), (4, None)] {
+        let row = &without(columns).expect("sound").rows[0];
+        assert_eq!((row.unsolved, row.failed), (Some(3), failed));
+        let spread = row.spread.expect("a spread");
+        assert_eq!((spread.pose.x, spread.cross), (7.0, None));
+    }
+    // no version ended there
+    for columns in [1, 2] {
+        let error = without(columns).expect_err("must be refused").to_string();
+        assert!(error.contains("missing"), "{error}");
+    }
 }
 
 proptest! {

@@ -1,21 +1,22 @@
 //! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written
-//! here, and what rosbags writes is read here; evo reads trajectories.
+//! here, and what rosbags writes is read here.
 //!
 //! `cargo test -p stickslip-formats --test ros2 -- --ignored`, with these Python packages where
 //! `python3` finds them.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod ros2_peer;
+
 use std::f64::consts::TAU;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use stickslip::{Estimate, EstimateRow, Log, PoseCovariance, Setup, Spread};
+use ros2_peer::{folder, peer};
+use stickslip::{Log, PoseCovariance};
 use stickslip_dynamics::Pose;
 use stickslip_formats::{
-    BagOptions, Mounts, Topics, read_bag, read_bag_metadata, read_log, read_scene,
-    write_estimate_mcap, write_estimate_tum, write_log_mcap,
+    BagOptions, Mounts, Topics, read_bag, read_bag_metadata, read_log, write_log_mcap,
 };
 
 /// Recorded experiments; the last one has forces, and poses of a real camera.
@@ -24,22 +25,6 @@ const LOGS: [&str; 3] = [
     "mujoco/slide-ell-disc-110",
     "real/zhou-tripod-push/hardboard_3pts_10-10_10-130_130-10_03",
 ];
-
-/// What Python prints.
-fn peer(arguments: &[&Path]) -> String {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ros2/peer.py");
-    let run = Command::new("python3")
-        .arg(script)
-        .args(arguments)
-        .output()
-        .unwrap();
-    assert!(
-        run.status.success(),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
-    );
-    String::from_utf8(run.stdout).unwrap()
-}
 
 /// What the script says of the noise of poses.
 const TOLD: PoseCovariance = PoseCovariance {
@@ -50,18 +35,6 @@ const TOLD: PoseCovariance = PoseCovariance {
     x_theta: 1e-7 / 6.0,
     y_theta: 1e-7 / 7.0,
 };
-
-/// An empty folder of this test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("ros2")
-        .join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
 
 fn recorded(name: &str) -> (PathBuf, Log) {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
@@ -339,112 +312,4 @@ fn transforms_of_others_are_read_through_camera_and_tags() {
         peer(&[Path::new("frames"), &csv, &bag]);
         assert_same(&read_folder(&bag, &options), &log, 1e-12);
     }
-}
-
-/// An estimate of two rows, the first without a pose, in the scene of an embedded experiment; all
-/// fixels are touched.
-fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
-    let scene = include_str!("../../cli/demo/stop-square50-bar-000/scene.toml");
-    let setup = read_scene(scene, "scene.toml").unwrap();
-    let fixels = setup.scene.fixels.len();
-    let seen = EstimateRow {
-        pose: Some(pose),
-        contact_fixels: Some(vec![0.75; fixels]),
-        spread: Some(Spread {
-            pose: std,
-            friction: None,
-        }),
-        ..EstimateRow::default()
-    };
-    let estimate = Estimate {
-        time: vec![1.0, 2.0],
-        rows: vec![EstimateRow::default(), seen],
-        fixels,
-        has_tripod: true,
-    };
-    (setup, estimate)
-}
-
-#[test]
-#[ignore = "needs Python packages; .ci/run installs them and runs this"]
-fn others_read_an_estimate() {
-    let (pose, std) = (Pose::new(0.5, -0.25, 3.0), Pose::new(0.125, 0.25, 0.5));
-    let (setup, estimate) = one_pose(pose, std);
-    let path = folder("estimate").join("estimate.mcap");
-    // two particles at the row that has a pose
-    let cloud = [vec![], vec![pose, std]];
-    write_estimate_mcap(File::create(&path).unwrap(), &estimate, &cloud, &setup).unwrap();
-    let told = peer(&[Path::new("estimate"), &path]);
-    let (z, w) = (libm::sin(1.5), libm::cos(1.5));
-    for program in ["ours", "humble"] {
-        let mut topics = Vec::new();
-        for line in told.lines() {
-            let words: Vec<&str> = line.split(' ').collect();
-            let [by, topic, time, frame, name, numbers @ ..] = &words[..] else {
-                panic!("{line}")
-            };
-            if *by != program {
-                continue;
-            }
-            assert_eq!((*time, *frame), ("2000000000", "world"), "{line}");
-            let numbers: Vec<f64> = numbers.iter().map(|word| word.parse().unwrap()).collect();
-            let at = [pose.x, pose.y, z, w];
-            match (*topic, *name) {
-                ("/stickslip/pose", _) => {
-                    let mut covariance = [0.0; 36];
-                    (covariance[0], covariance[7], covariance[35]) = (0.015625, 0.0625, 0.25);
-                    assert_eq!(numbers, [&at[..], &covariance].concat());
-                }
-                ("/tf", child) => assert_eq!((child, &numbers[..]), ("stickslip_object", &at[..])),
-                ("/stickslip/particles", _) => {
-                    let other = [0.125, 0.25, libm::sin(0.25), libm::cos(0.25)];
-                    assert_eq!(numbers, [at, other].concat());
-                }
-                ("/stickslip/markers", "object") => {
-                    let square = [
-                        [-1.0, -1.0],
-                        [1.0, -1.0],
-                        [1.0, 1.0],
-                        [-1.0, 1.0],
-                        [-1.0, -1.0],
-                    ];
-                    let side = numbers[11].abs();
-                    let points = square.map(|[x, y]| [x * side, y * side, 0.0]);
-                    let head = [0.0, 4.0, at[0], at[1], at[2], at[3], 0.12, 5.0];
-                    assert_eq!(numbers, [&head[..], points.as_flattened()].concat());
-                }
-                ("/stickslip/markers", "fixels") => {
-                    assert_eq!((numbers[1], numbers[6]), (4.0, 0.84))
-                }
-                _ => panic!("{line}"),
-            }
-            topics.push((*topic).to_owned());
-        }
-        let fixel_parts: usize = setup
-            .scene
-            .fixels
-            .iter()
-            .map(|fixel| fixel.shape.parts().len())
-            .sum();
-        assert_eq!(topics.len(), 4 + fixel_parts, "{program}: {told}");
-    }
-}
-
-#[test]
-#[ignore = "needs Python packages; .ci/run installs them and runs this"]
-fn evo_reads_a_trajectory() {
-    let pose = Pose::new(0.5, -0.25, 3.0);
-    let (_, estimate) = one_pose(pose, Pose::default());
-    let path = folder("trajectory").join("estimate.tum");
-    write_estimate_tum(File::create(&path).unwrap(), &estimate).unwrap();
-    let told = peer(&[Path::new("trajectory"), &path]);
-    let numbers: Vec<f64> = told
-        .split_whitespace()
-        .map(|word| word.parse().unwrap())
-        .collect();
-    let [time, x, y, z, yaw] = numbers[..] else {
-        panic!("{told}")
-    };
-    assert_eq!([time, x, y, z], [2.0, 0.5, -0.25, 0.0]);
-    assert!((yaw - 3.0).abs() < 1e-12, "{yaw}");
 }

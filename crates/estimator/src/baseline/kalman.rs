@@ -12,7 +12,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 use crate::angle::unwrapped;
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
-use crate::estimate::{Estimate, EstimateRow, Spread};
+use crate::estimate::{CrossCovariance, Estimate, EstimateRow, Spread};
 use crate::prepared_log::PreparedLog;
 use crate::setup::{Camera, Setup};
 
@@ -57,6 +57,8 @@ pub(crate) fn track(
                     y.position_variance.sqrt(),
                     theta.position_variance.sqrt(),
                 ),
+                // the axes are filtered each by itself
+                cross: Some(CrossCovariance::default()),
                 friction: None,
             }),
             visual: prepared.visible(row).is_some(),

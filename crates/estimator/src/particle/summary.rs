@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;
 
-use crate::estimate::{EstimateRow, Spread};
+use crate::estimate::{CrossCovariance, EstimateRow, Spread};
 use crate::particle::model::ContactModel;
 use crate::particle::sums::{ANGLE, Reference};
 
@@ -33,12 +33,22 @@ pub(crate) fn summarise(
         filter.weighted_circular_std_about(theta, ANGLE)
     };
 
+    // how the errors go together: about the means of x and y, so that θ's own drops out
+    let [x, y] = sums.first.position;
+    let [x_y, x_theta, y_theta] = sums.cross;
+    let cross = CrossCovariance {
+        x_y: x_y - x * y,
+        x_theta: x_theta - x * sums.angle.first,
+        y_theta: y_theta - y * sums.angle.first,
+    };
+
     let pose = |[x, y]: [f64; 2], theta: f64| Pose { x, y, theta };
     row.pose = Some(pose(means.position, theta));
     row.twist = Some(sums.twist);
     row.friction = Some(means.friction);
     row.spread = Some(Spread {
         pose: pose(stds.position, theta_std),
+        cross: Some(cross),
         friction: Some(stds.friction),
     });
     row.contact_pusher = Some(sums.contact_pusher);

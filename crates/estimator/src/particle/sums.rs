@@ -139,6 +139,8 @@ pub struct Sums {
     pub twist: Twist,
     /// Those over θ.
     pub angle: AngleSums<f64>,
+    /// Σ w d d of x and y, of x and θ, of y and θ.
+    pub cross: [f64; 3],
     /// Largest |d| of the angles (rad).
     pub widest: f64,
     /// Number of particles whose last step was not solved.
@@ -166,6 +168,7 @@ impl Sums {
         let mut second = Linear::<Column>::default();
         let mut twist = Twist::<Column>::default();
         let mut angle = AngleSums::<Column>::default();
+        let mut cross = [o; 3];
         let (mut widest, mut unsolved, mut failed) = (o, o, o);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_column = |column: usize| load_chunk(block.column(column), chunk, 0.0);
@@ -174,10 +177,14 @@ impl Sums {
             // position and friction
             let (first, second) = (first.fields_mut(), second.fields_mut());
             let near = reference.linear.fields();
+            let mut position = [o; 2];
             for (k, (first, second)) in first.into_iter().zip(second).enumerate() {
                 let d = of_column(Linear::COLUMNS[k]) - *near[k];
                 *first += w * d;
                 *second += w * d * d;
+                if k < 2 {
+                    position[k] = d;
+                }
             }
 
             // twist
@@ -192,6 +199,10 @@ impl Sums {
                 *sum += w * value;
             }
             widest = widest.max(w.gt(o).zero_unless(d.abs()));
+            let [x, y] = position;
+            cross[0] += w * x * y;
+            cross[1] += w * x * d;
+            cross[2] += w * y * d;
 
             // how the steps ended
             unsolved += flag(block, Columns::UNSOLVED, chunk).zero_unless(Lanes::splat(1.0));
@@ -207,6 +218,7 @@ impl Sums {
             first: d,
             second: square,
         };
+        self.cross = cross.map(total);
         self.widest = widest.0.into_iter().fold(0.0, f64::max);
         self.unsolved = total(unsolved);
         self.failed = total(failed);
@@ -262,6 +274,8 @@ impl WeightedSums for Sums {
         angle
             .zip(other.angle.fields())
             .for_each(|(to, from)| add(to, from));
+        let cross = self.cross.iter_mut().zip(&other.cross);
+        cross.for_each(|(to, from)| add(to, from));
         add(&mut self.contact_pusher, &other.contact_pusher);
         let fixels = other.contact_fixels.len();
         self.contact_fixels.resize(fixels, 0.0);

@@ -100,12 +100,16 @@ pub fn write_estimate_tum(mut writer: impl Write, estimate: &Estimate) -> std::i
     Ok(())
 }
 
-/// Variances of x, y and the angle about z at their places; 0 where nothing is known.
+/// Variances and covariances of x, y and the angle about z at their places; 0 where nothing is known.
 fn covariance(row: &EstimateRow) -> [[f64; 6]; 6] {
     let mut covariance = [[0.0; 6]; 6];
     if let Some(spread) = &row.spread {
-        let Pose { x, y, theta } = spread.pose;
-        (covariance[0][0], covariance[1][1], covariance[5][5]) = (x * x, y * y, theta * theta);
+        let of = spread.covariance();
+        (covariance[0][0], covariance[1][1], covariance[5][5]) = (of.x, of.y, of.theta);
+        for (row, column, value) in [(0, 1, of.x_y), (0, 5, of.x_theta), (1, 5, of.y_theta)] {
+            covariance[row][column] = value;
+            covariance[column][row] = value;
+        }
     }
     covariance
 }

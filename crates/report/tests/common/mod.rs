@@ -98,6 +98,7 @@ fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
         };
         let spread = Spread {
             pose: Pose::new(off, off, off),
+            cross: None,
             friction: Some(Friction {
                 mu_s: 0.01,
                 mu_p: 0.02,
