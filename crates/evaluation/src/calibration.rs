@@ -3,11 +3,9 @@
 //! Talts et al. 2018.
 
 use std::sync::Mutex;
-use stickslip::dynamics::{Friction, Pose};
 
 use stickslip::{
-    Camera, Estimate, Mode, Observer, Occlusion, ParticleView, RunOptions, Setup, SolvedStep,
-    TactileUse, Tracking, run, wrapped,
+    Mode, Observer, ParticleView, PriorSample, SampledState, Setup, SolvedStep, Tracking, wrapped,
 };
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
@@ -38,14 +36,16 @@ pub struct Placed {
 pub struct CalibrationRun {
     /// Where the truth of each lies.
     pub placed: [Option<Placed>; 7],
+    /// Rank of the truth of each at the last row that the camera saw, observed or not.
+    pub seen: [f64; 7],
 }
 
 /// What moves the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TruthSource {
-    /// One particle of the filter's own, noise included: of such truths, true beliefs hold as much as
-    /// they say.
-    Particle,
+    /// The filter's own model, noise and measurements included ([`PriorSample`]): of such truths, true
+    /// beliefs hold as much as they say.
+    Prior,
     /// A simulation by the filter's dynamics without noise, or by the testbed.
     Simulated(Physics),
 }
@@ -65,8 +65,8 @@ pub struct CalibrationOptions {
 
 impl CalibrationRun {
     /// Simulates `paper` with friction drawn from its scene's prior, and tracks it through the
-    /// blackout before the first contact with a fixel; where a particle moves the object, that is the
-    /// contact of the simulation whose pusher it has, so that no blackout tells of the truth. `None`
+    /// blackout before the first contact with a fixel; where the filter's own model moves the object, that
+    /// is the contact of the simulation whose pusher it has, so that no blackout tells of the truth. `None`
     /// where no fixel is met, or the drawn rig cannot be simulated.
     ///
     /// # Panics
@@ -74,9 +74,13 @@ impl CalibrationRun {
     #[must_use]
     pub fn new(paper: PaperExperiment, seed: u64, options: &CalibrationOptions) -> Option<Self> {
         let scene = paper.scene();
-        let setup = read_scene(scene.scene, scene.name).expect("the embedded scene is one");
+        let mut setup = read_scene(scene.scene, scene.name).expect("the embedded scene is one");
+        if options.source == TruthSource::Prior {
+            // the camera is as noisy as the prior says, not less
+            setup.filter.likelihood_scale = 1.0;
+        }
         let known = match options.source {
-            TruthSource::Particle => sampled(&setup, seed, options.mode),
+            TruthSource::Prior => sampled(&setup, seed, options.mode),
             TruthSource::Simulated(physics) => simulated(&setup, seed, physics),
         }?;
         let experiment = &known.experiment;
@@ -95,8 +99,10 @@ impl CalibrationRun {
         let ranks = Ranks::of(&known.truth);
         let run = ScoredRun::new(variant, experiment, &conditions, Some(&ranks));
         let run = run.expect("the embedded scene can be run");
+        let last_seen = experiment.facts.occlude_from?.checked_sub(1)?;
         Some(Self {
             placed: placed(&known, &run, &ranks)?,
+            seen: ranks.at(last_seen)?,
         })
     }
 }
@@ -105,23 +111,14 @@ impl CalibrationRun {
 struct KnownExperiment {
     experiment: Experiment,
     /// By row.
-    truth: Vec<Truth>,
+    truth: Vec<SampledState>,
 }
 
-/// What is true at a row.
-#[derive(Clone, Copy, Debug)]
-struct Truth {
-    pose: Pose,
-    friction: Friction,
-}
-
-impl Truth {
-    /// In the order of [`QUANTITIES`].
-    fn values(&self) -> [f64; 7] {
-        let (pose, friction) = (self.pose.fields(), self.friction.fields());
-        let mut values = pose.into_iter().chain(friction);
-        std::array::from_fn(|_| *values.next().expect("three and four"))
-    }
+/// In the order of [`QUANTITIES`].
+fn values(state: &SampledState) -> [f64; 7] {
+    let (pose, friction) = (state.pose.fields(), state.friction.fields());
+    let mut values = pose.into_iter().chain(friction);
+    std::array::from_fn(|_| *values.next().expect("three and four"))
 }
 
 /// An experiment simulated with friction from the prior; `None` where the drawn rig cannot be.
@@ -144,7 +141,7 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
     };
     let simulation = Simulation::run(setup, &known, &options).ok()?;
     let poses = simulation.truth.pose.iter();
-    let truth = poses.map(|pose| Truth {
+    let truth = poses.map(|pose| SampledState {
         pose: *pose,
         friction,
     });
@@ -154,79 +151,36 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
     })
 }
 
-/// An experiment in which the object moves as a particle of the filter does that sees and feels
-/// nothing, under the pusher of a simulation.
+/// An experiment drawn from what the filter believes before it, under the pusher of a simulation.
 fn sampled(setup: &Setup, seed: u64, mode: Mode) -> Option<KnownExperiment> {
     let mut experiment = simulated(setup, seed, Physics::Model)?.experiment;
-    let options = RunOptions {
-        mode,
-        particles: 1,
-        seed: seed + OTHER_SEEDS,
-        tactile: TactileUse::Ignored,
-        occlusion: Occlusion::Rows { from: 1, to: None },
-        ..RunOptions::default()
-    };
-    let particle = run(setup, &experiment.log, &options, &mut |_| ()).ok()?;
+    let seed = seed + OTHER_SEEDS;
+    let sample = PriorSample::draw(setup, &experiment.log, mode, seed).ok()?;
     // a motion that the logged pusher contradicts is as much rarer among truths
-    let chance = libm::exp(particle.log_evidence?);
-    let streams = Streams::new(seed + OTHER_SEEDS).of(Purpose::General);
-    if streams.uniform(0, 0, 0) > chance {
+    let streams = Streams::new(seed).of(Purpose::General);
+    if streams.uniform(0, 0, 0) > sample.chance {
         return None;
     }
-    let rows = particle.estimate.rows.iter();
-    let truth: Option<Vec<Truth>> = rows
-        .map(|row| {
-            let (pose, friction) = (row.pose?, row.friction?);
-            Some(Truth { pose, friction })
-        })
-        .collect();
-    measure(&mut experiment, &particle.estimate, setup.camera?, seed);
+    experiment.log = sample.log;
     Some(KnownExperiment {
         experiment,
-        truth: truth?,
+        truth: sample.truth,
     })
 }
 
 /// Seeds of truths lie apart from those of filters.
 const OTHER_SEEDS: u64 = 1 << 32;
 
-/// Writes what camera and sensors read of the motion of `particle`, with the errors that the filter
-/// reckons with.
-fn measure(experiment: &mut Experiment, particle: &Estimate, camera: Camera, seed: u64) {
-    let streams = Streams::new(seed + OTHER_SEEDS).of(Purpose::Measure);
-    let setup = &experiment.setup;
-    let wider = setup.filter.likelihood_scale;
-    let late = -setup.uncertainty.latency * libm::log(streams.uniform(0, 0, 0));
-    let (log, tactile) = (&mut experiment.log, setup.tactile);
-    for (row, estimate) in particle.rows.iter().enumerate().skip(1) {
-        let noise = streams.normals::<3>(row as u64, 0, 2);
-        let shown = (log.time[row] - camera.latency - late).max(log.time[0]);
-        log.object[row] = particle.pose_at(shown).map(|pose| Pose {
-            x: pose.x + wider * camera.position_std * noise[0],
-            y: pose.y + wider * camera.position_std * noise[1],
-            theta: pose.theta + wider * camera.orientation_std * noise[2],
-        });
-        let contacts = estimate.contact_fixels.iter().flatten();
-        for (j, (sensor, contact)) in log.tactile.iter_mut().zip(contacts).enumerate() {
-            let errs = streams.uniform(row as u64, 1 + j as u32, 0);
-            sensor[row] = Some(match *contact > 0.5 {
-                true => errs > tactile.false_negative,
-                false => errs < tactile.false_positive,
-            });
-        }
-    }
-}
-
 /// Ranks of the truth among the particles, row by row.
 #[derive(Debug)]
 struct Ranks<'a> {
-    truth: &'a [Truth],
+    truth: &'a [SampledState],
     /// By row, in the order of [`QUANTITIES`].
     ranks: Mutex<Vec<[f64; 7]>>,
 }
 
 impl<'a> Ranks<'a> {
-    fn of(truth: &'a [Truth]) -> Self {
+    fn of(truth: &'a [SampledState]) -> Self {
         let ranks = Mutex::new(vec![[f64::NAN; 7]; truth.len()]);
         Self { truth, ranks }
     }
@@ -248,8 +202,8 @@ impl Observer for Ranks<'_> {
             let mut pose = particles.pose(i);
             pose.theta = truth.pose.theta + wrapped(pose.theta - truth.pose.theta);
             let friction = particles.friction(i);
-            let particle = Truth { pose, friction }.values();
-            for ((rank, value), truth) in ranks.iter_mut().zip(particle).zip(truth.values()) {
+            let particle = values(&SampledState { pose, friction });
+            for ((rank, value), truth) in ranks.iter_mut().zip(particle).zip(values(&truth)) {
                 // equal values: half of them count as below
                 let below =
                     f64::from(u8::from(value < truth)) + f64::from(u8::from(value <= truth));
@@ -296,12 +250,9 @@ fn placed(
     Some(all)
 }
 
-impl Placed {
-    /// Whether the central 90 % of the belief hold the truth.
-    #[must_use]
-    pub fn covered(&self) -> bool {
-        (0.05..=0.95).contains(&self.rank)
-    }
+/// Whether the central 90 % of a belief hold a truth of this rank.
+fn covers(rank: f64) -> bool {
+    (0.05..=0.95).contains(&rank)
 }
 
 /// What many runs say of one quantity.
@@ -315,6 +266,8 @@ pub struct Tally {
     pub standard_error: f64,
     /// χ² of the ranks in ten equal bins against uniform ones; 21.7 is its 99 % quantile.
     pub chi_squared: f64,
+    /// Share of all runs in which they hold it at the last row that the camera saw, observed or not.
+    pub covered_seen: f64,
     /// Median distance from the truth (SI).
     pub error: f64,
     /// The same of what was believed before the run; 0 for a pose.
@@ -327,12 +280,13 @@ impl Tally {
     pub fn of(runs: &[CalibrationRun], which: usize) -> Option<Self> {
         let placed: Vec<Placed> = runs.iter().filter_map(|run| run.placed[which]).collect();
         let count = placed.len() as f64;
-        let covered = placed.iter().filter(|placed| placed.covered()).count() as f64 / count;
+        let covered = placed.iter().filter(|placed| covers(placed.rank)).count() as f64 / count;
         let mut bins = [0.0; 10];
         for placed in &placed {
             bins[((placed.rank * 10.0) as usize).min(9)] += 1.0;
         }
         let expected = count / 10.0;
+        let seen = runs.iter().filter(|run| covers(run.seen[which])).count();
         let median = |distance: fn(&Placed) -> f64| {
             let distances: Vec<f64> = placed.iter().map(distance).collect();
             stickslip::quantile(&distances, 0.5)
@@ -345,6 +299,7 @@ impl Tally {
                 .iter()
                 .map(|bin| (bin - expected) * (bin - expected) / expected)
                 .sum(),
+            covered_seen: seen as f64 / runs.len() as f64,
             error: median(|placed| placed.error)?,
             prior_error: median(|placed| placed.prior_error)?,
         })
@@ -368,6 +323,7 @@ mod tests {
                 };
                 CalibrationRun {
                     placed: [Some(placed); 7],
+                    seen: [placed.rank; 7],
                 }
             })
             .collect();

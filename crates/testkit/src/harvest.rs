@@ -233,6 +233,7 @@ mod tests {
         let collector = collector();
         collector.on_step(&SolvedStep {
             problem: &problem,
+            bodies: &[],
             solution: &solution,
             report,
         });
@@ -254,6 +255,7 @@ mod tests {
         let collector = collector();
         collector.on_step(&SolvedStep {
             problem: &problem,
+            bodies: &[],
             solution: &solution,
             report,
         });

@@ -57,6 +57,7 @@ fn advance(
         if let Some(observer) = prepared.observer {
             observer.on_step(&SolvedStep {
                 problem: &work.problem(0),
+                bodies: &work.bodies(0),
                 solution: &work.solution(0),
                 report,
             });

@@ -1,7 +1,7 @@
 //! How noisy the camera is, by what a particle has seen of it (contact mode): [`CameraNoise`].
 
 use stickslip_dynamics::Lanes;
-use stickslip_filter::{Block, BlockMut};
+use stickslip_filter::{Block, BlockMut, Draw};
 
 use crate::particle::chunk::{Column, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
@@ -19,6 +19,23 @@ impl NoisePrior {
     pub fn new(camera_noise: f64) -> Option<Self> {
         let freedom = 1.0 + 0.5 / (camera_noise * camera_noise);
         freedom.is_finite().then_some(Self { freedom })
+    }
+
+    /// The variance of one sensor's noise, in units of the told one, drawn from this prior by the
+    /// random numbers of `draw` (Marsaglia and Tsang 2000).
+    pub fn drawn(&self, draw: Draw, sensor: u32) -> f64 {
+        let shape = 0.5 * self.freedom;
+        let d = shape - 1.0 / 3.0;
+        let c = 1.0 / (9.0 * d).sqrt();
+        for attempt in 0.. {
+            let (normal, uniform) = (draw.normal(sensor, attempt), draw.uniform(sensor, attempt));
+            let cubed = (1.0 + c * normal).powi(3);
+            let bound = 0.5 * normal * normal + d * (1.0 - cubed + libm::log(cubed.max(0.0)));
+            if cubed > 0.0 && libm::log(uniform) < bound {
+                return shape / (d * cubed);
+            }
+        }
+        unreachable!("19 attempts out of 20 are accepted")
     }
 
     /// Variances of position and angle, in units of the told ones, after so many poses with these sums
@@ -107,6 +124,8 @@ impl CameraNoise {
 
 #[cfg(test)]
 mod tests {
+    use stickslip_filter::Streams;
+
     use super::*;
 
     fn after(residuals: &[[f64; 2]]) -> CameraNoise {
@@ -173,6 +192,26 @@ mod tests {
         let doubled = libm::exp(-0.5 * 27.0 / 4.0) / 8.0;
         let found = likelihood(&noise, prior, residual);
         assert!((found / doubled - 1.0).abs() < 0.1, "{found}, {doubled}");
+    }
+
+    #[test]
+    fn noise_drawn_has_the_prior_s_distribution() {
+        // ν₀ over the variance is χ²: its mean is ν₀, its variance 2 ν₀
+        for std in [0.3, 0.6] {
+            let prior = NoisePrior::new(std).expect("unknown");
+            let freedom = 1.0 + 0.5 / (std * std);
+            let count = 100_000;
+            let drawn = (0..count).map(|k| freedom / prior.drawn(Streams::new(k).at(0), 3));
+            let drawn: Vec<f64> = drawn.collect();
+            let mean = drawn.iter().sum::<f64>() / count as f64;
+            let square = |x: &f64| (x - freedom) * (x - freedom);
+            let variance = drawn.iter().map(square).sum::<f64>() / count as f64;
+            assert!((mean / freedom - 1.0).abs() < 0.01, "{mean}, {freedom}");
+            assert!(
+                (variance / (2.0 * freedom) - 1.0).abs() < 0.03,
+                "{variance}"
+            );
+        }
     }
 
     #[test]

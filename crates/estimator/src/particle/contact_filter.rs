@@ -312,7 +312,8 @@ impl<'o> ContactFilter<'o> {
 
     /// The particles after the latest row.
     pub fn particles(&self) -> ParticleView<'_> {
-        ParticleView::new(self.filter.particles(), self.filter.weights())
+        let weighed = (self.filter.particles(), self.filter.weights());
+        ParticleView::new(weighed, self.filter.model(), &self.observation)
     }
 
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.

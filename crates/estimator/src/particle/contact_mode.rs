@@ -11,7 +11,7 @@ use crate::particle::model::write;
 use crate::particle::propagation::{NOISE_STEP, Propagation, Transition};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
-use crate::particle::touch_channel::{TouchChannel, felt};
+use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
 use crate::setup::Limits;
 
 /// Numbers for what is unknown: behind those of all substeps.
@@ -21,9 +21,6 @@ const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
 const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
 const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
 const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
-
-/// Gap, in units of what is not known of it, within which an idle contact may press or not.
-const NEAR: f64 = 2.0;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -284,11 +281,8 @@ impl Propagation {
                 for i in chunk * LANES..block.len().min((chunk + 1) * LANES) {
                     let gap = gap.0[i % LANES] / setup.uncertainty.touch_gap;
                     let idle = is_set(&block.as_block(), Columns::IDLE, i);
-                    let touch = if idle && gap < NEAR {
-                        f64::from(u8::from(reading))
-                    } else {
-                        felt(impulse.0[i % LANES] / threshold, gap)
-                    };
+                    let impulse = impulse.0[i % LANES] / threshold;
+                    let touch = felt_or_idle(impulse, gap, idle, reading);
                     let stuck = [0, 1].map(|k| block.column(columns.stuck(j) + k)[i]);
                     let (stuck, log_likelihood) = channel.read(stuck, h, touch, reading);
                     for (k, stuck) in stuck.into_iter().enumerate() {

@@ -2,7 +2,7 @@
 
 mod camera_clock;
 mod camera_likelihood;
-mod camera_noise;
+pub(crate) mod camera_noise;
 mod chunk;
 mod columns;
 pub(crate) mod contact_filter;
@@ -20,5 +20,5 @@ mod step_plan;
 mod summary;
 mod sums;
 mod tactile_likelihood;
-mod touch_channel;
+pub(crate) mod touch_channel;
 pub(crate) mod view;

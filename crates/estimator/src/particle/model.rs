@@ -82,6 +82,16 @@ impl<'o> ContactModel<'o> {
         self.camera_likelihood.set_trust(trusted);
     }
 
+    /// The poses of one chunk's particles that the camera shows.
+    pub fn shown(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> Pose<Column> {
+        self.camera_likelihood.shown(observation, block, chunk)
+    }
+
     /// A camera pose's worth of noise around `pose`, by its own covariance where it has one.
     fn drawn_around(
         &self,

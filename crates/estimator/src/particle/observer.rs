@@ -3,7 +3,7 @@
 
 use std::fmt::Debug;
 
-use stickslip_dynamics::{Particles, Report, StepInput, StepProblem, StepSolution};
+use stickslip_dynamics::{Body, Particles, Report, StepInput, StepProblem, StepSolution};
 
 use crate::particle::chunk::LANES;
 use crate::particle::view::ParticleView;
@@ -13,6 +13,8 @@ use crate::particle::view::ParticleView;
 pub struct SolvedStep<'a> {
     /// The contact problem.
     pub problem: &'a StepProblem,
+    /// The body that the object has each contact with.
+    pub bodies: &'a [Body],
     /// What the solver answered.
     pub solution: &'a StepSolution,
     /// How it ended.

@@ -288,6 +288,7 @@ impl Propagation {
         for (i, report) in reports.iter().enumerate().take(particles) {
             observer.on_step(&SolvedStep {
                 problem: &self.work.problem(i),
+                bodies: &self.work.bodies(i),
                 solution: &self.work.solution(i),
                 report: *report,
             });

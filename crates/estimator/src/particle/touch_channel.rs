@@ -56,6 +56,51 @@ impl TouchChannel {
         let likelihood = works * of_working + joint[0] + joint[1];
         (joint.map(|joint| joint / likelihood), libm::log(likelihood))
     }
+
+    /// A reading by the same rules: of a sensor that is in `state`, drawn with three uniform numbers,
+    /// after `h` seconds with a touch felt with probability `touch`; with its state then.
+    pub fn drawn(
+        &self,
+        state: SensorState,
+        h: f64,
+        touch: f64,
+        [change, feel, read]: [f64; 3],
+    ) -> (SensorState, bool) {
+        let freed = 1.0 - libm::exp(-self.recovery * h);
+        let state = match change < freed {
+            true => self.state_at(change / freed),
+            false => state,
+        };
+        let one = match state {
+            SensorState::Works => return (state, self.drawn_working(touch, [feel, read])),
+            SensorState::StuckAt(false) => SLIP,
+            SensorState::StuckAt(true) => 1.0 - SLIP,
+        };
+        (state, read < one)
+    }
+
+    /// A reading of a sensor that works, drawn with two uniform numbers.
+    pub fn drawn_working(&self, touch: f64, [feel, read]: [f64; 2]) -> bool {
+        read < self.reads_one[usize::from(feel < touch)]
+    }
+
+    /// The state of a sensor of which nothing is known, by a uniform number.
+    pub fn state_at(&self, uniform: f64) -> SensorState {
+        let [zero, one] = self.share;
+        match uniform {
+            _ if uniform < zero => SensorState::StuckAt(false),
+            _ if uniform < zero + one => SensorState::StuckAt(true),
+            _ => SensorState::Works,
+        }
+    }
+}
+
+/// Whether a sensor works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SensorState {
+    Works,
+    /// It gives this reading whatever it touches.
+    StuckAt(bool),
 }
 
 /// Probability that a sensor feels a contact, from its impulse in units of the sensor's threshold,
@@ -69,6 +114,18 @@ pub(crate) fn felt(impulse: f64, gap: f64) -> f64 {
         near
     }
 }
+
+/// The same for a contact that may be idle, given the reading: an idle one that is near may press or
+/// not, so that it explains either reading (docs/method.md (25)).
+pub(crate) fn felt_or_idle(impulse: f64, gap: f64, idle: bool, reading: bool) -> f64 {
+    match idle && gap < NEAR {
+        true => f64::from(u8::from(reading)),
+        false => felt(impulse, gap),
+    }
+}
+
+/// Gap, in units of what is not known of it, within which an idle contact may press or not.
+const NEAR: f64 = 2.0;
 
 /// Rate at which a stuck sensor gets free (1/s).
 const RECOVERY: f64 = 0.5;
@@ -125,6 +182,38 @@ mod tests {
             suspect[0] > 10.0 * stuck[0] && suspect[1] < stuck[1],
             "{stuck:?}, {suspect:?}"
         );
+    }
+
+    #[test]
+    fn readings_drawn_come_as_often_as_their_likelihood_says() {
+        use stickslip_filter::Streams;
+        // share of sensors that read these rows, against the product of the rows' likelihoods
+        let (channel, touches) = (channel(), [0.0, 0.9, 0.9, 0.2]);
+        let mut counts = [0_u32; 16];
+        let sensors: u32 = 200_000;
+        for sensor in 0..sensors {
+            let draw = Streams::new(5).at(u64::from(sensor));
+            let mut state = channel.state_at(draw.uniform(0, 9));
+            let mut read = 0;
+            for (row, touch) in (0..).zip(touches) {
+                let uniform = std::array::from_fn(|k| draw.uniform(row, k as u32));
+                let drawn = channel.drawn(state, 0.4, touch, uniform);
+                state = drawn.0;
+                read = 2 * read + usize::from(drawn.1);
+            }
+            counts[read] += 1;
+        }
+        for (read, count) in counts.into_iter().enumerate() {
+            let (mut stuck, mut log_likelihood) = (channel.start(), 0.0);
+            for (row, touch) in touches.into_iter().enumerate() {
+                let reading = read >> (3 - row) & 1 == 1;
+                let (next, more) = channel.read(stuck, 0.4, touch, reading);
+                (stuck, log_likelihood) = (next, log_likelihood + more);
+            }
+            let expected = libm::exp(log_likelihood) * f64::from(sensors);
+            let error = (f64::from(count) - expected) / expected.sqrt();
+            assert!(error.abs() < 4.0, "{read:04b}: {count}, {expected}");
+        }
     }
 
     #[test]

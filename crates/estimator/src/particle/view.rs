@@ -1,20 +1,35 @@
 //! The particle set after a row, as an observer sees it: [`ParticleView`].
 
 use stickslip_dynamics::{Friction, Pose};
-use stickslip_filter::{LogWeights, ParticleSet};
+use stickslip_filter::{BLOCK, LogWeights, ParticleSet};
 
+use crate::particle::chunk::{LANES, is_set};
 use crate::particle::columns::Columns;
+use crate::particle::model::ContactModel;
+use crate::particle::observation::Observation;
 
 /// Particles with their weights; it can be looked at, not changed.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleView<'a> {
     particles: &'a ParticleSet,
     weights: &'a LogWeights,
+    model: &'a ContactModel<'a>,
+    observation: &'a Observation,
 }
 
 impl<'a> ParticleView<'a> {
-    pub(crate) fn new(particles: &'a ParticleSet, weights: &'a LogWeights) -> Self {
-        Self { particles, weights }
+    /// The particles of `model`, which `observation` weighed.
+    pub(crate) fn new(
+        (particles, weights): (&'a ParticleSet, &'a LogWeights),
+        model: &'a ContactModel<'a>,
+        observation: &'a Observation,
+    ) -> Self {
+        Self {
+            particles,
+            weights,
+            model,
+            observation,
+        }
     }
 
     /// Number of particles.
@@ -53,6 +68,29 @@ impl<'a> ParticleView<'a> {
             mu_f,
             d_tri,
         }
+    }
+
+    /// The pose that the camera shows at this row according to one particle: where the object was
+    /// before, by as much as the camera lags.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    #[must_use]
+    pub fn shown_pose(&self, particle: usize) -> Pose {
+        let (block, i) = (self.particles.block(particle / BLOCK), particle % BLOCK);
+        let shown = self.model.shown(self.observation, &block, i / LANES);
+        shown.map(|column| column.0[i % LANES])
+    }
+
+    /// Whether nothing drives the object according to one particle: the pusher rests, or neither moves
+    /// the object nor presses on it.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    #[must_use]
+    pub fn is_idle(&self, particle: usize) -> bool {
+        let block = self.particles.block(particle / BLOCK);
+        is_set(&block, Columns::IDLE, particle % BLOCK)
     }
 
     fn values<const K: usize>(&self, particle: usize, first: usize) -> [f64; K] {

@@ -1,7 +1,7 @@
 //! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]]`: where the truth
 //! lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by the
 //! filter's own noisy dynamics, by these without noise and by the testbed, with touch and without, in
-//! both modes.
+//! both modes. "last seen" is the coverage when the camera goes dark, in all runs.
 
 use stickslip::Mode;
 use stickslip_evaluation::paper::PaperExperiment;
@@ -18,10 +18,7 @@ fn main() -> Result<(), std::num::ParseIntError> {
         "{runs} runs each, {particles} particles; coverage of 90 % intervals at the end of the run"
     );
     let sources = [
-        (
-            TruthSource::Particle,
-            "filter's own physics, noise included",
-        ),
+        (TruthSource::Prior, "filter's own physics, noise included"),
         (
             TruthSource::Simulated(Physics::Model),
             "its dynamics without noise",
@@ -56,18 +53,21 @@ fn simulate(runs: usize, options: &CalibrationOptions) -> Vec<CalibrationRun> {
 }
 
 fn show(runs: &[CalibrationRun]) {
-    println!("  quantity  runs  coverage      chi2 of ranks   median error   of the prior");
+    println!(
+        "  quantity  runs  coverage      chi2 of ranks   median error   of the prior   last seen"
+    );
     for (which, name) in QUANTITIES.iter().enumerate() {
         match Tally::of(runs, which) {
             None => println!("  {name:<8}  not observed"),
             Some(tally) => println!(
-                "  {name:<8} {:5}  {:.2} +- {:.2} {:12.1} {:15.3e} {:14.3e}",
+                "  {name:<8} {:5}  {:.2} +- {:.2} {:12.1} {:15.3e} {:14.3e} {:11.2}",
                 tally.runs,
                 tally.covered,
                 tally.standard_error,
                 tally.chi_squared,
                 tally.error,
-                tally.prior_error
+                tally.prior_error,
+                tally.covered_seen
             ),
         }
     }

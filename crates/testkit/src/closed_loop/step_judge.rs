@@ -173,6 +173,7 @@ impl State {
             problem,
             solution,
             report,
+            ..
         } = *step;
         let tally = &mut self.tally;
         let mut one = Tally::of_report(address.scene, &report);

@@ -1,0 +1,231 @@
+//! An experiment as the particle filter expects it: [`PriorSample`].
+
+use std::sync::Mutex;
+
+use stickslip_dynamics::{Body, Friction, Pose};
+use stickslip_filter::{Purpose, Streams};
+
+use crate::error::RunError;
+use crate::log::Log;
+use crate::mode::Mode;
+use crate::occlusion::Occlusion;
+use crate::options::{RunOptions, TactileUse};
+use crate::particle::camera_noise::NoisePrior;
+use crate::particle::observer::{Observer, SolvedStep};
+use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
+use crate::particle::view::ParticleView;
+use crate::run::run_observed;
+use crate::setup::{Camera, Setup};
+
+/// One experiment drawn from what the particle filter believes before it: an object that moves under
+/// the logged pusher as a particle does, its friction, the rig's errors and the forces that disturb it
+/// drawn from their priors, and what camera and sensors then read, by the rules that the filter weighs
+/// by (docs/method.md, "Contact mode").
+///
+/// The filter's beliefs of such experiments are true as far as its particles are enough
+/// (simulation-based calibration, Talts et al. 2018), and where real logs look unlike them, its model is
+/// wrong (prior predictive check). No camera pose is wrong, and `likelihood_scale` counts as 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PriorSample {
+    /// What was measured: times and pusher of the log given; object poses and readings where that has
+    /// some.
+    pub log: Log,
+    /// What is true, by row from the first one with an object pose on.
+    pub truth: Vec<SampledState>,
+    /// Probability, up to a constant, that a pusher which the object may hold up goes as the log says:
+    /// of samples, so many count.
+    pub chance: f64,
+}
+
+/// What is true at a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledState {
+    /// The object's pose.
+    pub pose: Pose,
+    /// The friction that governs it.
+    pub friction: Friction,
+}
+
+impl PriorSample {
+    /// Draws one under the pusher of `log`, from around its first object pose on.
+    ///
+    /// # Errors
+    /// Those of [`run`](crate::run).
+    pub fn draw(setup: &Setup, log: &Log, mode: Mode, seed: u64) -> Result<Self, RunError> {
+        let camera = setup.camera.ok_or(RunError::NoCamera)?;
+        let options = RunOptions {
+            mode,
+            particles: 1,
+            seed,
+            tactile: TactileUse::Ignored,
+            occlusion: Occlusion::Rows { from: 1, to: None },
+            ..RunOptions::default()
+        };
+        let witness = Witness::new(setup, mode);
+        let run = run_observed(setup, log, &options, &witness, &mut |_| ())?;
+        let rows = witness.state.into_inner();
+        let rows = rows.expect("no thread panicked").rows;
+        Ok(Self {
+            log: Readings { setup, mode, seed }.of(&rows, log, camera),
+            truth: rows.into_iter().map(|row| row.truth).collect(),
+            chance: run.log_evidence.map_or(0.0, libm::exp),
+        })
+    }
+}
+
+/// What one particle says of a row.
+#[derive(Clone, Debug)]
+struct Witnessed {
+    truth: SampledState,
+    /// The pose that the camera shows.
+    shown: Pose,
+    /// Probability that each sensor feels a contact.
+    touch: Vec<f64>,
+}
+
+/// Looks on as a single particle moves.
+#[derive(Debug)]
+struct Witness<'a> {
+    setup: &'a Setup,
+    mode: Mode,
+    state: Mutex<WitnessState>,
+}
+
+#[derive(Debug, Default)]
+struct WitnessState {
+    rows: Vec<Witnessed>,
+    /// Of each fixel in the latest step: impulse and gap, in the units of [`felt_or_idle`].
+    contacts: Vec<(f64, f64)>,
+}
+
+impl<'a> Witness<'a> {
+    fn new(setup: &'a Setup, mode: Mode) -> Self {
+        Self {
+            setup,
+            mode,
+            state: Mutex::default(),
+        }
+    }
+
+    /// Impulse and gap of a fixel, from all contacts with it; the gap is that after the step.
+    fn contact(&self, step: &SolvedStep<'_>, fixel: usize) -> (f64, f64) {
+        let SolvedStep {
+            problem, solution, ..
+        } = step;
+        let (mut impulse, mut gap) = (0.0, f64::INFINITY);
+        let contacts = problem.contacts.iter().zip(&solution.normal);
+        for ((contact, normal), body) in contacts.zip(step.bodies) {
+            if *body == Body::Fixel(fixel) {
+                let ([nx, ny], [rx, ry]) = (contact.normal, contact.arm);
+                let twist = solution.twist;
+                let opening = nx * twist.vx + ny * twist.vy + (rx * ny - ry * nx) * twist.omega;
+                impulse += normal;
+                gap = f64::min(gap, contact.gap + problem.h * opening);
+            }
+        }
+        (
+            impulse / (self.setup.tactile.touch_force * problem.h),
+            gap / self.setup.uncertainty.touch_gap,
+        )
+    }
+}
+
+impl Observer for Witness<'_> {
+    fn on_step(&self, step: &SolvedStep<'_>) {
+        let fixels = 0..self.setup.scene.fixels.len();
+        let contacts = fixels.map(|j| self.contact(step, j)).collect();
+        self.state.lock().expect("one thread").contacts = contacts;
+    }
+
+    fn on_row(&self, _: usize, particles: &ParticleView<'_>) {
+        let mut state = self.state.lock().expect("one thread");
+        let idle = particles.is_idle(0);
+        let felt = |&(impulse, gap): &(f64, f64)| match self.mode {
+            Mode::Contact => felt_or_idle(impulse, gap, idle, true),
+            Mode::Paper => f64::from(u8::from(impulse > 1.0)),
+        };
+        let row = Witnessed {
+            truth: SampledState {
+                pose: particles.pose(0),
+                friction: particles.friction(0),
+            },
+            shown: particles.shown_pose(0),
+            touch: state.contacts.iter().map(felt).collect(),
+        };
+        state.rows.push(row);
+    }
+}
+
+/// What camera and sensors read.
+#[derive(Clone, Copy, Debug)]
+struct Readings<'a> {
+    setup: &'a Setup,
+    mode: Mode,
+    seed: u64,
+}
+
+impl Readings<'_> {
+    /// `given` with what they read of a particle, where it says that they read something.
+    fn of(&self, rows: &[Witnessed], given: &Log, camera: Camera) -> Log {
+        let streams = Streams::new(self.seed).of(Purpose::Measure);
+        let mut log = given.clone();
+        log.object_covariance.clear();
+
+        let first = given.len() - rows.len();
+
+        // the camera, as noisy as nobody knows
+        let prior = NoisePrior::new(self.setup.uncertainty.camera_noise);
+        let prior = prior.filter(|_| self.mode == Mode::Contact);
+        let level = |sensor| prior.map_or(1.0, |prior| prior.drawn(streams.at(0), sensor).sqrt());
+        let (metres, radians) = (level(NOISE_LEVELS), level(NOISE_LEVELS + 1));
+        for (k, (row, pose)) in rows.iter().zip(&mut log.object[first..]).enumerate() {
+            let [x, y, theta] = streams.normals(k as u64, 0, 0);
+            *pose = pose.map(|_| Pose {
+                x: row.shown.x + metres * camera.position_std * x,
+                y: row.shown.y + metres * camera.position_std * y,
+                theta: row.shown.theta + radians * camera.orientation_std * theta,
+            });
+        }
+
+        // the sensors
+        for (j, sensor) in log.tactile.iter_mut().enumerate() {
+            let sensor = sensor[first..]
+                .iter_mut()
+                .zip(rows)
+                .zip(&given.time[first..]);
+            self.read_touch(j, sensor, streams);
+        }
+        log
+    }
+
+    /// What sensor `j` reads, row by row.
+    fn read_touch<'r>(
+        &self,
+        j: usize,
+        rows: impl Iterator<Item = ((&'r mut Option<bool>, &'r Witnessed), &'r f64)>,
+        streams: Streams,
+    ) {
+        let channel = TouchChannel::new(&self.setup.tactile);
+        let particle = FIRST_SENSOR + j as u32;
+        let mut state = channel.state_at(streams.uniform(0, particle, 3));
+        let mut before = None;
+        for (k, ((reading, row), time)) in rows.enumerate() {
+            let h = time - before.replace(*time).unwrap_or(*time);
+            let touch = row.touch.get(j).copied().unwrap_or(0.0);
+            let uniform = std::array::from_fn(|n| streams.uniform(k as u64, particle, n as u32));
+            let drawn = match self.mode {
+                Mode::Contact => {
+                    let drawn = channel.drawn(state, h, touch, uniform);
+                    state = drawn.0;
+                    drawn.1
+                }
+                Mode::Paper => channel.drawn_working(touch, [uniform[1], uniform[2]]),
+            };
+            *reading = reading.map(|_| drawn);
+        }
+    }
+}
+
+/// Numbers of the streams, beside 0 for the camera's noise.
+const NOISE_LEVELS: u32 = 1;
+const FIRST_SENSOR: u32 = 3;
