@@ -11,13 +11,13 @@
 use stickslip_dynamics::StepProblem;
 
 use crate::conic_program::ConicProgram;
+use crate::hull::nearest_in_hull;
 use crate::scaled_problem::ScaledProblem;
 use crate::vector::left;
 
 /// Twists up to this many times the problem's fastest speed are considered.
 const FASTEST_TWIST: f64 = 100.0;
-/// Wrenches of unit impulses that sum to less than this may cancel each other; the quadratic
-/// program is good to about 1e-7.
+/// Wrenches of unit impulses that sum to less than this may cancel each other.
 const CANCELLED: f64 = 1e-5;
 
 /// How fast all gaps can open at once (m/s), at most `cap`, with twists up to 100 times the fastest
@@ -70,59 +70,85 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
 /// Where they cannot, a solution exists; one of reasonable speed where [`gap_margin`] is positive
 /// too, and a solver that then reports none is at fault. Impulses that cancel to 1e-5 of their size
 /// count as cancelling, open contacts as closed.
-///
-/// # Panics
-/// Where Clarabel fails on this bounded quadratic program.
 #[must_use]
 pub fn may_jam(problem: &StepProblem) -> bool {
     !problem.contacts.is_empty() && least_wrench(problem) < CANCELLED
 }
 
-/// Least size of the sum of wrenches, and of the push along the drive, of impulses whose normal
-/// parts sum to one.
+/// Less than which the sum of wrenches, with the push along the drive, cannot be for impulses whose
+/// normal parts sum to one.
 fn least_wrench(problem: &StepProblem) -> f64 {
-    let (scaled, contacts) = (ScaledProblem::new(problem), problem.contacts.len());
-    // unknowns: p_n, p_t per contact, then the wrench, then the push
-    let (wrench, n) = (2 * contacts, 2 * contacts + 4);
-    let mut conic = ConicProgram::new(n);
-    conic.weight[wrench..wrench + 3].fill(1.0);
-    conic.cost[wrench + 3] = 1.0;
-    let mut sums = vec![vec![0.0; n]; 5];
-    for (i, c) in problem.contacts.iter().enumerate() {
-        for (j, direction) in [(2 * i, c.normal), (2 * i + 1, left(c.normal))] {
-            let column = scaled.column(direction, c.arm);
-            (0..3).for_each(|axis| sums[axis][j] = column[axis]);
-            sums[3][j] = -scaled.yielding(c, direction);
-        }
-        sums[4][2 * i] = 1.0;
+    let scaled = ScaledProblem::new(problem);
+    // the edges of the friction cones: wrench, then push
+    let mut edges = Vec::new();
+    for c in &problem.contacts {
         for sign in [1.0, -1.0] {
-            let mut edge = vec![0.0; n];
-            (edge[2 * i], edge[2 * i + 1]) = (c.mu, sign);
-            conic.at_least((edge, 0.0));
+            let (n, t) = (c.normal, left(c.normal));
+            let edge = [0, 1].map(|k| n[k] + sign * c.mu * t[k]);
+            let [x, y, turn] = scaled.column(edge, c.arm);
+            edges.push([x, y, turn, scaled.yielding(c, edge)]);
         }
-        let mut normal = vec![0.0; n];
-        normal[2 * i] = 1.0;
-        conic.at_least((normal, 0.0));
     }
-    (0..3).for_each(|axis| sums[axis][wrench + axis] = -1.0);
-    sums[3][wrench + 3] = 1.0;
-    let normals = sums.pop().expect("five sums");
-    let push = sums.pop().expect("four sums");
-    sums.into_iter().for_each(|row| conic.equal((row, 0.0)));
-    // the part of the push that is positive: a drive that is dragged along need not yield
-    conic.at_least((push, 0.0));
-    let mut positive = vec![0.0; n];
-    positive[wrench + 3] = 1.0;
-    conic.at_least((positive, 0.0));
-    conic.equal((normals, -1.0));
-    // every attempt's impulses are within the cones: the least of their wrenches is nearest to the
-    // optimum, where Clarabel stalled in some
-    conic
-        .attempts()
-        .map(|optimum| {
-            let wrench = &optimum.x[wrench..];
-            wrench.iter().fold(0.0f64, |size, x| size.max(x.abs()))
-        })
-        .reduce(f64::min)
-        .expect("a bounded quadratic program")
+    // only the part of the push that is positive: a drive that is dragged along need not yield
+    let mut nearest = nearest_in_hull(&edges, &[[0.0, 0.0, 0.0, 1.0]]);
+    nearest[3] = nearest[3].max(0.0);
+    // what all edges have along it bounds the sum, however near the nearest point is known
+    let size = nearest.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if size == 0.0 {
+        return 0.0;
+    }
+    let along = |edge: &[f64; 4]| edge.iter().zip(&nearest).map(|(a, b)| a * b / size).sum();
+    edges.iter().map(along).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use stickslip_dynamics::{ContactPoint, Stall};
+
+    use super::*;
+
+    /// A pusher that has the object between two of its faces, ±n at arms ±(0.3, `apart`).
+    fn pinched(apart: f64) -> StepProblem {
+        let contact = |sign: f64| ContactPoint {
+            normal: [-sign, 0.0],
+            arm: [0.3 * sign, apart * sign],
+            mu: 0.5,
+            on_pusher: true,
+            gap: 0.0,
+            surface_velocity: [0.0; 2],
+        };
+        StepProblem {
+            mass: 1.0,
+            inertia: 1.0,
+            h: 1.0,
+            contacts: vec![contact(1.0), contact(-1.0)],
+            stall: Some(Stall {
+                impulse: 0.02,
+                direction: [1.0, 0.0],
+            }),
+            ..StepProblem::default()
+        }
+    }
+
+    #[test]
+    fn two_faces_jam_where_the_line_between_their_contacts_is_within_both_cones() {
+        assert!(least_wrench(&pinched(0.1)) < 1e-15, "self-locking");
+        assert!(may_jam(&pinched(0.149)), "just so");
+        assert!(!may_jam(&pinched(0.151)), "just not");
+    }
+
+    #[test]
+    fn object_between_pusher_and_fixel_jams_where_the_drive_does_not_give_way() {
+        let mut problem = pinched(0.0);
+        problem.contacts[0].on_pusher = false;
+        // the pusher at the left presses along +x, and so resists its drive
+        assert!(!may_jam(&problem), "the drive gives way");
+        problem.stall = problem.stall.map(|stall| Stall {
+            direction: [-1.0, 0.0],
+            ..stall
+        });
+        assert!(may_jam(&problem), "what drags it along need not yield");
+        problem.stall = None;
+        assert!(may_jam(&problem), "rigid");
+    }
 }

@@ -24,6 +24,7 @@ mod corpus;
 mod data;
 mod hard_steps;
 mod harvest;
+mod hull;
 mod impulses;
 mod jam;
 mod manufactured;
