@@ -1,5 +1,6 @@
 //! The solvers of the mixed NCP, cheapest first, behind one certificate.
 
+mod balance;
 mod certifier;
 pub(crate) mod chain;
 mod compliant;

@@ -1,5 +1,7 @@
 //! What a choice of generators demands of V = (v, y): [`ModeConditions`].
 
+use crate::solver::balance::{Balance, Load, balance};
+use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
@@ -8,6 +10,12 @@ use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 
 /// Violations below this (m/s, relative to the speed scale) do not exclude a mode.
 const SLACK: f64 = 1e-9;
+
+/// Slip below which a foot stands (m/s): far below the tolerance of a solution.
+const STANDS: f64 = 1e-10;
+
+/// No impulse is so large (m/s).
+const LARGEST: f64 = 1e6;
 
 /// A linear condition row·V + offset ≥ 0.
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +118,7 @@ impl ModeConditions {
         let mut candidate = Candidate {
             v,
             contacts: vec![[0.0; 2]; self.problem.contacts.len()],
-            feet: self.sliding_feet(&v),
+            feet: self.problem.sliding_feet(&v),
         };
         for (generator, &a) in chosen.iter().zip(alpha) {
             if let Some(i) = generator.contact {
@@ -122,17 +130,66 @@ impl ModeConditions {
         candidate
     }
 
-    /// The impulses of feet that slide with V; none where one stands.
-    pub fn sliding_feet(&self, v: &Vector<4>) -> [[f64; 2]; 3] {
-        self.problem.feet.map(|foot| {
-            let s = foot.slip(v);
-            let length = s[0].hypot(s[1]);
-            if length > 1e-12 {
-                s.map(|x| -foot.bound * x / length)
-            } else {
-                [0.0; 2]
-            }
-        })
+    /// The same with impulses that balance the load where feet stand; `None` where none were found,
+    /// or no foot stands.
+    pub fn standing_candidate(
+        &self,
+        chosen: &[Generator],
+        v: &Vector<4>,
+        certifier: &mut Certifier<'_>,
+    ) -> Option<Candidate> {
+        let stands = self.problem.feet.map(|foot| norm(&foot.slip(v)) < STANDS);
+        if stands == [false; 3] {
+            return None;
+        }
+        let Balance::Met { alpha, directions } = self.balance(chosen, v, stands, certifier) else {
+            return None;
+        };
+        let mut candidate = self.candidate(chosen, &alpha, *v);
+        for k in (0..3).filter(|k| stands[*k]) {
+            candidate.feet[k] = directions[k].map(|u| -self.problem.feet[k].bound * u);
+        }
+        Some(candidate)
+    }
+
+    /// Whether no impulses of the generators balance the load for any V between two points between
+    /// which a foot may stand, by a combination of balances that depends on where.
+    pub fn separates(
+        &self,
+        chosen: &[Generator],
+        a: &Vector<4>,
+        b: &Vector<4>,
+        certifier: &mut Certifier<'_>,
+    ) -> bool {
+        // where no foot turns by a right angle, single balances exclude once the piece is narrow
+        let stands = self
+            .problem
+            .feet
+            .map(|foot| dot(&foot.slip(a), &foot.slip(b)) <= STANDS * STANDS);
+        if stands == [false; 3] {
+            return false;
+        }
+        let middle = add_scaled(a, 1.0, b).map(|x| 0.5 * x);
+        let Balance::Separated(w) = self.balance(chosen, &middle, stands, certifier) else {
+            return false;
+        };
+        let rounding: f64 = chosen.iter().map(|c| dot(&w, &c.g).max(0.0)).sum();
+        self.range_along(&w, a, b).low > self.slack + LARGEST * rounding
+    }
+
+    /// Impulses of the generators and of the feet that stand, at V.
+    fn balance(
+        &self,
+        chosen: &[Generator],
+        v: &Vector<4>,
+        stands: [bool; 3],
+        certifier: &mut Certifier<'_>,
+    ) -> Balance {
+        let generators: Vec<_> = chosen.iter().map(|c| c.g).collect();
+        let load = Load::at(&self.problem, v, stands);
+        let (found, systems) = balance(&generators, &load, 0.0);
+        certifier.spend(systems);
+        found
     }
 
     /// Largest |w·Σ J_kᵀ p_k| that the feet can bring about.

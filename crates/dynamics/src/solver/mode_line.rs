@@ -1,5 +1,6 @@
 //! The velocities that three generators allow: [`ModeLine`].
 
+use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::{Inequality, ModeConditions};
@@ -121,7 +122,7 @@ impl ModePath for ModeLine<'_> {
         Sample {
             x,
             v,
-            feet: self.conditions.sliding_feet(&v),
+            feet: self.conditions.problem.sliding_feet(&v),
             miss: along_m.midpoint(),
             error: 0.0,
             systems: 1,
@@ -136,6 +137,16 @@ impl ModePath for ModeLine<'_> {
             .map(|w| self.conditions.range_along(&w, &a.v, &b.v));
         let balances = along_m.low <= slack && along_m.high >= -slack;
         !balances || [i, j, k].iter().any(|range| range.high < -slack)
+    }
+
+    fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
+        self.conditions
+            .separates(self.chosen, &a.v, &b.v, certifier)
+    }
+
+    fn standing_candidate(&self, at: &Sample, certifier: &mut Certifier<'_>) -> Option<Candidate> {
+        self.conditions
+            .standing_candidate(self.chosen, &at.v, certifier)
     }
 
     fn candidate(&self, at: &Sample) -> Candidate {

@@ -49,14 +49,20 @@ const ROUNDS: [Thoroughness; 3] = [
     Thoroughness {
         pieces: 128,
         attempts: 1,
+        separates: false,
+        stands: false,
     },
     Thoroughness {
         pieces: 2_000,
         attempts: 6,
+        separates: true,
+        stands: false,
     },
     Thoroughness {
         pieces: 50_000,
         attempts: 6,
+        separates: true,
+        stands: true,
     },
 ];
 
@@ -295,8 +301,16 @@ impl ModeSearch {
         if ranges.iter().any(|range| range.high < -conditions.slack) {
             return Finding::Excluded;
         }
+        if thoroughness.separates && conditions.separates(chosen, &v, &v, certifier) {
+            return Finding::Excluded;
+        }
         let alpha = ranges.map(|range| range.midpoint());
-        Finding::of_candidate(certifier.certifies(&conditions.candidate(chosen, &alpha, v)))
+        let solved = certifier.certifies(&conditions.candidate(chosen, &alpha, v))
+            || thoroughness.stands
+                && conditions
+                    .standing_candidate(chosen, &v, certifier)
+                    .is_some_and(|candidate| certifier.certifies(&candidate));
+        Finding::of_candidate(solved)
     }
 
     /// Rows that leave neither a line nor a plane: excluded where they contradict each other, else

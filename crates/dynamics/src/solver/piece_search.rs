@@ -29,6 +29,11 @@ pub struct Thoroughness {
     /// Roots that are refined, and middles of pieces at each width; neighbouring pieces differ
     /// little, so that more than some do not help.
     pub attempts: u32,
+    /// Whether pieces in which a foot may stand are excluded by balances, too: some linear systems
+    /// for each.
+    pub separates: bool,
+    /// Whether candidates that fail are tried with other impulses, too, where feet stand.
+    pub stands: bool,
 }
 
 /// What is known of a subset of generators.
@@ -78,8 +83,18 @@ pub trait ModePath {
     /// Whether there is no solution between two points.
     fn excludes(&self, a: &Sample, b: &Sample) -> bool;
 
+    /// The same where a foot may stand between them, by balances.
+    fn separates(&self, _: &Sample, _: &Sample, _: &mut Certifier<'_>) -> bool {
+        false
+    }
+
     /// A point with the impulses of the mode.
     fn candidate(&self, at: &Sample) -> Candidate;
+
+    /// The same with impulses that balance the load where feet stand, if others are known.
+    fn standing_candidate(&self, _: &Sample, _: &mut Certifier<'_>) -> Option<Candidate> {
+        None
+    }
 }
 
 /// Halves the whole interval until every piece is excluded or a candidate is certified; gives up
@@ -106,21 +121,21 @@ pub fn search_pieces(
         if piece == thoroughness.pieces || certifier.left() == 0 {
             return Finding::Unclear;
         }
-        if path.excludes(&a, &b) {
+        if path.excludes(&a, &b) || thoroughness.separates && path.separates(&a, &b, certifier) {
             continue;
         }
         let width = (b.x - a.x) / (1.0 + a.x.abs().max(b.x.abs()));
         // the root where the last condition changes its sign
         if a.miss * b.miss <= 0.0 && left.takes_root(&a, &b, width) {
             let root = root(path, a, b, certifier);
-            if certifier.certifies(&path.candidate(&root)) {
+            if solves(path, &root, thoroughness, certifier) {
                 return Finding::Solved;
             }
             left.failed_root = (root.x, width);
         }
         // the middle of a narrow piece, or where the condition holds all along
         let middle = sample(path, 0.5 * (a.x + b.x), certifier);
-        if left.takes_middle(&middle, width) && certifier.certifies(&path.candidate(&middle)) {
+        if left.takes_middle(&middle, width) && solves(path, &middle, thoroughness, certifier) {
             return Finding::Solved;
         }
         // the lower half is next
@@ -132,6 +147,20 @@ pub fn search_pieces(
         stack.push([a, middle]);
     }
     finding
+}
+
+/// Whether a point refines to a certified solution.
+fn solves(
+    path: &impl ModePath,
+    at: &Sample,
+    thoroughness: Thoroughness,
+    certifier: &mut Certifier<'_>,
+) -> bool {
+    certifier.certifies(&path.candidate(at))
+        || thoroughness.stands
+            && path
+                .standing_candidate(at, certifier)
+                .is_some_and(|candidate| certifier.certifies(&candidate))
 }
 
 /// Candidates of a line or curve that may still be refined.
@@ -244,6 +273,8 @@ mod tests {
     const THOROUGH: Thoroughness = Thoroughness {
         pieces: 1000,
         attempts: 6,
+        separates: false,
+        stands: false,
     };
 
     fn search(level: f64, limit: u32) -> (Finding, Vec<f64>) {

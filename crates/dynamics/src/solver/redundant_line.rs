@@ -1,6 +1,7 @@
 //! The velocities that four generators allow whose equations depend on each other:
 //! [`RedundantLine`].
 
+use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
@@ -65,7 +66,7 @@ impl ModePath for RedundantLine<'_> {
         Sample {
             x,
             v,
-            feet: self.conditions.sliding_feet(&v),
+            feet: self.conditions.problem.sliding_feet(&v),
             // the most negative impulse, if any is
             miss: self.impulses(&v).into_iter().fold(0.0, f64::min),
             error: 0.0,
@@ -77,6 +78,16 @@ impl ModePath for RedundantLine<'_> {
         let range = |w: &Vector<4>| self.conditions.range_along(w, &a.v, &b.v);
         let slack = self.conditions.slack;
         self.dual.iter().any(|w| range(w).high < -slack)
+    }
+
+    fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
+        self.conditions
+            .separates(self.chosen, &a.v, &b.v, certifier)
+    }
+
+    fn standing_candidate(&self, at: &Sample, certifier: &mut Certifier<'_>) -> Option<Candidate> {
+        self.conditions
+            .standing_candidate(self.chosen, &at.v, certifier)
     }
 
     fn candidate(&self, at: &Sample) -> Candidate {

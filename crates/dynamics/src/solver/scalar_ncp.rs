@@ -70,6 +70,17 @@ impl ScalarFoot {
     pub fn slip<const N: usize>(&self, v: &Vector<N>) -> [f64; 2] {
         [v[0] + self.jx * v[2], v[1] + self.jy * v[2]]
     }
+
+    /// Its impulse where it slides with V; none where it stands.
+    pub fn sliding(&self, v: &Vector<4>) -> [f64; 2] {
+        let slip = self.slip(v);
+        let length = slip[0].hypot(slip[1]);
+        if length > 1e-12 {
+            slip.map(|s| -self.bound * s / length)
+        } else {
+            [0.0; 2]
+        }
+    }
 }
 
 /// One particle's problem, mass-normalised as in [`Ncp`].
@@ -97,6 +108,11 @@ impl ScalarNcp {
         self.contacts.clear();
         self.contacts
             .extend(ncp.contacts.iter().map(ScalarContact::new));
+    }
+
+    /// The impulses of feet that slide with V; none where one stands.
+    pub fn sliding_feet(&self, v: &Vector<4>) -> [[f64; 2]; 3] {
+        self.feet.map(|foot| foot.sliding(v))
     }
 }
 
