@@ -5,8 +5,8 @@ mod common;
 
 use common::{FRICTION, at, disc, fixel, pushing, square_scene, step};
 use stickslip_dynamics::{
-    Dynamics, Friction, Outcome, Particle, Pose, Report, Scene, StepSolution, StepWork, TOLERANCE,
-    Twist,
+    ContactPoint, Dynamics, Foot, Friction, Outcome, Particle, Pose, Report, Scene, StepProblem,
+    StepSolution, StepWork, TOLERANCE, Twist, solve_from,
 };
 use stickslip_testkit::{enumerate_modes, gap_margin, may_jam, residual_si};
 
@@ -321,4 +321,50 @@ fn fixel_that_overlaps_from_one_side_is_solved_and_pushes_the_object_out() {
         "{:?}",
         particle.pose
     );
+}
+
+/// A body of 1 kg at 0.5 m/s between two walls, on feet that resist it with 0.3 N s.
+fn between_walls(mu: f64) -> StepProblem {
+    let wall = |sign: f64| ContactPoint {
+        normal: [sign, 0.0],
+        arm: [-sign, 0.0],
+        gap: 0.0,
+        surface_velocity: [0.0; 2],
+        mu,
+        on_pusher: false,
+    };
+    let arms = [[0.0, 0.5], [0.4, -0.3], [-0.4, -0.3]];
+    StepProblem {
+        mass: 1.0,
+        inertia: 1.0,
+        h: 1.0,
+        twist: Twist {
+            vx: 0.5,
+            ..Twist::default()
+        },
+        contacts: vec![wall(1.0), wall(-1.0)],
+        feet: arms.map(|arm| Foot { arm, bound: 0.1 }),
+        ..StepProblem::default()
+    }
+}
+
+#[test]
+fn impulses_that_cancel_each_other_are_not_kept() {
+    for mu in [0.0, 0.7] {
+        let problem = between_walls(mu);
+        let start = StepSolution {
+            normal: vec![1e7, 1e7],
+            tangential: vec![0.0; 2],
+            ..StepSolution::default()
+        };
+        let (solution, report) = solve_from(&problem, &start);
+        assert_eq!(report.outcome, Outcome::Solved);
+        assert!(residual_si(&problem, &solution) <= TOLERANCE);
+        // nothing pushes but the body's momentum, and the feet
+        assert!(
+            solution.normal.iter().all(|p| *p <= 0.5 + 0.3),
+            "{:?}",
+            solution.normal
+        );
+    }
 }

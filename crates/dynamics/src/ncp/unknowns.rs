@@ -9,9 +9,10 @@ use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::rows::{Ncp, ROOM, Triple};
 use crate::se2::Twist;
 
-/// Largest normal impulse of a start (m/s). Bodies that squeeze an object press on it with impulses
-/// that cancel each other and that nothing determines: carried from step to step, they would grow
-/// until their rounding exceeds the certificate's tolerance.
+/// Largest normal impulse of a start, and of a solution that is left as it is (m/s). Bodies that
+/// squeeze an object press on it with impulses that cancel each other and that nothing determines:
+/// carried from step to step, they would grow until their rounding exceeds the certificate's
+/// tolerance.
 const LARGEST: f64 = 1e4;
 
 /// Unknowns z = (v⁺, p_n, p_t, p_k, y) of an [`Ncp`], all in m/s.
@@ -82,11 +83,17 @@ impl<const W: usize> Unknowns<W> {
     /// Where no normal impulse exceeds `LARGEST`.
     #[inline(always)]
     pub fn is_bounded(&self) -> Mask<W> {
+        !self.largest_normal().gt(Lanes::splat(LARGEST))
+    }
+
+    /// The largest normal impulse (m/s).
+    #[inline(always)]
+    pub fn largest_normal(&self) -> Lanes<W> {
         let mut largest = Lanes::ZERO;
         for p_n in &self.normal {
             largest = largest.max(*p_n);
         }
-        !largest.gt(Lanes::splat(LARGEST))
+        largest
     }
 
     /// Copies all lanes; memory is reused.

@@ -169,6 +169,9 @@ impl<const W: usize> Solver<W> {
         }
         for ((ncp, z), reports) in ncps.iter().zip(z).zip(reports) {
             rest_exactly(ncp, z, &mut self.map, reports);
+            if !z.is_bounded().all() {
+                self.fallback.relieve_lanes(ncp, z, reports);
+            }
         }
     }
 

@@ -9,6 +9,7 @@ use crate::solver::certifier::Certifier;
 use crate::solver::compliant::CompliantNewton;
 use crate::solver::mode_search::{Verdict, search};
 use crate::solver::refiner::Refiner;
+use crate::solver::relief::relieve;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::smoothed_path::{CAREFUL, SmoothedPath};
 
@@ -78,6 +79,46 @@ impl Fallback {
         };
         report.residual = self.ncp.residual(solution).0[0];
         solution
+    }
+
+    /// Makes impulses smaller that cancel each other, in the lanes that are solved with large ones.
+    #[inline(never)]
+    pub fn relieve_lanes<const W: usize>(
+        &mut self,
+        ncp: &Ncp<W>,
+        z: &mut Unknowns<W>,
+        reports: &mut [Report; W],
+    ) {
+        let bounded = z.is_bounded();
+        for (lane, report) in reports.iter_mut().enumerate() {
+            if bounded.lane(lane) || report.outcome != Outcome::Solved {
+                continue;
+            }
+            if let Some((relieved, residual)) = self.relieve(ncp, lane, z) {
+                z.unpack_lane(ncp, lane, relieved, 0);
+                report.residual = residual;
+            }
+        }
+    }
+
+    /// A solution of one lane of `ncp` with smaller impulses than `z` has, and its residual; `None`
+    /// where none was found.
+    fn relieve<const W: usize>(
+        &mut self,
+        ncp: &Ncp<W>,
+        lane: usize,
+        z: &Unknowns<W>,
+    ) -> Option<(&Unknowns<1>, f64)> {
+        self.ncp.clear();
+        ncp.pack_lane(lane, &mut self.ncp, 0);
+        self.scalar.assign(&self.ncp);
+        let [vx, vy, turn] = z.v.map(|x| x.0[lane]);
+        let v = [vx, vy, turn, z.pusher_yield.0[lane]];
+        self.solution.clear(self.ncp.contacts.len());
+        relieve(&self.scalar, &v)?.store(&mut self.solution);
+        let residual = self.ncp.residual(&self.solution).0[0];
+        let smaller = self.solution.largest_normal().0[0] < z.largest_normal().0[lane];
+        (smaller && residual <= TOLERANCE).then_some((&self.solution, residual))
     }
 
     /// Leaves in `self.solution` what the search finds.

@@ -24,6 +24,7 @@ mod plane_region;
 mod redundant_line;
 mod redundant_plane;
 mod refiner;
+mod relief;
 mod scalar_ncp;
 mod smoothed_map;
 mod smoothed_path;
