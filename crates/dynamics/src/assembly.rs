@@ -21,6 +21,12 @@ use crate::se2::{Twist, Wrench};
 /// of its contacts.
 const CLOSED: f64 = 1e-8;
 
+/// Gaps and overlaps up to this at the end of a step, did the object stand, are none where the pusher
+/// is rigid (m): the tail of a smoothed track creeps on for seconds, and asks a wedged object to move
+/// by less than a nanometre a step. What it creeps adds up to an overlap that exceeds `CLOSED` and
+/// then moves the object.
+const STILL: f64 = 1e-9;
+
 /// Cosine of the angle between the pusher's motion and a contact normal below which it is not the
 /// motion that presses.
 const PRESSING: f64 = 0.5;
@@ -58,6 +64,9 @@ pub(crate) struct Scaling<const W: usize> {
     inv_rho: f64,
     /// 1/h.
     rate: f64,
+    /// Gap velocities up to this are zero for an object that stands (m/s): none where the pusher
+    /// gives way.
+    still: f64,
     /// F_stall h (N s) and the direction in which the pusher gives way, lane by lane.
     pub(crate) stall: Option<(f64, [Lanes<W>; 2])>,
 }
@@ -257,6 +266,7 @@ impl<const W: usize> Assembly<W> {
             h,
             inv_rho,
             rate,
+            still: if stall.is_some() { 0.0 } else { STILL * rate },
             stall,
         };
         ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |(impulse, _)| impulse / mass));
@@ -381,7 +391,12 @@ fn row<const W: usize>(
     contact: &Contact<W>,
     gap: Lanes<W>,
 ) -> ContactRow<W> {
-    let Scaling { inv_rho, rate, .. } = *scaling;
+    let Scaling {
+        inv_rho,
+        rate,
+        still,
+        ..
+    } = *scaling;
     let Contact {
         present,
         normal: [nx, ny],
@@ -397,11 +412,12 @@ fn row<const W: usize>(
         [arm[1] * -omega + vx, arm[0] * omega + vy]
     });
     let keep = |value: Lanes<W>| present.zero_unless(value);
+    let closing = gap * rate - (nx * u[0] + ny * u[1]);
     ContactRow {
         n: [keep(nx), keep(ny), keep((x * ny - y * nx) * inv_rho)],
         t: [keep(-ny), keep(nx), keep((x * nx + y * ny) * inv_rho)],
         gap_offset: present.select(
-            gap * rate - (nx * u[0] + ny * u[1]),
+            closing.abs().gt(Lanes::splat(still)).zero_unless(closing),
             ContactRow::<W>::OPEN.gap_offset,
         ),
         slip_offset: keep(ny * u[0] - nx * u[1]),

@@ -323,6 +323,20 @@ fn fixel_that_overlaps_from_one_side_is_solved_and_pushes_the_object_out() {
     );
 }
 
+#[test]
+fn rigid_pusher_that_creeps_on_by_less_than_a_nanometre_stands() {
+    let dynamics = Dynamics::new(dead_end(None, 0.3));
+    for (way, outcome) in [(0.9e-9, Outcome::Solved), (5e-9, Outcome::Infeasible)] {
+        let (mut particle, mut work) = (Particle::default(), StepWork::default());
+        let creeps = pushing(H, -0.030, 0.003, way / H);
+        let report = step(&dynamics, &creeps, &mut particle, &mut work);
+        assert_eq!(report.outcome, outcome, "{way} m");
+        if outcome == Outcome::Solved {
+            assert_eq!(particle.twist, Twist::default());
+        }
+    }
+}
+
 /// A body of 1 kg at 0.5 m/s between two walls, on feet that resist it with 0.3 N s.
 fn between_walls(mu: f64) -> StepProblem {
     let wall = |sign: f64| ContactPoint {
