@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use ttf_parser::Face;
+use ttf_parser::{Face, GlyphId};
 
 /// Roboto Regular, reduced to Latin and Greek letters.
 pub(crate) const REGULAR: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
@@ -36,6 +36,12 @@ pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
     size * text
         .chars()
         .fold(0.0, |sum, letter| sum + advance(letter).unwrap_or(0.5))
+}
+
+/// A letter's outline, and the font that has it.
+pub(crate) fn glyph(letter: char, weight: Weight) -> Option<(&'static Face<'static>, GlyphId)> {
+    let face = FACES[weight as usize].as_ref()?;
+    Some((face, face.glyph_index(letter)?))
 }
 
 #[cfg(test)]

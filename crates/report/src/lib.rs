@@ -16,6 +16,7 @@ mod font;
 mod intervals;
 mod learnt;
 mod legend;
+mod lettering;
 mod live_page;
 mod marks;
 mod outline;

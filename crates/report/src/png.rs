@@ -1,11 +1,9 @@
 //! Figures as pixels: [`png_of`].
 
-use std::sync::{Arc, LazyLock};
-
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, fontdb};
+use resvg::usvg::{Options, Tree};
 
-use crate::font::{BOLD, REGULAR};
+use crate::lettering::outlined;
 
 /// Why an SVG gave no pixels.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,26 +30,15 @@ const SCALE: f32 = 2.0;
 /// Largest number of pixels.
 const LARGEST: u64 = 100_000_000;
 
-static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
-    let mut fonts = fontdb::Database::new();
-    fonts.load_font_data(REGULAR.to_vec());
-    fonts.load_font_data(BOLD.to_vec());
-    fonts.set_sans_serif_family("Roboto");
-    Arc::new(fonts)
-});
-
 /// A figure as a PNG with twice as many pixels each way as the SVG has, in the program's own fonts
 /// on any machine.
 ///
 /// # Errors
 /// The text is no SVG, or its pixels could not be held.
 pub fn png_of(svg: &str) -> Result<Vec<u8>, PngError> {
-    let options = Options {
-        fontdb: Arc::clone(&FONTS),
-        font_family: "Roboto".to_owned(),
-        ..Options::default()
-    };
-    let tree = Tree::from_str(svg, &options).map_err(|error| PngError::NoSvg(error.to_string()))?;
+    let svg = outlined(svg).map_err(|error| PngError::NoSvg(error.to_string()))?;
+    let tree = Tree::from_str(&svg, &Options::default())
+        .map_err(|error| PngError::NoSvg(error.to_string()))?;
     let size = tree.size();
     let [width, height] =
         [size.width(), size.height()].map(|length| (SCALE * length).ceil() as u32);
