@@ -136,13 +136,13 @@ fn compare_all(
     (comparison, folders, cut_off.unwrap_or(Verdict::Done))
 }
 
-/// Reads a folder; hidden is what truth.json says, else what the options say.
+/// Reads a folder; hidden is what the options say, else what truth.json says.
 fn read(args: &CompareArgs, topics: &Topics, path: PathBuf) -> Result<Folder, LostFolder> {
     let (experiment, verdict) = read_folder(&path, &args.scene_name, topics)
         .map_err(|error| LostFolder::new(&path, &error))?;
-    let occlusion = match experiment.facts.occlusion() {
-        Occlusion::None => args.shared.occlusion(),
-        known => known,
+    let occlusion = match args.shared.occlusion() {
+        Occlusion::None => experiment.facts.occlusion(),
+        asked => asked,
     };
     check_occlusion(occlusion, &experiment).map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {

@@ -218,15 +218,18 @@ fn in_folder(folder: &Path, file: &Path) -> PathBuf {
 
 /// The error about a bag whose files are no MCAP.
 fn not_mcap(path: &Path, found: &str) -> anyhow::Error {
-    let bag = match path.is_dir() {
-        true => path,
-        false => path.parent().unwrap_or(path),
-    };
-    let (bag, new) = (
-        bag.display(),
-        bag.with_extension("mcap").display().to_string(),
+    let own = path.is_dir().then_some(path);
+    let named = own
+        .or(path.parent())
+        .filter(|folder| *folder != Path::new(""));
+    // a file in the working folder has no folder in its path
+    let (bag, new) = named.map_or_else(
+        || (".".to_owned(), "bag_mcap".to_owned()),
+        |folder| {
+            let new = folder.with_extension("").display().to_string() + "_mcap";
+            (folder.display().to_string(), new)
+        },
     );
-    let new = new.trim_end_matches(".mcap").to_owned() + "_mcap";
     hinted(
         format!(
             "{}: this is a bag in {}; bags are read as MCAP",

@@ -29,6 +29,12 @@ fn other_kinds_of_recordings_are_named() {
     };
     let bag = write("bag_0.db3", b"SQLite format 3\0 and more");
     assert!(refusal(&case, &bag).contains("ros2 bag convert"));
+    let here = stickslip()
+        .current_dir(&case.folder)
+        .args(["filter", "bag_0.db3", "--scene", "scene.toml"])
+        .output();
+    let talk = String::from_utf8(here.unwrap().stderr).unwrap();
+    assert!(talk.contains("ros2 bag convert -i . -o"), "{talk}");
     let packed = write("bag.mcap.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);
     assert!(refusal(&case, &packed).contains("nothing could be read"));
     let table = write("log.csv.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);
