@@ -237,6 +237,16 @@ pub enum ModeName {
     Paper,
 }
 
+impl ModeName {
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contact => "contact",
+            Self::Paper => "paper",
+        }
+    }
+}
+
 impl From<ModeName> for Mode {
     fn from(name: ModeName) -> Self {
         match name {

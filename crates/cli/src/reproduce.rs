@@ -11,9 +11,8 @@ use std::path::Path;
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
-use stickslip::Tracking;
 use stickslip_evaluation::paper::{
-    Noise, NoiseLevel, PaperExperiment, Ratio, Replicate, Results, RunSet,
+    Noise, NoiseLevel, PaperExperiment, Ratio, Replicate, Results, RunSet, RunSettings,
 };
 use stickslip_evaluation::{ScoredRun, Variant};
 use stickslip_rendering::Optics;
@@ -35,11 +34,13 @@ const SEEDS: u64 = 20;
 struct Report {
     particles: usize,
     seeds: u64,
+    /// Rules of the particle filter.
+    mode: &'static str,
     /// Whether no estimate uses a later row.
     causal: bool,
-    /// The same, as runs take it.
+    /// The same, as runs take them.
     #[serde(skip)]
-    tracking: Tracking,
+    settings: RunSettings,
     /// The tables; from frames where [`Report::equal`] is there.
     #[serde(flatten)]
     tables: Results,
@@ -69,9 +70,8 @@ pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
 }
 
 fn report(args: &ReproduceArgs) -> Result<Report> {
-    let (seeds, particles) = (args.seeds.unwrap_or(SEEDS), args.particles);
-    let tracking = args.tracking();
-    let runs = |replicates| runs(replicates, particles, tracking);
+    let (seeds, settings) = (args.seeds.unwrap_or(SEEDS), args.settings());
+    let runs = |replicates| runs(replicates, settings);
     let replicates = simulated(seeds)?;
     let (run_sets, equal) = if args.from_frames {
         let (tracked, simulated, noise) = filmed(&replicates)?;
@@ -88,10 +88,11 @@ fn report(args: &ReproduceArgs) -> Result<Report> {
         (runs(replicates)?, None)
     };
     let report = Report {
-        particles,
+        particles: args.particles,
         seeds,
+        mode: args.mode.name(),
         causal: args.causal,
-        tracking,
+        settings,
         tables: Results::new(&run_sets),
         equal,
     };
@@ -195,7 +196,7 @@ fn filmed(replicates: &[Replicate]) -> Result<(Vec<Replicate>, Vec<Replicate>, V
 }
 
 /// Every variant of an experiment on every replicate of it.
-fn runs(replicates: Vec<Replicate>, particles: usize, tracking: Tracking) -> Result<Vec<RunSet>> {
+fn runs(replicates: Vec<Replicate>, settings: RunSettings) -> Result<Vec<RunSet>> {
     // one queue of all runs keeps all threads busy
     let variants = |replicate: &Replicate| replicate.paper.variants();
     let jobs: Vec<(&Replicate, Variant)> = replicates
@@ -204,7 +205,7 @@ fn runs(replicates: Vec<Replicate>, particles: usize, tracking: Tracking) -> Res
         .collect();
     let progress = bar(jobs.len(), "runs", Work::Long);
     let run = |(replicate, variant): &(&Replicate, Variant)| {
-        let run = replicate.run(*variant, particles, tracking);
+        let run = replicate.run(*variant, settings);
         progress.inc(1);
         run
     };

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use stickslip::Tracking;
-use stickslip_evaluation::{Physics, paper::PaperExperiment};
+use stickslip_evaluation::Physics;
+use stickslip_evaluation::paper::{PaperExperiment, RunSettings};
 
 use crate::arg_values::{ThreadArgs, particles, positive};
+use crate::args::ModeName;
 
 /// Arguments of `stickslip simulate`.
 #[derive(Debug, Args)]
@@ -53,6 +55,9 @@ pub struct ReproduceArgs {
     /// Use no later row for any estimate, as live; else the thumb is tracked from the whole log
     #[arg(long)]
     pub causal: bool,
+    /// Rules of the particle filter
+    #[arg(long, value_enum, default_value_t = ModeName::Paper)]
+    pub mode: ModeName,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,
@@ -65,12 +70,16 @@ pub struct ReproduceArgs {
 }
 
 impl ReproduceArgs {
-    /// How the thumb is tracked.
-    pub fn tracking(&self) -> Tracking {
-        if self.causal {
-            Tracking::Causal
-        } else {
-            Tracking::Smoothed
+    /// How all methods run.
+    pub fn settings(&self) -> RunSettings {
+        RunSettings {
+            mode: self.mode.into(),
+            particles: self.particles,
+            tracking: if self.causal {
+                Tracking::Causal
+            } else {
+                Tracking::Smoothed
+            },
         }
     }
 }

@@ -89,11 +89,32 @@ fn reproduce_writes_figures_tables_and_report() {
             "Figure 7",
             "Experiment B",
             "Of 49 orders of the paper (dark rows), 49 have too few seeds to say.",
+            "Too few seeds to tell what touch gains.",
             "stickslip reproduce --seeds 1 --particles 8"
         ]
         .iter()
         .all(|title| page.contains(title))
     );
+}
+
+#[test]
+fn reproduce_runs_the_particle_filter_by_either_mode_and_no_other_method() {
+    let run = |mode: &[&str]| json(small("1").arg("--json").args(mode));
+    let [paper, contact] = [run(&[]), run(&["--mode", "contact"])];
+    assert_eq!([&paper["mode"], &contact["mode"]], ["paper", "contact"]);
+    let cells = |of: &Value| {
+        of["tables"][2]["rows"][0]["cells"]
+            .as_array()
+            .unwrap()
+            .clone()
+    };
+    let same: Vec<bool> = cells(&paper)
+        .iter()
+        .zip(cells(&contact))
+        .map(|(paper, contact)| paper["wmse_mm"] == contact["wmse_mm"])
+        .collect();
+    // nominal simulation and Kalman filter, then three particle filters
+    assert_eq!(same, [true, true, false, false, false]);
 }
 
 #[test]

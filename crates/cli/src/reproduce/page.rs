@@ -2,12 +2,11 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::Tracking;
 use stickslip_evaluation::Variant;
-use stickslip_evaluation::paper::{PaperExperiment, ResultsRow, ResultsTable, RunSet};
+use stickslip_evaluation::paper::{PaperExperiment, ResultsRow, ResultsTable, RunSet, RunSettings};
 use stickslip_report::{Block, Colour, Figure, Report, ReportedExperiment, Section, Table};
 
-use super::text::{OCCLUSIONS, band, counts, median, occlusions, orders};
+use super::text::{OCCLUSIONS, band, counts, median, occlusions, orders, touch};
 use crate::origin::origin;
 use crate::reported_run::reported_run;
 
@@ -22,7 +21,7 @@ const ORDERS: &str = "Two methods that the paper's table puts in an order, compa
 
 /// Tables, figures, and the experiments B, A and 5 played back with the first seed.
 pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Result<Report> {
-    let (results, particles) = (&made.tables, made.particles);
+    let results = &made.tables;
     let orders = Section {
         title: "The paper's orders, and ours".to_owned(),
         blocks: vec![
@@ -37,7 +36,10 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
             format!("Under occlusion: {OCCLUSIONS}"),
         ),
     ];
-    summary.extend(counts(results).into_iter().map(Block::Text));
+    let sentences = [touch(&results.occlusions)]
+        .into_iter()
+        .chain(counts(results));
+    summary.extend(sentences.map(Block::Text));
     let tables = results.tables.iter().map(table_section);
     let figures = figures
         .iter()
@@ -52,14 +54,15 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
         PaperExperiment::A,
         PaperExperiment::Edge,
     ];
-    let plays = plays.map(|paper| played(run_sets, paper, (particles, made.tracking)));
+    let plays = plays.map(|paper| played(run_sets, paper, made.settings));
     let plays = plays.into_iter().collect::<Result<Vec<_>>>()?;
     Ok(Report {
         title: "stickslip reproduce: the paper's evaluation on a virtual testbed".to_owned(),
         summary,
         origin: origin([
             ("seeds", made.seeds.to_string()),
-            ("particles", particles.to_string()),
+            ("particles", made.particles.to_string()),
+            ("mode", made.mode.to_owned()),
         ]),
         sections: plays
             .into_iter()
@@ -111,18 +114,11 @@ fn row_table(row: &ResultsRow) -> Table {
 }
 
 /// An experiment's first seed with all variants, played back.
-fn played(
-    run_sets: &[RunSet],
-    paper: PaperExperiment,
-    (particles, tracking): (usize, Tracking),
-) -> Result<Section> {
+fn played(run_sets: &[RunSet], paper: PaperExperiment, settings: RunSettings) -> Result<Section> {
     let mut replicates = run_sets.iter().map(|set| &set.replicate);
     let first = replicates.find(|replicate| replicate.paper == paper);
     let replicate = first.expect("every experiment was run");
-    let (experiment, conditions) = (
-        &replicate.experiment,
-        replicate.conditions(particles, tracking),
-    );
+    let (experiment, conditions) = (&replicate.experiment, replicate.conditions(settings));
     let runs = Variant::DRAWN
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, &conditions))

@@ -1,10 +1,10 @@
 //! The tables as text: [`text`].
 
-use stickslip_evaluation::Band;
 use stickslip_evaluation::paper::{
     BaselineComparison, Difference, Finding, Measure, NoiseLevel, OcclusionResult, PaperExperiment,
     Ratio, Results, ResultsRow,
 };
+use stickslip_evaluation::{Band, Variant};
 use stickslip_report::Table;
 
 /// What the table of [`occlusions`] shows.
@@ -21,7 +21,11 @@ pub fn text(results: &Results) -> String {
     tables
         .chain([
             orders,
-            format!("{OCCLUSIONS}\n\n{}", occlusions(&results.occlusions)),
+            format!(
+                "{OCCLUSIONS}\n\n{}\n{}\n",
+                occlusions(&results.occlusions),
+                touch(&results.occlusions)
+            ),
         ])
         .collect::<Vec<_>>()
         .join("\n")
@@ -143,7 +147,7 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
         "median",
         "10-90 %",
         "own spread",
-        "< 0.5",
+        "< 0.5 mm",
         "nominal",
         "Kalman",
         "no tactile",
@@ -165,6 +169,40 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
         );
     }
     table
+}
+
+/// In which experiments touch makes a difference, in a sentence.
+pub fn touch(results: &[OcclusionResult]) -> String {
+    let no_touch = Variant::ParticleNoTouch.paper_key();
+    let all = results.iter().filter_map(|result| {
+        let mut baselines = result.baselines.iter();
+        let without = baselines.find(|against| against.baseline == no_touch)?;
+        Some((result.experiment, without))
+    });
+    let all: Vec<(&str, &BaselineComparison)> = all.collect();
+    if all
+        .iter()
+        .any(|(_, without)| without.standard_error_mm.is_infinite())
+    {
+        return "Too few seeds to tell what touch gains.".to_owned();
+    }
+    let names = |of: fn(&BaselineComparison) -> bool| {
+        let names = all.iter().filter(|(_, without)| of(without));
+        names.map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    };
+    let found = [
+        ("better in", names(|without| without.better)),
+        ("worse in", names(|without| without.worse)),
+        (
+            "no clear difference in",
+            names(|without| !without.better && !without.worse),
+        ),
+    ];
+    let found = found.into_iter().filter(|(_, names)| !names.is_empty());
+    let found: Vec<String> = found
+        .map(|(what, names)| format!("{what} {names}"))
+        .collect();
+    format!("Touch against no touch in the dark: {}.", found.join("; "))
 }
 
 fn difference(against: &BaselineComparison) -> String {
@@ -236,4 +274,54 @@ pub fn ratios(ratios: &[Ratio]) -> String {
         ]);
     }
     table.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Touch against no touch: median difference, standard error.
+    fn result(
+        experiment: &'static str,
+        [difference_mm, standard_error_mm]: [f64; 2],
+    ) -> OcclusionResult {
+        let [wmse_mm, spread_mm, camera_on_mm, baseline_mm] = [Band {
+            low: 0.0,
+            median: 0.0,
+            high: 0.0,
+        }; 4];
+        OcclusionResult {
+            experiment,
+            wmse_mm,
+            spread_mm,
+            camera_on_mm,
+            below_target: true,
+            baselines: vec![BaselineComparison {
+                baseline: Variant::ParticleNoTouch.paper_key(),
+                baseline_mm,
+                difference_mm,
+                standard_error_mm,
+                better: difference_mm < -2.0 * standard_error_mm,
+                worse: difference_mm > 2.0 * standard_error_mm,
+            }],
+        }
+    }
+
+    #[test]
+    fn a_sentence_says_where_touch_makes_a_difference() {
+        let some = [
+            result("A", [0.1, 0.1]),
+            result("2", [0.3, 0.1]),
+            result("5", [-9.0, 1.0]),
+            result("6", [-0.5, 7.0]),
+        ];
+        assert_eq!(
+            touch(&some),
+            "Touch against no touch in the dark: better in 5; worse in 2; no clear difference in A, 6."
+        );
+        assert_eq!(
+            touch(&[result("A", [-9.0, f64::INFINITY])]),
+            "Too few seeds to tell what touch gains."
+        );
+    }
 }

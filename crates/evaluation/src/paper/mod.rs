@@ -14,7 +14,7 @@ mod scenes;
 pub use comparison::{CLEAR, Difference, Finding, Measure, PairedComparison};
 pub use noise::{Noise, NoiseLevel};
 pub use published::{PUBLISHED, PublishedRow, PublishedTable};
-pub use replicate::Replicate;
+pub use replicate::{Replicate, RunSettings};
 pub use results::{
     BaselineComparison, Cell, OcclusionResult, Ratio, Results, ResultsRow, ResultsTable,
 };

@@ -14,6 +14,17 @@ use crate::variant::Variant;
 /// Frames per second (Hz), as in the paper.
 const RATE: f64 = 30.0;
 
+/// What all runs of an evaluation have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunSettings {
+    /// Rules of the particle filter; the paper's are [`Mode::Paper`].
+    pub mode: Mode,
+    /// Number of particles.
+    pub particles: usize,
+    /// How the thumb is tracked.
+    pub tracking: Tracking,
+}
+
 /// One of the paper's experiments with one seed.
 #[derive(Clone, Debug)]
 pub struct Replicate {
@@ -69,23 +80,17 @@ impl Replicate {
     ///
     /// # Errors
     /// Those of [`stickslip::run`].
-    pub fn run(
-        &self,
-        variant: Variant,
-        particles: usize,
-        tracking: Tracking,
-    ) -> Result<ScoredRun, RunError> {
-        let conditions = self.conditions(particles, tracking);
-        ScoredRun::new(variant, &self.experiment, &conditions, None)
+    pub fn run(&self, variant: Variant, settings: RunSettings) -> Result<ScoredRun, RunError> {
+        ScoredRun::new(variant, &self.experiment, &self.conditions(settings), None)
     }
 
     /// How every variant is run: with the replicate's own occlusion and seed.
     #[must_use]
-    pub fn conditions(&self, particles: usize, tracking: Tracking) -> RunConditions {
+    pub fn conditions(&self, settings: RunSettings) -> RunConditions {
         RunConditions {
-            mode: Mode::Paper,
-            particles,
-            tracking,
+            mode: settings.mode,
+            particles: settings.particles,
+            tracking: settings.tracking,
             occlusion: self.occlusion,
             seed: self.seed,
         }
