@@ -10,7 +10,7 @@ use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Run, Setup, TactileUse, keep_threads_awake, run, run_observed};
+use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{Experiment, write_estimate, write_estimate_mcap, write_estimate_tum};
 use stickslip_report::{
@@ -95,7 +95,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let written = args
         .out
         .as_deref()
-        .map(|folder| write_all(args, folder, &run, &experiment.setup))
+        .map(|folder| write_all(args, folder, &run, &experiment))
         .transpose()?
         .unwrap_or_default();
     let reported = args
@@ -190,7 +190,7 @@ fn write_all(
     args: &FilterArgs,
     folder: &Path,
     run: &ReportedRun,
-    setup: &Setup,
+    experiment: &Experiment,
 ) -> Result<Vec<PathBuf>> {
     let estimate = &run.scored.estimate;
     let mut written = vec![folder.join(ESTIMATE)];
@@ -203,7 +203,8 @@ fn write_all(
     if args.mcap {
         let path = folder.join("estimate.mcap");
         let mut bytes = Cursor::new(Vec::new());
-        write_estimate_mcap(&mut bytes, estimate, &run.cloud, setup)?;
+        let (setup, pusher) = (&experiment.setup, &experiment.log.pusher);
+        write_estimate_mcap(&mut bytes, estimate, &run.cloud, pusher, setup)?;
         write_out(&path, |file| file.write_all(bytes.get_ref()))?;
         written.push(path);
     }

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use ros2_peer::{folder, peer};
 use stickslip::{CrossCovariance, Estimate, EstimateRow, Setup, Spread};
-use stickslip_dynamics::Pose;
+use stickslip_dynamics::{Friction, Part, Pose};
 use stickslip_formats::{read_scene, write_estimate_mcap, write_estimate_tum};
 
 /// An estimate of two rows, the first without a pose, in the scene of an embedded experiment; all
@@ -24,7 +24,16 @@ fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
     let fixels = setup.scene.fixels.len();
     let seen = EstimateRow {
         pose: Some(pose),
+        contact_pusher: Some(0.5),
         contact_fixels: Some(vec![0.75; fixels]),
+        friction: Some(Friction {
+            mu_s: 0.5,
+            mu_p: 0.25,
+            mu_f: 0.125,
+            d_tri: 0.0625,
+        }),
+        ess: Some(64.0),
+        unsolved: Some(3),
         spread: Some(Spread {
             pose: std,
             cross: Some(CrossCovariance {
@@ -53,7 +62,9 @@ fn others_read_an_estimate() {
     let path = folder("estimate").join("estimate.mcap");
     // two particles at the row that has a pose
     let cloud = [vec![], vec![pose, std]];
-    write_estimate_mcap(File::create(&path).unwrap(), &estimate, &cloud, &setup).unwrap();
+    let pusher = [None, Some(Pose::new(0.25, 0.5, 0.0))];
+    let file = File::create(&path).unwrap();
+    write_estimate_mcap(file, &estimate, &cloud, &pusher, &setup).unwrap();
     let told = peer(&[Path::new("estimate"), &path]);
     let (z, w) = (libm::sin(1.5), libm::cos(1.5));
     for program in ["ours", "humble"] {
@@ -102,18 +113,83 @@ fn others_read_an_estimate() {
                 ("/stickslip/markers", "fixels") => {
                     assert_eq!((numbers[1], numbers[6]), (4.0, 0.84))
                 }
-                _ => panic!("{line}"),
+                ("/stickslip/markers", "pusher") => assert_eq!(
+                    (numbers[1], &numbers[2..4], numbers[6]),
+                    (4.0, &[0.25, 0.5][..], 0.9)
+                ),
+                (topic, name) => assert_drawn((topic, name), &numbers, (pose, &setup)),
             }
             topics.push((*topic).to_owned());
         }
-        let fixel_parts: usize = setup
-            .scene
-            .fixels
-            .iter()
-            .map(|fixel| fixel.shape.parts().len())
-            .sum();
-        assert_eq!(topics.len(), 4 + fixel_parts, "{program}: {told}");
+        let parts = parts_of_others(&setup);
+        assert_eq!(topics.len(), 13 + parts, "{program}: {told}");
     }
+}
+
+/// Parts of all bodies but the object.
+fn parts_of_others(setup: &Setup) -> usize {
+    let fixels = setup.scene.fixels.iter().map(|fixel| &fixel.shape);
+    let shapes = fixels.chain([&setup.scene.pusher.shape]);
+    shapes.map(|shape| shape.parts().len()).sum()
+}
+
+/// Of the messages for viewers without markers, and of numbers, what one holds.
+fn assert_drawn((topic, label): (&str, &str), numbers: &[f64], (pose, setup): (Pose, &Setup)) {
+    match (topic, label) {
+        ("/stickslip/points/object", _) => assert_on_square(numbers, pose, setup),
+        ("/stickslip/points/pusher" | "/stickslip/points/touched", _) => {
+            assert!(numbers.len() >= 180, "{topic}: {numbers:?}")
+        }
+        // they are touched
+        ("/stickslip/points/fixels", _) => assert!(numbers.is_empty(), "{topic}: {numbers:?}"),
+        ("/stickslip/points/particles", _) => {
+            assert_eq!(numbers, [0.5, -0.25, 0.0, 0.125, 0.25, 0.0])
+        }
+        ("/stickslip/friction", label) => assert_eq!(
+            (label, numbers),
+            ("mu_s,mu_p,mu_f,d_tri", &[0.5, 0.25, 0.125, 0.0625][..])
+        ),
+        ("/stickslip/friction_std", _) => {
+            assert!(
+                numbers.len() == 4 && numbers.iter().all(|n| n.is_nan()),
+                "{topic}: {numbers:?}"
+            )
+        }
+        ("/stickslip/contacts", label) => {
+            assert!(
+                label.starts_with("contact_pusher,contact_1"),
+                "{topic}: {numbers:?}"
+            );
+            assert_eq!(numbers[..2], [0.5, 0.75]);
+        }
+        ("/stickslip/health", label) => {
+            assert_eq!(label, "ess,resampled,visual,unsolved,failed");
+            assert_eq!([numbers[0], numbers[2], numbers[3]], [64.0, 0.0, 3.0]);
+            assert!(
+                numbers[1].is_nan() && numbers[4].is_nan(),
+                "{topic}: {numbers:?}"
+            );
+        }
+        _ => panic!("{topic}"),
+    }
+}
+
+/// Points go around a square whose middle is the origin of the object's frame.
+fn assert_on_square(numbers: &[f64], pose: Pose, setup: &Setup) {
+    let [Part::Polygon { vertices }] = setup.scene.object.shape.parts() else {
+        panic!("the object is one square")
+    };
+    let half = vertices[0][0].abs();
+    let (sin, cos) = (libm::sin(pose.theta), libm::cos(pose.theta));
+    let mut sides = [0; 4];
+    for point in numbers.chunks(3) {
+        let (x, y) = (point[0] - pose.x, point[1] - pose.y);
+        let (x, y) = (cos * x + sin * y, cos * y - sin * x);
+        assert!((x.abs().max(y.abs()) - half).abs() < 1e-6, "{point:?}");
+        let side = if x.abs() > y.abs() { x > 0.0 } else { y > 0.0 };
+        sides[2 * usize::from(x.abs() > y.abs()) + usize::from(side)] += 1;
+    }
+    assert!(sides.iter().all(|count| *count >= 15), "{sides:?}");
 }
 
 #[test]

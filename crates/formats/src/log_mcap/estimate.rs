@@ -2,40 +2,30 @@
 //! trajectory for evo: [`write_estimate_tum`].
 
 use std::io::{Seek, Write};
-use std::iter::repeat;
 
 use stickslip::{Estimate, EstimateRow, Setup};
-use stickslip_dynamics::{Part, Pose, Shape};
+use stickslip_dynamics::{Friction, Pose};
 
-use crate::log_mcap::message::{Header, Vector3};
-use crate::log_mcap::output_message::{Colour, LINE_STRIP, Marker, MarkerArray, PoseArray};
+use crate::log_mcap::drawing::{Body, bodies, markers, outline_points};
+use crate::log_mcap::output_message::{MarkerArray, Numbers, PointCloud, PoseArray};
 use crate::log_mcap::pose_message::{PoseWithCovarianceStamped, TfMessage, TransformStamped};
 use crate::log_mcap::write::{McapWriteError, Recorder, header, pose_parts, stamps};
 use crate::number;
 
-/// Sides of a circle as it is drawn.
-const SIDES: usize = 48;
-/// Width of the lines that outlines are drawn with (m).
-const LINE: f64 = 0.001;
-
-const OBJECT: Colour = colour(0.12, 0.47, 0.71);
-const FIXEL: Colour = colour(0.4, 0.4, 0.4);
-const TOUCHED: Colour = colour(0.84, 0.15, 0.16);
-
-const fn colour(r: f32, g: f32, b: f32) -> Colour {
-    Colour { r, g, b, a: 1.0 }
-}
-
 /// Writes an estimate as an MCAP recording of ROS 2 messages in the frame `world`, one of each per row
 /// that has a pose:
 ///
-/// - `/stickslip/pose`, `geometry_msgs/msg/PoseWithCovarianceStamped`: the pose with its variances;
-///   covariances between its numbers are not known and 0, as all about z and the other two angles,
+/// - `/stickslip/pose`, `geometry_msgs/msg/PoseWithCovarianceStamped`: the pose with its covariance of
+///   x, y and the angle about z; the rest is 0, and so is what the method does not know,
 /// - `/tf`, `tf2_msgs/msg/TFMessage`: the frame `stickslip_object` in `world`,
-/// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, and of the
-///   fixels, red where contact is likelier than not,
+/// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, of the pusher at
+///   its pose in `pusher` and of the fixels, red where contact is likelier than not,
 /// - `/stickslip/particles`, `geometry_msgs/msg/PoseArray`: row by row the poses of `cloud`, particles that
-///   count the same; none where the slice is shorter or the row has none.
+///   count the same; none where the slice is shorter or the row has none,
+/// - `/stickslip/points/...`, `sensor_msgs/msg/PointCloud2`, for viewers without markers: points along the
+///   outlines of the `object`, and of `pusher` and `fixels` where they are not `touched`; `particles`,
+/// - `/stickslip/friction`, `friction_std`, `contacts` and `health`, `std_msgs/msg/Float64MultiArray`:
+///   numbers of `estimate.csv`, the columns that the label of the dimension names; NaN for empty cells.
 ///
 /// The same estimate gives the same bytes.
 ///
@@ -45,20 +35,82 @@ pub fn write_estimate_mcap(
     writer: impl Write + Seek,
     estimate: &Estimate,
     cloud: &[Vec<Pose>],
+    pusher: &[Option<Pose>],
     setup: &Setup,
 ) -> Result<(), McapWriteError> {
-    let mut recorder = Recorder::new(writer)?;
-    let pose_channel = recorder.topic::<PoseWithCovarianceStamped>("/stickslip/pose")?;
-    let tf_channel = recorder.topic::<TfMessage>("/tf")?;
-    let marker_channel = recorder.topic::<MarkerArray>("/stickslip/markers")?;
-    let particle_channel = match cloud.iter().all(Vec::is_empty) {
-        true => None,
-        false => Some(recorder.topic::<PoseArray>("/stickslip/particles")?),
-    };
-    let clouds = cloud.iter().map(Vec::as_slice).chain(repeat(&[][..]));
+    let has_particles = cloud.iter().any(|poses| !poses.is_empty());
+    let mut messages = Messages::new(writer, has_particles, estimate.has_tripod)?;
     let stamps = stamps(&estimate.time)?;
-    for ((stamp, row), cloud) in stamps.into_iter().zip(&estimate.rows).zip(clouds) {
+    for (k, (stamp, row)) in stamps.into_iter().zip(&estimate.rows).enumerate() {
         let Some(pose) = row.pose else { continue };
+        messages.write_pose(stamp, pose, row)?;
+        let pusher = pusher.get(k).copied().flatten();
+        messages.write_bodies(stamp, &bodies(setup, row, pose, pusher))?;
+        messages.write_particles(stamp, cloud.get(k).map_or(&[], Vec::as_slice))?;
+        messages.write_numbers(stamp, row)?;
+    }
+    messages.recorder.finish()
+}
+
+/// Clouds of points, by the last part of their topic.
+const CLOUDS: [&str; 4] = ["object", "pusher", "fixels", "touched"];
+
+/// The messages of an estimate while they are written.
+struct Messages<W: Write + Seek> {
+    recorder: Recorder<W>,
+    has_tripod: bool,
+    pose: u16,
+    tf: u16,
+    markers: u16,
+    /// Topics of the particles, as poses and as points.
+    particles: Option<[u16; 2]>,
+    clouds: [u16; 4],
+    numbers: [u16; 4],
+}
+
+impl<W: Write + Seek> Messages<W> {
+    fn new(writer: W, has_particles: bool, has_tripod: bool) -> Result<Self, McapWriteError> {
+        let mut recorder = Recorder::new(writer)?;
+        let pose = recorder.topic::<PoseWithCovarianceStamped>("/stickslip/pose")?;
+        let tf = recorder.topic::<TfMessage>("/tf")?;
+        let markers = recorder.topic::<MarkerArray>("/stickslip/markers")?;
+        let mut clouds = [0; 4];
+        for (cloud, name) in clouds.iter_mut().zip(CLOUDS) {
+            *cloud = recorder.topic::<PointCloud>(&format!("/stickslip/points/{name}"))?;
+        }
+        let mut numbers = [0; 4];
+        for (topic, name) in
+            numbers
+                .iter_mut()
+                .zip(["friction", "friction_std", "contacts", "health"])
+        {
+            *topic = recorder.topic::<Numbers>(&format!("/stickslip/{name}"))?;
+        }
+        let particles = match has_particles {
+            false => None,
+            true => Some([
+                recorder.topic::<PoseArray>("/stickslip/particles")?,
+                recorder.topic::<PointCloud>("/stickslip/points/particles")?,
+            ]),
+        };
+        Ok(Self {
+            recorder,
+            has_tripod,
+            pose,
+            tf,
+            markers,
+            particles,
+            clouds,
+            numbers,
+        })
+    }
+
+    fn write_pose(
+        &mut self,
+        stamp: i64,
+        pose: Pose,
+        row: &EstimateRow,
+    ) -> Result<(), McapWriteError> {
         let header = header(stamp);
         let (position, orientation) = pose_parts(pose);
         let transform = TransformStamped {
@@ -68,21 +120,90 @@ pub fn write_estimate_mcap(
             rotation: orientation.clone(),
         };
         let transforms = vec![transform];
-        recorder.write(Some(tf_channel), stamp, Some(TfMessage { transforms }))?;
+        self.recorder
+            .write(Some(self.tf), stamp, Some(TfMessage { transforms }))?;
+        let covariance = covariance(row);
         let message = PoseWithCovarianceStamped {
-            header: header.clone(),
+            header,
             position,
             orientation,
-            covariance: covariance(row),
+            covariance,
         };
-        recorder.write(Some(pose_channel), stamp, Some(message))?;
-        let markers = markers(&header, pose, row, setup);
-        recorder.write(Some(marker_channel), stamp, Some(MarkerArray { markers }))?;
-        let poses: Vec<_> = cloud.iter().map(|pose| pose_parts(*pose)).collect();
-        let particles = (!poses.is_empty()).then_some(PoseArray { header, poses });
-        recorder.write(particle_channel, stamp, particles)?;
+        self.recorder.write(Some(self.pose), stamp, Some(message))
     }
-    recorder.finish()
+
+    fn write_bodies(&mut self, stamp: i64, bodies: &[Body<'_>]) -> Result<(), McapWriteError> {
+        let header = header(stamp);
+        let markers = markers(&header, bodies);
+        self.recorder
+            .write(Some(self.markers), stamp, Some(MarkerArray { markers }))?;
+        for (topic, name) in self.clouds.into_iter().zip(CLOUDS) {
+            let shown = bodies.iter().filter(|body| body.cloud() == name);
+            let message = PointCloud::new(header.clone(), shown.flat_map(outline_points));
+            self.recorder.write(Some(topic), stamp, Some(message))?;
+        }
+        Ok(())
+    }
+
+    fn write_particles(&mut self, stamp: i64, cloud: &[Pose]) -> Result<(), McapWriteError> {
+        let Some([poses, points]) = self.particles.filter(|_| !cloud.is_empty()) else {
+            return Ok(());
+        };
+        let header = header(stamp);
+        let places = cloud.iter().map(|pose| [pose.x, pose.y]);
+        let message = PointCloud::new(header.clone(), places);
+        self.recorder.write(Some(points), stamp, Some(message))?;
+        let all = cloud.iter().map(|pose| pose_parts(*pose)).collect();
+        self.recorder
+            .write(Some(poses), stamp, Some(PoseArray { header, poses: all }))
+    }
+
+    fn write_numbers(&mut self, stamp: i64, row: &EstimateRow) -> Result<(), McapWriteError> {
+        let tripod = self.has_tripod;
+        let fixels = row.contact_fixels.as_deref().unwrap_or_default();
+        let names: Vec<_> = (1..=fixels.len())
+            .map(|k| format!(",contact_{k}"))
+            .collect();
+        let messages = [
+            Numbers::new("mu_s,mu_p,mu_f,d_tri", friction(row.friction, tripod)),
+            Numbers::new(
+                "std_mu_s,std_mu_p,std_mu_f,std_d_tri",
+                friction(row.spread.and_then(|spread| spread.friction), tripod),
+            ),
+            Numbers::new(
+                &format!("contact_pusher{}", names.concat()),
+                [&[row.contact_pusher.unwrap_or(f64::NAN)], fixels].concat(),
+            ),
+            Numbers::new(
+                "ess,resampled,visual,unsolved,failed",
+                vec![
+                    row.ess.unwrap_or(f64::NAN),
+                    row.resampled.map_or(f64::NAN, f64::from),
+                    f64::from(row.visual),
+                    row.unsolved.map_or(f64::NAN, f64::from),
+                    row.failed.map_or(f64::NAN, f64::from),
+                ],
+            ),
+        ];
+        for (topic, message) in self.numbers.into_iter().zip(messages) {
+            self.recorder.write(Some(topic), stamp, Some(message))?;
+        }
+        Ok(())
+    }
+}
+
+fn friction(friction: Option<Friction>, has_tripod: bool) -> Vec<f64> {
+    match friction {
+        None => vec![f64::NAN; 4],
+        Some(Friction {
+            mu_s,
+            mu_p,
+            mu_f,
+            d_tri,
+        }) => {
+            vec![mu_s, mu_p, mu_f, if has_tripod { d_tri } else { f64::NAN }]
+        }
+    }
 }
 
 /// Writes an estimate's poses as lines `time x y z q_x q_y q_z q_w`, as evo and the benchmarks of the
@@ -112,86 +233,4 @@ fn covariance(row: &EstimateRow) -> [[f64; 6]; 6] {
         }
     }
     covariance
-}
-
-fn markers(header: &Header, pose: Pose, row: &EstimateRow, setup: &Setup) -> Vec<Marker> {
-    let mut markers = outlines(
-        header,
-        "object",
-        0,
-        (pose, &setup.scene.object.shape),
-        OBJECT,
-    );
-    let contacts = row.contact_fixels.as_deref().unwrap_or_default();
-    let mut id = 0;
-    for (k, fixel) in setup.scene.fixels.iter().enumerate() {
-        let touched = contacts.get(k).is_some_and(|contact| *contact > 0.5);
-        let colour = if touched { TOUCHED } else { FIXEL };
-        let drawn = outlines(header, "fixels", id, (fixel.pose, &fixel.shape), colour);
-        id += drawn.len() as i32;
-        markers.extend(drawn);
-    }
-    markers
-}
-
-/// A closed line for each part of a shape.
-fn outlines(
-    header: &Header,
-    ns: &str,
-    first_id: i32,
-    (pose, shape): (Pose, &Shape),
-    colour: Colour,
-) -> Vec<Marker> {
-    let (position, orientation) = pose_parts(pose);
-    let marker = |(id, part): (i32, &Part)| {
-        let mut points = part_points(part);
-        points.extend(points.first().cloned());
-        Marker {
-            header: header.clone(),
-            ns: ns.to_owned(),
-            id,
-            kind: LINE_STRIP,
-            action: 0,
-            position: position.clone(),
-            orientation: orientation.clone(),
-            scale: Vector3 {
-                x: LINE,
-                y: 0.0,
-                z: 0.0,
-            },
-            colour,
-            lifetime: (0, 0),
-            frame_locked: false,
-            points,
-            colours: Vec::new(),
-            texture_resource: String::new(),
-            texture: (header.clone(), String::new(), Vec::new()),
-            uv_coordinates: Vec::new(),
-            text: String::new(),
-            mesh_resource: String::new(),
-            mesh_file: (String::new(), Vec::new()),
-            mesh_use_embedded_materials: false,
-        }
-    };
-    (first_id..).zip(shape.parts()).map(marker).collect()
-}
-
-/// Points along a part's boundary, in the body's frame.
-fn part_points(part: &Part) -> Vec<Vector3> {
-    let point = |[x, y]: [f64; 2]| Vector3 { x, y, z: 0.0 };
-    let (semi_axes, centre, angle) = match part {
-        Part::Polygon { vertices } => return vertices.iter().copied().map(point).collect(),
-        Part::Disc { radius, centre } => ([*radius, *radius], *centre, 0.0),
-        Part::Ellipse {
-            semi_axes,
-            centre,
-            angle,
-        } => (*semi_axes, *centre, *angle),
-    };
-    let frame = Pose::new(centre[0], centre[1], angle);
-    let side = |k: usize| {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / SIDES as f64);
-        point(frame.transform([semi_axes[0] * cos, semi_axes[1] * sin]))
-    };
-    (0..SIDES).map(side).collect()
 }

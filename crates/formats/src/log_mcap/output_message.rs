@@ -52,8 +52,70 @@ pub(crate) struct PoseArray {
     pub poses: Vec<(Vector3, Quaternion)>,
 }
 
+/// `sensor_msgs/msg/PointField`: name, offset (bytes), type of its numbers and how many.
+pub(crate) type PointField = (String, u32, u8, u32);
+
+/// `sensor_msgs/msg/PointCloud2`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PointCloud {
+    pub header: Header,
+    pub height: u32,
+    pub width: u32,
+    pub fields: Vec<PointField>,
+    pub is_bigendian: bool,
+    pub point_step: u32,
+    pub row_step: u32,
+    pub data: Vec<u8>,
+    pub is_dense: bool,
+}
+
+impl PointCloud {
+    /// Points on the table (m), as x, y and z in single precision.
+    pub(crate) fn new(header: Header, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let bytes = |[x, y]: [f64; 2]| [x as f32, y as f32, 0.0].map(f32::to_le_bytes);
+        let data: Vec<u8> = points.into_iter().flat_map(bytes).flatten().collect();
+        let (float, step) = (7, 12);
+        let row_step = data.len() as u32;
+        let field = |(name, offset): (&str, u32)| (name.to_owned(), offset, float, 1);
+        Self {
+            header,
+            height: 1,
+            width: row_step / step,
+            fields: [("x", 0), ("y", 4), ("z", 8)].map(field).to_vec(),
+            is_bigendian: false,
+            point_step: step,
+            row_step,
+            data,
+            is_dense: true,
+        }
+    }
+}
+
+/// `std_msgs/msg/Float64MultiArray` of one dimension.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Numbers {
+    /// Label, size and stride of each dimension.
+    dimensions: Vec<(String, u32, u32)>,
+    data_offset: u32,
+    data: Vec<f64>,
+}
+
+impl Numbers {
+    pub(crate) fn new(label: &str, data: Vec<f64>) -> Self {
+        let size = data.len() as u32;
+        Self {
+            dimensions: vec![(label.to_owned(), size, size)],
+            data_offset: 0,
+            data,
+        }
+    }
+}
+
 /// A line from point to point.
 pub(crate) const LINE_STRIP: i32 = 4;
+/// What to do with a marker: draw it anew, take it away.
+pub(crate) const ADD: i32 = 0;
+pub(crate) const DELETE: i32 = 2;
 
 macro_rules! definitions {
     ($first:literal $(, $name:literal: $body:literal)*) => {
@@ -80,6 +142,31 @@ impl WrittenMessage for PoseArray {
         "geometry_msgs/Pose": "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n",
         "geometry_msgs/Point": "float64 x\nfloat64 y\nfloat64 z\n",
         "geometry_msgs/Quaternion": "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
+    );
+}
+
+impl Message for PointCloud {
+    const TYPE: &'static str = "sensor_msgs/msg/PointCloud2";
+}
+
+impl WrittenMessage for PointCloud {
+    const SCHEMA: &'static str = definitions!(
+        "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n",
+        "std_msgs/Header": "builtin_interfaces/Time stamp\nstring frame_id\n",
+        "builtin_interfaces/Time": "int32 sec\nuint32 nanosec\n",
+        "sensor_msgs/PointField": "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"
+    );
+}
+
+impl Message for Numbers {
+    const TYPE: &'static str = "std_msgs/msg/Float64MultiArray";
+}
+
+impl WrittenMessage for Numbers {
+    const SCHEMA: &'static str = definitions!(
+        "std_msgs/MultiArrayLayout layout\nfloat64[] data\n",
+        "std_msgs/MultiArrayLayout": "std_msgs/MultiArrayDimension[] dim\nuint32 data_offset\n",
+        "std_msgs/MultiArrayDimension": "string label\nuint32 size\nuint32 stride\n"
     );
 }
 
