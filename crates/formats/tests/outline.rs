@@ -284,6 +284,24 @@ fn svg_that_is_no_outline_is_refused_with_place_and_next_step() {
         svg(MM, "<path d='M0 0 L oh'/>"),
         &["part.svg:2: ", "is no path"],
     );
+    // arcs and curves of these would be more lines than memory holds
+    refused(
+        svg(MM, "<path d='M10 2e37A10 10 0 0 1 30 20Z'/>"),
+        &["part.svg:2: `2", "is no coordinate", "up to 1e9"],
+    );
+    let circles = "<circle r='1e8'/>".repeat(200);
+    refused(
+        svg(MM, &circles),
+        &[
+            "part.svg:2: its curves are more than 100000 points",
+            "--tolerance",
+        ],
+    );
+    let waves = "q5e8 1e9 1e9 0 q-5e8 1e9 -1e9 0".repeat(200);
+    refused(
+        svg(MM, &format!("<path d='M0 0{waves}z'/>")),
+        &["part.svg:2: its curves are more than 100000 points"],
+    );
     refused(
         svg(MM, "<rect width='1e6' height='10'/>"),
         &["1000000 x 10 mm", "--scale"],

@@ -1,6 +1,11 @@
 //! Images from files: [`read_picture`].
 
-use image::{GrayImage, ImageFormat};
+use std::io::Cursor;
+
+use image::{DynamicImage, GrayImage, ImageDecoder, ImageFormat, ImageReader};
+
+/// Most pixels of an image: no camera on a table has more, and few bytes can say that they are more.
+const MOST_PIXELS: u64 = 1 << 26;
 
 /// Why an image was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -65,7 +70,7 @@ pub fn read_picture(bytes: &[u8], name: &str) -> Result<GrayImage, PictureError>
     ) {
         return Err(PictureError::Unknown { file: file() });
     }
-    let broken = |error: image::ImageError| {
+    let broken = |reason: String| {
         let kind = format
             .extensions_str()
             .first()
@@ -73,12 +78,10 @@ pub fn read_picture(bytes: &[u8], name: &str) -> Result<GrayImage, PictureError>
         PictureError::Broken {
             file: file(),
             kind,
-            reason: error.to_string(),
+            reason,
         }
     };
-    Ok(image::load_from_memory_with_format(bytes, format)
-        .map_err(broken)?
-        .into_luma8())
+    decode(bytes, format).map_err(broken)
 }
 
 /// Reads a compressed image of a bag, JPEG or PNG whatever its `format` is called; `name` is shown in
@@ -95,12 +98,25 @@ pub fn read_compressed(bytes: &[u8], format: &str, name: &str) -> Result<GrayIma
             format: format.to_owned(),
         });
     };
-    let image = image::load_from_memory_with_format(bytes, kind);
-    let image = image.map_err(|error| PictureError::Undecodable {
+    decode(bytes, kind).map_err(|reason| PictureError::Undecodable {
         file: name.to_owned(),
         format: format.to_owned(),
-        reason: error.to_string(),
-    })?;
+        reason,
+    })
+}
+
+/// The grey levels of an image, or why there are none.
+fn decode(bytes: &[u8], format: ImageFormat) -> Result<GrayImage, String> {
+    let text = |error: image::ImageError| error.to_string();
+    let reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let decoder = reader.into_decoder().map_err(text)?;
+    let (columns, rows) = decoder.dimensions();
+    if u64::from(columns) * u64::from(rows) > MOST_PIXELS {
+        return Err(format!(
+            "it says it has {columns} x {rows} pixels, and {MOST_PIXELS} are the most"
+        ));
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(text)?;
     Ok(image.into_luma8())
 }
 
@@ -129,6 +145,30 @@ mod tests {
             let text = text.unwrap_err().to_string();
             assert!(
                 text.starts_with("bag: /image, message 3: ") && text.contains(words),
+                "{text}"
+            );
+        }
+    }
+
+    /// Fuzzing found a JPEG of 379 bytes that says 65527 x 2808 pixels and takes seconds.
+    #[test]
+    fn an_image_that_says_it_is_huge_is_refused_before_it_is_decoded() {
+        let mut jpeg = std::io::Cursor::new(Vec::new());
+        let image = GrayImage::from_pixel(8, 8, image::Luma([77]));
+        image.write_to(&mut jpeg, ImageFormat::Jpeg).unwrap();
+        let mut jpeg = jpeg.into_inner();
+        assert!(read_picture(&jpeg, "a.jpg").is_ok());
+        // rows and columns stand behind the start of the frame, its length and its depth
+        let frame = jpeg.windows(2).position(|two| two == [0xff, 0xc0]).unwrap();
+        jpeg[frame + 5..frame + 9].copy_from_slice(&[0xff, 0xf0, 0x0a, 0xf8]);
+        for text in [
+            read_picture(&jpeg, "a.jpg").unwrap_err().to_string(),
+            read_compressed(&jpeg, "jpeg", "a.jpg")
+                .unwrap_err()
+                .to_string(),
+        ] {
+            assert!(
+                text.contains("it says it has 2808 x 65520 pixels"),
                 "{text}"
             );
         }

@@ -59,30 +59,49 @@ fn turn([a, b, c]: [Point; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Triangles of vertex numbers, counter-clockwise.
+/// Triangles of vertex numbers, counter-clockwise. Where an ear is cut off, no other vertex than its
+/// neighbours becomes an ear or ceases to be one (O'Rourke 1998), so that n² steps are enough.
 fn triangles(polygon: &[Point], order: Order) -> Result<Vec<Vec<usize>>, OutlineProblem> {
     let mut left: Vec<usize> = (0..polygon.len()).collect();
     if let Order::From(start) = order {
         left.rotate_left(start);
     }
+    let all = |left: &[usize]| -> Vec<bool> {
+        (0..left.len()).map(|k| is_ear(polygon, left, k)).collect()
+    };
+    let mut ears = all(&left);
     let mut triangles = Vec::new();
     while left.len() > 3 {
-        let mut ears = (0..left.len()).filter(|k| is_ear(polygon, &left, *k));
-        let fat = |k: &usize| fatness(around(&left, *k).map(|k| polygon[k]));
-        let ear = match order {
-            Order::Fattest => ears.max_by(|a, b| fat(a).total_cmp(&fat(b))),
-            Order::From(_) => ears.next(),
-        };
-        let Some(ear) = ear else {
+        let mut found = next_ear(polygon, &left, &ears, order);
+        if found.is_none() {
+            // rounding may make one
+            ears = all(&left);
+            found = next_ear(polygon, &left, &ears, order);
+        }
+        let Some(ear) = found else {
             return Err(OutlineProblem::Crossing {
                 at: polygon[left[0]],
             });
         };
         triangles.push(around(&left, ear).to_vec());
         left.remove(ear);
+        ears.remove(ear);
+        for neighbour in [(ear + left.len() - 1) % left.len(), ear % left.len()] {
+            ears[neighbour] = is_ear(polygon, &left, neighbour);
+        }
     }
     triangles.push(left);
     Ok(triangles)
+}
+
+/// The ear that comes next in an order.
+fn next_ear(polygon: &[Point], left: &[usize], ears: &[bool], order: Order) -> Option<usize> {
+    let mut ears = (0..left.len()).filter(|k| ears[*k]);
+    let fat = |k: &usize| fatness(around(left, *k).map(|k| polygon[k]));
+    match order {
+        Order::Fattest => ears.max_by(|a, b| fat(a).total_cmp(&fat(b))),
+        Order::From(_) => ears.next(),
+    }
 }
 
 /// A vertex with its neighbours.

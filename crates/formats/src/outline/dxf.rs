@@ -3,6 +3,7 @@
 use crate::outline::drawn_outline::{DrawnUnit, Outline};
 use crate::outline::error::{OutlineError, OutlineProblem};
 use crate::outline::flatten::Flattener;
+use crate::outline::lines::Lines;
 use crate::outline::{OutlineOptions, Point};
 
 /// What to do about a file that is no DXF.
@@ -47,7 +48,7 @@ pub fn read_dxf_outline(
         flattener: Flattener {
             tolerance: options.tolerance,
         },
-        lines: Vec::new(),
+        lines: Lines::default(),
         polyline: None,
     };
     for entity in entities(&pairs) {
@@ -56,7 +57,7 @@ pub fn read_dxf_outline(
             .entity(entity)
             .map_err(|problem| error((Some(line), problem)))?;
     }
-    Outline::of(drawing.lines, drawn, options).map_err(|problem| error((None, problem)))
+    Outline::of(drawing.lines.all(), drawn, options).map_err(|problem| error((None, problem)))
 }
 
 /// A group: a code and its value.
@@ -155,7 +156,7 @@ struct Polyline {
 struct Drawing {
     metres: f64,
     flattener: Flattener,
-    lines: Vec<Vec<Point>>,
+    lines: Lines,
     /// One whose vertices are entities of their own.
     polyline: Option<Polyline>,
 }
@@ -166,7 +167,7 @@ impl Drawing {
         if kind != "VERTEX"
             && let Some(polyline) = self.polyline.take()
         {
-            self.draw(&polyline);
+            self.draw(&polyline)?;
         }
         let of = Entity {
             groups,
@@ -181,13 +182,13 @@ impl Drawing {
         match kind {
             "LINE" => {
                 let line = vec![of.point(10)?, of.point(11)?];
-                self.lines.push(line);
+                self.lines.add(line)?;
             }
             "CIRCLE" | "ARC" => self.arc(&of, kind == "ARC")?,
             "ELLIPSE" => self.ellipse(&of)?,
             "LWPOLYLINE" => {
                 let polyline = of.lightweight()?;
-                self.draw(&polyline);
+                self.draw(&polyline)?;
             }
             "POLYLINE" => {
                 self.polyline = Some(Polyline {
@@ -218,20 +219,21 @@ impl Drawing {
         Ok(())
     }
 
-    fn draw(&mut self, polyline: &Polyline) {
+    fn draw(&mut self, polyline: &Polyline) -> Result<(), OutlineProblem> {
         let vertices = &polyline.vertices;
         let Some((first, _)) = vertices.first() else {
-            return;
+            return Ok(());
         };
         let mut line = vec![*first];
         for [(_, bulge), (to, _)] in vertices.array_windows() {
+            self.lines.check(line.len())?;
             self.flattener.bulge(*to, *bulge, &mut line);
         }
         if polyline.closed {
             let bulge = vertices[vertices.len() - 1].1;
             self.flattener.bulge(*first, bulge, &mut line);
         }
-        self.lines.push(line);
+        self.lines.add(line)
     }
 
     fn arc(&mut self, of: &Entity<'_>, is_part: bool) -> Result<(), OutlineProblem> {
@@ -243,8 +245,7 @@ impl Drawing {
         } else {
             [0.0, std::f64::consts::TAU]
         };
-        self.add((centre, [radius, 0.0], [0.0, radius]), range);
-        Ok(())
+        self.add((centre, [radius, 0.0], [0.0, radius]), range)
     }
 
     fn ellipse(&mut self, of: &Entity<'_>) -> Result<(), OutlineProblem> {
@@ -254,11 +255,14 @@ impl Drawing {
         self.add(
             (centre, a, [-a[1] * ratio, a[0] * ratio]),
             [from, behind(from, to)],
-        );
-        Ok(())
+        )
     }
 
-    fn add(&mut self, (centre, a, b): (Point, Point, Point), [from, to]: [f64; 2]) {
+    fn add(
+        &mut self,
+        (centre, a, b): (Point, Point, Point),
+        [from, to]: [f64; 2],
+    ) -> Result<(), OutlineProblem> {
         let (sin, cos) = libm::sincos(from);
         let start = [
             centre[0] + a[0] * cos + b[0] * sin,
@@ -266,7 +270,7 @@ impl Drawing {
         ];
         let mut line = vec![start];
         self.flattener.arc((centre, a, b), [from, to], &mut line);
-        self.lines.push(line);
+        self.lines.add(line)
     }
 }
 

@@ -86,6 +86,14 @@ pub enum OutlineProblem {
         /// Width and height (m).
         size: Point,
     },
+    /// More than an outline can be.
+    #[error(
+        "its curves are more than {most} points as lines. Save the outline alone, or draw curves with a larger --tolerance"
+    )]
+    Points {
+        /// How many are taken.
+        most: usize,
+    },
     /// Too fine.
     #[error(
         "the outline has {vertices} vertices{}; a scene takes {most}. Draw curves with a larger --tolerance",

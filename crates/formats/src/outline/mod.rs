@@ -1,6 +1,6 @@
 //! Outlines from drawings: [`read_svg_outline`], [`read_dxf_outline`], both an [`Outline`].
 //!
-//! `svg` and `dxf` take drawings apart into lines, curves flattened by `flatten`; `contours` joins lines
+//! `svg` and `dxf` take drawings apart into `lines`, curves flattened by `flatten`; `contours` joins lines
 //! that meet into closed ones, `drawn_outline` takes the outermost and moves it into the object's frame,
 //! `decompose` cuts it into convex parts.
 
@@ -10,6 +10,7 @@ mod drawn_outline;
 mod dxf;
 mod error;
 mod flatten;
+mod lines;
 mod svg;
 
 pub use drawn_outline::{DrawnUnit, Outline};

@@ -2,12 +2,13 @@
 
 use roxmltree::{Document, Node};
 use svgtypes::{
-    Length, LengthUnit, PointsParser, SimplePathSegment, SimplifyingPathParser, ViewBox,
+    Length, LengthUnit, PathParser, PointsParser, SimplePathSegment, SimplifyingPathParser, ViewBox,
 };
 
 use crate::outline::drawn_outline::{DrawnUnit, Outline};
 use crate::outline::error::{OutlineError, OutlineProblem};
 use crate::outline::flatten::Flattener;
+use crate::outline::lines::Lines;
 use crate::outline::{OutlineOptions, Point};
 
 /// Metres of an inch, and of SVG's pixel.
@@ -15,6 +16,8 @@ const INCH: f64 = 0.0254;
 const PIXEL: f64 = INCH / 96.0;
 /// Most bytes of a drawing.
 const LARGEST: usize = 1 << 24;
+/// Largest number of a path.
+const LARGEST_NUMBER: f64 = 1e9;
 /// Elements that draw nothing themselves.
 const NOT_DRAWN: [&str; 14] = [
     "defs",
@@ -87,7 +90,7 @@ pub fn read_svg_outline(
         flattener: Flattener {
             tolerance: options.tolerance,
         },
-        lines: Vec::new(),
+        lines: Lines::default(),
     };
     // the stack is ours, so that no nesting overflows the program's
     let mut stack = vec![(root, unit.to_metres)];
@@ -102,7 +105,7 @@ pub fn read_svg_outline(
             );
         }
     }
-    Outline::of(drawing.lines, unit.drawn, options).map_err(|problem| error(None, problem))
+    Outline::of(drawing.lines.all(), unit.drawn, options).map_err(|problem| error(None, problem))
 }
 
 /// x ↦ (a x + c y + e, b x + d y + f).
@@ -197,7 +200,7 @@ fn metres_of(unit: LengthUnit) -> Option<(&'static str, f64)> {
 /// The lines of a drawing so far.
 struct Drawing {
     flattener: Flattener,
-    lines: Vec<Vec<Point>>,
+    lines: Lines,
 }
 
 impl Drawing {
@@ -232,12 +235,12 @@ impl Drawing {
                 if name == "polygon" {
                     line.extend(line.first().copied());
                 }
-                self.lines.push(line);
+                self.lines.add(line)?;
             }
             "line" => {
                 let [x1, y1, x2, y2] = lengths(node, ["x1", "y1", "x2", "y2"])?;
                 self.lines
-                    .push(vec![map.apply([x1, y1]), map.apply([x2, y2])]);
+                    .add(vec![map.apply([x1, y1]), map.apply([x2, y2])])?;
             }
             "use" => {
                 return Err(OutlineProblem::Unsupported {
@@ -260,14 +263,16 @@ impl Drawing {
         let mut line: Vec<Point> = Vec::new();
         // the present point as it is drawn
         let mut at = [0.0; 2];
+        check_numbers(d)?;
         for segment in SimplifyingPathParser::from(d) {
             let segment = segment.map_err(|problem| OutlineProblem::Number {
                 found: problem.to_string(),
                 expected: "path",
             })?;
+            self.lines.check(line.len())?;
             match segment {
                 SimplePathSegment::MoveTo { x, y } => {
-                    self.lines.push(std::mem::take(&mut line));
+                    self.lines.add(std::mem::take(&mut line))?;
                     at = [x, y];
                     line.push(map.apply(at));
                 }
@@ -295,8 +300,7 @@ impl Drawing {
                 SimplePathSegment::ClosePath => line.extend(line.first().copied()),
             }
         }
-        self.lines.push(line);
-        Ok(())
+        self.lines.add(line)
     }
 
     fn ellipse(&mut self, node: Node<'_, '_>, map: &Affine) -> Result<(), OutlineProblem> {
@@ -314,8 +318,7 @@ impl Drawing {
         let mut line = vec![[centre[0] + a[0], centre[1] + a[1]]];
         self.flattener
             .arc((centre, a, b), [0.0, std::f64::consts::TAU], &mut line);
-        self.lines.push(line);
-        Ok(())
+        self.lines.add(line)
     }
 
     fn rectangle(&mut self, node: Node<'_, '_>, map: &Affine) -> Result<(), OutlineProblem> {
@@ -347,9 +350,49 @@ impl Drawing {
             }
         }
         line.extend(line.first().copied());
-        self.lines.push(line);
-        Ok(())
+        self.lines.add(line)
     }
+}
+
+/// Refuses numbers of a path that are too large: as many curves stand for an arc as its radius asks for.
+fn check_numbers(d: &str) -> Result<(), OutlineProblem> {
+    use svgtypes::PathSegment::{
+        ClosePath, CurveTo, EllipticalArc, HorizontalLineTo, LineTo, MoveTo, Quadratic,
+        SmoothCurveTo, SmoothQuadratic, VerticalLineTo,
+    };
+    // what is no path is told where it is drawn
+    for segment in PathParser::from(d).map_while(Result::ok) {
+        let numbers: [f64; 6] = match segment {
+            MoveTo { x, y, .. } | LineTo { x, y, .. } | SmoothQuadratic { x, y, .. } => {
+                [x, y, 0.0, 0.0, 0.0, 0.0]
+            }
+            HorizontalLineTo { x, .. } => [x, 0.0, 0.0, 0.0, 0.0, 0.0],
+            VerticalLineTo { y, .. } => [y, 0.0, 0.0, 0.0, 0.0, 0.0],
+            CurveTo {
+                x1,
+                y1,
+                x2,
+                y2,
+                x,
+                y,
+                ..
+            } => [x1, y1, x2, y2, x, y],
+            SmoothCurveTo { x2, y2, x, y, .. } => [x2, y2, x, y, 0.0, 0.0],
+            Quadratic { x1, y1, x, y, .. } => [x1, y1, x, y, 0.0, 0.0],
+            EllipticalArc { rx, ry, x, y, .. } => [rx, ry, x, y, 0.0, 0.0],
+            ClosePath { .. } => [0.0; 6],
+        };
+        if let Some(number) = numbers
+            .into_iter()
+            .find(|number| number.abs() > LARGEST_NUMBER)
+        {
+            return Err(OutlineProblem::Number {
+                found: number.to_string(),
+                expected: "coordinate: they go up to 1e9",
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Numbers of an element's attributes in the drawing's unit; 0 for those that are not there.
