@@ -151,27 +151,45 @@ impl BagImages {
         })
     }
 
-    /// The image with a number among those of the bag, from 1, and its name.
-    pub fn frame(&self, number: usize) -> Result<(String, GrayImage)> {
-        let (mut count, mut found) = (0, None);
+    /// How many images there are.
+    pub fn count(&self) -> Result<usize> {
+        let mut count = 0;
+        read_bag_images(self.files.open_all()?, &self.topics, &mut |_| {
+            count += 1;
+            anyhow::Ok(ControlFlow::Continue(()))
+        })?;
+        Ok(count)
+    }
+
+    /// The images with these rising numbers among those of the bag, from 1, and their names.
+    pub fn frames(&self, numbers: &[usize]) -> Result<Vec<(String, GrayImage)>> {
+        let (mut count, mut found) = (0, Vec::with_capacity(numbers.len()));
         read_bag_images(self.files.open_all()?, &self.topics, &mut |image| {
             count += 1;
-            if count < number {
-                return anyhow::Ok(ControlFlow::Continue(()));
+            if numbers.get(found.len()) == Some(&count) {
+                found.push((image.name.clone(), grey(&image)?));
             }
-            found = Some((image.name.clone(), grey(&image)?));
-            Ok(ControlFlow::Break(()))
+            anyhow::Ok(match found.len() == numbers.len() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })
         })?;
-        found.ok_or_else(|| {
-            hinted(
+        match numbers.get(found.len()) {
+            None => Ok(found),
+            Some(number) => Err(hinted(
                 format!(
                     "{}: {} has {count} images, and number {number} was asked for",
                     self.shown,
                     self.topics.image()
                 ),
                 format!("give a number from 1 to {count}"),
-            )
-        })
+            )),
+        }
+    }
+
+    /// The image with a number among those of the bag, from 1, and its name.
+    pub fn frame(&self, number: usize) -> Result<(String, GrayImage)> {
+        Ok(self.frames(&[number])?.remove(0))
     }
 }
 

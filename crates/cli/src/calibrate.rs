@@ -26,6 +26,9 @@ const LENS: [&str; 8] = [
     "fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2",
 ];
 
+/// How many images of a bag a lens is found from.
+const FRAMES: usize = 30;
+
 /// What is printed of a calibration.
 #[derive(Debug, Serialize)]
 struct Summary {
@@ -64,30 +67,63 @@ pub fn calibrate(args: &CalibrateArgs) -> Result<Verdict> {
     let lens = args.lens.as_deref().map(lens_of).transpose()?;
     match (bag, lens) {
         (Some(bag), lens) => {
-            let lens = lens.map_or_else(|| bag_lens(args, &bag), Ok)?;
             let number = args.flat.as_deref().map_or(Ok(1), number)?;
-            table(args, &board, &lens, bag.frame(number)?)
+            match lens.map_or_else(|| bag.lens(), |lens| Ok(Some(lens)))? {
+                Some(lens) => table(args, &board, &lens, bag.frame(number)?),
+                None => lens_and_table_of_bag(args, &board, &bag, number),
+            }
         }
         (None, Some(lens)) => {
             let folder = FrameFolder::list(&args.frames)?;
             let frame = folder.load(flat(args, &folder)?)?;
             table(args, &board, &lens, frame)
         }
-        (None, None) => lens_and_table(args, &board),
+        (None, None) => lens_and_table_of_folder(args, &board),
     }
 }
 
 /// Finds the lens and the table from a folder of images.
-fn lens_and_table(args: &CalibrateArgs, board: &BoardOnTable) -> Result<Verdict> {
+fn lens_and_table_of_folder(args: &CalibrateArgs, board: &BoardOnTable) -> Result<Verdict> {
     let folder = FrameFolder::list(&args.frames)?;
     let flat = flat(args, &folder)?;
-    let progress = bar(folder.names.len(), "frames", Work::Long);
+    lens_and_table(args, board, flat, folder.names.len(), |index| {
+        folder.load(index)
+    })
+}
+
+/// Finds the lens and the table from images of a bag, of which one shows the board on the table.
+fn lens_and_table_of_bag(
+    args: &CalibrateArgs,
+    board: &BoardOnTable,
+    bag: &BagImages,
+    number: usize,
+) -> Result<Verdict> {
+    let numbers = spread(bag.count()?, number);
+    let flat = numbers.iter().position(|other| *other == number);
+    let frames = bag.frames(&numbers)?;
+    talk(format_args!(
+        "note: the lens is found, too, from {} images of the bag",
+        frames.len()
+    ));
+    let load = |index: usize| Ok(frames[index].clone());
+    lens_and_table(args, board, flat.unwrap_or(0), frames.len(), load)
+}
+
+/// Finds the lens and the table from so many frames; in the one at `flat` the board lies on the table.
+fn lens_and_table(
+    args: &CalibrateArgs,
+    board: &BoardOnTable,
+    flat: usize,
+    count: usize,
+    load: impl Fn(usize) -> Result<(String, GrayImage)> + Sync,
+) -> Result<Verdict> {
+    let progress = bar(count, "frames", Work::Long);
     let pool = args.threads.pool()?;
     let load = |index: usize| {
         progress.inc(1);
-        folder.load(index)
+        load(index)
     };
-    let recording = pool.install(|| search_board(folder.names.len(), load));
+    let recording = pool.install(|| search_board(count, load));
     progress.finish_and_clear();
     let calibration = stickslip_vision::calibrate(&recording?, board, flat)
         .with_context(|| args.frames.display().to_string())?;
@@ -96,6 +132,21 @@ fn lens_and_table(args: &CalibrateArgs, board: &BoardOnTable) -> Result<Verdict>
     show_result(args.json, &summary, || summary.text())?;
     talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
+}
+
+/// Numbers, from 1, of images that a lens is found from: all, or [`FRAMES`] from the first to the last
+/// evenly, and the one that is `needed` if there is such an image.
+fn spread(count: usize, needed: usize) -> Vec<usize> {
+    let mut numbers: Vec<usize> = match count {
+        0..=FRAMES => (1..=count).collect(),
+        _ => (0..FRAMES)
+            .map(|k| 1 + k * (count - 1) / (FRAMES - 1))
+            .collect(),
+    };
+    numbers.push(needed);
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
 }
 
 /// Finds the table from one image, through a lens that is known.
@@ -130,19 +181,6 @@ fn lens_of(path: &Path) -> Result<Lens> {
         hinted(
             format!("{name}: the camera was not calibrated: its focal length is 0"),
             "leave --lens out, and give a folder with frames of the board tilted to all sides",
-        )
-    })
-}
-
-/// The lens that a bag tells.
-fn bag_lens(args: &CalibrateArgs, bag: &BagImages) -> Result<Lens> {
-    bag.lens()?.ok_or_else(|| {
-        hinted(
-            format!(
-                "{}: no CameraInfo tells the lens, and a bag gives the table alone",
-                args.frames.display()
-            ),
-            "give it with --lens FILE, or give a folder of images, with the board tilted to all sides",
         )
     })
 }

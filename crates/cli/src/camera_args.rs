@@ -11,8 +11,8 @@ use crate::arg_values::{Rows, ThreadArgs, positive};
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
     /// Folder with images of the board: lying on the table in one, held and tilted to all sides in
-    /// the others; or a bag of images, which gives the table alone, through the lens of its
-    /// CameraInfo or of --lens
+    /// the others; or a bag of such images. Where its CameraInfo or --lens tells the lens, one image
+    /// of the board on the table is enough
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
     /// Take the lens from this file, and find the table alone, from the image in which the board

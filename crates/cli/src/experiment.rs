@@ -156,7 +156,11 @@ pub fn read_scene_and_log(
 /// The scene of a log that is given without one: `scene.toml` in the folder that is given, else
 /// beside the log.
 pub fn scene_beside(given: &Path) -> Result<PathBuf> {
-    let path = std::path::absolute(given).unwrap_or(given.to_owned());
+    // as the user would write it, where the folder above can be told from that
+    let path = match given.file_name() {
+        Some(_) => given.to_owned(),
+        None => std::path::absolute(given).unwrap_or(given.to_owned()),
+    };
     let above: Vec<&Path> = path
         .ancestors()
         .skip(usize::from(!path.is_dir()))
@@ -207,10 +211,11 @@ pub fn open(path: &Path, what: &str) -> Result<File> {
 
 /// The error about a file that cannot be read.
 pub fn unreadable(path: &Path, what: &str, error: &io::Error) -> anyhow::Error {
+    let file = format!("{} file", what.strip_suffix(" file").unwrap_or(what));
     let help = if path.is_dir() {
-        format!("give the {what} file itself")
+        format!("give the {file} itself")
     } else {
-        format!("give the path of the {what} file")
+        format!("give the path of the {file}")
     };
     hinted(
         format!("{}: the {what} cannot be read: {error}", path.display()),

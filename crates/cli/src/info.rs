@@ -1,6 +1,6 @@
 //! `stickslip info`: what is in a bag, and how to read a log from it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use serde::Serialize;
@@ -41,17 +41,34 @@ fn image_commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
     if suggestion.is_empty() {
         return Vec::new();
     }
-    let (topics, bag) = (
-        topic_options(suggestion),
-        quoted(&bag.display().to_string()),
+    let (scene, begin) = scene_of(bag);
+    let (topics, bag) = (topic_options(suggestion), word(bag));
+    let track = format!(
+        "stickslip track {bag}{topics} --calibration calibration.toml --tags tags.toml --out tracked"
     );
-    vec![
-        format!(
-            "stickslip track {bag}{topics} --calibration calibration.toml --tags tags.toml --out tracked"
+    let filter = format!(
+        "stickslip filter tracked/log.csv --scene {} --out out --report report.html",
+        word(&scene)
+    );
+    [track].into_iter().chain(begin).chain([filter]).collect()
+}
+
+/// A path as a shell takes it.
+fn word(path: &Path) -> String {
+    quoted(&path.display().to_string())
+}
+
+/// The scene beside a bag, and the command that writes one, if there is none.
+fn scene_of(bag: &Path) -> (PathBuf, Option<String>) {
+    let folder = bag.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new("."));
+    match scene_beside(bag) {
+        Ok(scene) => (scene, None),
+        Err(_) => (
+            folder.join("scene.toml"),
+            Some(format!("stickslip new {}", word(folder))),
         ),
-        "stickslip filter tracked/log.csv --scene scene.toml --out out --report report.html"
-            .to_owned(),
-    ]
+    }
 }
 
 /// Mappings as options of a command.
@@ -63,17 +80,13 @@ fn topic_options(mappings: &[String]) -> String {
 /// How to check and filter the bag, from a scene beside it on, if there is none.
 fn commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
     let topics = topic_options(suggestion);
-    let word = |path: &Path| quoted(&path.display().to_string());
-    let folder = bag.parent().filter(|folder| *folder != Path::new(""));
-    let folder = folder.unwrap_or(Path::new("."));
-    let scene = scene_beside(bag).is_err();
-    let scene = scene.then(|| format!("stickslip new {}", word(folder)));
+    let (_, begin) = scene_of(bag);
     let bag = word(bag);
     let use_it = [
         format!("stickslip check {bag}{topics}"),
         format!("stickslip filter {bag}{topics} --out out --report report.html"),
     ];
-    scene.into_iter().chain(use_it).collect()
+    begin.into_iter().chain(use_it).collect()
 }
 
 /// A word as a shell takes it.
@@ -103,7 +116,7 @@ fn text(shown: &Shown) -> String {
     }
     if !shown.image_commands.is_empty() {
         parts.push(format!(
-            "Or find object and pusher in the images by their tags, with a calibration.toml of `stickslip calibrate`\n  {}",
+            "Or find object and pusher in the images by their tags, with tags.toml and a calibration.toml of `stickslip calibrate`, as docs/guide/camera.md has them\n  {}",
             shown.image_commands.join("\n  ")
         ));
     }

@@ -183,3 +183,37 @@ fn a_bag_of_the_board_gives_the_table_through_its_own_lens() {
     let [table, again] = ["table.toml", "again.toml"].map(|name| fs::read(out.join(name)).unwrap());
     assert_eq!(table, again);
 }
+
+#[test]
+#[ignore = "needs Python packages; .ci/run installs them and runs this"]
+fn a_bag_of_the_board_gives_the_lens_where_no_camera_info_does() {
+    let out = rendered("ros2/lens");
+    let frames = out.join("board");
+    let listed: Vec<String> = (0..8).map(|k| format!("{k}.5,{k:03}.png")).collect();
+    let list = format!("time,file\n{}\n", listed.join("\n"));
+    fs::write(frames.join("frames.csv"), list).unwrap();
+    bag(&frames, &out.join("calibration.toml"), &out.join("bag"));
+    // those that are in the bag
+    for k in 8.. {
+        if fs::remove_file(frames.join(format!("{k:03}.png"))).is_err() {
+            break;
+        }
+    }
+    let calibrated = |from: &str, options: &[&str]| {
+        let mut command = stickslip();
+        command.arg("calibrate").arg(out.join(from)).args(options);
+        command.arg("--board").arg(out.join("board.toml"));
+        json(command.arg("--out").arg(out.join("of.toml")).arg("--json"))
+    };
+    // rosbags wrote the latest frame first, so the flat one is the last
+    let topics = ["--topic", "image=/cam/image_raw", "--topic", "info="];
+    let of_bag = calibrated("bag", &[&topics[..], &["--flat", "8"]].concat());
+    let of_files = calibrated("board", &[]);
+    for key in ["frames", "tags", "tags_left_out"] {
+        assert_eq!(of_bag[key], of_files[key], "{key}");
+    }
+    for k in 0..8 {
+        let [a, b] = [&of_bag, &of_files].map(|of| of["lens"][k].as_f64().unwrap());
+        assert!((a - b).abs() < 1e-6 * b.abs(), "{k}: {a} {b}");
+    }
+}
