@@ -27,6 +27,7 @@ use crate::origin::origin;
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::reported_run::DRAWN;
+use crate::since_start::since_start;
 use crate::verdict::Verdict;
 
 /// Name of the file of estimates.
@@ -165,7 +166,9 @@ fn report(
 ) -> Result<PathBuf> {
     let (name, title) = (experiment_name(&args.log), run.title());
     let occlusion = args.shared.occlusion();
-    let reported = ReportedExperiment::new(&name, "", experiment, occlusion, vec![run]);
+    let (shown, runs, start) = since_start(experiment, vec![run]);
+    let reported = ReportedExperiment::new(&name, "", &shown, occlusion, runs);
+    let start = start.map(|start| ("times", format!("from {start} s on")));
     let report = Report {
         title: format!("{name}: {title}"),
         summary: warnings
@@ -174,13 +177,17 @@ fn report(
             .chain(reported.summary().iter().cloned())
             .collect(),
         sections: vec![reported.section()],
-        origin: origin([
-            ("log", args.log.display().to_string()),
-            ("scene", scene.display().to_string()),
-            ("scored against", reference_name(experiment).to_owned()),
-            ("particles", args.shared.particles.to_string()),
-            ("seed", args.seed.to_string()),
-        ]),
+        origin: origin(
+            [
+                ("log", args.log.display().to_string()),
+                ("scene", scene.display().to_string()),
+                ("scored against", reference_name(experiment).to_owned()),
+                ("particles", args.shared.particles.to_string()),
+                ("seed", args.seed.to_string()),
+            ]
+            .into_iter()
+            .chain(start),
+        ),
     };
     write_report(path.to_owned(), &report)
 }

@@ -38,6 +38,7 @@ mod reported_run;
 mod reproduce;
 mod simulate;
 mod simulation_args;
+mod since_start;
 mod topic_args;
 mod track;
 mod verdict;

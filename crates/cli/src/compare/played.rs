@@ -11,6 +11,7 @@ use super::results::{Comparison, FolderResult};
 use crate::experiment::experiment_name;
 use crate::log_files::log_path;
 use crate::reported_run::reported_run;
+use crate::since_start::since_start;
 
 /// All of up to two experiments; of more, the one on which the particle filter fares as on the median
 /// one, and the one on which it fares worst.
@@ -69,5 +70,6 @@ fn section(folder: &Folder, mode: Mode, particles: usize) -> Result<Section> {
         .map(|variant| reported_run(variant, experiment, &conditions))
         .collect::<Result<Vec<_>, _>>()?;
     let name = experiment_name(&log_path(&folder.path));
-    Ok(ReportedExperiment::new(&name, "", experiment, *occlusion, runs).section())
+    let (shown, runs, _) = since_start(experiment, runs);
+    Ok(ReportedExperiment::new(&name, "", &shown, *occlusion, runs).section())
 }
