@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use tungstenite::handshake::server::{ErrorResponse, Request, Response};
 use tungstenite::http::StatusCode;
-use tungstenite::{Message, accept_hdr};
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{Message, WebSocket, accept_hdr_with_config};
 
 /// Least time between two rows that are shown: 30 a second are seen.
 const PERIOD: Duration = Duration::from_millis(33);
@@ -19,6 +20,15 @@ const MOST_VIEWERS: usize = 8;
 
 /// How long a client may take to say or take something.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How often a page to which nothing is sent is looked after: it may be gone.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// Most messages that are taken from a page at a time; it has nothing to say.
+const MOST_MESSAGES: usize = 64;
+
+/// Longest message of a page (bytes).
+const LONGEST_MESSAGE: usize = 4 << 10;
 
 /// Longest head of a request (bytes).
 const LONGEST_HEAD: usize = 16 << 10;
@@ -150,7 +160,7 @@ impl Shared {
             && query == Some(self.token.as_str())
     }
 
-    fn serve_page(&self, stream: TcpStream) -> io::Result<()> {
+    fn serve_page(&self, mut stream: TcpStream) -> io::Result<()> {
         let mut lines = BufReader::new(io::Read::take(&stream, LONGEST_HEAD as u64)).lines();
         let request = lines.next().transpose()?.unwrap_or_default();
         let heads = lines
@@ -171,12 +181,13 @@ impl Shared {
                 "The address is the one that the program printed.\n",
             ),
         };
-        write!(
-            &stream,
+        // in one piece, so that a client's first look shows how it went
+        let answer = format!(
             "HTTP/1.1 {status}\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {}\r\n\
              Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\nConnection: close\r\n\r\n{body}",
             body.len()
-        )
+        );
+        stream.write_all(answer.as_bytes())
     }
 
     fn serve_socket(&self, stream: TcpStream) -> io::Result<()> {
@@ -192,25 +203,42 @@ impl Shared {
             *refused.status_mut() = StatusCode::FORBIDDEN;
             Err(refused)
         };
-        let mut socket =
-            accept_hdr(stream, judge).map_err(|error| io::Error::other(error.to_string()))?;
+        let limits = WebSocketConfig::default()
+            .max_message_size(Some(LONGEST_MESSAGE))
+            .max_frame_size(Some(LONGEST_MESSAGE));
+        let mut socket = accept_hdr_with_config(stream, judge, Some(limits))
+            .map_err(|error| io::Error::other(error.to_string()))?;
         let mut seen = 0;
-        loop {
+        while is_open(&mut socket)? {
             let text = {
                 let newest = lock(&self.newest);
                 let waited = self
                     .changed
-                    .wait_timeout_while(newest, PATIENCE, |newest| newest.number == seen);
+                    .wait_timeout_while(newest, LOOK, |newest| newest.number == seen);
                 let (newest, _) = waited.unwrap_or_else(PoisonError::into_inner);
                 let is_new = newest.number != seen;
                 seen = newest.number;
                 is_new.then(|| newest.text.clone())
             };
-            // a page that is gone is noticed while nothing happens, too
-            let message = text.map_or(Message::Ping(Vec::new().into()), |text| {
-                Message::text(&*text)
-            });
-            socket.send(message).map_err(io::Error::other)?;
+            if let Some(text) = text {
+                socket
+                    .send(Message::text(&*text))
+                    .map_err(io::Error::other)?;
+            }
         }
+        Ok(())
     }
+}
+
+/// Takes what a page has said, without waiting for more; false where it has gone.
+fn is_open(socket: &mut WebSocket<TcpStream>) -> io::Result<bool> {
+    socket.get_ref().set_nonblocking(true)?;
+    let mut said = (0..MOST_MESSAGES).map(|_| socket.read());
+    let end = said.find_map(Result::err);
+    socket.get_ref().set_nonblocking(false)?;
+    Ok(match end {
+        None => true,
+        Some(tungstenite::Error::Io(error)) => error.kind() == io::ErrorKind::WouldBlock,
+        Some(_) => false,
+    })
 }
