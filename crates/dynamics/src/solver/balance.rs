@@ -274,31 +274,15 @@ fn least_squares(columns: &[Column]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::numbers::Numbers;
     use crate::solver::support_friction::SupportFriction;
 
-    /// Uniform numbers in [−1, 1], by a linear congruence.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-
-        fn vector<const N: usize>(&mut self) -> Vector<N> {
-            [0.0; N].map(|_| self.next())
-        }
-
-        fn feet(&mut self) -> [ScalarFoot; 3] {
-            [0; 3].map(|_| ScalarFoot {
-                jx: self.next(),
-                jy: self.next(),
-                bound: self.next().abs(),
-            })
-        }
+    fn random_feet(numbers: &mut Numbers) -> [ScalarFoot; 3] {
+        [0; 3].map(|_| ScalarFoot {
+            jx: numbers.next(),
+            jy: numbers.next(),
+            bound: numbers.next().abs(),
+        })
     }
 
     fn wrench(foot: &ScalarFoot, u: &[f64; 2]) -> Vector<4> {
@@ -342,7 +326,7 @@ mod tests {
     fn load_is_met_by_feet_alone_where_the_object_rests() {
         let (mut numbers, mut counts) = (Numbers(1), [0; 2]);
         for _ in 0..1000 {
-            let (feet, free) = (numbers.feet(), numbers.vector::<3>());
+            let (feet, free) = (random_feet(&mut numbers), numbers.vector::<3>());
             let rests = SupportFriction::new(&feet).solve(&free).v == [0.0; 3];
             let [x, y, turn] = free.map(|x| -x);
             let load = Load {
@@ -362,7 +346,7 @@ mod tests {
     fn generators_that_met_a_load_meet_it_again_and_separations_hold() {
         let (mut numbers, mut separated) = (Numbers(2), 0);
         for round in 0..1000 {
-            let feet = numbers.feet();
+            let feet = random_feet(&mut numbers);
             let generators = [0; 3].map(|_| numbers.vector::<4>());
             // every other load is a point of the cone, less what feet within their bounds exert
             let fixed = if round % 2 == 0 {

@@ -19,6 +19,8 @@ mod mode_line;
 mod mode_search;
 mod newton;
 mod newton_block;
+#[cfg(test)]
+mod numbers;
 mod piece_search;
 mod plane_region;
 mod redundant_line;

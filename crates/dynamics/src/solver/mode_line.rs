@@ -1,6 +1,5 @@
 //! The velocities that three generators allow: [`ModeLine`].
 
-use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::{Inequality, ModeConditions};
@@ -139,14 +138,8 @@ impl ModePath for ModeLine<'_> {
         !balances || [i, j, k].iter().any(|range| range.high < -slack)
     }
 
-    fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
-        self.conditions
-            .separates(self.chosen, &a.v, &b.v, certifier)
-    }
-
-    fn standing_candidate(&self, at: &Sample, certifier: &mut Certifier<'_>) -> Option<Candidate> {
-        self.conditions
-            .standing_candidate(self.chosen, &at.v, certifier)
+    fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {
+        Some((self.conditions, self.chosen))
     }
 
     fn candidate(&self, at: &Sample) -> Candidate {

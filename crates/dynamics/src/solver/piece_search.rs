@@ -1,7 +1,9 @@
 //! Search along a line or curve by halving it: [`search_pieces`].
 
 use crate::solver::certifier::Certifier;
+use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
+use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::scalar_ncp::Candidate;
 use crate::solver::vector::Vector;
 
@@ -83,17 +85,24 @@ pub trait ModePath {
     /// Whether there is no solution between two points.
     fn excludes(&self, a: &Sample, b: &Sample) -> bool;
 
-    /// The same where a foot may stand between them, by balances.
-    fn separates(&self, _: &Sample, _: &Sample, _: &mut Certifier<'_>) -> bool {
-        false
+    /// The mode's conditions and generators, where balances tell more of it.
+    fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {
+        None
+    }
+
+    /// Whether there is no solution between two points between which a foot may stand, by balances.
+    fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
+        self.balanced()
+            .is_some_and(|(conditions, chosen)| conditions.separates(chosen, &a.v, &b.v, certifier))
     }
 
     /// A point with the impulses of the mode.
     fn candidate(&self, at: &Sample) -> Candidate;
 
     /// The same with impulses that balance the load where feet stand, if others are known.
-    fn standing_candidate(&self, _: &Sample, _: &mut Certifier<'_>) -> Option<Candidate> {
-        None
+    fn standing_candidate(&self, at: &Sample, certifier: &mut Certifier<'_>) -> Option<Candidate> {
+        let (conditions, chosen) = self.balanced()?;
+        conditions.standing_candidate(chosen, &at.v, certifier)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The velocities that four generators allow whose equations depend on each other:
 //! [`RedundantLine`].
 
-use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
@@ -80,14 +79,8 @@ impl ModePath for RedundantLine<'_> {
         self.dual.iter().any(|w| range(w).high < -slack)
     }
 
-    fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
-        self.conditions
-            .separates(self.chosen, &a.v, &b.v, certifier)
-    }
-
-    fn standing_candidate(&self, at: &Sample, certifier: &mut Certifier<'_>) -> Option<Candidate> {
-        self.conditions
-            .standing_candidate(self.chosen, &at.v, certifier)
+    fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {
+        Some((self.conditions, self.chosen))
     }
 
     fn candidate(&self, at: &Sample) -> Candidate {

@@ -368,29 +368,18 @@ fn regular(mut matrix: [Vector<3>; 3]) -> [Vector<3>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::numbers::Numbers;
 
-    /// Uniform numbers in [−1, 1], by a linear congruence.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-
-        fn feet(&mut self) -> [ScalarFoot; 3] {
-            std::array::from_fn(|_| ScalarFoot {
-                jx: 2.0 * self.next(),
-                jy: 2.0 * self.next(),
-                bound: match self.next() {
-                    ..-0.9 => 0.0,
-                    x => x.abs(),
-                },
-            })
-        }
+    /// Some of them bear nothing.
+    fn random_feet(numbers: &mut Numbers) -> [ScalarFoot; 3] {
+        std::array::from_fn(|_| ScalarFoot {
+            jx: 2.0 * numbers.next(),
+            jy: 2.0 * numbers.next(),
+            bound: match numbers.next() {
+                ..-0.9 => 0.0,
+                x => x.abs(),
+            },
+        })
     }
 
     /// Variational inequality of the minimum: load − v is in the friction's subdifferential at v.
@@ -416,7 +405,7 @@ mod tests {
         let mut numbers = Numbers(1);
         let mut rests = 0;
         for case in 0..20_000 {
-            let feet = numbers.feet();
+            let feet = random_feet(&mut numbers);
             let mut support = SupportFriction::new(&feet);
             let size = [0.3, 1.0, 3.0][case % 3];
             let load: Vector<3> = std::array::from_fn(|_| size * numbers.next());
@@ -431,7 +420,7 @@ mod tests {
     fn loads_along_a_line_through_rest_pivots_and_creep_are_balanced() {
         let mut numbers = Numbers(2);
         for _ in 0..500 {
-            let feet = numbers.feet();
+            let feet = random_feet(&mut numbers);
             let mut support = SupportFriction::new(&feet);
             let [from, along]: [Vector<3>; 2] =
                 std::array::from_fn(|_| std::array::from_fn(|_| numbers.next()));

@@ -82,14 +82,9 @@ impl<'o> ContactModel<'o> {
         self.camera_likelihood.set_trust(trusted);
     }
 
-    /// The poses of one chunk's particles that the camera shows.
-    pub fn shown(
-        &self,
-        observation: &Observation,
-        block: &Block<'_>,
-        chunk: usize,
-    ) -> Pose<Column> {
-        self.camera_likelihood.shown(observation, block, chunk)
+    /// What the camera's poses say of particles.
+    pub(crate) fn camera_likelihood(&self) -> &CameraLikelihood {
+        &self.camera_likelihood
     }
 
     /// A camera pose's worth of noise around `pose`, by its own covariance where it has one.

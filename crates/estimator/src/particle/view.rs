@@ -78,7 +78,8 @@ impl<'a> ParticleView<'a> {
     #[must_use]
     pub fn shown_pose(&self, particle: usize) -> Pose {
         let (block, i) = (self.particles.block(particle / BLOCK), particle % BLOCK);
-        let shown = self.model.shown(self.observation, &block, i / LANES);
+        let camera = self.model.camera_likelihood();
+        let shown = camera.shown(self.observation, &block, i / LANES);
         shown.map(|column| column.0[i % LANES])
     }
 
