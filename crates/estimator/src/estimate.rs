@@ -75,6 +75,14 @@ pub struct EstimateRow {
     pub failed: Option<u32>,
 }
 
+impl EstimateRow {
+    /// Whether a contact with pusher or fixel is possible at all.
+    pub(crate) fn any_contact(&self) -> bool {
+        let fixels = self.contact_fixels.iter().flatten();
+        fixels.chain(&self.contact_pusher).any(|share| *share > 0.0)
+    }
+}
+
 /// A method's estimates, one row per log row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Estimate {

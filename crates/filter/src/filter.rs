@@ -1,6 +1,7 @@
 //! The particle filter: sequential importance resampling (Gordon, Salmond & Smith 1993; Doucet &
 //! Johansen 2009, algorithm "SMC" with adaptive resampling), over any [`Model`].
 
+use crate::bridge::Bridge;
 use crate::model::{Model, WeightedSums};
 use crate::parallel::PerThread;
 use crate::particles::{BLOCK, ParticleSet};
@@ -17,9 +18,10 @@ pub struct ParticleFilter<M: Model> {
     pub(crate) step: u64,
     pub(crate) particles: ParticleSet,
     pub(crate) weights: LogWeights,
-    unnormalised: UnnormalisedWeights,
+    pub(crate) unnormalised: UnnormalisedWeights,
     /// Log-likelihoods for [`Model::resetting_log_likelihood`], (N,).
-    resetting: Vec<f64>,
+    pub(crate) resetting: Vec<f64>,
+    pub(crate) bridge: Bridge,
     ancestors: Vec<u32>,
     scratch: PerThread<M::Scratch>,
     /// The sums over every block, and over all.
@@ -42,6 +44,7 @@ impl<M: Model> ParticleFilter<M> {
             weights: LogWeights::equal(settings.particles),
             unnormalised: UnnormalisedWeights::zeros(settings.particles),
             resetting: vec![0.0; settings.particles],
+            bridge: Bridge::new(model.ensemble(), &particles),
             ancestors: vec![0; settings.particles],
             scratch: PerThread::new(blocks.len(), || model.scratch()),
             block_sums: blocks.map(|_| M::Sums::default()).collect(),
@@ -76,7 +79,8 @@ impl<M: Model> ParticleFilter<M> {
     /// What concerns one block of particles happens in one parallel pass over the blocks; what needs
     /// all of them comes before it (choosing ancestors) and after it (normalising the weights, adding
     /// the blocks' sums). If no particle explains the part of the observation that a reinitialisation
-    /// can improve, or all weights are zero, the particles are reinitialised around it.
+    /// can improve, or all weights are zero, the particles are reinitialised around it. Where a model lets
+    /// an observation move them, it does as far as weighing alone would leave few, see [`bridge`](crate::bridge).
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
         let resampled = self.satisfies_resample_condition();
@@ -90,6 +94,7 @@ impl<M: Model> ParticleFilter<M> {
         };
         match weight_update {
             WeightUpdate::Unobserved => self.combine_sums(|_| 1.0),
+            WeightUpdate::Weighed { .. } if self.bridge.moved() => self.recompute_sums(input),
             WeightUpdate::Weighed { .. } => self.combine_sums(BlockWeights::scale),
             WeightUpdate::Collapsed { .. } => self.recompute_sums(input),
         }
@@ -140,6 +145,7 @@ impl<M: Model> ParticleFilter<M> {
         self.weights = LogWeights::equal(particles);
         self.unnormalised = UnnormalisedWeights::zeros(particles);
         self.resetting.resize(particles, 0.0);
+        self.bridge = Bridge::new(self.model.ensemble(), &self.particles);
         let blocks = self.particles.block_count();
         self.block_sums.resize_with(blocks, M::Sums::default);
         if blocks > blocks_before {
@@ -188,7 +194,7 @@ impl<M: Model> ParticleFilter<M> {
             best_log_likelihood = self.best_resetting_log_likelihood(observation);
         }
         if !self.model.collapsed(best_log_likelihood)
-            && let Some(log_evidence) = self.weights.update(&mut self.unnormalised)
+            && let Some(log_evidence) = self.weigh_and_move(observation)
         {
             return WeightUpdate::Weighed { log_evidence };
         }
@@ -220,12 +226,17 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     fn best_resetting_log_likelihood(&mut self, observation: &M::Observation) -> f64 {
+        self.weigh_resetting(observation);
+        self.weights.best_log_likelihood(&self.resetting)
+    }
+
+    /// ln of the likelihoods of what reinitialising can improve, and what moves.
+    pub(crate) fn weigh_resetting(&mut self, observation: &M::Observation) {
         let model = &self.model;
         self.particles
             .visit(self.resetting.chunks_mut(BLOCK), |block, out| {
                 model.resetting_log_likelihood(observation, block, out)
             });
-        self.weights.best_log_likelihood(&self.resetting)
     }
 
     /// Sensor resetting (Lenser & Veloso 2000) after a collapse: resamples by the weights before
@@ -284,6 +295,7 @@ impl<M: Model> ParticleFilter<M> {
         let (before, after) = (self.particles.columns(), self.model.columns());
         assert!(after >= before, "{before} columns cannot shrink to {after}");
         self.particles.append_columns(after - before);
+        self.bridge = Bridge::new(self.model.ensemble(), &self.particles);
     }
 
     /// The settings.

@@ -17,6 +17,8 @@
 //! itself. They help where the system runs them; a filter does not wait for those that it does not.
 
 mod awake;
+mod bridge;
+mod ensemble;
 mod filter;
 mod helpers;
 mod kalman;
@@ -33,6 +35,7 @@ mod streams;
 mod weights;
 
 pub use awake::keep_threads_awake;
+pub use ensemble::EnsembleShape;
 pub use filter::ParticleFilter;
 pub use kalman::constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
 pub use kalman::gaussian::{Gaussian, MeasurementUpdate};

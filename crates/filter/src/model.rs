@@ -1,5 +1,6 @@
 //! What a particle is, how it moves and how likely it makes an observation: [`Model`].
 
+use crate::ensemble::EnsembleShape;
 use crate::particles::{Block, BlockMut};
 use crate::streams::Draw;
 
@@ -76,10 +77,11 @@ pub trait Model: Sync {
     }
 
     /// Writes the log-likelihood of the part of the observation that
-    /// [`reinitialise`](Self::reinitialise) draws the particles around; all of it by default.
+    /// [`reinitialise`](Self::reinitialise) draws the particles around, and that
+    /// [`moves`](Self::moves) them; all of it by default.
     ///
-    /// Called only where the whole log-likelihood indicates a collapse. If this part does not, the
-    /// particles stay: no reinitialising makes, say, a false alarm of another sensor likelier.
+    /// Where the whole log-likelihood indicates a collapse and this part does not, the particles stay:
+    /// no reinitialising makes, say, a false alarm of another sensor likelier.
     fn resetting_log_likelihood(
         &self,
         observation: &Self::Observation,
@@ -88,6 +90,26 @@ pub trait Model: Sync {
     ) {
         self.log_likelihood(observation, block, out);
     }
+
+    /// What observations may move beside weighing it; by default nothing.
+    fn ensemble(&self) -> EnsembleShape {
+        EnsembleShape::default()
+    }
+
+    /// Whether an observation may move what [`ensemble`](Self::ensemble) says. The part of it that moves
+    /// is that of [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about normal: ln of
+    /// its likelihood is −½ the sum of the squared errors, up to a constant.
+    fn moves(&self, _observation: &Self::Observation) -> bool {
+        false
+    }
+
+    /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then each
+    /// error, what a particle expects less what was observed, in standard deviations of the noise. Places past the block's last particle hold any finite number.
+    fn read_ensemble(&self, _observation: &Self::Observation, _block: &Block<'_>, _to: &mut [f64]) {
+    }
+
+    /// Takes the quantities back into the block.
+    fn write_ensemble(&self, _from: &[f64], _block: &mut BlockMut<'_>) {}
 
     /// Draws particles anew around the observation after a collapse; the columns hold the
     /// propagated particles, resampled by their weights before the observation. The observation is

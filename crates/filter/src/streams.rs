@@ -43,6 +43,8 @@ pub enum Purpose {
     Resize = 7,
     /// Resampling from the particles of two tries.
     SecondTry = 8,
+    /// Noise of the measurements that particles are moved to.
+    Move = 9,
 }
 
 #[derive(Clone, Copy)]

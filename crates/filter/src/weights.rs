@@ -131,10 +131,7 @@ impl LogWeights {
         assert_eq!(log_likelihood.len(), self.log.len());
         let mut unnormalised = UnnormalisedWeights::zeros(self.log.len());
         unnormalised.log_likelihood.copy_from_slice(log_likelihood);
-        for (index, mut block) in unnormalised.blocks_mut().enumerate() {
-            let first = index * BLOCK;
-            block.weigh(self, first..first + block.weights.len());
-        }
+        unnormalised.weigh(self);
         self.update(&mut unnormalised)
     }
 
@@ -201,7 +198,7 @@ impl LogWeights {
 #[derive(Clone, Debug)]
 pub(crate) struct UnnormalisedWeights {
     /// ln L, (N,).
-    log_likelihood: Vec<f64>,
+    pub log_likelihood: Vec<f64>,
     /// w L e^(-block's `log_factor`), (N,).
     weights: Vec<f64>,
     blocks: Vec<BlockWeights>,
@@ -228,11 +225,11 @@ pub(crate) struct BlockWeights {
 }
 
 /// Sums over a whole set.
-struct Normalisation {
+pub(crate) struct Normalisation {
     /// ln Σ w L.
-    log_sum: f64,
+    pub log_sum: f64,
     /// (Σ w L)² / Σ (w L)².
-    effective_sample_size: f64,
+    pub effective_sample_size: f64,
 }
 
 impl UnnormalisedWeights {
@@ -266,6 +263,14 @@ impl UnnormalisedWeights {
         numbers.zip(&mut self.blocks).map(block)
     }
 
+    /// Bayes' rule on all blocks, whose likelihoods have been written.
+    pub fn weigh(&mut self, prior: &LogWeights) {
+        for (index, mut block) in self.blocks_mut().enumerate() {
+            let first = index * BLOCK;
+            block.weigh(prior, first..first + block.weights.len());
+        }
+    }
+
     /// The sums of every block.
     pub fn blocks(&self) -> &[BlockWeights] {
         &self.blocks
@@ -278,7 +283,7 @@ impl UnnormalisedWeights {
     }
 
     /// Sets every block's scale; `None` if all weights are zero.
-    fn normalise(&mut self) -> Option<Normalisation> {
+    pub fn normalise(&mut self) -> Option<Normalisation> {
         let largest = self.blocks.iter().map(|block| block.log_factor);
         let largest = largest.fold(f64::NEG_INFINITY, larger);
         if largest == f64::NEG_INFINITY {

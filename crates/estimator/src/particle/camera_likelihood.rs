@@ -4,7 +4,6 @@ use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::{Block, BlockMut};
 
 use crate::angle::nearest_zero;
-use crate::covariance::Factor;
 use crate::mode::Mode;
 use crate::particle::camera_noise::{CameraNoise, NoisePrior};
 use crate::particle::chunk::{Column, load_chunk, load_pose};
@@ -110,6 +109,55 @@ impl CameraLikelihood {
         noise.store(self.columns, block, chunk);
     }
 
+    /// What one chunk's particles show less the measured pose, as independent numbers in units of the noise
+    /// that they believe in.
+    #[inline(always)]
+    pub fn errors(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> [Column; 3] {
+        let [x, y, theta] = self.told_errors(observation, block, chunk);
+        let Some(prior) = self.noise else {
+            return [x, y, theta];
+        };
+        let noise = CameraNoise::load(self.columns, block, chunk);
+        let [position, angle] = noise.believed(prior);
+        [x / position, y / position, theta / angle]
+    }
+
+    /// The same in units of the told noise.
+    #[inline(always)]
+    fn told_errors(
+        &self,
+        observation: &Observation,
+        block: &Block<'_>,
+        chunk: usize,
+    ) -> [Column; 3] {
+        let Some(measured) = observation.pose else {
+            return [Column::ZERO; 3];
+        };
+        let shown = self.shown(observation, block, chunk);
+        let error = Pose {
+            x: shown.x - measured.x,
+            y: shown.y - measured.y,
+            theta: nearest_zero(shown.theta - measured.theta),
+        };
+        match observation.covariance.and_then(|c| c.factor()) {
+            Some(factor) => {
+                let scale = 1.0 / self.widened;
+                let [theta, x, y] = factor.whitened(error).map(|number| number * scale);
+                [x, y, theta]
+            }
+            None => [
+                error.x * self.per_metre,
+                error.y * self.per_metre,
+                error.theta * self.per_radian,
+            ],
+        }
+    }
+
     #[inline(always)]
     fn residual(
         &self,
@@ -117,34 +165,12 @@ impl CameraLikelihood {
         block: &Block<'_>,
         chunk: usize,
     ) -> Option<Residual> {
-        let measured = observation.pose?;
-        let shown = self.shown(observation, block, chunk);
-        if let Some(factor) = observation.covariance.and_then(|c| c.factor()) {
-            return Some(self.told_residual(&factor, shown, measured));
-        }
-        let dx = (shown.x - measured.x) * self.per_metre;
-        let dy = (shown.y - measured.y) * self.per_metre;
-        let turn = nearest_zero(shown.theta - measured.theta) * self.per_radian;
+        observation.pose?;
+        let [x, y, theta] = self.told_errors(observation, block, chunk);
         Some(Residual {
-            position: dx * dx + dy * dy,
-            angle: turn * turn,
+            position: x * x + y * y,
+            angle: theta * theta,
         })
-    }
-
-    /// The same of a pose that says itself how noisy it is: the squares of its whitened error, those of
-    /// x and y given the angle.
-    #[inline(always)]
-    fn told_residual(&self, factor: &Factor, shown: Pose<Column>, measured: Pose) -> Residual {
-        let [angle, x, y] = factor.whitened(Pose {
-            x: shown.x - measured.x,
-            y: shown.y - measured.y,
-            theta: nearest_zero(shown.theta - measured.theta),
-        });
-        let scale = 1.0 / (self.widened * self.widened);
-        Residual {
-            position: (x * x + y * y) * scale,
-            angle: angle * angle * scale,
-        }
     }
 
     /// ln of the likelihood of a pose that is not wrong, relative to that of a perfect one.

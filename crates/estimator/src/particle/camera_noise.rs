@@ -112,6 +112,15 @@ impl CameraNoise {
             - (of_angle + one) * 0.5 * (one + angle / turn).ln()
     }
 
+    /// Standard deviations of position and angle that are believed in, in units of the told ones.
+    #[inline(always)]
+    pub fn believed(&self, prior: NoisePrior) -> [Column; 2] {
+        let freedom = Lanes::splat(prior.freedom);
+        let position = (freedom + self.position) / (freedom + self.poses * 2.0);
+        let angle = (freedom + self.angle) / (freedom + self.poses);
+        [position.sqrt(), angle.sqrt()]
+    }
+
     /// Learns from a pose that is right with probability `right`.
     #[inline(always)]
     pub fn learn(&mut self, right: Column, position: Column, angle: Column) {

@@ -67,6 +67,8 @@ pub(crate) struct ContactFilter<'o> {
     replay: Replay,
     steadiness: Steadiness,
     resting: RestingPose,
+    /// Whether a particle has touched anything.
+    touched: bool,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -138,6 +140,7 @@ impl<'o> ContactFilter<'o> {
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
+            touched: false,
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -157,7 +160,10 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         let tactile = measured.tactile.iter().copied();
         self.observation.tactile.extend(tactile);
-        self.observation.felt = self.filter.model().columns().mode() == Mode::Contact;
+        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        self.observation.felt = contact;
+        self.touched |= self.latest.any_contact();
+        self.observation.moves = contact && self.touched;
 
         let seen = self.observation.pose.is_some();
         self.replay.before(&self.filter, seen);
@@ -289,6 +295,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();
         self.observation.felt = false;
+        self.observation.moves = false;
         let _ = self.filter.observe(&self.plan, &self.observation);
         self.collapsed = false;
         self.learn_where_it_rests();

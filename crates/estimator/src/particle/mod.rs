@@ -9,6 +9,7 @@ pub(crate) mod contact_filter;
 mod contact_mode;
 mod history;
 mod model;
+mod moved;
 pub(crate) mod observation;
 pub(crate) mod observer;
 mod propagation;

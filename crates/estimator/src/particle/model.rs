@@ -2,7 +2,7 @@
 //! transition, camera and tactile sensors as observation.
 
 use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
-use stickslip_filter::{Block, BlockMut, Draw, Model};
+use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model};
 
 use crate::angle::wrapped;
 use crate::covariance::PoseCovariance;
@@ -10,6 +10,7 @@ use crate::mode::Mode;
 use crate::particle::camera_likelihood::CameraLikelihood;
 use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
+use crate::particle::moved;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::observer::Observer;
 use crate::particle::propagation::{Propagation, Transition};
@@ -245,6 +246,35 @@ impl Model for ContactModel<'_> {
                     .log_likelihood(observation, block, chunk)
             },
         );
+    }
+
+    fn ensemble(&self) -> EnsembleShape {
+        match self.columns().mode() {
+            Mode::Paper => EnsembleShape::default(),
+            Mode::Contact => EnsembleShape {
+                quantities: moved::count(self.columns()),
+                errors: 3,
+            },
+        }
+    }
+
+    fn moves(&self, observation: &Observation) -> bool {
+        observation.moves && observation.pose.is_some()
+    }
+
+    fn read_ensemble(&self, observation: &Observation, block: &Block<'_>, to: &mut [f64]) {
+        let (quantities, errors) = to.split_at_mut(moved::count(self.columns()) * BLOCK);
+        moved::read(self.columns(), block, quantities);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let of_chunk = self.camera_likelihood.errors(observation, block, chunk);
+            for (errors, column) in errors.chunks_mut(BLOCK).zip(&of_chunk) {
+                errors[chunk * LANES..][..LANES].copy_from_slice(&column.0);
+            }
+        }
+    }
+
+    fn write_ensemble(&self, from: &[f64], block: &mut BlockMut<'_>) {
+        moved::write(self.columns(), from, block);
     }
 
     /// Not where the solver found neither a solution nor a proof that there is none.

@@ -45,6 +45,9 @@ pub struct Observation {
     pub tactile: Vec<Option<bool>>,
     /// Whether what the step itself says of pusher and sensors counts (contact mode).
     pub felt: bool,
+    /// Whether the camera's pose may move particles: the object no longer waits where it was first seen
+    /// (contact mode).
+    pub moves: bool,
 }
 
 impl Observation {
@@ -57,6 +60,7 @@ impl Observation {
         self.latency = other.latency;
         self.tactile.clone_from(&other.tactile);
         self.felt = other.felt;
+        self.moves = other.moves;
     }
 
     /// True where nothing was read.

@@ -1,0 +1,130 @@
+//! From the particle filter to the ensemble Kalman filter and back (Frei & Künsch 2013, "Bridging the
+//! ensemble Kalman and particle filters"): where an observation would leave few particles, a part of it
+//! weighs them and the rest moves them. [`Bridge`]; docs/method.md (45).
+
+use stickslip_lanes::exponentials;
+
+use crate::ensemble::{Ensemble, EnsembleShape};
+use crate::filter::ParticleFilter;
+use crate::model::Model;
+use crate::particles::{BLOCK, ParticleSet};
+use crate::streams::Purpose;
+use crate::weights::LogWeights;
+
+/// Share of the effective sample size that weighing is to leave, as far as moving can prevent it: one that
+/// is left with a tenth less resamples once in some ten observations.
+const LEFT: f64 = 0.9;
+
+/// Halvings of the interval in which the share that moves is searched.
+const HALVINGS: usize = 12;
+
+/// Working memory for observations that move particles.
+#[derive(Debug)]
+pub(crate) struct Bridge {
+    ensemble: Ensemble,
+    /// Weights by a share of an observation, (N,).
+    weights: Vec<f64>,
+    moved: bool,
+}
+
+impl Bridge {
+    /// For these particles.
+    pub fn new(shape: EnsembleShape, particles: &ParticleSet) -> Self {
+        let moving = if shape == EnsembleShape::default() {
+            0
+        } else {
+            particles.len()
+        };
+        Self {
+            ensemble: Ensemble::new(shape, moving.div_ceil(BLOCK)),
+            weights: vec![0.0; moving],
+            moved: false,
+        }
+    }
+
+    /// Whether the latest observation moved the particles.
+    pub fn moved(&self) -> bool {
+        self.moved
+    }
+
+    /// The effective sample size under likelihoods of which `share` of the part that moves is left out.
+    fn size_without(
+        &mut self,
+        share: f64,
+        weights: &LogWeights,
+        log_likelihood: &[f64],
+        moving: &[f64],
+    ) -> f64 {
+        let likelihoods = log_likelihood.iter().zip(moving);
+        let given = weights.log_weights().iter().zip(likelihoods);
+        let mut best = f64::NEG_INFINITY;
+        for (weight, (log_weight, (all, moving))) in self.weights.iter_mut().zip(given) {
+            *weight = log_weight + all - share * moving;
+            best = best.max(*weight);
+        }
+        exponentials(&mut self.weights, best);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for weight in &self.weights {
+            sum += weight;
+            squares += weight * weight;
+        }
+        sum * sum / squares
+    }
+
+    /// The smallest share of the part that moves without which weighing leaves enough.
+    fn share(&mut self, weights: &LogWeights, log_likelihood: &[f64], moving: &[f64]) -> f64 {
+        let enough = LEFT * self.size_without(1.0, weights, log_likelihood, moving);
+        let (mut few, mut share) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (few + share);
+            if self.size_without(middle, weights, log_likelihood, moving) < enough {
+                few = middle;
+            } else {
+                share = middle;
+            }
+        }
+        share
+    }
+}
+
+impl<M: Model> ParticleFilter<M> {
+    /// Bayes' rule with the likelihoods of the pass: by weighing alone where that leaves enough particles
+    /// or nothing may move, else by both. Returns ln of the evidence.
+    pub(crate) fn weigh_and_move(&mut self, observation: &M::Observation) -> Option<f64> {
+        self.bridge.moved = false;
+        if !self.model.moves(observation) {
+            return self.weights.update(&mut self.unnormalised);
+        }
+        let all = self.unnormalised.normalise()?;
+        if all.effective_sample_size >= LEFT * self.weights.effective_sample_size() {
+            return self.weights.update(&mut self.unnormalised);
+        }
+        self.weigh_resetting(observation);
+        let log_likelihood = &mut self.unnormalised.log_likelihood;
+        let share = self
+            .bridge
+            .share(&self.weights, log_likelihood, &self.resetting);
+        for (all, moving) in log_likelihood.iter_mut().zip(&self.resetting) {
+            *all -= share * moving;
+        }
+        self.unnormalised.weigh(&self.weights);
+        self.weights.update(&mut self.unnormalised)?;
+        self.move_particles(observation, share);
+        Some(all.log_sum)
+    }
+
+    /// Moves the particles by a share of the observation.
+    fn move_particles(&mut self, observation: &M::Observation, share: f64) {
+        let draw = self.draw(Purpose::Move);
+        let (model, ensemble) = (&self.model, &mut self.bridge.ensemble);
+        self.particles.visit(ensemble.blocks_mut(), |block, to| {
+            model.read_ensemble(observation, block, to);
+        });
+        ensemble.update(self.weights.weights(), share, draw);
+        self.particles
+            .advance(None, ensemble.blocks(), |block, from| {
+                model.write_ensemble(from, block);
+            });
+        self.bridge.moved = true;
+    }
+}
