@@ -57,7 +57,7 @@ fn check_names_a_missing_stall_force() {
     let (code, warnings) = check(&case, "warning");
     assert_eq!((code, warnings.len()), (Some(0), 1), "{warnings:?}");
     for words in [
-        "stall force: `pusher.stall_force` is missing",
+        "stall force: pusher.stall_force is missing",
         "32.0 N",
         "in N",
         "inf",

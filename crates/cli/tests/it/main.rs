@@ -11,6 +11,7 @@ mod common;
 mod doubts;
 mod filter_laws;
 mod fit;
+mod given;
 mod inputs;
 mod lens;
 mod live;

@@ -128,7 +128,7 @@ fn filter_says_which_stall_force_it_assumes_and_solves_the_jam() {
     let text = String::from_utf8(filter(&case).output().unwrap().stdout).unwrap();
     assert!(
         text.lines().any(
-            |line| line.starts_with("note: `pusher.stall_force` is missing")
+            |line| line.starts_with("note: pusher.stall_force is missing")
                 && line.contains("32.0 N is assumed")
                 && line.contains("inf")
         ),
