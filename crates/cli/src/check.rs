@@ -10,7 +10,7 @@ use stickslip::diagnosis::{Finding, Severity, diagnose};
 use crate::args::{CheckArgs, Program};
 use crate::experiment::read_scene_and_log;
 use crate::log_files::LogFiles;
-use crate::output::show_result;
+use crate::output::{counted, show_result};
 use crate::verdict::Verdict;
 
 /// A finding as JSON has it.
@@ -78,15 +78,10 @@ impl fmt::Display for Report {
         writeln!(
             f,
             "\n{}, {}",
-            counted(self.problems, "problem"),
-            counted(self.warnings, "warning")
+            counted(self.problems as u64, "problem"),
+            counted(self.warnings as u64, "warning")
         )
     }
-}
-
-fn counted(count: usize, noun: &str) -> String {
-    let end = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{end}")
 }
 
 impl JsonFinding {

@@ -189,7 +189,7 @@ fn new_takes_an_outline_from_a_drawing() {
     for words in [
         "outline: 40.000 x 40.000 mm, 1200.0 mm^2, 6 vertices in 2 convex parts",
         "the drawing is in mm, as it says",
-        "`object.inertia` is missing",
+        "object.inertia is missing",
     ] {
         assert!(told.contains(words), "{words} is not in\n{told}");
     }

@@ -205,7 +205,8 @@ fn compare_writes_a_report_of_all_folders() {
     );
     let page = fs::read_to_string(page).unwrap();
     for text in [
-        "1 experiments",
+        "1 experiment, every method on each: particle filters with",
+        "with one seed",
         "All experiments",
         "class=\"player\"",
         "number 1 of 1 by the particle filter's WMSE",
@@ -214,6 +215,43 @@ fn compare_writes_a_report_of_all_folders() {
     ] {
         assert!(page.contains(text), "{text}");
     }
+}
+
+/// A log's clock reads seconds since 1970; a page that counts from the log's start says from when.
+#[test]
+fn pages_of_compare_say_from_when_a_clocks_times_count() {
+    let case = Experiment::copy(STOP, "compare_clock");
+    let page = case.folder.join("report.html");
+    let note = |case: &Experiment| {
+        let mut command = stickslip();
+        command.arg("compare").arg(&case.folder).args(FEW);
+        succeeds(command.arg("--report").arg(&page));
+        let text = fs::read_to_string(&page).unwrap();
+        let from = text.split_once("Times count from ").map(|(_, rest)| rest);
+        from.map(|rest| rest.split_once(" s of the log").unwrap().0.to_owned())
+    };
+    assert_eq!(note(&case), None);
+    let shift = |rows: &mut Vec<Vec<f64>>| rows.iter_mut().for_each(|row| row[0] += 1.76e9);
+    case.edit_rows(shift);
+    let first = fs::read_to_string(case.log()).unwrap();
+    let first: f64 = first
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    case.edit("truth.csv", |text| {
+        let (header, rows) = text.split_once('\n').unwrap();
+        let later = rows.lines().map(|row| {
+            let (time, rest) = row.split_once(',').unwrap();
+            format!("{},{rest}\n", time.parse::<f64>().unwrap() + 1.76e9)
+        });
+        format!("{header}\n{}", later.collect::<String>())
+    });
+    assert_eq!(note(&case), Some(first.floor().to_string()));
 }
 
 #[test]

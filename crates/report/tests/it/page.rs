@@ -186,6 +186,20 @@ fn an_experiment_of_600_rows_stays_below_2_mb() {
 }
 
 #[test]
+fn the_summary_says_what_each_parameter_is() {
+    let text = page(60, 5, "test");
+    let (_, told) = text
+        .split_once("Friction according to the particle filter: ")
+        .unwrap();
+    let told = told.split_once("</li>").unwrap().0;
+    for name in ["mu_s", "mu_p", "mu_f", "d_tri"] {
+        let (values, meanings) = told.split_once(". Here ").unwrap();
+        assert_eq!(values.contains(name), meanings.contains(name), "{told}");
+    }
+    assert!(told.contains("d_tri how far the three feet"), "{told}");
+}
+
+#[test]
 fn pages_of_nothing_and_of_one_row_are_pages() {
     for rows in [0, 1] {
         assert!(page(rows, 2, "test").ends_with("</html>"));

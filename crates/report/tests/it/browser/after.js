@@ -52,6 +52,14 @@
       (control) => control.getAttribute("aria-label") || control.textContent.trim() || control.closest("label"),
     );
     verdict["nothing was loaded"] = performance.getEntriesByType("resource").every((entry) => entry.name.startsWith("data:"));
+    const figures = [...document.querySelectorAll("figure")];
+    const letters = (figure) => {
+      const seen = [...figure.querySelectorAll("svg.figure")].filter((svg) => svg.getBoundingClientRect().width > 0);
+      const svg = seen.length === 1 && seen[0];
+      return svg ? (Number(svg.getAttribute("font-size")) * svg.getBoundingClientRect().width) / svg.viewBox.baseVal.width : 0;
+    };
+    verdict["no figure is scrolled"] = figures.length >= 5 && figures.every((figure) => figure.scrollWidth <= figure.clientWidth);
+    verdict["each figure is seen once, in letters to read"] = figures.every((figure) => letters(figure) >= 10.5 && letters(figure) <= 20);
     verdict["fits the width"] = document.documentElement.scrollWidth <= innerWidth;
   } catch (error) {
     trouble.push(String(error.stack));
