@@ -9,6 +9,7 @@ use stickslip_evaluation::Variant;
 use crate::arg_values::{Rows, ThreadArgs, particles, positive};
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::fit_args::FitArgs;
+use crate::given::GivenArgs;
 use crate::live_args::LiveArgs;
 use crate::print_args::PrintArgs;
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
@@ -91,12 +92,9 @@ pub struct DemoArgs {
 /// Arguments of `stickslip filter`.
 #[derive(Debug, Args)]
 pub struct FilterArgs {
-    /// The recorded experiment: log.csv, an MCAP recording of ROS 2 messages, the folder of a bag,
-    /// or a folder with any of these
-    pub log: PathBuf,
-    /// What is known before the experiment [default: scene.toml in the log's folder or beside it]
-    #[arg(long)]
-    pub scene: Option<PathBuf>,
+    /// The log and the scene
+    #[command(flatten)]
+    pub given: GivenArgs,
     /// Topics of an MCAP log
     #[command(flatten)]
     pub topics: TopicArgs,
@@ -162,12 +160,9 @@ pub struct CompareArgs {
 /// Arguments of `stickslip check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// What is known before the experiment (scene.toml); without LOG, the log, or a folder with both
-    #[arg(value_name = "SCENE")]
-    pub scene_or_log: PathBuf,
-    /// The recorded experiment: log.csv, an MCAP recording of ROS 2 messages, the folder of a bag,
-    /// or a folder with any of these
-    pub log: Option<PathBuf>,
+    /// The log and the scene
+    #[command(flatten)]
+    pub given: GivenArgs,
     /// Topics of an MCAP log
     #[command(flatten)]
     pub topics: TopicArgs,

@@ -8,9 +8,9 @@ use serde::Serialize;
 use stickslip::diagnosis::{Finding, Severity, diagnose};
 
 use crate::args::{CheckArgs, Program};
-use crate::experiment::{read_scene_and_log, scene_beside};
+use crate::experiment::read_scene_and_log;
 use crate::log_files::LogFiles;
-use crate::output::show_result;
+use crate::output::{counted, show_result};
 use crate::verdict::Verdict;
 
 /// A finding as JSON has it.
@@ -32,13 +32,10 @@ struct Report {
 
 /// Runs the command.
 pub fn check(args: &CheckArgs) -> Result<Verdict> {
-    // one path is a log with its scene beside it, or a folder of both
-    let (scene, log) = match &args.log {
-        Some(log) => (args.scene_or_log.clone(), log),
-        None => (scene_beside(&args.scene_or_log)?, &args.scene_or_log),
-    };
+    let given = args.given.resolve("check")?;
     let topics = args.topics.topics(Program::command())?;
-    let (setup, log, verdict) = read_scene_and_log(&scene, &LogFiles::find(log)?, &topics)?;
+    let log = LogFiles::find(&given.log)?;
+    let (setup, log, verdict) = read_scene_and_log(&given.scene, &log, &topics)?;
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
     show_result(args.json, &report, || report.to_string())?;
@@ -80,8 +77,9 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "\n{} problems, {} warnings",
-            self.problems, self.warnings
+            "\n{}, {}",
+            counted(self.problems as u64, "problem"),
+            counted(self.warnings as u64, "warning")
         )
     }
 }

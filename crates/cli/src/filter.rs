@@ -18,10 +18,9 @@ use stickslip_report::{
 };
 
 use crate::args::{FilterArgs, MethodName, Program};
-use crate::experiment::{
-    check_occlusion, experiment_name, read_experiment, reference_name, scene_beside,
-};
+use crate::experiment::{check_occlusion, experiment_name, read_experiment, reference_name};
 use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::given::Given;
 use crate::log_files::LogFiles;
 use crate::origin::origin;
 use crate::output::{show_result, talk};
@@ -63,21 +62,18 @@ struct Summary<'a> {
 
 /// Runs the command.
 pub fn filter(args: &FilterArgs) -> Result<Verdict> {
-    let scene = match &args.scene {
-        Some(scene) => scene.clone(),
-        None => scene_beside(&args.log)?,
-    };
+    let given = args.given.resolve("filter")?;
     let (experiment, verdict) = read_experiment(
-        &scene,
-        &args.log,
+        &given.scene,
+        &given.log,
         &args.topics.topics(Program::command())?,
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
-    check_places(args, &scene)?;
+    check_places(args, &given)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
-        timed_run(args, &experiment, &sample).with_context(|| args.log.display().to_string())?;
+        timed_run(args, &experiment, &sample).with_context(|| given.log.display().to_string())?;
     let radius = args.virtual_radius;
     let radius = radius.unwrap_or(experiment.setup.virtual_radius());
     let hidden = args.shared.occlusion();
@@ -91,7 +87,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         .collect();
     let summary = Summary::new(&experiment, scored, seconds, &warnings);
     show_result(args.shared.json, &summary, || {
-        tables(args, &experiment, &scored.estimate, &summary)
+        tables((args, &given.log), &experiment, &scored.estimate, &summary)
     })?;
     let written = args
         .out
@@ -103,7 +99,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         .report
         .as_deref()
         .map(|path| {
-            let inputs = (args, scene.as_path());
+            let inputs = (args, &given);
             report(inputs, &experiment, run.clone(), &warnings, path)
         })
         .transpose()?;
@@ -114,10 +110,10 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
 }
 
 /// Refuses places for results that cannot be written, before the run.
-fn check_places(args: &FilterArgs, scene: &Path) -> Result<()> {
-    let logs = LogFiles::find(&args.log)?.paths;
+fn check_places(args: &FilterArgs, given: &Given) -> Result<()> {
+    let logs = LogFiles::find(&given.log)?.paths;
     let inputs = logs.iter().chain(&args.truth).map(PathBuf::as_path);
-    let inputs: Vec<&Path> = inputs.chain([scene]).collect();
+    let inputs: Vec<&Path> = inputs.chain([given.scene.as_path()]).collect();
     if let Some(folder) = &args.out {
         ready_folder(folder)?;
         refuse_inputs(&folder.join(ESTIMATE), &inputs)?;
@@ -158,13 +154,13 @@ fn timed_run(
 
 /// Writes a report about the run.
 fn report(
-    (args, scene): (&FilterArgs, &Path),
+    (args, given): (&FilterArgs, &Given),
     experiment: &Experiment,
     run: ReportedRun,
     warnings: &[String],
     path: &Path,
 ) -> Result<PathBuf> {
-    let (name, title) = (experiment_name(&args.log), run.title());
+    let (name, title) = (experiment_name(&given.log), run.title());
     let occlusion = args.shared.occlusion();
     let (shown, runs, start) = since_start(experiment, vec![run]);
     let reported = ReportedExperiment::new(&name, "", &shown, occlusion, runs);
@@ -179,8 +175,8 @@ fn report(
         sections: vec![reported.section()],
         origin: origin(
             [
-                ("log", args.log.display().to_string()),
-                ("scene", scene.display().to_string()),
+                ("log", given.log.display().to_string()),
+                ("scene", given.scene.display().to_string()),
                 ("scored against", reference_name(experiment).to_owned()),
                 ("particles", args.shared.particles.to_string()),
                 ("seed", args.seed.to_string()),
@@ -246,14 +242,14 @@ impl<'a> Summary<'a> {
 }
 
 fn tables(
-    args: &FilterArgs,
+    (args, log): (&FilterArgs, &Path),
     experiment: &Experiment,
     estimate: &Estimate,
     summary: &Summary<'_>,
 ) -> String {
     let title = format!(
         "{}, {} against {}\n",
-        args.log.display(),
+        log.display(),
         Variant::of(args.method.into(), TactileUse::Used).title(),
         reference_name(experiment)
     );

@@ -23,6 +23,7 @@ mod filter;
 mod fit;
 mod fit_args;
 mod frames;
+mod given;
 mod info;
 mod live;
 mod live_args;

@@ -15,6 +15,7 @@ use stickslip_report::live_page;
 
 use crate::experiment::read_scene_file;
 use crate::failure::hinted;
+use crate::given::scene_file;
 use crate::live_args::LiveArgs;
 use crate::output::{Reader, stream_line, talk};
 use crate::verdict::Verdict;
@@ -25,7 +26,8 @@ use session::Session;
 
 /// Runs the command.
 pub fn live(args: &LiveArgs) -> Result<Verdict> {
-    let setup = read_scene_file(&args.scene)?;
+    let scene = scene_file(&args.scene);
+    let setup = read_scene_file(&scene)?;
     let options = TrackerOptions {
         mode: args.mode.into(),
         particles: args.particles,
@@ -40,11 +42,11 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     let mut recording = args
         .record
         .as_deref()
-        .map(|path| Recording::create(path, sensors, &args.scene))
+        .map(|path| Recording::create(path, sensors, &scene))
         .transpose()?;
     let mut page = args
         .page
-        .map(|port| open_page(&setup, &args.scene.display().to_string(), port))
+        .map(|port| open_page(&setup, &scene.display().to_string(), port))
         .transpose()?;
     let pool = args.threads.filter_pool(args.particles)?;
     let lines = Lines::read(stdin());

@@ -11,7 +11,7 @@ use crate::args::ModeName;
 /// Arguments of `stickslip live`.
 #[derive(Debug, Args)]
 pub struct LiveArgs {
-    /// What is known before (scene.toml)
+    /// What is known before (scene.toml), or the folder that it lies in
     pub scene: PathBuf,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]

@@ -13,6 +13,12 @@ use serde::Serialize;
 use crate::failure::{Hinted, hinted, one_line};
 use crate::verdict::Verdict;
 
+/// "1 problem", "2 problems".
+pub fn counted(count: u64, noun: &str) -> String {
+    let end = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{end}")
+}
+
 /// Writes results to standard output, with one newline at their end; to nobody where the reader has
 /// left.
 pub fn show(text: impl Display) -> Result<()> {

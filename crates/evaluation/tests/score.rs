@@ -7,7 +7,7 @@ use stickslip_formats::{Experiment, Truth, TruthFacts, read_scene};
 
 fn setup() -> Setup {
     read_scene(
-        include_str!("../../formats/tests/full_scene.toml"),
+        include_str!("../../formats/tests/it/full_scene.toml"),
         "scene.toml",
     )
     .expect("a scene")

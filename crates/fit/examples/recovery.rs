@@ -7,7 +7,8 @@
     reason = "a simulated set that cannot be made ends it"
 )]
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
+#[allow(dead_code, reason = "tests use the rest")]
 mod common;
 
 use common::{pushes, rig_tripod_radius, setup};

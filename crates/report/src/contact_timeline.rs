@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::axis::{Axis, Scale};
 use crate::colour::{Colour, Line};
-use crate::drawing::{Anchor, Drawing, LABEL, TITLE, Text, px};
+use crate::drawing::{Anchor, COLUMN, Drawing, LABEL, Text, px, title_lines};
 use crate::font::{Weight, width};
 use crate::legend::{Legend, Swatch};
 use crate::plot::Plot;
@@ -71,20 +71,29 @@ impl ContactTimeline {
     /// The figure, to be put beside others.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
+        let narrow = Some(Box::new(self.of_width(COLUMN)));
+        Drawing {
+            narrow,
+            ..self.of_width(WIDTH)
+        }
+    }
+
+    /// The figure in so much room (px).
+    fn of_width(&self, room: f64) -> Drawing {
         let names = self
             .bodies
             .iter()
             .map(|body| width(&body.name, LABEL, Weight::Regular));
         let left = names.fold(56.0, f64::max) + 20.0;
-        let title = if self.title.is_empty() { 6.0 } else { 32.0 };
-        let (legend, legend_height) = self.legend().draw([left, title], WIDTH - left - RIGHT);
+        let (heading, title) = title_lines(&self.title, left, room - left - RIGHT);
+        let (legend, legend_height) = self.legend().draw([left, title], room - left - RIGHT);
         let top = title + legend_height + 8.0;
         let lanes: f64 = self.bodies.iter().map(ContactLane::height).sum();
         let bottom = top + lanes.max(BAR) + 4.0;
         let x = Axis {
             scale: Scale::Linear,
             limits: self.span,
-            pixels: [left, WIDTH - RIGHT],
+            pixels: [left, room - RIGHT],
         };
         let plot = |[bottom, top]: [f64; 2]| Plot {
             x,
@@ -99,17 +108,18 @@ impl ContactTimeline {
         };
         let whole = plot([bottom, top]);
         let body = html! {
-            (Text { weight: Weight::Bold, ..Text::at([left, 22.0], &self.title) }.sized(TITLE))
+            (heading)
             (legend)
             (whole.shades(&self.dark))
             (whole.time_axis())
             @for (body, at) in self.bodies.iter().zip(self.tops(top + 8.0)) { (body.draw(at, &plot)) }
         };
         Drawing {
-            width: WIDTH,
+            width: room,
             height: bottom + 48.0,
             label: self.title.clone(),
             body,
+            narrow: None,
         }
     }
 

@@ -8,7 +8,7 @@
 use maud::{Markup, html};
 
 use crate::colour::Colour;
-use crate::font::{FAMILY, Weight};
+use crate::font::{FAMILY, Weight, width};
 
 /// Grid lines.
 pub(crate) const GRID: Colour = Colour(228, 228, 228);
@@ -19,6 +19,9 @@ pub(crate) const DARK: Colour = Colour(236, 233, 226);
 /// Width below which a figure does not fill a page (px).
 const NARROW: f64 = 600.0;
 
+/// Width of a drawing that a phone shows with letters to read: a column in print (px).
+pub(crate) const COLUMN: f64 = 441.0;
+
 /// Font size of labels (px).
 pub(crate) const LABEL: f64 = 14.0;
 
@@ -27,6 +30,12 @@ const PRINT: f64 = 8.0;
 
 /// Font size of titles (px).
 pub(crate) const TITLE: f64 = 16.0;
+
+/// From line to line of a title (px).
+const LINE: f64 = 20.0;
+
+/// How much wider than in our font a text may be in another.
+const LOOSE: f64 = 1.06;
 
 /// A picture as SVG.
 #[derive(Clone, Debug)]
@@ -39,6 +48,8 @@ pub struct Drawing {
     pub label: String,
     /// SVG elements.
     pub(crate) body: Markup,
+    /// The same in one column, for a phone; `None`: this one fits.
+    pub(crate) narrow: Option<Box<Drawing>>,
 }
 
 impl Drawing {
@@ -62,6 +73,7 @@ impl Drawing {
             height,
             label,
             body,
+            narrow: _,
         } = self;
         let [wide, high] = [width, height].map(|length| format!("{}{unit}", px(scale * length)));
         let markup = html! {
@@ -74,10 +86,11 @@ impl Drawing {
         markup.into_string()
     }
 
-    /// Drawings side by side, row by row, in equal cells.
+    /// Drawings side by side, row by row, in equal cells; on a phone one below the other.
     #[must_use]
     pub fn grid(drawings: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, drawings.len().max(1));
+        let narrow = (columns > 1).then(|| Box::new(Self::grid(drawings, 1)));
         let width = drawings
             .iter()
             .map(|drawing| drawing.width)
@@ -102,23 +115,50 @@ impl Drawing {
             height: rows as f64 * height,
             label: labels.join("; "),
             body,
+            narrow,
         }
     }
 
     /// The same under a title.
     #[must_use]
     pub fn titled(self, title: &str) -> Self {
-        let head = 30.0;
+        let (lines, head) = title_lines(title, 12.0, self.width - 24.0);
         let body = html! {
-            (Text { weight: Weight::Bold, ..Text::at([12.0, 21.0], title) }.sized(TITLE))
+            (lines)
             g transform={ "translate(0 " (px(head)) ")" } { (self.body) }
         };
         Self {
             height: self.height + head,
             body,
+            narrow: self.narrow.map(|narrow| Box::new(narrow.titled(title))),
             ..self
         }
     }
+}
+
+/// A title from `left` on, in lines of at most `room` (px) where words allow it, and the height that
+/// it takes (px).
+pub(crate) fn title_lines(title: &str, left: f64, room: f64) -> (Markup, f64) {
+    let mut lines: Vec<String> = Vec::new();
+    for word in title.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(&format!("{line} {word}"), TITLE, Weight::Bold) * LOOSE <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    let text = html! {
+        @for (index, line) in lines.iter().enumerate() {
+            (Text { weight: Weight::Bold, ..Text::at([left, 22.0 + LINE * index as f64], line) }.sized(TITLE))
+        }
+    };
+    let height = match lines.len() {
+        0 => 6.0,
+        count => 12.0 + LINE * count as f64,
+    };
+    (text, height)
 }
 
 /// Where text stands about its point.
@@ -258,6 +298,7 @@ mod tests {
             height: 350.0,
             label: String::new(),
             body: html! {},
+            narrow: None,
         };
         let text = column.to_print_svg();
         assert!(
@@ -267,14 +308,34 @@ mod tests {
     }
 
     #[test]
+    fn a_long_title_is_broken_between_words() {
+        // one word is wider than the room, the others fit two to a line at most
+        let title = "ab cd ef incomprehensibilities gh";
+        let room = 2.1 * width("ab cd", TITLE, Weight::Bold);
+        let (text, height) = title_lines(title, 5.0, room);
+        let lines: Vec<String> = text
+            .into_string()
+            .split("</text>")
+            .filter_map(|line| Some(line.rsplit_once('>')?.1.to_owned()))
+            .collect();
+        assert_eq!(lines, ["ab cd ef", "incomprehensibilities", "gh"]);
+        assert_eq!(height, title_lines("a", 5.0, room).1 + 2.0 * LINE);
+        assert_eq!(title_lines("", 5.0, room).1, 6.0);
+    }
+
+    #[test]
     fn grid_puts_drawings_row_by_row() {
         let cell = |label: &str| Drawing {
             width: 10.0,
             height: 20.0,
             label: label.to_owned(),
             body: html! {},
+            narrow: None,
         };
         let grid = Drawing::grid(&[cell("a"), cell("b"), cell("c")], 2);
+        let narrow = grid.narrow.as_ref().expect("a column");
+        assert_eq!((narrow.width, narrow.height), (10.0, 60.0));
+        assert!(narrow.narrow.is_none());
         assert_eq!(
             (grid.width, grid.height, grid.label.as_str()),
             (20.0, 40.0, "a; b; c")

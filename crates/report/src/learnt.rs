@@ -7,6 +7,26 @@ use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
 use crate::touch::TouchRule;
 
+/// What each parameter is.
+const MEANINGS: [(&str, &str); 4] = [
+    ("mu_s", "is friction on the table"),
+    ("mu_p", "at the pusher"),
+    ("mu_f", "at the fixels"),
+    (
+        "d_tri",
+        "how far the three feet that carry the object are from its centre of mass",
+    ),
+];
+
+/// "mu_s is friction on the table, mu_p at the pusher".
+fn meanings(parameters: &[LearnedParameter]) -> String {
+    let shown = MEANINGS
+        .iter()
+        .filter(|(name, _)| parameters.iter().any(|parameter| parameter.name == *name));
+    let words = shown.map(|(name, meaning)| format!("{name} {meaning}"));
+    words.collect::<Vec<_>>().join(", ")
+}
+
 impl ReportedExperiment<'_> {
     /// What the learner says of itself, of friction and of contact.
     pub(crate) fn learnt(&self) -> Vec<String> {
@@ -19,16 +39,17 @@ impl ReportedExperiment<'_> {
                 run.title()
             )
         });
-        let friction: Vec<String> = LearnedParameter::all(&run.scored.estimate)
-            .iter()
-            .zip(self.friction)
+        let parameters = LearnedParameter::all(&run.scored.estimate);
+        let values = parameters.iter().zip(self.friction);
+        let values: Vec<String> = values
             .map(|(parameter, truth)| self.told(parameter, truth))
             .collect();
-        let friction = (!friction.is_empty()).then(|| {
+        let friction = (!values.is_empty()).then(|| {
             format!(
-                "Friction according to the {}: {}.",
+                "Friction according to the {}: {}. Here {}.",
                 run.title(),
-                friction.join(", ")
+                values.join(", "),
+                meanings(&parameters)
             )
         });
         spread

@@ -219,6 +219,7 @@ impl Overlay {
             height: foot + legend_height.max(24.0),
             label: self.title.clone(),
             body,
+            narrow: None,
         }
     }
 

@@ -121,7 +121,7 @@ impl Block {
             Self::Note(text) => html! { p class="note" { (text) } },
             Self::Table(table, caption) => table.html(caption),
             Self::Figure(drawing, caption) => html! {
-                figure { (PreEscaped(drawing.to_svg())) @if !caption.is_empty() { figcaption { (caption) } } }
+                figure class=[drawing.narrow.is_some().then_some("two")] { (PreEscaped(drawing.to_svg())) @if let Some(narrow) = &drawing.narrow { (PreEscaped(narrow.to_svg())) } @if !caption.is_empty() { figcaption { (caption) } } }
             },
             Self::Playback(playback) => playback.html(),
             Self::Download { name, what, bytes } => {

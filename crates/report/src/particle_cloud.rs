@@ -86,6 +86,7 @@ impl ParticleCloud {
             height: top + side + BOTTOM,
             label: self.title.clone(),
             body,
+            narrow: None,
         }
     }
 

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use crate::axis::{Axis, Scale};
 use crate::colour::{Colour, Line};
-use crate::drawing::{Anchor, Drawing, LABEL, TITLE, Text};
+use crate::drawing::{Anchor, COLUMN, Drawing, LABEL, Text, title_lines};
 use crate::font::Weight;
 use crate::legend::{Legend, Swatch};
 use crate::marks::{MARK_LINE, Mark, place};
@@ -96,6 +96,7 @@ pub struct Level {
 /// Where a panel stands.
 struct Place {
     corner: [f64; 2],
+    size: [f64; 2],
     first_row: bool,
     /// Nothing stands below it: it names the times.
     last_row: bool,
@@ -125,24 +126,32 @@ impl TimeFigure {
         self.drawing().to_svg()
     }
 
-    /// The figure, to be put beside others.
+    /// The figure, to be put beside others; on a phone its panels stand one below the other.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let columns = self.columns.clamp(1, self.panels.len().max(1));
+        let whole = self.laid_out(columns, self.panel_size);
+        let column = [COLUMN.min(self.panel_size[0]), self.panel_size[1]];
+        let narrow = (whole.width > COLUMN).then(|| Box::new(self.laid_out(1, column)));
+        Drawing { narrow, ..whole }
+    }
+
+    /// Panels of this size (px), so many side by side.
+    fn laid_out(&self, columns: usize, size: [f64; 2]) -> Drawing {
         let rows = self.panels.len().div_ceil(columns);
-        let [panel_width, panel_height] = self.panel_size;
+        let [panel_width, panel_height] = size;
         let width = columns as f64 * panel_width;
-        let title = if self.title.is_empty() { 6.0 } else { 32.0 };
+        let (heading, title) = title_lines(&self.title, LEFT, width - LEFT - RIGHT);
         let (legend, legend_height) = self.legend().draw([LEFT, title], width - LEFT - RIGHT);
         let names = place(&self.marks, &self.axis([LEFT, panel_width - RIGHT]));
         let head = title + legend_height + names.height;
         let body = html! {
-            (Text { weight: Weight::Bold, ..Text::at([LEFT, 22.0], &self.title) }.sized(TITLE))
+            (heading)
             (legend)
             @for (index, panel) in self.panels.iter().enumerate() {
                 @let corner = [(index % columns) as f64 * panel_width, head + (index / columns) as f64 * panel_height];
                 @if index < columns { (names.draw([corner[0], corner[1] - names.height + TOP - 4.0])) }
-                @let place = Place { corner, first_row: index < columns, last_row: index + columns >= self.panels.len() };
+                @let place = Place { corner, size, first_row: index < columns, last_row: index + columns >= self.panels.len() };
                 (self.panel(panel, &place))
             }
         };
@@ -151,6 +160,7 @@ impl TimeFigure {
             height: head + rows as f64 * panel_height + TIMES + self.steps.map_or(0.0, |_| STEPS),
             label: self.title.clone(),
             body,
+            narrow: None,
         }
     }
 
@@ -163,7 +173,7 @@ impl TimeFigure {
     }
 
     fn panel(&self, panel: &Panel, place: &Place) -> Markup {
-        let ([left, top], [width, height]) = (place.corner, self.panel_size);
+        let ([left, top], [width, height]) = (place.corner, place.size);
         let head = if panel.title.is_empty() {
             TOP
         } else {

@@ -1,19 +1,22 @@
 //! How good tracking is on rendered frames with known truth: `cargo run --release -p
 //! stickslip-vision --example accuracy`.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
+#[allow(dead_code, reason = "tests use the rest")]
 mod common;
 
-use common::{Errors, Rig, true_camera};
+use common::{Errors, Rig, found, true_camera};
 use stickslip_dynamics::Pose;
 use stickslip_rendering::Optics;
+use stickslip_vision::calibrate;
 
 /// Random poses a row of the table.
 const FRAMES: u64 = 300;
 
 fn main() {
     let rig = Rig::new(Optics::default(), 1);
-    let calibration = rig.calibration(20);
+    let (frames, board) = rig.board_frames(20);
+    let calibration = calibrate(&found(&frames), &board, 0).expect("a board in every frame");
     println!(
         "calibration: {} frames, {} tags, {} left out, misfit {:.3} px",
         calibration.frames, calibration.tags, calibration.left_out, calibration.rms

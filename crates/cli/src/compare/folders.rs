@@ -9,10 +9,23 @@ use crate::failure::hinted;
 use crate::log_files::{is_bag, log_path};
 
 /// The experiment folders among `given`: a folder that is none itself stands for those below it, in
-/// the order of their names.
+/// the order of their names, and a scene or log for the folder whose it is.
+///
+/// # Errors
+///
+/// A file that is not the scene or the log of its folder.
 pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
     let mut folders = Vec::new();
-    for folder in given {
+    for path in given {
+        let folder = &if path.is_file() {
+            folder_of(path, scene_name)?
+        } else {
+            path.clone()
+        };
+        // a scene and its log stand for one experiment
+        if path.is_file() && folders.last() == Some(folder) {
+            continue;
+        }
         let below = if is_experiment(folder, scene_name) {
             Vec::new()
         } else {
@@ -31,6 +44,28 @@ pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
             "give folders with scene.toml and log.csv or log.mcap",
         )),
         false => Ok(folders),
+    }
+}
+
+/// The experiment folder that a file is the scene or the log of.
+fn folder_of(file: &Path, scene_name: &str) -> Result<PathBuf> {
+    let folder = match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let own = [folder.join(scene_name), log_path(folder)];
+    match own.iter().any(|path| path.file_name() == file.file_name()) {
+        true => Ok(folder.to_owned()),
+        false => Err(hinted(
+            format!(
+                "{}: a file; experiments are given as folders with {scene_name} and log.csv, log.mcap or a bag",
+                file.display()
+            ),
+            format!(
+                "give such a folder, or filter this log alone: `stickslip filter {} --scene SCENE`",
+                file.display()
+            ),
+        )),
     }
 }
 

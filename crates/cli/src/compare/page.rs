@@ -5,6 +5,7 @@ use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
 use super::results::{Comparison, LEGEND, Overall};
 use super::tables;
 use crate::origin::origin;
+use crate::output::counted;
 
 /// The table over all folders on top, then those `played` back, then each folder's.
 pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
@@ -18,7 +19,11 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         touch_gain,
     } = comparison;
     let outcome = |row: &Overall| Outcome {
-        name: row.variant.title().to_owned(),
+        // medians over other experiments than the rest are not to be set beside theirs
+        name: match row.folders == folders.len() {
+            true => row.variant.title().to_owned(),
+            false => format!("{} on {} of them", row.variant.title(), row.folders),
+        },
         camera_on: row.variant.camera_on(),
         wmse_mm: row.median.wmse_mm,
     };
@@ -27,9 +32,13 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         ..Story::default()
     };
     let text = format!(
-        "{} experiments, every method on each: particle filters with {particles} particles, the median of {seeds} seeds per experiment. \
+        "{}, every method on each: particle filters with {particles} particles, {}. \
          Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
-        folders.len()
+        counted(folders.len() as u64, "experiment"),
+        match seeds {
+            1 => "with one seed".to_owned(),
+            _ => format!("the median of {seeds} seeds per experiment"),
+        }
     );
     let gain = touch_gain.map_or_else(String::new, |gain| format!("{} ", gain.to_string().trim()));
     let note = format!("{LEGEND} Quantiles: {quantile}. {gain}{}", Fate::rule());

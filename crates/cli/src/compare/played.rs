@@ -4,7 +4,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 use stickslip::Mode;
 use stickslip_evaluation::{RunConditions, Variant};
-use stickslip_report::{ReportedExperiment, Section};
+use stickslip_report::{Block, ReportedExperiment, Section};
 
 use super::Folder;
 use super::results::{Comparison, FolderResult};
@@ -70,6 +70,11 @@ fn section(folder: &Folder, mode: Mode, particles: usize) -> Result<Section> {
         .map(|variant| reported_run(variant, experiment, &conditions))
         .collect::<Result<Vec<_>, _>>()?;
     let name = experiment_name(&log_path(&folder.path));
-    let (shown, runs, _) = since_start(experiment, runs);
-    Ok(ReportedExperiment::new(&name, "", &shown, *occlusion, runs).section())
+    let (shown, runs, start) = since_start(experiment, runs);
+    let mut section = ReportedExperiment::new(&name, "", &shown, *occlusion, runs).section();
+    if let Some(start) = start {
+        let note = format!("Times count from {start} s of the log's clock.");
+        section.blocks.insert(0, Block::Note(note));
+    }
+    Ok(section)
 }

@@ -22,7 +22,7 @@ pub fn assumed_stall_force(setup: &Setup) -> Option<Finding> {
             Severity::Warning
         },
         found: format!(
-            "`pusher.stall_force` is missing in the scene: {} N is assumed, {ASSUMED_STALL} times what slides the object",
+            "pusher.stall_force is missing in the scene: {} N is assumed, {ASSUMED_STALL} times what slides the object",
             three_digits(force)
         ),
         advice: Some(

@@ -150,7 +150,7 @@ pub fn read_mounts(text: &str, name: &str) -> Result<Mounts> {
 /// ```
 /// let scene = "[object]\nmass = 0.5\nshape = [ { disc = { radius = 0.02 } } ]\n[support]\nfeet = [[0.01, 0], [-0.01, 0.01], [-0.01, -0.01]]\n";
 /// let assumed = stickslip_formats::scene_assumptions(scene, "scene.toml")?;
-/// assert_eq!(assumed, ["`object.inertia` is missing: 1.000e-4 kg m^2 is taken, that of a uniform plate"]);
+/// assert_eq!(assumed, ["object.inertia is missing: 1.000e-4 kg m^2 is taken, that of a uniform plate"]);
 /// # Ok::<(), stickslip_formats::SceneError>(())
 /// ```
 pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
@@ -160,7 +160,7 @@ pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
         if table.optional(INERTIA.key).is_none() {
             let inertia = object(&table)?.inertia;
             lines.push(format!(
-                "`object.inertia` is missing: {} kg m^2 is taken, that of a uniform plate",
+                "object.inertia is missing: {} kg m^2 is taken, that of a uniform plate",
                 format_args!("{inertia:.3e}")
             ));
         }
@@ -170,7 +170,7 @@ pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
         {
             let (_, radius) = feet(&support, &table)?;
             lines.push(format!(
-                "`support.tripod_radius` is missing: {radius:.4} m is taken, the mean distance of the outline's inside from the centre of mass"
+                "support.tripod_radius is missing: {radius:.4} m is taken, the mean distance of the outline's inside from the centre of mass"
             ));
         }
         Ok(lines)

@@ -1,0 +1,226 @@
+//! Folders of bags in the program: found with their scene, read whole or in part.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use crate::common::{Experiment, STOP, json, stickslip};
+use stickslip::Log;
+use stickslip_formats::{Topics, read_log, write_log_mcap};
+
+/// The rows of a log from `from` on up to `to`.
+fn rows(log: &Log, from: usize, to: usize) -> Log {
+    Log {
+        time: log.time[from..to].to_vec(),
+        object: log.object[from..to].to_vec(),
+        object_covariance: Vec::new(),
+        pusher: log.pusher[from..to].to_vec(),
+        tactile: log
+            .tactile
+            .iter()
+            .map(|sensor| sensor[from..to].to_vec())
+            .collect(),
+        force: Vec::new(),
+    }
+}
+
+/// An embedded experiment with its log as a bag of three files in a folder of its own.
+fn experiment(test: &str) -> (Experiment, PathBuf) {
+    let case = Experiment::copy(STOP, test);
+    let (log, _) = read_log(fs::read(case.log()).unwrap().as_slice(), "log.csv").unwrap();
+    let bag = case.folder.join("rosbag2_2026");
+    fs::create_dir(&bag).unwrap();
+    let ends = [0, 200, 400, log.len()];
+    for (k, [from, to]) in ends.array_windows().enumerate() {
+        let mut bytes = Cursor::new(Vec::new());
+        write_log_mcap(&mut bytes, &rows(&log, *from, *to), &Topics::default()).unwrap();
+        fs::write(
+            bag.join(format!("rosbag2_2026_{k}.mcap")),
+            bytes.into_inner(),
+        )
+        .unwrap();
+    }
+    let files = (0..3).map(|k| format!("  - rosbag2_2026_{k}.mcap\n"));
+    let metadata = format!(
+        "rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n  relative_file_paths:\n{}  duration:\n    nanoseconds: 1\n",
+        files.collect::<String>()
+    );
+    fs::write(bag.join("metadata.yaml"), metadata).unwrap();
+    (case, bag)
+}
+
+fn filter(log: &Path) -> Output {
+    let mut command = stickslip();
+    command
+        .arg("filter")
+        .arg(log)
+        .args(["--method", "kalman", "--json"]);
+    command.output().unwrap()
+}
+
+fn words(run: &Output) -> String {
+    String::from_utf8_lossy(&run.stderr).into_owned()
+}
+
+#[test]
+fn bag_is_read_like_the_log_with_the_scene_and_the_truth_beside_it() {
+    let (case, bag) = experiment("bags/like");
+    let score = |log: &Path| {
+        let run = filter(log);
+        assert_eq!(run.status.code(), Some(0), "{}", words(&run));
+        let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+        (
+            report["frames"].clone(),
+            report["wmse_mm"].as_f64().unwrap(),
+        )
+    };
+    let of_csv = score(&case.folder.join("log.csv"));
+    let same = |(frames, wmse): (serde_json::Value, f64)| {
+        frames == of_csv.0 && (wmse - of_csv.1).abs() < 1e-6 * of_csv.1
+    };
+    assert!(same(score(&bag)));
+    assert!(same(score(&case.folder)), "a folder with a log");
+    assert!(same(score(&bag.join("../log.csv"))));
+
+    let check = |args: &[&Path]| stickslip().arg("check").args(args).output().unwrap();
+    let both = check(&[
+        &case.folder.join("scene.toml"),
+        &case.folder.join("log.csv"),
+    ]);
+    assert_eq!(check(&[&case.folder]).stdout, both.stdout);
+    assert_eq!(check(&[&bag]).stdout, both.stdout);
+
+    // without a table, the folder's log is its only bag, and compare finds it too
+    fs::remove_file(case.log()).unwrap();
+    assert!(same(score(&case.folder)));
+    let folder = case.folder.display().to_string();
+    let compared = json(stickslip().args(["compare", &folder, "--json", "--particles", "16"]));
+    assert_eq!(
+        compared["folders"].as_array().unwrap().len(),
+        1,
+        "{compared}"
+    );
+
+    fs::remove_file(case.scene()).unwrap();
+    let run = filter(&bag);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(
+        words(&run).contains("there is no scene.toml in it or beside it"),
+        "{}",
+        words(&run)
+    );
+}
+
+#[test]
+fn bag_without_all_of_its_files_is_done_with_input_lost() {
+    let (case, bag) = experiment("bags/lost");
+    fs::remove_file(case.log()).unwrap();
+    let first = bag.join("rosbag2_2026_0.mcap");
+    fs::remove_file(&first).unwrap();
+    let run = filter(&bag);
+    assert_eq!(run.status.code(), Some(3), "{}", words(&run));
+    assert!(words(&run).contains("rosbag2_2026_0.mcap is not there; what it held is lost"));
+
+    let last = bag.join("rosbag2_2026_2.mcap");
+    let whole = fs::read(&last).unwrap();
+    fs::write(&last, &whole[..whole.len() / 2]).unwrap();
+    fs::remove_file(bag.join("metadata.yaml")).unwrap();
+    let run = filter(&bag);
+    assert_eq!(run.status.code(), Some(3), "{}", words(&run));
+    let told = words(&run);
+    assert!(told.contains("without metadata.yaml"), "{told}");
+    assert!(
+        told.contains("rosbag2_2026_2.mcap: the recording is cut off"),
+        "{told}"
+    );
+}
+
+#[test]
+fn info_names_what_would_do_and_the_command_that_it_prints_runs() {
+    let case = Experiment::copy(STOP, "bags/info");
+    let (log, _) = read_log(fs::read(case.log()).unwrap().as_slice(), "log.csv").unwrap();
+    let bag = case.folder.join("a bag");
+    fs::create_dir(&bag).unwrap();
+    let topics = [
+        "object=/vicon/box/pose",
+        "pusher=/arm/tool0",
+        "fixel_1=/left/touch",
+    ];
+    let topics = Topics::new(topics.map(|text| text.parse().unwrap())).unwrap();
+    let mut bytes = Cursor::new(Vec::new());
+    write_log_mcap(&mut bytes, &log, &topics).unwrap();
+    fs::write(bag.join("bag_0.mcap"), bytes.into_inner()).unwrap();
+
+    let info = json(stickslip().arg("info").arg(&bag).arg("--json"));
+    assert_eq!(
+        info["suggestion"],
+        serde_json::json!([
+            "object=/vicon/box/pose",
+            "pusher=/arm/tool0",
+            "fixel_1=/left/touch"
+        ])
+    );
+    let topics = info["topics"].as_array().unwrap();
+    let touch = topics
+        .iter()
+        .find(|topic| topic["name"] == "/left/touch")
+        .unwrap();
+    assert_eq!(
+        (&touch["name"], &touch["message_type"], &touch["keys"]),
+        (
+            &"/left/touch".into(),
+            &"std_msgs/msg/Bool".into(),
+            &serde_json::json!(["fixel"])
+        )
+    );
+    let measured = log.object.iter().flatten().count();
+    assert_eq!(info["poses"][1]["poses"], measured, "{info}");
+
+    // the command, taken apart by a shell, reads the bag like the table
+    let command = info["commands"][0].as_str().unwrap();
+    let program = env!("CARGO_BIN_EXE_stickslip");
+    let command = command.replacen("stickslip", &format!("'{program}'"), 1);
+    let run = std::process::Command::new("sh")
+        .args(["-c", &command])
+        .output()
+        .unwrap();
+    let of_table = stickslip()
+        .args(["check", &case.scene(), &case.log()])
+        .output()
+        .unwrap();
+    assert_eq!(run.stdout, of_table.stdout, "{command}: {}", words(&run));
+
+    let text = stickslip().arg("info").arg(&bag).output().unwrap();
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(text.contains("Go on with\n  stickslip check '"), "{text}");
+    let table = stickslip().args(["info", &case.log()]).output().unwrap();
+    assert!(
+        words(&table).contains("this is no bag"),
+        "{}",
+        words(&table)
+    );
+}
+
+#[test]
+fn info_without_a_scene_says_how_to_come_by_one() {
+    let (case, bag) = experiment("bags/no_scene");
+    // the command puts it where the next ones look
+    fs::remove_file(case.scene()).unwrap();
+    let info = json(stickslip().args(["info", "--json"]).arg(&bag));
+    let command = info["commands"][0].as_str().unwrap();
+    assert!(command.starts_with("stickslip new "), "{command}");
+    let command = command.replacen(
+        "stickslip",
+        &format!("'{}'", env!("CARGO_BIN_EXE_stickslip")),
+        1,
+    );
+    let shell = std::process::Command::new("sh")
+        .args(["-c", &command])
+        .output()
+        .unwrap();
+    assert!(
+        shell.status.success() && case.folder.join("scene.toml").is_file(),
+        "{command}"
+    );
+}

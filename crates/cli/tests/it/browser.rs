@@ -1,0 +1,173 @@
+//! The live page in a real browser: what comes over its socket is drawn, and it fits a phone.
+//!
+//! `cargo test --workspace --test it -- --ignored browser::`; the browser is `chromium`, or what
+//! `STICKSLIP_CHROMIUM` names.
+
+#[path = "../../../report/tests/it/browser/chromium.rs"]
+mod chromium;
+mod tab;
+
+use std::io::Write;
+use std::process::ChildStdin;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+use std::thread::{self, JoinHandle, sleep};
+use std::time::Duration;
+
+use crate::common::page_session::Session;
+use crate::common::{Experiment, SLIDE, empty_folder};
+use chromium::chromium;
+use serde_json::{Value, json};
+use tab::Tab;
+
+/// Where the object lies (m, m, rad): 20 mm, -10 mm, a quarter of a turn.
+const POSE: [f64; 3] = [0.02, -0.01, std::f64::consts::FRAC_PI_2];
+
+/// A session to which rows come, 25 a second: the object at rest, and, once it is dark, no object.
+struct Source {
+    session: Session,
+    address: String,
+    dark: Arc<AtomicBool>,
+    ended: Arc<AtomicBool>,
+    feeder: JoinHandle<ChildStdin>,
+}
+
+impl Source {
+    fn start(name: &str) -> Self {
+        let mut session = Session::start(&Experiment::copy(SLIDE, name));
+        let address = format!("http://{}/?{}", session.host, session.token);
+        let mut input = session.input.take().unwrap();
+        let [dark, ended] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+        let (is_dark, has_ended) = (dark.clone(), ended.clone());
+        let feeder = thread::spawn(move || {
+            let mut row = 0.0;
+            while !has_ended.load(Relaxed) {
+                let [x, y, theta] = POSE.map(|number| (!is_dark.load(Relaxed)).then_some(number));
+                let line = json!({"time": 0.04 * row, "object_x": x, "object_y": y, "object_theta": theta});
+                writeln!(input, "{line}").unwrap();
+                sleep(Duration::from_millis(40));
+                row += 1.0;
+            }
+            input
+        });
+        Self {
+            session,
+            address,
+            dark,
+            ended,
+            feeder,
+        }
+    }
+
+    fn end(mut self) {
+        self.ended.store(true, Relaxed);
+        self.session.input = Some(self.feeder.join().unwrap());
+        assert_eq!(self.session.end(), Some(0));
+    }
+}
+
+/// What the page shows once it says `state`.
+#[track_caller]
+fn shown(tab: &mut Tab, state: &str) -> Value {
+    let shown = tab.evaluate(&include_str!("browser/shown.js").replace("STATE", state));
+    assert_eq!(shown["state"], state, "{shown:#}");
+    shown
+}
+
+/// Asserts that a body is drawn where the object lies, within 2 mm and 5 degrees.
+#[track_caller]
+fn assert_at_the_object(place: &Value) {
+    let place: [f64; 3] = serde_json::from_value(place.clone()).unwrap();
+    let aside = [place[0] - 20.0, place[1] + 10.0, 0.4 * (place[2] - 90.0)];
+    assert!(aside.iter().all(|aside| aside.abs() < 2.0), "{place:?}");
+}
+
+#[test]
+#[ignore = "needs Chromium; .ci/run installs it and runs this"]
+fn rows_are_drawn() {
+    let source = Source::start("live_browser/rows");
+    let mut tab = Tab::open(&empty_folder("live_browser/profile"), &source.address, 1280);
+    let seen = shown(&mut tab, "camera on");
+    for body in ["truth", "ghost"] {
+        assert_at_the_object(&seen[body]);
+    }
+    assert_eq!(
+        (&seen["particles"], &seen["truthHidden"]),
+        (&json!(60), &json!(false))
+    );
+    let names = [
+        "x",
+        "y",
+        "θ",
+        "mu_s",
+        "mu_p",
+        "mu_f",
+        "particles",
+        "answer took",
+    ];
+    assert_eq!(seen["names"], json!(names));
+    let cells: Vec<String> = serde_json::from_value(seen["cells"].clone()).unwrap();
+    assert_eq!((cells.len(), cells[12].as_str()), (16, "64"), "{cells:?}");
+    assert!(
+        !cells
+            .iter()
+            .any(|cell| cell.contains("NaN") || cell.contains("undefined")),
+        "{cells:?}"
+    );
+
+    // the same page goes on: nobody pushes, so in the dark the object stays where it was
+    source.dark.store(true, Relaxed);
+    let unseen = shown(&mut tab, "camera dark");
+    assert_at_the_object(&unseen["ghost"]);
+    assert_eq!(unseen["truthHidden"], true);
+    drop(tab);
+    source.end();
+}
+
+#[test]
+#[ignore = "needs Chromium; .ci/run installs it and runs this"]
+fn the_live_page_fits_a_phone() {
+    let source = Source::start("live_browser/phone");
+    let mut tab = Tab::open(
+        &empty_folder("live_browser/phone_profile"),
+        &source.address,
+        390,
+    );
+    assert_eq!(shown(&mut tab, "camera on")["overflow"], 0);
+    drop(tab);
+    source.end();
+}
+
+#[test]
+#[ignore = "needs Chromium; .ci/run installs it and runs this"]
+fn screenshots_are_made() {
+    let folder = empty_folder("live_browser/pictures");
+    let source = Source::start("live_browser/shown");
+    for (width, scheme) in [
+        (1280, "light"),
+        (1280, "dark"),
+        (390, "light"),
+        (390, "dark"),
+    ] {
+        let picture = folder.join(format!("live-{width}-{scheme}.png"));
+        let screenshot = format!("--screenshot={}", picture.display());
+        let mut what = vec![screenshot.as_str()];
+        if scheme == "dark" {
+            what.push("--blink-settings=preferredColorScheme=0");
+        }
+        chromium(
+            &folder.join("profile"),
+            &source.address,
+            (width, 10_000),
+            &what,
+        );
+        // a blank page takes a fifth of this
+        assert!(
+            std::fs::metadata(&picture).unwrap().len() > 30_000,
+            "{}",
+            picture.display()
+        );
+    }
+    source.end();
+}

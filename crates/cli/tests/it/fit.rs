@@ -1,0 +1,155 @@
+//! `stickslip fit`: what it writes and what it refuses.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common::{empty_folder, json, stickslip, succeeds};
+
+/// A plate on three feet that a finger pushes on; the pusher's friction is 0.3 to the scene.
+fn scene(place: f64, turn: f64) -> String {
+    let direction = std::f64::consts::FRAC_PI_2 + turn;
+    let (x, y) = (place, -0.0285);
+    format!(
+        "# a plate
+gravity = 9.81
+object  = {{ mass = 0.5, inertia = 3.3e-4, shape = [{{ polygon = [[-0.04, -0.02], [0.04, -0.02], [0.04, 0.02], [-0.04, 0.02]] }}] }}
+support = {{ friction = 0.3, tripod_radius = 0.025 }}
+fixels  = {{ friction = 0.25 }}
+camera  = {{ position_std = 3.0e-4, orientation_std = 5.0e-3 }}
+[pusher]
+friction = 0.30 # a guess
+stall_force = 100.0
+shape = [{{ disc = {{ radius = 0.005 }} }}]
+[start]
+object = [0, 0, 0]
+pusher = [{x}, {y}, 0]
+direction = {direction}
+speed = 0.02
+duration = 1.5
+"
+    )
+}
+
+/// Folders with `count` pushes under a pusher of friction 0.5, below one folder of this test.
+fn pushes(test: &str, count: usize) -> PathBuf {
+    let folder = empty_folder(test);
+    for k in 0..count {
+        let place = [-0.025, 0.015, -0.01, 0.028][k % 4];
+        let turn = [0.5, -0.6, 0.3, -0.4][k % 4];
+        let start = folder.join(format!("start-{k}.toml"));
+        let true_scene = scene(place, turn).replace("friction = 0.30", "friction = 0.50");
+        fs::write(&start, true_scene).unwrap();
+        let push = folder.join("pushes").join(format!("push-{k}"));
+        succeeds(
+            stickslip()
+                .args(["simulate", "--physics", "model", "--seed", &k.to_string()])
+                .arg(&start)
+                .arg("--out")
+                .arg(&push),
+        );
+        fs::write(push.join("scene.toml"), scene(place, turn)).unwrap();
+    }
+    folder
+}
+
+fn fit(pushes: &Path, out: &Path) -> std::process::Command {
+    let mut command = stickslip();
+    command.arg("fit").arg(pushes).arg("--out").arg(out);
+    command
+}
+
+#[test]
+fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
+    let folder = pushes("fit-writes", 4);
+    let out = folder.join("out");
+    let result = json(fit(&folder.join("pushes"), &out).args(["--free", "mu_p,mu_f", "--json"]));
+    let written = fs::read_to_string(out.join("fit.json")).unwrap();
+    assert_eq!(
+        serde_json::from_str::<serde_json::Value>(&written).unwrap(),
+        result
+    );
+
+    // the pusher's friction is found, that of fixels is not
+    let [mu_p, mu_f] = [0, 1].map(|k| &result["parameters"][k]);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert_eq!([&mu_p["determined"], &mu_f["determined"]], [true, false]);
+    let [value, std] = ["value", "std"].map(|key| number(&mu_p[key]));
+    assert!((value - 0.5).abs() < 3.0 * std && std < 0.1, "{mu_p}");
+    assert_eq!(number(&mu_f["value"]), 0.25);
+
+    // both stand in the scene, which other commands take
+    let scene = fs::read_to_string(out.join("scene.toml")).unwrap();
+    let line = scene
+        .lines()
+        .find(|line| line.ends_with("# a guess"))
+        .unwrap();
+    let in_scene: f64 = line.split_whitespace().nth(2).unwrap().parse().unwrap();
+    assert!((in_scene - value).abs() < 1e-5 * value, "{line}");
+    for expected in ["# a plate", "[uncertainty]", "not determined by them: mu_f"] {
+        assert!(scene.contains(expected), "{expected} in {scene}");
+    }
+    let log = folder.join("pushes/push-0/log.csv");
+    succeeds(
+        stickslip()
+            .arg("filter")
+            .arg(log)
+            .arg("--scene")
+            .arg(out.join("scene.toml")),
+    );
+
+    // as text, with a push of --test
+    let named = |k: usize| folder.join(format!("pushes/push-{k}"));
+    let output = succeeds(
+        fit(&named(0), &out)
+            .arg(named(1))
+            .arg(named(2))
+            .args(["--free", "mu_f", "--folds", "0", "--test"])
+            .arg(named(3)),
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("pushes of --test, median"), "{text}");
+    assert!(text.contains("not determined by these pushes"), "{text}");
+}
+
+#[test]
+fn fit_refuses_with_the_next_step() {
+    let folder = pushes("fit-refuses", 2);
+    let (pushes, out) = (folder.join("pushes"), folder.join("out"));
+    let refusal = |command: &mut std::process::Command| {
+        let output = command.output().unwrap();
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+
+    let text = refusal(fit(&pushes, &out).args(["--free", "mu_pp"]));
+    assert!(
+        text.contains("`mu_pp` is no parameter") && text.contains("did you mean `mu_p`?"),
+        "{text}"
+    );
+    let text = refusal(&mut fit(&pushes.join("push-0"), &out));
+    assert!(text.contains("there are 1 pushes; at least 2"), "{text}");
+    let text = refusal(stickslip().args(["fit", "--out"]).arg(&out));
+    assert!(text.contains("<DIR>"), "{text}");
+    let text = refusal(&mut fit(&folder.join("nowhere"), &out));
+    assert!(text.contains("nowhere"), "{text}");
+    let text = refusal(fit(&pushes, &pushes.join("push-0")).args(["--folds", "0"]));
+    assert!(text.contains("would destroy what is read"), "{text}");
+    let text = refusal(fit(&pushes, &out).arg("--test").arg(pushes.join("push-1")));
+    assert!(
+        text.contains("push-1: --test names a push that is learnt from"),
+        "{text}"
+    );
+    let text = refusal(fit(&pushes, &out).args(["--folds", "2"]));
+    assert!(text.contains("at least 4"), "{text}");
+
+    // scenes that disagree
+    let scene = pushes.join("push-1/scene.toml");
+    let text = fs::read_to_string(&scene).unwrap();
+    fs::write(&scene, text.replace("friction = 0.30", "friction = 0.35")).unwrap();
+    let text = refusal(&mut fit(&pushes, &out));
+    assert!(
+        text.contains("mu_p is 0.3 ") && text.contains("0.35"),
+        "{text}"
+    );
+    assert!(!out.exists(), "a fit that was refused leaves nothing");
+}

@@ -1,0 +1,26 @@
+//! The program, from its command line to its files and pages.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod bags;
+mod browser;
+mod camera;
+mod check;
+mod check_poses;
+mod common;
+mod doubts;
+mod filter_laws;
+mod fit;
+mod given;
+mod inputs;
+mod lens;
+mod live;
+mod live_page;
+mod mcap;
+mod outputs;
+mod paper_scenes;
+mod program;
+mod reports;
+mod reproduce;
+mod ros2;
+mod simulate;

@@ -1,0 +1,275 @@
+//! `compare`, `demo` and reports as a user gets them: exit codes, tables, files written.
+
+use crate::common;
+use std::fs;
+
+use crate::common::{Experiment, STOP, stickslip, succeeds};
+
+/// Few particles: these tests look at the program, not at the filter.
+const FEW: [&str; 2] = ["--particles", "16"];
+
+#[test]
+fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
+    let good = Experiment::copy(STOP, "compare_lost/good");
+    let broken = Experiment::copy(STOP, "compare_lost/broken");
+    broken.edit("log.csv", |_| "time\n".to_owned());
+    // the parent folder stands for both
+    let parent = good.folder.parent().unwrap();
+    let run = stickslip()
+        .arg("compare")
+        .arg(parent)
+        .args(["--json", "--seeds", "2"])
+        .args(FEW)
+        .output()
+        .unwrap();
+    assert_eq!(run.status.code(), Some(3));
+    assert!(
+        String::from_utf8(run.stderr)
+            .unwrap()
+            .contains("broken/log.csv:1")
+    );
+    let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    let methods: Vec<&str> = report["folders"][0]["methods"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| m["method"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        methods,
+        [
+            "nominal",
+            "kalman",
+            "kalman_stops",
+            "with_pusher",
+            "particle_no_tactile",
+            "particle",
+            "kalman_camera_on",
+            "particle_always_on"
+        ]
+    );
+    assert_eq!(report["errors"].as_array().unwrap().len(), 1);
+    let overall = &report["overall"][0];
+    assert_eq!(
+        overall["median"]["wmse_mm"],
+        report["folders"][0]["methods"][0]["wmse_mm"]
+    );
+    // a simulation without a spread believes nothing; a share is one
+    assert!(overall["mean"]["covered_90"].is_null());
+    let covered = report["folders"][0]["methods"][5]["covered_90"].as_f64();
+    assert!(covered.is_some_and(|share| (0.0..=1.0).contains(&share)));
+    assert!(
+        report["touch_gain"].is_null(),
+        "one folder has no standard error"
+    );
+}
+
+#[test]
+fn compare_does_not_depend_on_threads() {
+    let case = Experiment::copy(STOP, "compare_threads");
+    let run = |threads: &str| {
+        stickslip()
+            .arg("compare")
+            .arg(&case.folder)
+            .args(["--threads", threads, "--json"])
+            .args(FEW)
+            .output()
+            .unwrap()
+            .stdout
+    };
+    let one = run("1");
+    assert!(!one.is_empty() && one == run("3"));
+}
+
+#[test]
+fn compare_of_nothing_but_broken_folders_fails() {
+    let run = stickslip()
+        .args(["compare", "no-such-folder"])
+        .output()
+        .unwrap();
+    assert_eq!(run.status.code(), Some(1));
+    assert!(
+        String::from_utf8(run.stderr)
+            .unwrap()
+            .contains("no-such-folder")
+    );
+}
+
+#[test]
+fn demo_prints_tables_and_writes_a_report_and_figures() {
+    let folder = common::empty_folder("demo");
+    let run = succeeds(stickslip().arg("demo").args(FEW).current_dir(&folder));
+    let told = String::from_utf8(run.stdout).unwrap();
+    let lines = [
+        "particle filter without touch",
+        "particle filter, camera on",
+        "Kalman filter",
+        "truth",
+        "stickslip-demo/report.html",
+    ];
+    for line in lines {
+        assert!(told.contains(line), "{line} is missing in\n{told}");
+    }
+    let file = |name: &str| {
+        fs::read(folder.join("stickslip-demo").join(name))
+            .unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    for experiment in ["stop-square50-bar-000", "slide-ell-disc-110"] {
+        for figure in [
+            "errors",
+            "poses",
+            "contacts",
+            "friction",
+            "cloud",
+            "particles",
+        ] {
+            assert!(file(&format!("{experiment}-{figure}.svg")).starts_with(b"<svg"));
+            assert!(file(&format!("{experiment}-{figure}.png")).starts_with(b"\x89PNG"));
+        }
+    }
+    let errors = String::from_utf8(file("stop-square50-bar-000-errors.svg")).unwrap();
+    assert!(
+        errors.contains("position error (mm)")
+            && errors.contains("fixel 1")
+            && errors.contains("camera dark")
+    );
+    let report = String::from_utf8(file("report.html")).unwrap();
+    assert_eq!(
+        report.matches("<section class=\"player\" tabindex").count(),
+        2
+    );
+}
+
+#[test]
+fn filter_writes_a_report_and_the_same_estimate() {
+    let case = Experiment::copy(STOP, "filter_report");
+    let (page, plain, watched) = (
+        case.folder.join("new/report.html"),
+        case.folder.join("plain"),
+        case.folder.join("watched"),
+    );
+    let filter = |out: &std::path::Path| {
+        let mut command = stickslip();
+        command
+            .args([
+                "filter",
+                &case.log(),
+                "--scene",
+                &case.scene(),
+                "--occlude",
+                "153",
+                "--out",
+            ])
+            .arg(out)
+            .args(FEW);
+        command
+    };
+    assert_eq!(filter(&plain).output().unwrap().status.code(), Some(0));
+    succeeds(filter(&watched).arg("--report").arg(&page));
+    let estimate = |folder: &std::path::Path| fs::read(folder.join("estimate.csv")).unwrap();
+    assert!(
+        estimate(&plain) == estimate(&watched),
+        "a report changes no estimate"
+    );
+    let page = fs::read_to_string(page).unwrap();
+    for text in [
+        "class=\"player\"",
+        "At 5.1 s, 0.2 s before the object first touches a fixel",
+        "<h1>filter_report: particle filter</h1>",
+        "download=\"filter_report-estimate.csv\"",
+        "--occlude 153",
+        "<dt>seed</dt><dd>0</dd>",
+        "mu_f not observed (told 0.250)",
+    ] {
+        assert!(page.contains(text), "{text} is missing");
+    }
+    let unwritable = filter(&plain)
+        .arg("--report")
+        .arg(case.folder.join("log.csv/report.html"))
+        .output()
+        .unwrap();
+    assert_eq!(unwritable.status.code(), Some(1));
+}
+
+#[test]
+fn compare_writes_a_report_of_all_folders() {
+    let case = Experiment::copy(STOP, "compare_report");
+    let page = case.folder.join("report.html");
+    succeeds(
+        stickslip()
+            .arg("compare")
+            .arg(&case.folder)
+            .arg("--report")
+            .arg(&page)
+            .args(FEW),
+    );
+    let page = fs::read_to_string(page).unwrap();
+    for text in [
+        "1 experiment, every method on each: particle filters with",
+        "with one seed",
+        "All experiments",
+        "class=\"player\"",
+        "number 1 of 1 by the particle filter's WMSE",
+        "compare_report",
+        "particle, no tactile",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+}
+
+/// A log's clock reads seconds since 1970; a page that counts from the log's start says from when.
+#[test]
+fn pages_of_compare_say_from_when_a_clocks_times_count() {
+    let case = Experiment::copy(STOP, "compare_clock");
+    let page = case.folder.join("report.html");
+    let note = |case: &Experiment| {
+        let mut command = stickslip();
+        command.arg("compare").arg(&case.folder).args(FEW);
+        succeeds(command.arg("--report").arg(&page));
+        let text = fs::read_to_string(&page).unwrap();
+        let from = text.split_once("Times count from ").map(|(_, rest)| rest);
+        from.map(|rest| rest.split_once(" s of the log").unwrap().0.to_owned())
+    };
+    assert_eq!(note(&case), None);
+    let shift = |rows: &mut Vec<Vec<f64>>| rows.iter_mut().for_each(|row| row[0] += 1.76e9);
+    case.edit_rows(shift);
+    let first = fs::read_to_string(case.log()).unwrap();
+    let first: f64 = first
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    case.edit("truth.csv", |text| {
+        let (header, rows) = text.split_once('\n').unwrap();
+        let later = rows.lines().map(|row| {
+            let (time, rest) = row.split_once(',').unwrap();
+            format!("{},{rest}\n", time.parse::<f64>().unwrap() + 1.76e9)
+        });
+        format!("{header}\n{}", later.collect::<String>())
+    });
+    assert_eq!(note(&case), Some(first.floor().to_string()));
+}
+
+#[test]
+fn compare_says_which_stall_force_it_assumes() {
+    let case = Experiment::copy(STOP, "compare_no_stall_force");
+    case.forget_stall_force();
+    let page = case.folder.join("report.html");
+    let compare = |options: &[&str]| {
+        let mut command = stickslip();
+        command.arg("compare").arg(&case.folder).args(FEW);
+        String::from_utf8(command.args(options).output().unwrap().stdout).unwrap()
+    };
+    let text = compare(&["--report", page.to_str().unwrap()]);
+    for told in [text, fs::read_to_string(page).unwrap()] {
+        assert!(told.contains("32.0 N is assumed"), "{told}");
+    }
+    let report: serde_json::Value = serde_json::from_str(&compare(&["--json"])).unwrap();
+    let folder = &report["folders"][0];
+    assert_eq!(folder["stall_force_assumed"], true);
+    assert!((folder["stall_force"].as_f64().unwrap() - 31.9826).abs() < 1e-3);
+}

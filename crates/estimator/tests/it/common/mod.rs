@@ -1,0 +1,72 @@
+//! Scenes of discs that the tests of this crate share.
+use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
+use stickslip::{Camera, FilterSettings, Log, Setup, Tactile, Uncertainty};
+
+/// Frames per second (Hz).
+pub const RATE: f64 = 30.0;
+
+/// A disc about the origin; `radius` in m.
+pub fn disc(radius: f64) -> Shape {
+    Shape::new(vec![Part::Disc {
+        radius,
+        centre: [0.0, 0.0],
+    }])
+    .expect("a disc")
+}
+
+/// A disc of 30 mm at the origin, a pusher of 5 mm, and fixels of 5 mm at these places (m).
+pub fn setup(fixels: &[[f64; 2]]) -> Setup {
+    let fixel = |[x, y]: &[f64; 2]| Fixel {
+        pose: Pose::new(*x, *y, 0.0),
+        shape: disc(0.005),
+    };
+    Setup {
+        scene: Scene {
+            gravity: 9.81,
+            object: Object {
+                mass: 0.5,
+                inertia: 2e-4,
+                shape: disc(0.03),
+            },
+            feet: Feet::Tripod { angle: 0.0 },
+            pusher: Pusher {
+                shape: disc(0.005),
+                stall_force: Some(20.0),
+            },
+            fixels: fixels.iter().map(fixel).collect(),
+            nominal: Friction {
+                mu_s: 0.31,
+                mu_p: 0.32,
+                mu_f: 0.33,
+                d_tri: 0.02,
+            },
+        },
+        stall_force_assumed: false,
+        camera: Some(Camera {
+            position_std: 3e-4,
+            orientation_std: 5e-3,
+            latency: 0.0,
+            pusher_position_std: 1e-4,
+            pusher_orientation_std: 2e-3,
+        }),
+        tactile: Tactile::default(),
+        filter: FilterSettings::default(),
+        uncertainty: Uncertainty::default(),
+        start: None,
+    }
+}
+
+/// A log whose camera sees the object at `object(time)`, and the pusher at `pusher(time)`.
+pub fn log(
+    rows: usize,
+    object: impl Fn(f64) -> Option<Pose>,
+    pusher: impl Fn(f64) -> Option<Pose>,
+) -> Log {
+    let time: Vec<f64> = (0..rows).map(|row| row as f64 / RATE).collect();
+    Log {
+        object: time.iter().map(|t| object(*t)).collect(),
+        pusher: time.iter().map(|t| pusher(*t)).collect(),
+        time,
+        ..Log::default()
+    }
+}

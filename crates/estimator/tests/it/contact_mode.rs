@@ -1,0 +1,207 @@
+//! What contact mode does that paper mode does not, on experiments whose truth is known by
+//! construction.
+
+use crate::common::{RATE, log, setup};
+use stickslip::dynamics::Pose;
+use stickslip::{Estimate, Log, Method, Mode, Occlusion, Run, RunOptions, Setup, run};
+
+/// Speed of the pusher (m/s), and where it meets the disc (s).
+const SPEED: f64 = 0.02;
+const MEETS: f64 = 1.0;
+
+/// A pusher that drives the disc through its middle from [`MEETS`] to 3 s.
+fn pusher(time: f64) -> Option<Pose> {
+    Some(Pose::new(
+        -0.035 + SPEED * (time.min(3.0) - MEETS),
+        0.0,
+        0.0,
+    ))
+}
+
+/// Where the disc then is.
+fn truth(time: f64) -> Pose {
+    Pose::new(SPEED * (time.clamp(MEETS, 3.0) - MEETS), 0.0, 0.0)
+}
+
+fn pushed(latency: f64) -> Log {
+    log(150, |time| Some(truth(time - latency)), pusher)
+}
+
+fn estimate(setup: &Setup, log: &Log, mode: Mode) -> Estimate {
+    estimate_of(400, setup, log, mode)
+}
+
+fn estimate_of(particles: usize, setup: &Setup, log: &Log, mode: Mode) -> Estimate {
+    let options = RunOptions {
+        mode,
+        particles,
+        ..RunOptions::default()
+    };
+    run(setup, log, &options, &mut |_| ())
+        .expect("a run")
+        .estimate
+}
+
+/// Largest distance from the truth over the rows from `from` (s) to `to` (s), in m.
+fn farthest(estimate: &Estimate, from: f64, to: f64) -> f64 {
+    let rows = estimate.time.iter().zip(&estimate.rows);
+    let errors = rows.filter(|(time, _)| (from..to).contains(*time));
+    errors
+        .filter_map(|(time, row)| Some((row.pose?.x - truth(*time).x).hypot(row.pose?.y)))
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn friction_that_nothing_was_felt_of_keeps_its_prior() {
+    let setup = setup(&[[0.2, 0.0]]);
+    let estimate = estimate(&setup, &pushed(0.0), Mode::Contact);
+    let last = estimate.rows.last().expect("rows");
+    let (mean, std) = (
+        last.friction.expect("friction").mu_f,
+        last.spread
+            .and_then(|spread| spread.friction)
+            .expect("a spread")
+            .mu_f,
+    );
+    // a log-normal variable of median m and deviation s has mean m e^(s²/2) and this deviation; the
+    // upper limit of 1 cuts little of it
+    let (median, s): (f64, f64) = (0.33, 0.45);
+    let expected = median * libm::exp(s * s / 2.0);
+    let deviation = expected * (libm::exp(s * s) - 1.0).sqrt();
+    assert!((mean / expected - 1.0).abs() < 0.1, "{mean}, {expected}");
+    assert!((std / deviation - 1.0).abs() < 0.2, "{std}, {deviation}");
+}
+
+#[test]
+fn a_pose_that_is_wrong_now_and_then_moves_nothing() {
+    let setup = setup(&[]);
+    let mut log = pushed(0.0);
+    for row in (20..150).step_by(17) {
+        log.object[row] = Some(Pose::new(0.015, -0.02, 1.0));
+    }
+    let contact = farthest(&estimate(&setup, &log, Mode::Contact), 0.5, 5.0);
+    let paper = farthest(&estimate(&setup, &log, Mode::Paper), 0.5, 5.0);
+    assert!(contact < 6e-4, "{contact}");
+    assert!(paper > 5e-3, "{paper}: the log has no outliers");
+}
+
+#[test]
+fn a_camera_that_lags_more_than_told_does_not_drag_the_estimate() {
+    let setup = setup(&[]);
+    let late = pushed(0.08);
+    // while the disc moves, the camera is 1.6 mm behind
+    // at more than twice what the prior expects: some forty of 400 particles lag as much
+    let contact = farthest(&estimate_of(1000, &setup, &late, Mode::Contact), 2.0, 3.0);
+    let paper = farthest(&estimate(&setup, &late, Mode::Paper), 2.0, 3.0);
+    assert!(contact < 6e-4, "{contact}");
+    assert!(paper > contact, "{paper}, {contact}");
+}
+
+#[test]
+fn a_camera_that_moves_for_good_is_followed() {
+    let setup = setup(&[]);
+    let mut log = pushed(0.0);
+    let elsewhere = Pose::new(0.1, 0.05, 0.5);
+    log.object[120..].fill(Some(elsewhere));
+    // equal poses are one frame again and again: let them differ
+    for (row, pose) in log.object.iter_mut().enumerate().skip(120) {
+        *pose = pose.map(|pose| Pose::new(pose.x + 1e-6 * row as f64, pose.y, pose.theta));
+    }
+    let estimate = estimate(&setup, &log, Mode::Contact);
+    let row = 120 + (0.3 * RATE) as usize;
+    let pose = estimate.rows[row].pose.expect("a pose");
+    assert!(
+        (pose.x - 0.1).abs() < 2e-3 && (pose.y - 0.05).abs() < 2e-3,
+        "{pose:?}"
+    );
+}
+
+/// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
+/// else it slides round the fixel. Here it slides.
+fn slippery() -> (Setup, Log) {
+    let mut slippery = setup(&[[0.032, -0.022]]);
+    let nominal = &mut slippery.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
+    let beside = |time: f64| Some(Pose::new(-0.0348 + SPEED * time, 0.004, 0.0));
+    let mut log = log(110, |_| Some(Pose::default()), beside);
+    let options = RunOptions {
+        method: Method::Nominal,
+        ..RunOptions::default()
+    };
+    let truth = run(&slippery, &log, &options, &mut |_| ()).expect("a simulation");
+    log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
+    assert!(log.object[109].expect("a pose").y > 0.01);
+    (slippery, log)
+}
+
+/// A run in the dark.
+fn blind(setup: &Setup, log: &Log) -> Run {
+    let options = RunOptions {
+        occlusion: Occlusion::Rows { from: 5, to: None },
+        particles: 400,
+        ..RunOptions::default()
+    };
+    run(setup, log, &options, &mut |_| ()).expect("a run")
+}
+
+#[test]
+fn a_pusher_that_goes_on_says_that_nothing_jams() {
+    let (slippery, log) = slippery();
+    let last = log.object[109].expect("a pose");
+    // most particles believe that it jams
+    let mut sticky = slippery.clone();
+    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    let error = |pusher_lag| {
+        sticky.uncertainty.pusher_lag = pusher_lag;
+        let run = blind(&sticky, &log);
+        let believed = run.estimate.rows[109].pose.expect("a pose");
+        (believed.x - last.x).hypot(believed.y - last.y)
+    };
+    let [deaf, hears] = [1e3, 3e-4].map(error);
+    assert!(hears < 0.5 * deaf, "{hears} m, without the pusher {deaf} m");
+}
+
+#[test]
+fn the_evidence_is_for_the_friction_that_was() {
+    let (slippery, log) = slippery();
+    let mut sticky = slippery.clone();
+    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    let [right, wrong] = [&slippery, &sticky].map(|setup| blind(setup, &log).log_evidence);
+    assert!(right > wrong, "{right:?}, {wrong:?}");
+    let other = RunOptions {
+        method: Method::Kalman,
+        ..RunOptions::default()
+    };
+    let kalman = run(&slippery, &log, &other, &mut |_| ()).expect("a run");
+    assert_eq!(kalman.log_evidence, None);
+}
+
+/// Under a steady push, what the camera shows fixes o − v L, the pusher's offset less the way in the
+/// latency. On that line the priors N(0, σ²) of o and exponential of L leave a normal distribution of
+/// mean −σ²/(v L̄), cut off where L = 0, for where the object is.
+#[test]
+fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
+    let mut setup = setup(&[]);
+    setup.uncertainty.roughness = 0.0;
+    setup.uncertainty.outline = 0.0;
+    let (std, late) = (setup.uncertainty.pusher_offset, setup.uncertainty.latency);
+    let log = pushed(0.05);
+    let row = 85; // after 1.8 s of pushing
+    let (mut error, mut spread) = (0.0, 0.0);
+    const SEEDS: u64 = 12;
+    for seed in 0..SEEDS {
+        let options = RunOptions {
+            particles: 1000,
+            seed,
+            ..RunOptions::default()
+        };
+        let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+        let at = &run.estimate.rows[row];
+        let pose = at.pose.expect("a pose");
+        error += (pose.x - truth(run.estimate.time[row]).x) / SEEDS as f64;
+        spread += at.spread.expect("a spread").pose.x / SEEDS as f64;
+    }
+    let expected = -std * std / (SPEED * late);
+    assert!((spread / std - 1.0).abs() < 0.25, "{spread}, {std}");
+    assert!((error - expected).abs() < 0.4 * std, "{error}, {expected}");
+}

@@ -1,0 +1,15 @@
+//! The estimator on scenes whose answer is known.
+
+mod common;
+mod contact_mode;
+mod friction_parameters;
+mod jam;
+mod particle_view;
+mod pose_covariance;
+mod prior_sample;
+mod refused;
+mod rivals;
+mod tactile;
+mod track;
+mod tracker;
+mod turned_table;

@@ -1,0 +1,146 @@
+//! Experiments drawn from the filter's own model: what is drawn has the priors' distributions, and the
+//! filter's beliefs of such experiments hold as much as they say (simulation-based calibration).
+
+use std::sync::Mutex;
+
+use crate::common::{log, setup};
+use stickslip::dynamics::Pose;
+use stickslip::{
+    Log, Mode, Observer, ParticleView, PriorSample, RunOptions, Setup, SolvedStep, Tactile,
+    run_observed,
+};
+
+/// Experiments that are drawn.
+const SAMPLES: u64 = 150;
+
+/// A disc that is pushed against a fixel, from 1.25 s on; it gets there at about 2.5 s.
+fn scene() -> Setup {
+    let mut setup = setup(&[[0.06, 0.0]]);
+    setup.filter.likelihood_scale = 1.0;
+    setup
+}
+
+fn push() -> Log {
+    let mut log = log(
+        90,
+        |_| Some(Pose::default()),
+        |t| Some(Pose::new(-0.06 + 0.02 * t, 0.0, 0.0)),
+    );
+    log.tactile = vec![vec![Some(false); log.time.len()]];
+    log
+}
+
+fn samples(setup: &Setup) -> Vec<PriorSample> {
+    let draw = |seed| PriorSample::draw(setup, &push(), Mode::Contact, seed).expect("a sample");
+    (0..SAMPLES).map(draw).collect()
+}
+
+/// Weight of the particles below the true x, y and θ at one row.
+#[derive(Debug)]
+struct Ranks {
+    row: usize,
+    truth: Pose,
+    ranks: Mutex<[f64; 3]>,
+}
+
+impl Observer for Ranks {
+    fn on_step(&self, _: &SolvedStep<'_>) {}
+
+    fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
+        if row != self.row {
+            return;
+        }
+        let mut ranks = [0.0; 3];
+        for (i, weight) in particles.weights().iter().enumerate() {
+            let pose = particles.pose(i);
+            for (k, (value, truth)) in pose
+                .fields()
+                .into_iter()
+                .zip(self.truth.fields())
+                .enumerate()
+            {
+                ranks[k] += if value < truth { *weight } else { 0.0 };
+            }
+        }
+        *self.ranks.lock().expect("one thread") = ranks;
+    }
+}
+
+#[test]
+fn beliefs_of_where_an_object_waits_hold_what_they_say() {
+    let (setup, row) = (scene(), 25);
+    let mut held = [0_u32; 3];
+    for (seed, sample) in samples(&setup).iter().enumerate() {
+        let ranks = Ranks {
+            row,
+            truth: sample.truth[row].pose,
+            ranks: Mutex::default(),
+        };
+        let options = RunOptions {
+            particles: 256,
+            seed: seed as u64 + 1000,
+            ..RunOptions::default()
+        };
+        run_observed(&setup, &sample.log, &options, &ranks, &mut |_| ()).expect("a run");
+        let ranks = ranks.ranks.into_inner().expect("one thread");
+        for (held, rank) in held.iter_mut().zip(ranks) {
+            *held += u32::from((0.05..=0.95).contains(&rank));
+        }
+    }
+    // 90 % of 150, whose standard deviation is 3.7
+    assert!(
+        held.iter().all(|held| (120..=149).contains(held)),
+        "{held:?}"
+    );
+}
+
+#[test]
+fn friction_drawn_has_its_prior_s_distribution_to_the_end() {
+    let setup = scene();
+    let drawn = samples(&setup).into_iter().map(|sample| {
+        let last = sample.truth.last().expect("rows").friction;
+        libm::log(last.mu_p / setup.scene.nominal.mu_p) / setup.uncertainty.friction.mu_p
+    });
+    let drawn: Vec<f64> = drawn.collect();
+    let count = drawn.len() as f64;
+    let mean = drawn.iter().sum::<f64>() / count;
+    let variance = drawn.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (count - 1.0);
+    // within four standard errors of a standard normal distribution
+    assert!(mean.abs() < 4.0 / count.sqrt(), "{mean}");
+    assert!(
+        (variance - 1.0).abs() < 4.0 * (2.0 / count).sqrt(),
+        "{variance}"
+    );
+}
+
+#[test]
+fn sensors_that_never_err_read_what_is_touched() {
+    let setup = Setup {
+        tactile: Tactile {
+            false_negative: 1e-9,
+            false_positive: 1e-9,
+            ..Tactile::default()
+        },
+        ..scene()
+    };
+    let (mut free, mut pressed) = (0, 0);
+    for sample in samples(&setup) {
+        for (truth, reading) in sample.truth.iter().zip(&sample.log.tactile[0]) {
+            // 30 mm and 5 mm of radius; offsets and outline are some tenths of a millimetre
+            let gap = (0.06 - truth.pose.x).hypot(truth.pose.y) - 0.035;
+            free += u32::from(gap > 5e-3);
+            assert!(gap < 5e-3 || *reading == Some(false), "{truth:?}");
+        }
+        // the pusher, which goes on, presses the object against the fixel
+        pressed += u32::from(*sample.log.tactile[0].last().expect("rows") == Some(true));
+    }
+    assert!(free > 1000);
+    assert!(f64::from(pressed) > 0.9 * SAMPLES as f64, "{pressed}");
+}
+
+#[test]
+fn a_sample_is_reproduced_by_its_seed() {
+    let draw = |seed| PriorSample::draw(&scene(), &push(), Mode::Contact, seed).expect("a sample");
+    assert_eq!(draw(3), draw(3));
+    assert_ne!(draw(3).truth, draw(4).truth);
+}

@@ -1,0 +1,16 @@
+//! Filters and smoothers against exact answers.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod allocation;
+mod collapse;
+mod common;
+mod imm;
+mod kalman;
+mod linear_gaussian;
+mod particle_set;
+mod resampling;
+mod second_try;
+mod streams;
+mod threads;
+mod weights;

@@ -1,0 +1,129 @@
+//! Offsets, latency and the centre of friction are found again.
+
+use crate::common;
+use crate::common::{pushes_in, setup};
+use stickslip::Setup;
+use stickslip_dynamics::{Feet, Part, Shape};
+use stickslip_evaluation::Physics;
+use stickslip_fit::{Fit, FitOptions, Parameter, Push, fit};
+
+/// Learns `names` from pushes in `truth`, told the scene of the tests.
+fn learnt(truth: &Setup, names: &[&str], change: impl Fn(&mut Push)) -> (Vec<Push>, Fit) {
+    let mut pushes = pushes_in(truth, Physics::Model, 5, 5);
+    for push in &mut pushes {
+        push.setup = setup();
+        change(push);
+    }
+    let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+    let options = FitOptions {
+        parameters: Parameter::parse_list(&names).unwrap(),
+        seed: 1,
+    };
+    let fit = fit(&pushes, &options).unwrap();
+    (pushes, fit)
+}
+
+#[track_caller]
+fn assert_found(fit: &Fit, truths: &[f64]) {
+    for (fitted, truth) in fit.parameters.iter().zip(truths) {
+        println!(
+            "{} {} +- {}, truly {truth}",
+            fitted.name, fitted.value, fitted.std
+        );
+        let off = (fitted.value - truth).abs() / fitted.std;
+        assert!(fitted.determined && off < 3.5, "{fitted:?}, truly {truth}");
+    }
+}
+
+/// Feet of equal friction, a third of the weight each, about another point than the origin.
+#[test]
+fn centre_of_friction_is_found_and_written() {
+    let mut truth = setup();
+    let [x, y] = [0.004, -0.003];
+    let half = 0.025 * 3.0_f64.sqrt() / 2.0;
+    truth.scene.feet = Feet::Known {
+        positions: [
+            [x, y + 0.025],
+            [x - half, y - 0.0125],
+            [x + half, y - 0.0125],
+        ],
+        loads: [1.0 / 3.0; 3],
+    };
+    let (_, fit) = learnt(&truth, &["centre_of_friction"], |_| ());
+    assert_found(&fit, &[x, y]);
+
+    // the scene that is written has these feet
+    let text = fit.scene_text(common::SCENE, "scene.toml", None).unwrap();
+    let written = stickslip_formats::read_scene(&text, "scene.toml").unwrap();
+    let (
+        Feet::Known { positions, .. },
+        Feet::Known {
+            positions: truly, ..
+        },
+    ) = (written.scene.feet, truth.scene.feet)
+    else {
+        panic!("known feet in {text}");
+    };
+    for (foot, truly) in positions.as_flattened().iter().zip(truly.as_flattened()) {
+        assert!((foot - truly).abs() < 1e-3, "{positions:?}");
+    }
+}
+
+/// As far as its noisy track allows, see below.
+#[test]
+fn offset_of_the_pusher_is_found() {
+    let mut truth = setup();
+    let centre = [0.001, -0.0006];
+    truth.scene.pusher.shape = Shape::new(vec![Part::Disc {
+        radius: 0.005,
+        centre,
+    }])
+    .unwrap();
+    let (_, fit) = learnt(&truth, &["pusher_offset"], |_| ());
+    for (fitted, truth) in fit.parameters.iter().zip(centre) {
+        let off = (fitted.value - truth).abs();
+        assert!(fitted.determined && off < 4e-4, "{fitted:?}, truly {truth}");
+    }
+}
+
+/// The log's object poses come 0.08 s late, and nobody says so. A noisy pusher track carries the object
+/// ahead by up to 0.3 mm, since contact only pushes: at 15 mm/s that looks like 0.02 s.
+#[test]
+fn latency_is_found_as_far_as_the_pusher_is_known() {
+    let mut truth = setup();
+    if let Some(camera) = &mut truth.camera {
+        camera.latency = 0.08;
+    }
+    let (_, fit) = learnt(&truth, &["latency"], |_| ());
+    let latency = &fit.parameters[0];
+    assert!(
+        latency.determined && (latency.value - 0.08).abs() < 0.03,
+        "{latency:?}"
+    );
+}
+
+#[test]
+fn what_a_scene_lacks_is_refused() {
+    let pushes = pushes_in(&setup(), Physics::Model, 2, 5);
+    let refused = |names: &[&str], change: fn(&mut Setup)| {
+        let mut pushes = pushes.clone();
+        pushes.iter_mut().for_each(|push| change(&mut push.setup));
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let parameters = Parameter::parse_list(&names).unwrap();
+        let options = FitOptions {
+            parameters,
+            seed: 0,
+        };
+        fit(&pushes, &options).unwrap_err().to_string()
+    };
+    let feet = |setup: &mut Setup| {
+        setup.scene.feet = Feet::Known {
+            positions: [[0.02, 0.0], [-0.01, 0.02], [-0.01, -0.02]],
+            loads: [1.0 / 3.0; 3],
+        };
+    };
+    assert!(refused(&["centre_of_friction"], feet).contains("gives the feet"));
+    assert!(refused(&["latency"], |setup| setup.camera = None).contains("no [camera]"));
+    let sure = |setup: &mut Setup| setup.uncertainty.friction.mu_p = 0.0;
+    assert!(refused(&["mu_p"], sure).contains("leaves nothing to be learnt"));
+}

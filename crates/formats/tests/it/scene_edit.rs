@@ -1,0 +1,89 @@
+//! Numbers of scene files replaced.
+
+use stickslip_dynamics::{Feet, Part, Shape};
+use stickslip_formats::{SceneEdit, read_scene};
+
+const SCENE: &str = "# ours
+gravity = 9.81 # Berlin
+[object]
+mass = 0.5
+inertia = 2.1e-4
+shape = [ { disc = { radius = 0.03 } } ]
+[support]
+friction = 0.28   # a guess
+tripod_radius = 0.02
+[pusher]
+shape = [ { disc = { radius = 0.005 } } ]
+friction = 0.3
+[fixels]
+friction = 0.25
+";
+
+#[test]
+fn set_changes_a_number_and_nothing_else() {
+    let mut edit = SceneEdit::new(SCENE, "scene.toml").unwrap();
+    assert_eq!(edit.text(), SCENE);
+    edit.set(&["support", "friction"], 0.123_456_789);
+    let expected = SCENE.replace("0.28   # a guess", "0.123457   # a guess");
+    assert_eq!(edit.text(), expected);
+}
+
+#[test]
+fn new_refuses_what_is_no_scene() {
+    let error = SceneEdit::new("gravity = 0\n", "scene.toml").unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("scene.toml:1:11: gravity is 0"),
+        "{error}"
+    );
+}
+
+#[test]
+fn set_shape_and_feet_are_read_back() {
+    let parts = vec![
+        Part::Polygon {
+            vertices: vec![[-0.01, -0.01], [0.01, -0.01], [0.01, 0.01], [-0.01, 0.01]],
+        },
+        Part::Disc {
+            radius: 0.012,
+            centre: [0.001, 0.002],
+        },
+        Part::Ellipse {
+            semi_axes: [0.02, 0.01],
+            centre: [0.0, 0.003],
+            angle: 0.25,
+        },
+    ];
+    let mut edit = SceneEdit::new(SCENE, "scene.toml").unwrap();
+    edit.set_shape("object", &Shape::new(parts.clone()).unwrap());
+    let (positions, loads) = (
+        [[0.02, 0.001], [-0.01, 0.02], [-0.01, -0.02]],
+        [0.25, 0.5, 0.25],
+    );
+    edit.set_feet(positions, loads);
+    let text = edit.text();
+    let scene = read_scene(&text, "scene.toml").unwrap().scene;
+    assert_eq!(scene.object.shape.parts(), parts);
+    assert_eq!(scene.feet, Feet::Known { positions, loads });
+    for kept in ["# ours", "# Berlin", "# a guess"] {
+        assert!(text.contains(kept), "{text}");
+    }
+}
+
+#[test]
+fn foot_loads_that_are_no_shares_are_refused() {
+    let feet = "feet = [[0.02, 0], [-0.01, 0.02], [-0.01, -0.02]]\n";
+    let with = |loads: &str| {
+        let text = SCENE.replace(
+            "tripod_radius = 0.02\n",
+            &format!("{feet}foot_loads = {loads}\n"),
+        );
+        read_scene(&text, "scene.toml").map(|setup| setup.scene.feet)
+    };
+    assert!(with("[0.5, 0.25, 0.25]").is_ok());
+    for bad in ["[0.5, 0.5, 0.25]", "[1.5, -0.25, -0.25]", "[0.5, 0.5]"] {
+        let error = with(bad).unwrap_err().to_string();
+        assert!(error.contains("foot_loads"), "{error}");
+    }
+}

@@ -1,0 +1,8 @@
+//! Figures and pages.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod browser;
+mod common;
+mod figures;
+mod page;

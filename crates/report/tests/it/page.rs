@@ -1,0 +1,221 @@
+//! The report as a file: nothing is loaded, nothing breaks out of its place, the data are right and
+//! few.
+
+use crate::common::{experiment, log, setup, truth};
+use serde_json::Value;
+use stickslip_report::{Block, Outcome, Report, Section, Story, Table};
+
+const HOSTILE: &str = "</script><script>alert(1)</script> \"'<b>&amp; http://example.org";
+
+fn page(rows: usize, particles: usize, name: &str) -> String {
+    let (setup, log) = (setup(), log(rows));
+    let experiment = experiment(name, &setup, &log, particles);
+    let summary = experiment.summary().to_vec();
+    Report {
+        title: name.to_owned(),
+        summary,
+        sections: vec![experiment.section()],
+        ..Report::default()
+    }
+    .to_html()
+}
+
+/// The JSON that the page's script reads.
+fn data(page: &str) -> Value {
+    let start = page.find(r#"<script type="application/json">"#).unwrap()
+        + r#"<script type="application/json">"#.len();
+    let length = page[start..].find("</script>").unwrap();
+    serde_json::from_str(&page[start..start + length]).unwrap()
+}
+
+#[test]
+fn a_page_loads_nothing() {
+    let text = page(60, 5, "test");
+    for address in [
+        "http:",
+        "https:",
+        "//cdn",
+        "@import",
+        "src=\"/",
+        "url(/",
+        "fetch(",
+        "XMLHttpRequest",
+        "import(",
+    ] {
+        // names of XML namespaces are no addresses
+        let others = text.replace("http://www.w3.org/2000/svg", "");
+        assert!(!others.contains(address), "{address}");
+    }
+    for link in text
+        .split("href=\"")
+        .skip(1)
+        .chain(text.split("src=\"").skip(1))
+    {
+        assert!(link.starts_with("data:"), "{}", &link[..40]);
+    }
+}
+
+/// Poses that the camera had lost just before they were hidden belong to the blackout; others do not.
+#[test]
+fn the_camera_is_dark_from_the_last_pose_on() {
+    let (setup, mut log) = (setup(), log(90));
+    for row in [10, 11, 50, 51, 52, 53, 60, 89] {
+        log.object[row] = None;
+    }
+    // rows are hidden from 54 on
+    let story = experiment("gaps", &setup, &log, 5).story();
+    assert_eq!(story.lost, 2);
+    assert_eq!(story.dark, Some([log.time[49], log.time[89]]));
+}
+
+#[test]
+fn of_several_methods_with_the_camera_on_each_is_named() {
+    let outcome = |name: &str, wmse: f64| Outcome {
+        name: format!("{name}, camera on"),
+        camera_on: true,
+        wmse_mm: Some(wmse),
+    };
+    let story = |outcomes: &[Outcome]| Story {
+        outcomes: outcomes.to_vec(),
+        ..Story::default()
+    };
+    let both = [
+        outcome("Kalman filter", 2.47),
+        outcome("particle filter", 0.12),
+    ];
+    assert_eq!(
+        story(&both).seen().as_deref(),
+        Some("With the camera always on: particle filter (0.12 mm), Kalman filter (2.47 mm).")
+    );
+    assert_eq!(
+        story(&both[..1]).seen().as_deref(),
+        Some("With the camera always on: 2.47 mm.")
+    );
+    assert_eq!(story(&[]).seen(), None);
+}
+
+#[test]
+fn hostile_names_stay_text() {
+    let text = page(60, 5, HOSTILE);
+    assert!(
+        !text.contains("<script>alert") && !text.contains("<b>&"),
+        "escaped"
+    );
+    // one style sheet's worth of scripts: the data and the player
+    assert_eq!(text.matches("<script").count(), 2);
+    assert_eq!(text.matches("</script>").count(), 2);
+    assert_eq!(data(&text)["marks"][0][1], format!("pusher {HOSTILE}"));
+}
+
+#[test]
+fn data_read_back_to_the_numbers_they_were() {
+    let rows = 90;
+    let data = data(&page(rows, 4, "test"));
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (first, shown) = (
+        data["first"].as_u64().unwrap() as usize,
+        data["time"].as_array().unwrap().len(),
+    );
+    assert!(first == 0 && shown == rows, "{first} {shown}");
+    for row in [0, 31, 89] {
+        let pose = truth(row, rows);
+        let at = |key: &str| number(&data["truth"][key][row]);
+        assert!(
+            (at("x") / 1e5 - pose.x).abs() <= 0.5e-5 && (at("y") / 1e5 - pose.y).abs() <= 0.5e-5
+        );
+        assert!((at("theta") / 1e4 - pose.theta).abs() <= 0.5e-4);
+        assert_eq!(
+            number(&data["time"][row]),
+            (1e3 * row as f64 / 30.0).round()
+        );
+        // what the player draws is the sum of an estimate and a particle's offset
+        let method = &data["methods"][3];
+        for particle in 0..4 {
+            let x = number(&method["pose"]["x"][row]) + number(&method["cloud"][row][3 * particle]);
+            assert!((x / 1e5 - (pose.x + 1e-3 * libm::sin(particle as f64))).abs() <= 0.6e-5);
+        }
+        let off = 2e-4_f64;
+        assert!(
+            (number(&method["error"][row]) - 1e6 * off * libm::sin(row as f64).hypot(1.0)).abs()
+                < 0.51
+        );
+    }
+    assert!(data["pusherPose"]["x"][3].is_null() && data["pusherPose"]["x"][4].is_number());
+    assert_eq!(data["dark"], serde_json::json!([[54, 90]]));
+    assert_eq!(
+        (&data["hidden"][53], &data["hidden"][54]),
+        (&0.into(), &1.into())
+    );
+    assert_eq!(data["touches"][0]["truth"][0], 1);
+    assert!(
+        data["touches"][1]["truth"].is_null()
+            && data["touches"][1]["sensed"][89] == 1
+            && data["touches"][2]["sensed"].is_null()
+    );
+    // as the run has them, and more where drawn particles lie at a body
+    for (body, least) in [50, 25, 100].into_iter().enumerate() {
+        let told: Vec<u64> = data["methods"][3]["contact"][body]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|p| p.as_u64().unwrap())
+            .collect();
+        assert_eq!(told[..30], [least; 30]);
+        assert!(told.len() == 90 && told.iter().all(|p| (least..=100).contains(p)));
+    }
+    assert!(
+        data["methods"][2]["contact"].is_null(),
+        "only one method's contacts are shown"
+    );
+    assert_eq!(data["order"], serde_json::json!([4, 0, 1, 2, 3]));
+}
+
+#[test]
+fn an_experiment_of_600_rows_stays_below_2_mb() {
+    let (setup, log) = (setup(), log(600));
+    let mut experiment = experiment("test", &setup, &log, 60);
+    // without contacts, all rows are shown
+    experiment.contacts.clear();
+    let text = Report {
+        sections: vec![experiment.section()],
+        ..Report::default()
+    }
+    .to_html();
+    assert_eq!(data(&text)["time"].as_array().unwrap().len(), 600);
+    assert!(text.len() < 2_000_000, "{}", text.len());
+}
+
+#[test]
+fn the_summary_says_what_each_parameter_is() {
+    let text = page(60, 5, "test");
+    let (_, told) = text
+        .split_once("Friction according to the particle filter: ")
+        .unwrap();
+    let told = told.split_once("</li>").unwrap().0;
+    for name in ["mu_s", "mu_p", "mu_f", "d_tri"] {
+        let (values, meanings) = told.split_once(". Here ").unwrap();
+        assert_eq!(values.contains(name), meanings.contains(name), "{told}");
+    }
+    assert!(told.contains("d_tri how far the three feet"), "{told}");
+}
+
+#[test]
+fn pages_of_nothing_and_of_one_row_are_pages() {
+    for rows in [0, 1] {
+        assert!(page(rows, 2, "test").ends_with("</html>"));
+    }
+    let block = Block::Table(Table::new(["a"]), String::new());
+    let plain = Report {
+        title: "t".to_owned(),
+        summary: Vec::new(),
+        sections: vec![Section {
+            title: String::new(),
+            blocks: vec![block],
+        }],
+        ..Report::default()
+    };
+    assert!(
+        !plain.to_html().contains("<script"),
+        "no script where nothing is played back"
+    );
+}
