@@ -16,8 +16,14 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
         &["scene", "input", "particles", "start"],
         &["ncp/"],
         &["solver/"],
-        &["feet", "prepared_scene", "assembly", "stated_problem"],
-        &["step", "compiled_step", "rollout"],
+        &[
+            "feet",
+            "prepared_scene",
+            "assembly",
+            "stated_problem",
+            "block_problems",
+        ],
+        &["kept_lanes", "step", "compiled_step", "rollout"],
     ],
 )];
 

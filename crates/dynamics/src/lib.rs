@@ -1,11 +1,13 @@
 //! Planar frictional contact dynamics of one pushed object.
 
 mod assembly;
+mod block_problems;
 mod compiled_step;
 mod feet;
 mod friction;
 mod geometry;
 mod input;
+mod kept_lanes;
 mod ncp;
 mod particles;
 mod prepared_scene;

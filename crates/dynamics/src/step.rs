@@ -9,22 +9,21 @@ use std::ops::Range;
 use stickslip_lanes::{Lanes, Level, Mask};
 
 use crate::assembly::Assembly;
+use crate::block_problems::BlockProblems;
 use crate::compiled_step::CompiledStep;
 use crate::friction::Friction;
 use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::{Body, Offsets, PusherMotion, StepInput};
+use crate::kept_lanes::KeptLanes;
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::{Outcome, Report};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
-use crate::prepared_scene::{
-    PreparedScene, PusherContext, Pushers, SharedPusher, StepBodies, StepContext,
-};
+use crate::prepared_scene::{PreparedScene, PusherContext, Pushers, SharedPusher, StepContext};
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
 use crate::solver::chain::Solver;
-use crate::solver::source::Source;
 
 /// Added to the distance that bodies can close within one step when contacts are sought (m).
 const MARGIN: f64 = 5e-4;
@@ -51,6 +50,7 @@ pub struct StepWork<const W: usize> {
     unknowns: Vec<Unknowns<W>>,
     reports: Vec<[Report; W]>,
     solver: Solver<W>,
+    kept: KeptLanes<W>,
     /// Of steps in which every particle has its own.
     pushers: Vec<Option<PusherContext<W>>>,
 }
@@ -244,34 +244,19 @@ impl Dynamics {
             ));
         }
 
-        // solve all chunks, then again those that moved farther than was looked for
-        let mut asked = 0..particles.len();
-        while !asked.is_empty() {
-            let StepWork {
-                narrow,
-                chunks,
-                ncps,
-                unknowns,
-                reports,
-                solver,
-                ..
-            } = work;
-            let mut problems = Problems {
-                scene: &self.scene,
-                context: StepContext::new(h),
-                pushers,
-                first: asked.start,
-                particles: &particles[asked.clone()],
-                chunks: &mut chunks[asked.clone()],
-                narrow,
-            };
-            solver.solve(
-                &mut problems,
-                &mut ncps[asked.clone()],
-                &mut unknowns[asked.clone()],
-                &mut reports[asked.clone()],
-            );
-            asked = self.too_narrow(h, pushers, asked.start, work);
+        // solve all chunks, then again the lanes that moved farther than was looked for
+        let mut asked = (0..particles.len(), Mask::splat(true));
+        while !asked.0.is_empty() {
+            self.solve(h, pushers, particles, &asked, work);
+            asked = self.too_narrow(h, pushers, asked.0.start, work);
+            let chunk = asked.0.start;
+            if chunk < particles.len() {
+                work.kept.keep(
+                    &work.ncps[chunk],
+                    &work.unknowns[chunk],
+                    &work.reports[chunk],
+                );
+            }
         }
 
         // q⁺ = q + h v⁺, and what the particles remember
@@ -280,8 +265,55 @@ impl Dynamics {
         }
     }
 
-    /// The first chunk from `first` on in which some lane's solution moves farther than its search
-    /// covered, to be solved again with a wider one.
+    /// Solves the problems of some chunks, in lanes that are asked for; the others keep their answers.
+    #[inline(always)]
+    fn solve<const W: usize>(
+        &self,
+        h: f64,
+        pushers: &Pushers<'_, W>,
+        particles: &[Particles<W>],
+        (asked, lanes): &(Range<usize>, Mask<W>),
+        work: &mut StepWork<W>,
+    ) {
+        let StepWork {
+            narrow,
+            chunks,
+            ncps,
+            unknowns,
+            reports,
+            solver,
+            kept,
+            ..
+        } = work;
+        let mut problems = BlockProblems {
+            scene: &self.scene,
+            context: StepContext::new(h),
+            pushers,
+            first: asked.start,
+            asked: *lanes,
+            particles: &particles[asked.clone()],
+            chunks: &mut chunks[asked.clone()],
+            narrow,
+        };
+        solver.solve(
+            &mut problems,
+            &mut ncps[asked.clone()],
+            &mut unknowns[asked.clone()],
+            &mut reports[asked.clone()],
+        );
+        if !lanes.all() {
+            let chunk = asked.start;
+            kept.restore(
+                !*lanes,
+                &ncps[chunk],
+                &mut unknowns[chunk],
+                &mut reports[chunk],
+            );
+        }
+    }
+
+    /// The first chunk from `first` on in which some lanes' solutions move farther than their search
+    /// covered, and these lanes, to be solved again with a wider one.
     #[inline(always)]
     fn too_narrow<const W: usize>(
         &self,
@@ -289,7 +321,7 @@ impl Dynamics {
         pushers: &Pushers<'_, W>,
         first: usize,
         work: &mut StepWork<W>,
-    ) -> Range<usize> {
+    ) -> (Range<usize>, Mask<W>) {
         let count = work.reports.len();
         for chunk in first..count {
             let searched = work.chunks[chunk].search_distance();
@@ -300,10 +332,10 @@ impl Dynamics {
                 & searched.lt(Lanes::splat(WIDEST));
             if wider.any() {
                 work.chunks[chunk].set_search_distance(wider.select(needed * 2.0, searched));
-                return chunk..chunk + 1;
+                return (chunk..chunk + 1, wider);
             }
         }
-        count..count
+        (count..count, Mask::splat(true))
     }
 
     #[inline(always)]
@@ -363,41 +395,6 @@ fn length_at_most<const W: usize>(x: &Lanes<W>, y: &Lanes<W>) -> Lanes<W> {
     const SHORTER: f64 = 0.414_213_562_373_096;
     let (x, y) = (x.abs(), y.abs());
     x.max(y) + x.min(y) * SHORTER
-}
-
-/// The problems of some chunks of particles.
-struct Problems<'a, const W: usize> {
-    scene: &'a PreparedScene,
-    context: StepContext,
-    pushers: &'a Pushers<'a, W>,
-    /// Number of the first chunk.
-    first: usize,
-    particles: &'a [Particles<W>],
-    chunks: &'a mut [Assembly<W>],
-    narrow: &'a mut NarrowPhase<W>,
-}
-
-impl<const W: usize> Source<W> for Problems<'_, W> {
-    #[inline(always)]
-    fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>) {
-        self.chunks[chunk].collect(
-            self.scene,
-            StepBodies {
-                context: &self.context,
-                pusher: self.pushers.of(self.first + chunk).as_ref(),
-                fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
-                growth: self.pushers.growth(self.first + chunk),
-            },
-            &self.particles[chunk],
-            self.narrow,
-            ncp,
-        );
-    }
-
-    #[inline(always)]
-    fn start(&self, chunk: usize, _: &Ncp<W>, p: &mut Unknowns<W>) {
-        self.chunks[chunk].load_warm_start(self.scene.rho, &self.particles[chunk], p);
-    }
 }
 
 impl<const W: usize> StepWork<W> {

@@ -1,15 +1,17 @@
-//! Whether impulses within their bounds balance a load where feet stand: [`balance`].
+//! Whether impulses within their bounds balance a load: [`balance`].
 //!
-//! A foot that stands exerts any impulse within its disc, so that what the contacts have to balance,
-//! T = load + Σ b_k J_kᵀ u_k with |u_k| ≤ 1, is a convex set instead of a point. Contacts balance
-//! Σ α_i g_i, α ≥ 0, a cone. Either set and cone meet, or a direction separates them; single
-//! directions that are chosen beforehand, as those of the dual basis are, need not.
+//! What the contacts have to balance is a convex set, a [`Load`]. Contacts balance Σ α_i g_i, α ≥ 0, a
+//! cone. Either set and cone meet, or a direction separates them; single directions that are chosen
+//! beforehand, as those of the dual basis are, need not.
 
-use crate::solver::scalar_ncp::{ScalarFoot, ScalarNcp};
-use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
+use crate::solver::load::Load;
+use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Most columns that enter.
 const STEPS: u32 = 40;
+
+/// Most columns that are independent.
+const MOST: usize = 5;
 
 /// Distance between set and cone that rounding leaves, relative to the set's size.
 const ROUNDING: f64 = 1e-13;
@@ -31,64 +33,6 @@ pub enum Balance {
     Separated(Vector<4>),
     /// Neither was found.
     Unknown,
-}
-
-/// What contacts have to balance where some feet stand.
-#[derive(Clone, Copy, Debug)]
-pub struct Load<'a> {
-    /// T without the feet that stand.
-    pub fixed: Vector<4>,
-    /// The feet.
-    pub feet: &'a [ScalarFoot; 3],
-    /// Those that stand.
-    pub stands: [bool; 3],
-}
-
-impl<'a> Load<'a> {
-    /// At V = (v, y) of a problem, whose other feet slide; a rigid pusher adds nothing.
-    pub fn at(problem: &'a ScalarNcp, v: &Vector<4>, stands: [bool; 3]) -> Self {
-        let [x, y, turn] = add_scaled(&velocity(v), -1.0, &problem.free);
-        let stall = if problem.stall.is_finite() {
-            problem.stall
-        } else {
-            0.0
-        };
-        let sliding = problem
-            .feet
-            .iter()
-            .zip(stands)
-            .filter(|(_, stands)| !stands);
-        let fixed = sliding.fold([x, y, turn, stall], |fixed, (foot, _)| {
-            let [x, y] = foot.sliding(v);
-            add_scaled(&fixed, -1.0, &[x, y, foot.jx * x + foot.jy * y, 0.0])
-        });
-        Self {
-            fixed,
-            feet: &problem.feet,
-            stands,
-        }
-    }
-
-    /// The point of the set that lies farthest along w, and its u.
-    fn farthest(&self, w: &Vector<4>) -> (Vector<4>, [[f64; 2]; 3]) {
-        let (mut point, mut directions) = (self.fixed, [[0.0; 2]; 3]);
-        for ((foot, stands), u) in self.feet.iter().zip(self.stands).zip(&mut directions) {
-            let slip = foot.slip(w);
-            let length = norm(&slip);
-            if stands && length > 0.0 {
-                *u = slip.map(|x| x / length);
-                let [x, y] = u.map(|x| foot.bound * x);
-                point = add_scaled(&point, 1.0, &[x, y, foot.jx * x + foot.jy * y, 0.0]);
-            }
-        }
-        (point, directions)
-    }
-
-    /// No point of the set is longer.
-    fn size(&self) -> f64 {
-        let foot = |foot: &ScalarFoot| foot.bound * (1.0 + foot.jx.hypot(foot.jy));
-        norm(&self.fixed) + self.feet.iter().map(foot).sum::<f64>()
-    }
 }
 
 /// Looks for impulses of `generators` that balance `load`, but for a distance of `tolerance` (m/s) or
@@ -241,15 +185,18 @@ impl ActiveSet {
 
 /// The weights whose columns sum to (0, 0, 0, 0, 1) best; `None` where the columns depend on each
 /// other.
-fn least_squares(columns: &[Column]) -> Option<Vec<f64>> {
+fn least_squares(columns: &[Column]) -> Option<[f64; MOST]> {
     // columns are nearly parallel where a face rests on another one: orthogonal directions keep twice
     // the digits that the normal equations would, each taken out twice against rounding
     let n = columns.len();
-    let (mut basis, mut upper) = (Vec::<Vector<5>>::new(), vec![vec![0.0; n]; n]);
+    if n > MOST {
+        return None;
+    }
+    let (mut basis, mut upper) = ([[0.0; 5]; MOST], [[0.0; MOST]; MOST]);
     for (j, column) in columns.iter().enumerate() {
         let mut across = column.entries;
         for _ in 0..2 {
-            for (i, unit) in basis.iter().enumerate() {
+            for (i, unit) in basis[..j].iter().enumerate() {
                 let along = dot(unit, &across);
                 upper[i][j] += along;
                 across = add_scaled(&across, -along, unit);
@@ -259,10 +206,11 @@ fn least_squares(columns: &[Column]) -> Option<Vec<f64>> {
         if upper[j][j] <= 1e-12 * norm(&column.entries) {
             return None;
         }
-        basis.push(across.map(|x| x / upper[j][j]));
+        basis[j] = across.map(|x| x / upper[j][j]);
     }
-    let mut weights: Vec<f64> = basis.iter().map(|unit| unit[4]).collect();
+    let mut weights = [0.0; MOST];
     for j in (0..n).rev() {
+        weights[j] = basis[j][4];
         for k in j + 1..n {
             weights[j] -= upper[j][k] * weights[k];
         }
@@ -274,7 +222,9 @@ fn least_squares(columns: &[Column]) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::load::Slips;
     use crate::solver::numbers::Numbers;
+    use crate::solver::scalar_ncp::ScalarFoot;
     use crate::solver::support_friction::SupportFriction;
 
     fn random_feet(numbers: &mut Numbers) -> [ScalarFoot; 3] {
@@ -295,7 +245,7 @@ mod tests {
     fn is_sound(found: &Balance, generators: &[Vector<4>], load: &Load<'_>) {
         match found {
             Balance::Met { alpha, directions } => {
-                let mut sum = load.fixed;
+                let mut sum = load.corners[0];
                 for (foot, u) in load.feet.iter().zip(directions) {
                     assert!(norm(u) <= 1.0 + 1e-12, "{u:?}");
                     sum = add_scaled(&sum, 1.0, &wrench(foot, u));
@@ -309,7 +259,7 @@ mod tests {
             Balance::Separated(w) => {
                 assert!(generators.iter().all(|g| dot(w, g) < 1e-13), "{w:?}");
                 for turn in 0..8_u32.pow(3) {
-                    let mut point = load.fixed;
+                    let mut point = load.corners[0];
                     for (k, foot) in load.feet.iter().enumerate() {
                         let angle = f64::from(turn / 8_u32.pow(k as u32) % 8) * 0.785;
                         let (sin, cos) = libm::sincos(angle);
@@ -330,9 +280,9 @@ mod tests {
             let rests = SupportFriction::new(&feet).solve(&free).v == [0.0; 3];
             let [x, y, turn] = free.map(|x| -x);
             let load = Load {
-                fixed: [x, y, turn, 0.0],
+                corners: vec![[x, y, turn, 0.0]],
                 feet: &feet,
-                stands: [true; 3],
+                slips: [Slips::Any; 3],
             };
             let (found, _) = balance(&[], &load, 0.0);
             is_sound(&found, &[], &load);
@@ -361,9 +311,9 @@ mod tests {
                 numbers.vector()
             };
             let load = Load {
-                fixed,
+                corners: vec![fixed],
                 feet: &feet,
-                stands: [true; 3],
+                slips: [Slips::Any; 3],
             };
             let (found, _) = balance(&generators, &load, 0.0);
             is_sound(&found, &generators, &load);

@@ -151,9 +151,14 @@ impl<const W: usize> Solver<W> {
         );
         self.reserve(ncps.len());
         // all problems by the Newton iteration
-        let unsolved = &mut self.unsolved;
+        let (unsolved, asked) = (&mut self.unsolved, source.asked());
         self.newton.solve(source, ncps, z, NEWTON, &mut |end| {
-            reports[end.index.chunk][end.index.lane] = Report {
+            let report = &mut reports[end.index.chunk][end.index.lane];
+            if !asked.lane(end.index.lane) {
+                *report = Report::UNSOLVED;
+                return;
+            }
+            *report = Report {
                 outcome: Outcome::Solved,
                 residual: end.residual,
                 systems: end.iterations,

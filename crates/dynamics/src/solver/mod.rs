@@ -13,6 +13,7 @@ mod interval;
 mod lane_queue;
 mod limit_surface;
 mod linearised;
+mod load;
 mod mode_conditions;
 mod mode_curve;
 mod mode_line;

@@ -1,9 +1,10 @@
 //! What a choice of generators demands of V = (v, y): [`ModeConditions`].
 
-use crate::solver::balance::{Balance, Load, balance};
+use crate::solver::balance::{Balance, balance};
 use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
+use crate::solver::load::Load;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
@@ -16,6 +17,9 @@ const STANDS: f64 = 1e-10;
 
 /// No impulse is so large (m/s).
 const LARGEST: f64 = 1e6;
+
+/// Speeds above this leave a balance too few digits (m/s).
+const FASTEST: f64 = 1e3;
 
 /// A linear condition row·V + offset ≥ 0.
 #[derive(Clone, Copy, Debug)]
@@ -142,7 +146,8 @@ impl ModeConditions {
         if stands == [false; 3] {
             return None;
         }
-        let Balance::Met { alpha, directions } = self.balance(chosen, v, stands, certifier) else {
+        let load = Load::at(&self.problem, v, stands);
+        let Balance::Met { alpha, directions } = balance_of(chosen, &load, certifier) else {
             return None;
         };
         let mut candidate = self.candidate(chosen, &alpha, *v);
@@ -152,44 +157,23 @@ impl ModeConditions {
         Some(candidate)
     }
 
-    /// Whether no impulses of the generators balance the load for any V between two points between
-    /// which a foot may stand, by a combination of balances that depends on where.
+    /// Whether no impulses of the generators balance the load for any V of the hull of some.
     pub fn separates(
         &self,
         chosen: &[Generator],
-        a: &Vector<4>,
-        b: &Vector<4>,
+        hull: &[Vector<4>],
         certifier: &mut Certifier<'_>,
     ) -> bool {
-        // where no foot turns by a right angle, single balances exclude once the piece is narrow
-        let stands = self
-            .problem
-            .feet
-            .map(|foot| dot(&foot.slip(a), &foot.slip(b)) <= STANDS * STANDS);
-        if stands == [false; 3] {
+        if hull.iter().any(|v| norm(v) > FASTEST) {
             return false;
         }
-        let middle = add_scaled(a, 1.0, b).map(|x| 0.5 * x);
-        let Balance::Separated(w) = self.balance(chosen, &middle, stands, certifier) else {
+        let load = Load::over(&self.problem, hull);
+        let Balance::Separated(w) = balance_of(chosen, &load, certifier) else {
             return false;
         };
+        let (nearest, _) = load.farthest(&w.map(|x| -x));
         let rounding: f64 = chosen.iter().map(|c| dot(&w, &c.g).max(0.0)).sum();
-        self.range_along(&w, a, b).low > self.slack + LARGEST * rounding
-    }
-
-    /// Impulses of the generators and of the feet that stand, at V.
-    fn balance(
-        &self,
-        chosen: &[Generator],
-        v: &Vector<4>,
-        stands: [bool; 3],
-        certifier: &mut Certifier<'_>,
-    ) -> Balance {
-        let generators: Vec<_> = chosen.iter().map(|c| c.g).collect();
-        let load = Load::at(&self.problem, v, stands);
-        let (found, systems) = balance(&generators, &load, 0.0);
-        certifier.spend(systems);
-        found
+        dot(&nearest, &w) > self.slack + LARGEST * rounding
     }
 
     /// Largest |w·Σ J_kᵀ p_k| that the feet can bring about.
@@ -228,4 +212,12 @@ impl ModeConditions {
         }
         range
     }
+}
+
+/// Impulses of generators that balance a load.
+fn balance_of(chosen: &[Generator], load: &Load<'_>, certifier: &mut Certifier<'_>) -> Balance {
+    let generators: Vec<_> = chosen.iter().map(|c| c.g).collect();
+    let (found, systems) = balance(&generators, load, 0.0);
+    certifier.spend(systems);
+    found
 }

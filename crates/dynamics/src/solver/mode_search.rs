@@ -108,10 +108,6 @@ impl Subset {
         }
     }
 
-    fn members(&self) -> &[usize] {
-        &self.members[..self.size]
-    }
-
     fn with(mut self, next: usize) -> Self {
         self.members[self.size] = next;
         self.size += 1;
@@ -175,54 +171,61 @@ impl ModeSearch {
     /// more generators demand more of V.
     fn subsets(&self, certifier: &mut Certifier<'_>) -> Vec<Subset> {
         let n = self.generators.len();
-        let pair = |i: usize, j: usize| [self.generators[i], self.generators[j]];
-        // one and two
-        let mut all: Vec<_> = (0..n).map(|i| Subset::of(&[i])).collect();
+        // a rigid pusher does not yield: its stall pair is always among them
+        let firsts = if self.rigid { 1 } else { n };
+        let mut all: Vec<_> = (0..firsts).map(|i| Subset::of(&[i])).collect();
         let mut possible = vec![false; n * n];
-        for i in 0..n {
+        for i in 0..firsts {
             for j in i + 1..n {
-                possible[i * n + j] = self.plane_is_possible(&pair(i, j));
+                possible[i * n + j] = self.plane_is_possible(&[i, j]);
                 if possible[i * n + j] {
                     all.push(Subset::of(&[i, j]));
                 }
             }
             certifier.spend((n - i) as u32);
         }
-        // three and four: one more generator, possible with each of the others
-        for size in 2..4 {
-            let smaller: Vec<_> = all.iter().filter(|s| s.size == size).copied().collect();
-            for subset in smaller {
-                let last = subset.members()[size - 1];
-                for next in last + 1..n {
-                    let with_each = subset.members().iter().all(|i| possible[i * n + next]);
-                    let larger = subset.with(next);
-                    if with_each && (size == 3 || self.line_is_possible(&larger)) {
-                        all.push(larger);
-                    }
+        // three: one more generator, possible with each of the others
+        let pairs = firsts..all.len();
+        for k in pairs.clone() {
+            let [i, j, ..] = all[k].members;
+            for next in j + 1..n {
+                let with_each = possible[i * n + next] && (self.rigid || possible[j * n + next]);
+                if with_each && self.line_is_possible(&[i, j, next]) {
+                    all.push(all[k].with(next));
+                    // with a rigid pusher, what is possible with its stall pair
+                    possible[j * n + next] = true;
                 }
             }
-            certifier.spend((all.len() / 2) as u32);
+            certifier.spend((n - j) as u32);
         }
-        // a rigid pusher does not yield: its stall pair is always among them
-        all.retain(|subset| !self.rigid || subset.members[0] == 0);
+        // four
+        for k in pairs.end..all.len() {
+            let [i, j, l, _] = all[k].members;
+            for next in l + 1..n {
+                if [i, j, l].iter().all(|i| possible[i * n + next]) {
+                    all.push(all[k].with(next));
+                }
+            }
+        }
+        certifier.spend((all.len() / 4) as u32);
         all
     }
 
     /// Whether some V meets the conditions of two generators.
-    fn plane_is_possible(&self, chosen: &[Generator; 2]) -> bool {
-        let Some(mut region) = PlaneRegion::new(&self.conditions.equations(chosen)) else {
+    fn plane_is_possible(&self, members: &[usize; 2]) -> bool {
+        let chosen = members.map(|i| self.generators[i]);
+        let Some(mut region) = PlaneRegion::new(&self.conditions.equations(&chosen)) else {
             return true;
         };
-        for inequality in self.conditions.inequalities(chosen) {
+        for inequality in self.conditions.inequalities(&chosen) {
             region.clip(&inequality, self.conditions.slack);
         }
         !region.is_empty()
     }
 
     /// Whether some V meets the conditions of three generators.
-    fn line_is_possible(&self, subset: &Subset) -> bool {
-        let [a, b, c, _] = subset.members;
-        let chosen = [a, b, c].map(|i| self.generators[i]);
+    fn line_is_possible(&self, members: &[usize; 3]) -> bool {
+        let chosen = members.map(|i| self.generators[i]);
         Line::new(&self.conditions.equations(&chosen))
             .is_none_or(|line| !line.interval(&self.conditions, &chosen).is_empty())
     }
@@ -301,7 +304,7 @@ impl ModeSearch {
         if ranges.iter().any(|range| range.high < -conditions.slack) {
             return Finding::Excluded;
         }
-        if thoroughness.separates && conditions.separates(chosen, &v, &v, certifier) {
+        if thoroughness.separates && conditions.separates(chosen, &[v], certifier) {
             return Finding::Excluded;
         }
         let alpha = ranges.map(|range| range.midpoint());
@@ -360,7 +363,7 @@ impl ModeSearch {
         thoroughness: Thoroughness,
         certifier: &mut Certifier<'_>,
     ) -> Finding {
-        if !self.plane_balances(chosen) {
+        if !self.plane_balances(chosen, certifier) {
             return Finding::Excluded;
         }
         match ModeCurve::new(&self.conditions, chosen) {
@@ -371,7 +374,7 @@ impl ModeSearch {
 
     /// Whether at some V of a plane the friction of the feet can make up for what two generators do
     /// not balance, with impulses α ≥ 0 of theirs.
-    fn plane_balances(&self, chosen: &[Generator; 2]) -> bool {
+    fn plane_balances(&self, chosen: &[Generator; 2], certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
         let Some(mut region) = PlaneRegion::new(&conditions.equations(chosen)) else {
             return true;
@@ -388,7 +391,8 @@ impl ModeSearch {
         {
             region.clip(&inequality, conditions.slack);
         }
-        !region.is_empty()
+        let hull: Vec<_> = region.corners().collect();
+        !hull.is_empty() && !conditions.separates(chosen, &hull, certifier)
     }
 }
 

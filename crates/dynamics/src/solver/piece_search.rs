@@ -31,8 +31,7 @@ pub struct Thoroughness {
     /// Roots that are refined, and middles of pieces at each width; neighbouring pieces differ
     /// little, so that more than some do not help.
     pub attempts: u32,
-    /// Whether pieces in which a foot may stand are excluded by balances, too: some linear systems
-    /// for each.
+    /// Whether pieces are excluded by balances, too: some linear systems for each.
     pub separates: bool,
     /// Whether candidates that fail are tried with other impulses, too, where feet stand.
     pub stands: bool,
@@ -90,10 +89,11 @@ pub trait ModePath {
         None
     }
 
-    /// Whether there is no solution between two points between which a foot may stand, by balances.
+    /// Whether there is no solution between two points, by balances.
     fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
-        self.balanced()
-            .is_some_and(|(conditions, chosen)| conditions.separates(chosen, &a.v, &b.v, certifier))
+        self.balanced().is_some_and(|(conditions, chosen)| {
+            conditions.separates(chosen, &[a.v, b.v], certifier)
+        })
     }
 
     /// A point with the impulses of the mode.

@@ -5,8 +5,9 @@
 //! impulses at the same V, those of [`balance`] belong to at most four independent generators, and so
 //! are no larger than the load and the wedge ask for.
 
-use crate::solver::balance::{Balance, Load, balance};
+use crate::solver::balance::{Balance, balance};
 use crate::solver::generator::Generator;
+use crate::solver::load::Load;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::vector::{Vector, dot, norm};
 

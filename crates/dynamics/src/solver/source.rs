@@ -1,5 +1,7 @@
 //! Where the problems of a block come from: [`Source`].
 
+use stickslip_lanes::Mask;
+
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 
@@ -10,4 +12,9 @@ pub trait Source<const W: usize> {
 
     /// Writes the unknowns from which their solvers start.
     fn start(&self, chunk: usize, ncp: &Ncp<W>, z: &mut Unknowns<W>);
+
+    /// The lanes whose answers count; no time is spent on others that take long.
+    fn asked(&self) -> Mask<W> {
+        Mask::splat(true)
+    }
 }
