@@ -80,7 +80,7 @@ impl<M: Model> ParticleFilter<M> {
     /// all of them comes before it (choosing ancestors) and after it (normalising the weights, adding
     /// the blocks' sums). If no particle explains the part of the observation that a reinitialisation
     /// can improve, or all weights are zero, the particles are reinitialised around it. Where a model lets
-    /// an observation move them, it does as far as weighing alone would leave few, see [`bridge`](crate::bridge).
+    /// an observation move them, it does as far as weighing alone would leave few.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
         let resampled = self.satisfies_resample_condition();
