@@ -294,8 +294,10 @@ impl<M: Model> ParticleFilter<M> {
         change(&mut self.model);
         let (before, after) = (self.particles.columns(), self.model.columns());
         assert!(after >= before, "{before} columns cannot shrink to {after}");
-        self.particles.append_columns(after - before);
-        self.bridge = Bridge::new(self.model.ensemble(), &self.particles);
+        if after > before {
+            self.particles.append_columns(after - before);
+            self.bridge = Bridge::new(self.model.ensemble(), &self.particles);
+        }
     }
 
     /// The settings.
