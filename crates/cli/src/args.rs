@@ -299,6 +299,7 @@ impl FilterArgs {
             tracking: self.shared.tracking(),
             substeps: self.substeps,
             occlusion: self.shared.occlusion(),
+            moving: true,
         }
     }
 }

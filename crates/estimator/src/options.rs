@@ -49,6 +49,9 @@ pub struct RunOptions {
     pub substeps: Option<u32>,
     /// What is hidden from the method.
     pub occlusion: Occlusion,
+    /// Whether camera poses that would leave few particles also move them (contact mode; docs/method.md
+    /// (45)). Weighing alone is exact for very many particles.
+    pub moving: bool,
 }
 
 impl Default for RunOptions {
@@ -62,6 +65,7 @@ impl Default for RunOptions {
             tracking: Tracking::Smoothed,
             substeps: None,
             occlusion: Occlusion::None,
+            moving: true,
         }
     }
 }

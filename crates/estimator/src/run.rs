@@ -158,6 +158,7 @@ fn track_smoothed(
         particles: options.particles,
         seed: options.seed,
         late: 0.0,
+        moving: options.moving,
         observer: *observer,
     };
     let start = PoseAt {

@@ -43,6 +43,8 @@ pub struct TrackerOptions {
     /// How far behind the latest row a row may come and still count (s); the particles keep their
     /// poses for as long.
     pub late: f64,
+    /// Whether camera poses also move particles, see [`RunOptions::moving`].
+    pub moving: bool,
 }
 
 impl Default for TrackerOptions {
@@ -64,6 +66,7 @@ impl TrackerOptions {
             tactile: options.tactile,
             substeps: options.substeps,
             late: 0.0,
+            moving: options.moving,
         }
     }
 
@@ -193,6 +196,7 @@ impl<'o> Tracker<'o> {
             particles: self.options.particles,
             seed: self.options.seed,
             late: self.options.late,
+            moving: self.options.moving,
             observer: self.observer,
         }
     }

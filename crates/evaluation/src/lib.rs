@@ -7,6 +7,7 @@ mod belief;
 mod calibration;
 mod learned_friction;
 pub mod paper;
+mod reference;
 mod run;
 mod score;
 mod simulation;
@@ -16,6 +17,7 @@ mod variant;
 pub use belief::Belief;
 pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally, TruthSource};
 pub use learned_friction::LearnedParameter;
+pub use reference::Agreement;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};
 pub use simulation::{

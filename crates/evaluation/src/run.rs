@@ -124,6 +124,7 @@ impl RunConditions {
             } else {
                 self.occlusion
             },
+            moving: true,
         }
     }
 }

@@ -69,6 +69,8 @@ pub(crate) struct ContactFilter<'o> {
     resting: RestingPose,
     /// Whether a particle has touched anything.
     touched: bool,
+    /// Whether camera poses move particles from then on.
+    moving: bool,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -88,6 +90,8 @@ pub(crate) struct FilterOptions<'o> {
     pub seed: u64,
     /// How far before the latest row late poses may show the object (s).
     pub late: f64,
+    /// Whether camera poses also move particles (contact mode).
+    pub moving: bool,
     /// Is shown every time step.
     pub observer: Option<&'o dyn Observer>,
 }
@@ -141,6 +145,7 @@ impl<'o> ContactFilter<'o> {
             steadiness: Steadiness::new(camera.latency + unknown),
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
             touched: false,
+            moving: options.moving && options.mode == Mode::Contact,
         };
         this.filter.recompute_sums(&this.plan);
         summarise(&this.filter, &this.plan.reference, &mut this.latest);
@@ -163,7 +168,7 @@ impl<'o> ContactFilter<'o> {
         let contact = self.filter.model().columns().mode() == Mode::Contact;
         self.observation.felt = contact;
         self.touched |= self.latest.any_contact();
-        self.observation.moves = contact && self.touched;
+        self.observation.moves = self.moving && self.touched;
 
         let seen = self.observation.pose.is_some();
         self.replay.before(&self.filter, seen);

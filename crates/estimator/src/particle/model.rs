@@ -251,10 +251,7 @@ impl Model for ContactModel<'_> {
     fn ensemble(&self) -> EnsembleShape {
         match self.columns().mode() {
             Mode::Paper => EnsembleShape::default(),
-            Mode::Contact => EnsembleShape {
-                quantities: moved::count(self.columns()),
-                errors: 3,
-            },
+            Mode::Contact => moved::shape(self.columns()),
         }
     }
 
@@ -263,7 +260,7 @@ impl Model for ContactModel<'_> {
     }
 
     fn read_ensemble(&self, observation: &Observation, block: &Block<'_>, to: &mut [f64]) {
-        let (quantities, errors) = to.split_at_mut(moved::count(self.columns()) * BLOCK);
+        let (quantities, errors) = to.split_at_mut(to.len() - moved::ERRORS * BLOCK);
         moved::read(self.columns(), block, quantities);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_chunk = self.camera_likelihood.errors(observation, block, chunk);
