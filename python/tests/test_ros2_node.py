@@ -237,3 +237,45 @@ def test_the_node_gives_what_the_tracker_gives(demo, scene, monkeypatch):
     assert ros.warnings == [] and len(given) > 100
     assert given == expected
     assert len(ros.published["/diagnostics"]) == len(given)
+
+
+def test_the_node_goes_on_in_the_dark_with_late_poses_and_after_a_pause(demo, monkeypatch):
+    log = [row for row in stickslip.rows(demo / "log.csv")][:90]
+    counts = []
+
+    def play(ros):
+        def step(row, shift=0.0, sees=True):
+            if sees:
+                ros.subscribed["/object/pose"](_pose(row["time"] + shift, *row["object"]))
+            ros.subscribed["/pusher/pose"](_pose(row["time"] + shift, *row["pusher"]))
+            ros.tick()
+
+        def count():
+            counts.append((len(ros.published["~/pose"]), len(ros.warnings)))
+
+        ros.tick()  # nothing has come yet
+        for row in log[:40]:
+            step(row)
+        count()
+        for row in log[40:60]:
+            step(row, sees=False)
+        count()
+        ros.subscribed["/object/pose"](_pose(log[56]["time"], *log[56]["object"]))
+        ros.tick()
+        count()
+        for row in log[60:]:
+            step(row, shift=60.0)
+        count()
+
+    parameters = {"scene": str(demo / "scene.toml"), "particles": 64, "contacts": [], "lag": 0.0}
+    ros = _Ros(monkeypatch, parameters, play)
+    node.main()
+
+    (seen, _), (dark, _), (late, refused), (again, told) = counts
+    assert seen == 40 and 18 <= dark - seen <= 20
+    # the pose that comes late is answered by the estimate at the latest row
+    stamps = [message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec for message in ros.published["~/pose"]]
+    assert late == dark + 1 and stamps[late - 1] == stamps[dark - 1] and refused == 0
+    # the first row after the pause is refused, since its time may be wrong; the next one begins anew
+    assert again == late + 29 and told == 1 and "5 s" in ros.warnings[0]
+    assert stamps[late] > 60 and math.isclose(stamps[-1], log[-1]["time"] + 60, abs_tol=1e-6)

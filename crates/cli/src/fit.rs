@@ -22,6 +22,7 @@ use crate::fit_args::FitArgs;
 use crate::log_files::log_path;
 use crate::origin::origin;
 use crate::output::{show_result, talk};
+use crate::progress::stage;
 use crate::verdict::Verdict;
 
 /// What values that predict best do not say.
@@ -121,12 +122,17 @@ fn learn(
     test: &[Push],
     options: &FitOptions,
 ) -> Result<FitResult> {
+    let progress = stage(format!("learning from {} pushes", pushes.len()));
     let fit = stickslip_fit::fit(pushes, options)?;
     let folds = args.folds.unwrap_or(default_folds(pushes.len()));
+    progress.set_message(format!(
+        "predicting each of {folds} parts by a fit to the others"
+    ));
     let validate = || stickslip_fit::cross_validate(pushes, folds, options);
     let cross_validation = (folds > 0).then(validate).transpose()?;
     let predict = || predict(test, &fit, cross_validation.as_ref(), options);
     let test = (!test.is_empty()).then(predict).transpose()?;
+    progress.finish_and_clear();
     Ok(FitResult {
         folders: folders
             .iter()

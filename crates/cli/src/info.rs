@@ -100,6 +100,9 @@ fn quoted(word: &str) -> String {
 
 fn text(shown: &Shown) -> String {
     let BagInfo { topics, poses, .. } = &shown.info;
+    if topics.is_empty() {
+        return "No message can be read: the bag is empty, or cut off before the end of its first chunk".to_owned();
+    }
     let mut parts = vec![topic_table(topics).to_string()];
     if !poses.is_empty() {
         parts.push(poses_table(poses).to_string());

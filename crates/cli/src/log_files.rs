@@ -129,13 +129,15 @@ impl LogFiles {
 
     /// Refuses what is no bag.
     pub fn require_bag(&self) -> Result<()> {
-        match self.is_bag {
-            true => Ok(()),
-            false => Err(hinted(
-                format!("{}: this is no bag", self.shown.display()),
-                "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
-            )),
+        if self.is_bag {
+            return Ok(());
         }
+        // a bag of another kind says what to do with it
+        self.opened(&self.shown)?;
+        Err(hinted(
+            format!("{}: this is no bag", self.shown.display()),
+            "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
+        ))
     }
 
     /// All files by name.

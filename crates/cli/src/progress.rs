@@ -1,5 +1,7 @@
 //! Progress on standard error, only where that is a terminal.
 
+use std::time::Duration;
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// A bar of `length` steps, counted in `unit`; `Work::Short` shows nothing.
@@ -21,6 +23,17 @@ pub fn bar(length: usize, unit: &str, work: Work) -> ProgressBar {
 pub fn spinner(unit: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     match ProgressStyle::with_template(&format!("{{spinner}} {{pos}} {unit}, {{elapsed}}")) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// What is being done, with the time since its beginning; for work whose steps nobody can count.
+pub fn stage(doing: String) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let bar = bar.with_message(doing);
+    match ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }

@@ -30,6 +30,7 @@ class Live {
     });
     this.pusher = addBody(this.world, data.pusher, "pusher");
     this.ghost = addBody(this.world, data.object, "ghost", data.colour);
+    for (const group of [this.truth, this.pusher, this.ghost]) moveTo(group, null);
     this.view = data.view.slice();
     this.frame();
   }

@@ -91,10 +91,10 @@ impl PageServer {
         &self.address
     }
 
-    /// Whether somebody would see a row now: a page is open, and the last row was some time ago.
+    /// Whether a row should be shown now: the last one was some time ago. Without a page, too, so that
+    /// one that is opened while the source is silent has something to show.
     pub fn wants(&self) -> bool {
-        let due = self.shown.is_none_or(|shown| shown.elapsed() >= PERIOD);
-        due && self.shared.viewers.load(Ordering::Relaxed) > 0
+        self.shown.is_none_or(|shown| shown.elapsed() >= PERIOD)
     }
 
     /// Shows a message to all pages that are open; those that are busy drop the one before.

@@ -224,3 +224,14 @@ fn info_without_a_scene_says_how_to_come_by_one() {
         "{command}"
     );
 }
+
+#[test]
+fn info_says_that_nothing_is_left_of_a_bag_cut_off_at_its_beginning() {
+    let (_, bag) = experiment("bags/info_cut");
+    let file = bag.join("rosbag2_2026_0.mcap");
+    fs::write(&file, &fs::read(&file).unwrap()[..100]).unwrap();
+    let run = stickslip().arg("info").arg(&file).output().unwrap();
+    assert_eq!(run.status.code(), Some(3), "{}", words(&run));
+    let text = String::from_utf8(run.stdout.clone()).unwrap();
+    assert!(text.starts_with("No message can be read: "), "{text}");
+}

@@ -165,6 +165,16 @@ fn check_names_inverted_sensors() {
 }
 
 #[test]
+fn check_does_not_blame_sensors_for_an_object_that_is_turned() {
+    let case = Experiment::copy(SLIDE, "turned_tag");
+    case.edit_rows(|rows| rows.iter_mut().for_each(|row| row[OBJECT_THETA] += 1.5));
+    assert_problem(&case, &["sensor 1", "a tag's place on the object is wrong"]);
+    let (_, problems) = check(&case, "problem");
+    let blamed = problems.iter().any(|problem| problem.contains("swapped"));
+    assert!(!blamed, "{problems:#?}");
+}
+
+#[test]
 fn check_measures_a_lag_of_three_rows() {
     for name in [STOP, SLIDE] {
         let case = Experiment::copy(name, &format!("lag/{name}"));

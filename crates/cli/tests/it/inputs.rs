@@ -31,6 +31,9 @@ fn other_kinds_of_recordings_are_named() {
         .output();
     let talk = String::from_utf8(here.unwrap().stderr).unwrap();
     assert!(talk.contains("ros2 bag convert -i . -o"), "{talk}");
+    let info = stickslip().args(["info", &bag]).output().unwrap();
+    let talk = String::from_utf8(info.stderr).unwrap();
+    assert!(talk.contains("ros2 bag convert"), "{talk}");
     let packed = write("bag.mcap.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);
     assert!(refusal(&case, &packed).contains("nothing could be read"));
     let table = write("log.csv.zstd", &[0x28, 0xb5, 0x2f, 0xfd, 0, 0]);

@@ -11,9 +11,10 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use serde_json::Value;
 use tungstenite::client::IntoClientRequest;
+use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, connect};
 
-/// Whether a socket opens for an origin and a token.
+/// The first row that a socket shows, if it opens for an origin and a token.
 fn socket(session: &Session, origin: &str, token: &str) -> Result<Value, String> {
     let url = format!("ws://{}/socket?{token}", session.host);
     let mut request = url.into_client_request().unwrap();
@@ -21,6 +22,10 @@ fn socket(session: &Session, origin: &str, token: &str) -> Result<Value, String>
         .headers_mut()
         .insert("Origin", origin.parse().unwrap());
     let (mut socket, _) = connect(request).map_err(|error| error.to_string())?;
+    if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+        let limit = Some(Duration::from_secs(20));
+        stream.set_read_timeout(limit).unwrap();
+    }
     loop {
         if let Message::Text(text) = socket.read().map_err(|error| error.to_string())? {
             return Ok(serde_json::from_str(&text).unwrap());
@@ -89,6 +94,20 @@ fn socket_shows_rows_and_the_session_survives_those_who_leave() {
     assert!(host.starts_with("127.0.0.1"));
     drop(silent);
     session.input = Some(feeder.join().unwrap());
+    assert_eq!(session.end(), Some(0));
+}
+
+#[test]
+fn page_that_is_opened_while_the_source_is_silent_shows_what_came_before() {
+    let case = Experiment::copy(SLIDE, "live_page/silent");
+    let mut session = Session::start(&case);
+    let row = r#"{"time": 0, "object_x": 0.01, "object_y": 0, "object_theta": 0}"#;
+    writeln!(session.input.as_mut().unwrap(), "{row}").unwrap();
+    // long enough for the row to be taken before somebody looks
+    sleep(Duration::from_millis(500));
+    let own = format!("http://{}", session.host);
+    let shown = socket(&session, &own, &session.token).unwrap();
+    assert_eq!(shown["object"], serde_json::json!([0.01, 0.0, 0.0]));
     assert_eq!(session.end(), Some(0));
 }
 

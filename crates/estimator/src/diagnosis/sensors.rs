@@ -40,8 +40,10 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     if own.abs() < near {
         return Finding::ok(subject, shown);
     }
+    // a sensor that reads 0 for a touch is nearer where it reads 0, if it does so at all
+    let may_be_swapped = clear.len() < FEWEST || fixel_distance(evidence, &clear, sensor) < own;
     let (false_touches, free) = free_rows(evidence, sensor, near);
-    if 2 * false_touches > free {
+    if may_be_swapped && 2 * false_touches > free {
         let found = format!(
             "{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near: 0 and 1 seem to be swapped"
         );
@@ -68,7 +70,7 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
                 ),
             )
         }
-        _ if touched.len() > clear.len() => Finding::problem(
+        _ if may_be_swapped && touched.len() > clear.len() => Finding::problem(
             subject,
             format!("{shown}: 0 and 1 seem to be swapped"),
             "write 1 for a touch, 0 for none",
@@ -76,7 +78,7 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
         _ => Finding::problem(
             subject,
             shown,
-            "check the fixel's position and the sensor: it reads touches that cannot be",
+            "the outline, the fixel's position or a tag's place on the object is wrong, or the sensor: it reads touches that cannot be",
         ),
     }
 }
