@@ -1,8 +1,6 @@
 //! Particles that an observation moves: [`Ensemble`], the update of the ensemble Kalman filter with
 //! disturbed measurements (Burgers, van Leeuwen & Evensen 1998; docs/method.md (45)).
 
-use std::ops::Range;
-
 use crate::particles::BLOCK;
 use crate::streams::Draw;
 
@@ -14,24 +12,14 @@ const PARTIAL: usize = 8;
 pub struct EnsembleShape {
     /// Quantities that are moved, on scales on which they are about normal.
     pub quantities: usize,
-    /// Quantities of which all get the mean: what a particle has counted along a past that it no longer has.
-    pub shared: usize,
     /// Errors of what is observed, independent and of variance 1.
     pub errors: usize,
 }
 
 impl EnsembleShape {
-    /// Columns of one block: the quantities that are moved, those that are shared, the errors.
+    /// Columns of one block: the quantities, then the errors.
     pub(crate) fn columns(self) -> usize {
-        self.first_error() + self.errors
-    }
-
-    fn shared_columns(self) -> Range<usize> {
-        self.quantities..self.first_error()
-    }
-
-    fn first_error(self) -> usize {
-        self.quantities + self.shared
+        self.quantities + self.errors
     }
 }
 
@@ -83,11 +71,10 @@ impl Ensemble {
     /// particle goes its own way to a measurement disturbed by its own error. The errors' noise is
     /// independent, so that they can be taken one after the other.
     pub fn update(&mut self, weights: &[f64], share: f64, draw: Draw) {
-        self.share(weights);
         let noise = 1.0 / share;
         let count = 1.0 / weights.iter().fold(0.0, |sum, w| sum + w * w);
         for k in 0..self.shape.errors {
-            let error = self.shape.first_error() + k;
+            let error = self.shape.quantities + k;
             self.take_moments(error, weights);
             let observed = self.moments[error].variance;
             for (j, of) in self.moments.iter_mut().enumerate() {
@@ -100,21 +87,6 @@ impl Ensemble {
             self.go(error, noise.sqrt(), |particle| {
                 draw.normal(particle, k as u32)
             });
-        }
-    }
-
-    /// Gives all particles the mean of what they share.
-    fn share(&mut self, weights: &[f64]) {
-        let stride = self.stride();
-        for column in self.shape.shared_columns() {
-            let blocks = self.values.chunks(stride).zip(weights.chunks(BLOCK));
-            let mean = blocks.fold(0.0, |mean, (block, weights)| {
-                let (weights, values) = (padded(weights), &block.as_chunks::<BLOCK>().0[column]);
-                mean + sum(|i| weights[i] * values[i])
-            });
-            for block in self.values.chunks_mut(stride) {
-                block.as_chunks_mut::<BLOCK>().0[column].fill(mean);
-            }
         }
     }
 

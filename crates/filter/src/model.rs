@@ -103,8 +103,8 @@ pub trait Model: Sync {
         false
     }
 
-    /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, each
-    /// that is shared, then each error, what a particle expects less what was observed, in standard deviations of the noise. Places
+    /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then each
+    /// error, what a particle expects less what was observed, in standard deviations of the noise. Places
     /// past the block's last particle hold any finite number.
     fn read_ensemble(&self, _observation: &Self::Observation, _block: &Block<'_>, _to: &mut [f64]) {
     }

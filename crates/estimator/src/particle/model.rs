@@ -251,7 +251,10 @@ impl Model for ContactModel<'_> {
     fn ensemble(&self) -> EnsembleShape {
         match self.columns().mode() {
             Mode::Paper => EnsembleShape::default(),
-            Mode::Contact => moved::shape(self.columns()),
+            Mode::Contact => EnsembleShape {
+                quantities: moved::count(self.columns()),
+                errors: 3,
+            },
         }
     }
 
@@ -260,7 +263,7 @@ impl Model for ContactModel<'_> {
     }
 
     fn read_ensemble(&self, observation: &Observation, block: &Block<'_>, to: &mut [f64]) {
-        let (quantities, errors) = to.split_at_mut(to.len() - moved::ERRORS * BLOCK);
+        let (quantities, errors) = to.split_at_mut(moved::count(self.columns()) * BLOCK);
         moved::read(self.columns(), block, quantities);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_chunk = self.camera_likelihood.errors(observation, block, chunk);

@@ -1,10 +1,7 @@
 //! What of a particle the camera's pose may move where it would leave few of them (contact mode;
-//! docs/method.md (45)): all that is continuous, but for the rig's roughness, a factor of others: a factor and
-//! what it multiplies are not normal together. And what the particles then have in common.
+//! docs/method.md (45)): all that is continuous and not drawn anew.
 
-use std::ops::Range;
-
-use stickslip_filter::{BLOCK, Block, BlockMut, EnsembleShape};
+use stickslip_filter::{BLOCK, Block, BlockMut};
 
 use crate::particle::columns::Columns;
 
@@ -18,9 +15,6 @@ enum Scale {
     Root,
 }
 
-/// What a pose shows: x, y and θ.
-pub(super) const ERRORS: usize = 3;
-
 /// Least friction whose logarithm is taken: where the feet are known, there is no d_tri.
 const LEAST: f64 = 1e-12;
 
@@ -29,7 +23,7 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let past = (0..columns.history()).map(move |slot| columns.past_pose(slot));
     let poses = std::iter::once(Columns::POSE).chain(past);
     let offset = columns.pusher_offset();
-    let rig = [offset, offset + 1, columns.growth()];
+    let rig = [offset, offset + 1, columns.growth(), columns.roughness()];
     let fixels = (0..columns.fixels()).map(move |j| columns.fixel_offset(j));
     let linear = poses
         .flat_map(|first| first..first + 3)
@@ -42,30 +36,14 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
         .chain([(columns.latency(), Scale::Root)])
 }
 
-/// What the particles share: a particle that was moved has not made the residuals that it counted, and one that
-/// counted large ones would believe the camera less, and so be moved less.
-fn shared(columns: Columns) -> Range<usize> {
-    columns.camera_noise()..columns.camera_noise() + 3
-}
-
-/// What an observation moves, and what it has in common for all.
-pub(super) fn shape(columns: Columns) -> EnsembleShape {
-    EnsembleShape {
-        quantities: moved(columns).count(),
-        shared: shared(columns).len(),
-        errors: ERRORS,
-    }
-}
-
-/// All columns, those that are shared last.
-fn taken(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
-    let shared = shared(columns).map(|column| (column, Scale::Linear));
-    moved(columns).chain(shared)
+/// How many they are.
+pub(super) fn count(columns: Columns) -> usize {
+    moved(columns).count()
 }
 
 /// Reads them, a column of [`BLOCK`] numbers each.
 pub(super) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
-    for ((column, scale), to) in taken(columns).zip(to.chunks_mut(BLOCK)) {
+    for ((column, scale), to) in moved(columns).zip(to.chunks_mut(BLOCK)) {
         for (to, value) in to.iter_mut().zip(block.column(column)) {
             *to = match scale {
                 Scale::Linear => *value,
@@ -78,7 +56,7 @@ pub(super) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
 
 /// Takes them back.
 pub(super) fn write(columns: Columns, from: &[f64], block: &mut BlockMut<'_>) {
-    for ((column, scale), from) in taken(columns).zip(from.chunks(BLOCK)) {
+    for ((column, scale), from) in moved(columns).zip(from.chunks(BLOCK)) {
         for (value, from) in block.column_mut(column).iter_mut().zip(from) {
             *value = match scale {
                 Scale::Linear => *from,

@@ -5,8 +5,7 @@ use stickslip_filter::{
     BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, ParticleFilter, WeightUpdate,
 };
 
-/// Two numbers that stay, standard normal before; their sum is observed with normal noise. A third says nothing and is
-/// shared.
+/// Two numbers that stay, standard normal before; their sum is observed with normal noise.
 struct TwoNumbers {
     noise: f64,
     moves: bool,
@@ -37,14 +36,14 @@ impl Model for TwoNumbers {
     type Sums = ();
 
     fn columns(&self) -> usize {
-        3
+        2
     }
 
     fn scratch(&self) {}
 
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
         for (lane, particle) in block.particles() {
-            let numbers = draw.normals::<3>(particle, 0);
+            let numbers = draw.normals::<2>(particle, 0);
             for (column, number) in numbers.into_iter().enumerate() {
                 block.column_mut(column)[lane] = number;
             }
@@ -65,7 +64,6 @@ impl Model for TwoNumbers {
     fn ensemble(&self) -> EnsembleShape {
         EnsembleShape {
             quantities: 2,
-            shared: 1,
             errors: 1,
         }
     }
@@ -78,15 +76,13 @@ impl Model for TwoNumbers {
         let n = block.len();
         to[..n].copy_from_slice(block.column(0));
         to[BLOCK..][..n].copy_from_slice(block.column(1));
-        to[2 * BLOCK..][..n].copy_from_slice(block.column(2));
-        to[3 * BLOCK..][..n].copy_from_slice(&self.errors(*observed, block));
+        to[2 * BLOCK..][..n].copy_from_slice(&self.errors(*observed, block));
     }
 
     fn write_ensemble(&self, from: &[f64], block: &mut BlockMut<'_>) {
         let n = block.len();
         block.column_mut(0).copy_from_slice(&from[..n]);
         block.column_mut(1).copy_from_slice(&from[BLOCK..][..n]);
-        block.column_mut(2).copy_from_slice(&from[2 * BLOCK..][..n]);
     }
 
     fn reinitialise(&self, _: &f64, _: Draw, _: &mut BlockMut<'_>) {
@@ -131,23 +127,6 @@ fn an_observation_that_is_precise_beside_the_particles_leaves_the_exact_belief()
     // weighing alone leaves three of them
     let [error, variance, _] = after(noise, false);
     assert!(error > 0.2 && variance < 0.9 * exact, "{error}, {variance}");
-}
-
-#[test]
-fn particles_that_move_share_the_mean_of_what_they_counted() {
-    let after = |moves: bool| {
-        let model = TwoNumbers { noise: 0.01, moves };
-        let mut filter = ParticleFilter::new(model, settings(500, 3)).unwrap();
-        let _ = filter.step(&(), Some(&OBSERVED));
-        let counted: Vec<f64> = filter.particles().column(2).collect();
-        (counted, filter.weights().weights().to_vec())
-    };
-    let ((counted, _), (shared, weights)) = (after(false), after(true));
-    let mean: f64 = counted.iter().zip(&weights).map(|(x, w)| x * w).sum();
-    assert!(counted[0] != counted[1]);
-    for x in shared {
-        assert!((x - mean).abs() < 1e-12, "{x}, {mean}");
-    }
 }
 
 #[test]
