@@ -71,14 +71,12 @@ fn rows_of_the_pusher_alone_do_not_change_the_belief() {
         let slow = belief(mode, 1);
         for between in [2, 4, 33] {
             let fast = belief(mode, between);
-            println!("{mode:?}, {between}: {slow:?} {fast:?}");
-            for k in 0..4 {
-                let ratio = fast[k] / slow[k];
-                assert!(
-                    (0.5..2.0).contains(&ratio),
-                    "{mode:?}, {between} rows a frame: number {k} is {ratio:.2} times that of one row"
-                );
-            }
+            let ratio = [0, 1, 2, 3].map(|k| fast[k] / slow[k]);
+            let spreads = ratio[..3].iter().all(|ratio| (0.6..1.6).contains(ratio));
+            assert!(
+                spreads && ratio[3] < 1.5,
+                "{mode:?}, {between} rows a frame: {ratio:.2?} times what one row says"
+            );
         }
     }
 }
