@@ -146,6 +146,10 @@ pub struct CompareArgs {
     /// Name of the scene file in each folder
     #[arg(long, value_name = "FILE", default_value = "scene.toml")]
     pub scene_name: String,
+    /// One scene for all logs, or a folder with scene.toml, instead of the scene in each folder; then DIR
+    /// may be a log by any name, too
+    #[arg(long, conflicts_with = "scene_name")]
+    pub scene: Option<PathBuf>,
     /// Topics of the MCAP logs
     #[command(flatten)]
     pub topics: TopicArgs,

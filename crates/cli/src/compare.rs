@@ -20,11 +20,12 @@ use stickslip_formats::{Experiment, Topics};
 use crate::args::{CompareArgs, Program};
 use crate::experiment::{check_occlusion, read_folder};
 use crate::files::{ready_file, write_report};
+use crate::given::scene_file;
 use crate::log_files::log_path;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-pub use folders::expand;
+pub use folders::{Scenes, expand};
 use results::{Comparison, FolderResult, LostFolder, ShownScores};
 
 /// Runs above which a person would wait.
@@ -51,15 +52,21 @@ struct Job {
 
 /// Runs the command.
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
-    let folders = expand(&args.folders, &args.scene_name)?;
+    let one = args.scene.as_deref().map(scene_file);
+    let scenes = match &one {
+        Some(scene) => Scenes::One(scene),
+        None => Scenes::Named(&args.scene_name),
+    };
+    let folders = expand(&args.folders, scenes)?;
     if let Some(path) = &args.report {
         let logs: Vec<PathBuf> = folders.iter().map(|folder| log_path(folder)).collect();
-        let inputs: Vec<&Path> = logs.iter().map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> = logs.iter().chain(&one).map(PathBuf::as_path).collect();
         ready_file(path, &inputs)?;
     }
     let pool = args.shared.threads.pool()?;
     let topics = args.topics.topics(Program::command())?;
-    let (comparison, folders, verdict) = pool.install(|| compare_all(args, &topics, folders));
+    let (comparison, folders, verdict) =
+        pool.install(|| compare_all(args, (scenes, &topics), folders));
     let text = if args.shared.json {
         serde_json::to_string_pretty(&comparison)?
     } else {
@@ -89,13 +96,13 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
 /// The comparison, the folders that could be read, and whether all of the logs in them could be.
 fn compare_all(
     args: &CompareArgs,
-    topics: &Topics,
+    given: (Scenes<'_>, &Topics),
     paths: Vec<PathBuf>,
 ) -> (Comparison, Vec<Folder>, Verdict) {
     // read all folders; those that cannot be read are reported and left out
     let read: Vec<Result<Folder, LostFolder>> = paths
         .into_par_iter()
-        .map(|path| read(args, topics, path))
+        .map(|path| read(args, given, path))
         .collect();
     let mut errors = Vec::new();
     let folders: Vec<Folder> = read
@@ -137,8 +144,12 @@ fn compare_all(
 }
 
 /// Reads a folder; hidden is what the options say, else what truth.json says.
-fn read(args: &CompareArgs, topics: &Topics, path: PathBuf) -> Result<Folder, LostFolder> {
-    let (experiment, verdict) = read_folder(&path, &args.scene_name, topics)
+fn read(
+    args: &CompareArgs,
+    (scenes, topics): (Scenes<'_>, &Topics),
+    path: PathBuf,
+) -> Result<Folder, LostFolder> {
+    let (experiment, verdict) = read_folder(&path, &scenes.of(&path), topics)
         .map_err(|error| LostFolder::new(&path, &error))?;
     let occlusion = match args.shared.occlusion() {
         Occlusion::None => experiment.facts.occlusion(),

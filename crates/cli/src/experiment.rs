@@ -73,13 +73,9 @@ pub fn read_experiment(
     Ok((experiment, verdict))
 }
 
-/// Reads an experiment folder.
-pub fn read_folder(
-    folder: &Path,
-    scene_name: &str,
-    topics: &Topics,
-) -> Result<(Experiment, Verdict)> {
-    read_experiment(&folder.join(scene_name), &log_path(folder), topics, None)
+/// Reads an experiment folder, or a log, with a scene.
+pub fn read_folder(folder: &Path, scene: &Path, topics: &Topics) -> Result<(Experiment, Verdict)> {
+    read_experiment(scene, &log_path(folder), topics, None)
 }
 
 /// An occlusion that hides no pose is a slip of the pen.

@@ -82,7 +82,7 @@ pub fn scene_file(given: &Path) -> PathBuf {
 }
 
 /// Whether a path is a scene by its name.
-fn is_scene(path: &Path) -> bool {
+pub fn is_scene(path: &Path) -> bool {
     let toml = path
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("toml"));
@@ -111,7 +111,8 @@ fn log_beside(scene: &Path, command: &str) -> Result<Given> {
     }
 }
 
-fn two_scenes(first: &Path, second: &Path, command: &str) -> anyhow::Error {
+/// The error about two scenes for one log.
+pub fn two_scenes(first: &Path, second: &Path, command: &str) -> anyhow::Error {
     hinted(
         format!(
             "{} and {}: these are two scenes",

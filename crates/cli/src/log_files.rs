@@ -39,8 +39,12 @@ enum Kind {
     Other,
 }
 
-/// The log of a folder: log.csv, log.mcap, the bag that the folder is, or the only bag in it.
+/// The log that a path stands for: a file itself; of a folder log.csv, log.mcap, the bag that the folder
+/// is, or the only bag in it.
 pub fn log_path(folder: &Path) -> PathBuf {
+    if folder.is_file() {
+        return folder.to_owned();
+    }
     let [csv, mcap] = ["log.csv", "log.mcap"].map(|name| folder.join(name));
     let found = [&csv, &mcap].into_iter().find(|path| path.is_file());
     if let Some(found) = found {

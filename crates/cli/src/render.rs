@@ -27,7 +27,11 @@ use crate::verdict::Verdict;
 
 /// Runs the command.
 pub fn render(args: &RenderArgs) -> Result<Verdict> {
-    let (experiment, verdict) = read_folder(&args.folder, "scene.toml", &Topics::default())?;
+    let (experiment, verdict) = read_folder(
+        &args.folder,
+        &args.folder.join("scene.toml"),
+        &Topics::default(),
+    )?;
     let recorded = recorded(args, &experiment)?;
     let scene = &experiment.setup.scene;
     let optics = Optics {

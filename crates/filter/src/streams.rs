@@ -131,6 +131,15 @@ impl Draw {
         self.step
     }
 
+    /// The random numbers of the step `steps` before this one, which is step `steps` or later.
+    pub fn before(self, steps: u64) -> Self {
+        let step = self.step.checked_sub(steps);
+        Self {
+            step: step.expect("no step comes before step 0"),
+            ..self
+        }
+    }
+
     /// A standard normal number.
     #[inline]
     pub fn normal(self, particle: u32, draw: u32) -> f64 {

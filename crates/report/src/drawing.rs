@@ -244,21 +244,32 @@ pub(crate) fn px(value: f64) -> String {
     }
 }
 
-/// The path through points (px), closed or open; broken where a number is not finite.
+/// The path through points (px), closed or open, to a tenth of a pixel; broken where a number is not
+/// finite.
 pub(crate) fn path(points: impl IntoIterator<Item = [f64; 2]>, closed: bool) -> String {
+    path_on_grid(points, closed, 10.0)
+}
+
+/// The path through points, closed or open, on a grid of `per_unit` lines; broken where a number is not
+/// finite. Its points are told by the way to them, which takes half of the letters.
+pub(crate) fn path_on_grid(
+    points: impl IntoIterator<Item = [f64; 2]>,
+    closed: bool,
+    per_unit: f64,
+) -> String {
     let mut path = String::new();
-    let mut pen_down = false;
-    for [x, y] in points {
+    let mut before: Option<[f64; 2]> = None;
+    for point in points {
+        let [x, y] = point.map(|value| (per_unit * value).round());
         if !(x.is_finite() && y.is_finite()) {
-            pen_down = false;
+            before = None;
             continue;
         }
-        path.push_str(match (pen_down, path.is_empty()) {
-            (true, _) => "L",
-            (false, _) => "M",
-        });
-        path.push_str(&format!("{} {}", px(x), px(y)));
-        pen_down = true;
+        let [to_x, to_y] = before.map_or([x, y], |[from_x, from_y]| [x - from_x, y - from_y]);
+        let command = if before.is_some() { 'l' } else { 'M' };
+        let [to_x, to_y] = [to_x, to_y].map(|value| px(value / per_unit));
+        path.push_str(&format!("{command}{to_x} {to_y}"));
+        before = Some([x, y]);
     }
     if closed && !path.is_empty() {
         path.push('Z');
@@ -287,8 +298,25 @@ mod tests {
             [3.0, 1.0],
             [4.0, 0.0],
         ];
-        assert_eq!(path(points, false), "M0 0L1 1M3 1L4 0");
+        assert_eq!(path(points, false), "M0 0l1 1M3 1l1 -1");
         assert_eq!(path([], true), "");
+    }
+
+    #[test]
+    fn a_long_path_ends_where_its_last_point_is() {
+        let point = |k: i32| [f64::from(k) / 7.0, 100.0 * libm::sin(f64::from(k) / 7.0)];
+        let text = path((0..1000).map(point), false);
+        let mut at = [0.0; 2];
+        for step in text.trim_start_matches('M').split('l') {
+            let (x, y) = step.split_once(' ').unwrap();
+            at[0] += x.parse::<f64>().unwrap();
+            at[1] += y.parse::<f64>().unwrap();
+        }
+        let last = point(999);
+        assert!(
+            (at[0] - last[0]).abs() < 0.051 && (at[1] - last[1]).abs() < 0.051,
+            "{at:?}, {last:?}"
+        );
     }
 
     #[test]

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use stickslip::dynamics::Pose;
 
 use crate::curves::PoseError;
-use crate::drawing::path;
+use crate::drawing::path_on_grid;
 use crate::intervals::row_ranges;
 use crate::marks::Mark;
 use crate::outline::{Outline, bounds};
@@ -94,7 +94,7 @@ pub(crate) fn body(outline: &Outline) -> Value {
     let text = |lines: &[Vec<[f64; 2]>], closed: bool| -> String {
         lines
             .iter()
-            .map(|line| path(line.iter().map(|[x, y]| [1e3 * x, 1e3 * y]), closed))
+            .map(|line| path_on_grid(line.iter().map(|[x, y]| [1e3 * x, 1e3 * y]), closed, 100.0))
             .collect()
     };
     let middle = outline.bounds().map_or([0.0; 2], |[low, high]| {

@@ -121,6 +121,7 @@ impl<'a> ReportedExperiment<'a> {
             dark: dark.map(|rows| times(&self.log.time, rows)),
             lost: lost.filter(|row| !within(row)).count(),
             rows: self.log.len(),
+            lag: self.reference.latency,
             first_fixel: self.first_fixel,
             outcomes: self.runs.iter().map(outcome).collect(),
             learnt: self.learnt(),

@@ -20,6 +20,8 @@ pub struct Story {
     pub lost: usize,
     /// All rows.
     pub rows: usize,
+    /// By how much the camera lags (s), where errors are told against its poses; else 0.
+    pub lag: f64,
     /// When the object first touched a fixel (s).
     pub first_fixel: Option<f64>,
     /// The methods.
@@ -118,10 +120,17 @@ impl Story {
                 self.rows
             ),
         };
+        let late = match self.lag > 0.0 {
+            true => format!(
+                " The camera lags by {:.2} s: its poses, and errors against them, stand at the times that they show, darkness where no pose comes.",
+                self.lag
+            ),
+            false => String::new(),
+        };
         let Some([from, to]) = self.dark else {
             return match self.lost {
-                0 => "The camera sees the object all the time.".to_owned(),
-                _ => format!("Nothing is hidden from the methods.{lost}"),
+                0 => format!("The camera sees the object all the time.{late}"),
+                _ => format!("Nothing is hidden from the methods.{lost}{late}"),
             };
         };
         let contact = match self.first_fixel.map(|contact| contact - from) {
@@ -136,7 +145,7 @@ impl Story {
         } else {
             format!("is back at {to:.1} s")
         };
-        format!("At {from:.1} s{contact} the camera goes dark; it {end}.{lost}")
+        format!("At {from:.1} s{contact} the camera goes dark; it {end}.{lost}{late}")
     }
 
     /// The methods by their fates, those whose camera stayed on left out: "particle filter (0.12 mm),
@@ -275,6 +284,7 @@ mod tests {
         let unscored = Story {
             lost: 3,
             rows: 40,
+            lag: 0.16,
             outcomes: vec![Outcome {
                 wmse_mm: None,
                 ..outcome("kalman", false, 0.0)
@@ -285,7 +295,8 @@ mod tests {
         assert_eq!(
             unscored.sentences(),
             [
-                "Nothing is hidden from the methods. The camera gives no pose in 3 of 40 rows.",
+                "Nothing is hidden from the methods. The camera gives no pose in 3 of 40 rows. \
+                 The camera lags by 0.16 s: its poses, and errors against them, stand at the times that they show, darkness where no pose comes.",
                 "Not scored: kalman.",
                 "mu_s 0.3."
             ]

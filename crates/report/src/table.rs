@@ -46,7 +46,7 @@ impl Table {
                                 @if column == 0 {
                                     th scope="row" { @if let Some(colour) = colour { (swatch(*colour)) } (cell) }
                                 } @else {
-                                    td { (cell) }
+                                    td data-of=[self.titles.get(column)] { (cell) }
                                 }
                             } }
                         }
@@ -113,6 +113,17 @@ mod tests {
         assert_eq!(
             table.to_string(),
             "method          mm\na            12.35\nlonger name      -\n"
+        );
+    }
+
+    #[test]
+    fn a_cell_knows_its_column_for_phones() {
+        let mut table = Table::new(["method", "WMSE (mm)"]);
+        table.push(["a".to_owned(), number(Some(0.5), 2)]);
+        let text = table.html("").into_string();
+        assert!(
+            text.contains("<td data-of=\"WMSE (mm)\">0.50</td>"),
+            "{text}"
         );
     }
 

@@ -1,4 +1,4 @@
-//! Which folders hold experiments: [`expand`].
+//! Which folders hold experiments: [`expand`], and which scene is theirs: [`Scenes`].
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,19 +6,40 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 
 use crate::failure::hinted;
+use crate::given::{is_scene, two_scenes};
 use crate::log_files::{is_bag, log_path};
 
+/// Which scene is that of an experiment.
+#[derive(Clone, Copy, Debug)]
+pub enum Scenes<'a> {
+    /// The file of this name in each folder.
+    Named(&'a str),
+    /// This file, of all.
+    One(&'a Path),
+}
+
+impl Scenes<'_> {
+    /// The scene of the experiment in `folder`.
+    pub fn of(self, folder: &Path) -> PathBuf {
+        match self {
+            Self::Named(name) => folder.join(name),
+            Self::One(scene) => scene.to_owned(),
+        }
+    }
+}
+
 /// The experiment folders among `given`: a folder that is none itself stands for those below it, in
-/// the order of their names, and a scene or log for the folder whose it is.
+/// the order of their names, and a scene or log for the folder whose it is. With one scene for all, a
+/// log by another name is an experiment, too.
 ///
 /// # Errors
 ///
-/// A file that is not the scene or the log of its folder.
-pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
+/// A file that is not the scene or the log of its folder, and a second scene.
+pub fn expand(given: &[PathBuf], scenes: Scenes<'_>) -> Result<Vec<PathBuf>> {
     let mut folders = Vec::new();
     for path in given {
         let folder = &if path.is_file() {
-            folder_of(path, scene_name)?
+            folder_of(path, scenes)?
         } else {
             path.clone()
         };
@@ -26,10 +47,10 @@ pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
         if path.is_file() && folders.last() == Some(folder) {
             continue;
         }
-        let below = if is_experiment(folder, scene_name) {
+        let below = if folder.is_file() || is_experiment(folder, scenes) {
             Vec::new()
         } else {
-            experiments_below(folder, scene_name)
+            experiments_below(folder, scenes)
         };
         // a folder without any is kept: its error is reported with the others'
         if below.is_empty() {
@@ -47,34 +68,48 @@ pub fn expand(given: &[PathBuf], scene_name: &str) -> Result<Vec<PathBuf>> {
     }
 }
 
-/// The experiment folder that a file is the scene or the log of.
-fn folder_of(file: &Path, scene_name: &str) -> Result<PathBuf> {
+/// The experiment that a file is the scene or the log of.
+fn folder_of(file: &Path, scenes: Scenes<'_>) -> Result<PathBuf> {
     let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    let own = [folder.join(scene_name), log_path(folder)];
-    match own.iter().any(|path| path.file_name() == file.file_name()) {
-        true => Ok(folder.to_owned()),
-        false => Err(hinted(
-            format!(
-                "{}: a file; experiments are given as folders with {scene_name} and log.csv, log.mcap or a bag",
-                file.display()
-            ),
-            format!(
-                "give such a folder, or filter this log alone: `stickslip filter {} --scene SCENE`",
-                file.display()
-            ),
-        )),
+    let is = |own: &Path| own.file_name() == file.file_name();
+    match scenes {
+        _ if is(&log_path(folder)) => Ok(folder.to_owned()),
+        Scenes::Named(name) if is(Path::new(name)) => Ok(folder.to_owned()),
+        Scenes::Named(name) => Err(stray_file(file, name)),
+        Scenes::One(scene) if is_scene(file) => Err(two_scenes(file, scene, "compare")),
+        Scenes::One(_) => Ok(file.to_owned()),
     }
 }
 
-/// A folder with a log or a scene means to be an experiment, even if the other is missing.
-fn is_experiment(folder: &Path, scene_name: &str) -> bool {
-    folder.join(scene_name).is_file() || is_bag(folder) || log_path(folder).is_file()
+/// The error about a file that no folder has for its log or scene.
+fn stray_file(file: &Path, scene_name: &str) -> anyhow::Error {
+    let shown = file.display();
+    let help = match is_scene(file) {
+        true => format!(
+            "give such a folder, or this scene for all: `stickslip compare DIR --scene {shown}`"
+        ),
+        false => format!(
+            "give such a folder, or its scene, too: `stickslip compare {shown} --scene SCENE`"
+        ),
+    };
+    hinted(
+        format!(
+            "{shown}: a file; experiments are given as folders with {scene_name} and log.csv, log.mcap or a bag"
+        ),
+        help,
+    )
 }
 
-fn experiments_below(folder: &Path, scene_name: &str) -> Vec<PathBuf> {
+/// A folder with a log or a scene of its own means to be an experiment, even if the other is missing.
+fn is_experiment(folder: &Path, scenes: Scenes<'_>) -> bool {
+    let scene = matches!(scenes, Scenes::Named(name) if folder.join(name).is_file());
+    scene || is_bag(folder) || log_path(folder).is_file()
+}
+
+fn experiments_below(folder: &Path, scenes: Scenes<'_>) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };
@@ -84,10 +119,10 @@ fn experiments_below(folder: &Path, scene_name: &str) -> Vec<PathBuf> {
         .collect();
     below.sort();
     let expanded = below.into_iter().flat_map(|path| {
-        if is_experiment(&path, scene_name) {
+        if is_experiment(&path, scenes) {
             vec![path]
         } else {
-            experiments_below(&path, scene_name)
+            experiments_below(&path, scenes)
         }
     });
     expanded.collect()

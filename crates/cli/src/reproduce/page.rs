@@ -6,14 +6,16 @@ use stickslip_evaluation::Variant;
 use stickslip_evaluation::paper::{PaperExperiment, ResultsRow, ResultsTable, RunSet, RunSettings};
 use stickslip_report::{Block, Colour, Figure, Report, ReportedExperiment, Section, Table};
 
-use super::text::{OCCLUSIONS, band, counts, median, occlusions, orders, touch};
+use super::text::{about_occlusions, band, counts, median, occlusions, orders, touch};
 use crate::origin::origin;
 use crate::reported_run::reported_run;
 
-/// What the page begins with.
-const SUMMARY: &str = "The evaluation of Zhang & Trinkle (ICRA 2012), repeated on a virtual testbed: the paper's six grasps and two more, 5 and 6, each with many seeds, every \
-    one of which is another rig with other noise. In each grasp a thumb pushes an object against fixed fingers (fixels); before the first one is \
-    touched the camera goes dark. Below: the paper's tables with ours beside them, its figures, and three of the grasps to be played back.";
+/// What the page begins with, before and after what the seeds are.
+const SUMMARY: [&str; 2] = [
+    "The evaluation of Zhang & Trinkle (ICRA 2012), repeated on a virtual testbed: the paper's six grasps and two more, 5 and 6, ",
+    ". In each grasp a thumb pushes an object against fixed fingers (fixels); before the first one is touched the camera goes dark. \
+     Below: the paper's tables with ours beside them, its figures, and three of the grasps to be played back.",
+];
 
 /// How the orders are judged.
 const ORDERS: &str = "Two methods that the paper's table puts in an order, compared seed by seed: the median of the differences ± its standard \
@@ -29,11 +31,17 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
             Block::Table(orders(results), "Better less worse, WMSE in mm".to_owned()),
         ],
     };
+    let seeds = match made.seeds {
+        1 => "with one seed".to_owned(),
+        many => {
+            format!("each with {many} seeds, every one of which is another rig with other noise")
+        }
+    };
     let mut summary = vec![
-        Block::Text(SUMMARY.to_owned()),
+        Block::Text(SUMMARY.join(&seeds)),
         Block::Table(
             occlusions(&results.occlusions),
-            format!("Under occlusion: {OCCLUSIONS}"),
+            format!("Under occlusion: {}", about_occlusions(&results.occlusions)),
         ),
     ];
     let sentences = [touch(&results.occlusions)]

@@ -8,8 +8,20 @@ use stickslip_evaluation::{Band, Variant};
 use stickslip_report::Table;
 
 /// What the table of [`occlusions`] shows.
-pub const OCCLUSIONS: &str = "particle filter with tactile data after the blackout begins, WMSE in mm; \
-    others: their median (ours less theirs: median difference ± its standard error; * by more than 2 of them better, ! worse)";
+pub fn about_occlusions(results: &[OcclusionResult]) -> String {
+    let differences = match too_few_seeds(results) {
+        true => "median difference, of too few seeds for a standard error",
+        false => "median difference ± its standard error; * by more than 2 of them better, ! worse",
+    };
+    format!(
+        "particle filter with tactile data after the blackout begins, WMSE in mm; others: their median (ours less theirs: {differences})"
+    )
+}
+
+fn too_few_seeds(results: &[OcclusionResult]) -> bool {
+    let mut baselines = results.iter().flat_map(|result| &result.baselines);
+    baselines.any(|against| against.standard_error_mm.is_infinite())
+}
 
 /// All tables, what holds of the paper's orders, and the particle filter under occlusion.
 pub fn text(results: &Results) -> String {
@@ -22,7 +34,8 @@ pub fn text(results: &Results) -> String {
         .chain([
             orders,
             format!(
-                "{OCCLUSIONS}\n\n{}\n{}\n",
+                "{}\n\n{}\n{}\n",
+                about_occlusions(&results.occlusions),
                 occlusions(&results.occlusions),
                 touch(&results.occlusions)
             ),
@@ -103,7 +116,7 @@ fn found(difference: &Difference) -> String {
         finding,
     } = difference;
     match finding {
-        Finding::TooFewSeeds => format!("{difference_mm:+.2}, {}", finding.name()),
+        Finding::TooFewSeeds => format!("{difference_mm:+.2}"),
         _ => format!(
             "{difference_mm:+.2} ± {standard_error_mm:.2} {}",
             finding.name()
@@ -180,10 +193,7 @@ pub fn touch(results: &[OcclusionResult]) -> String {
         Some((result.experiment, without))
     });
     let all: Vec<(&str, &BaselineComparison)> = all.collect();
-    if all
-        .iter()
-        .any(|(_, without)| without.standard_error_mm.is_infinite())
-    {
+    if too_few_seeds(results) {
         return "Too few seeds to tell what touch gains.".to_owned();
     }
     let names = |of: fn(&BaselineComparison) -> bool| {
@@ -213,7 +223,7 @@ fn difference(against: &BaselineComparison) -> String {
     };
     let theirs = against.baseline_mm.median;
     if against.standard_error_mm.is_infinite() {
-        return format!("{theirs:.2} ({:+.2}, too few seeds)", against.difference_mm);
+        return format!("{theirs:.2} ({:+.2})", against.difference_mm);
     }
     format!(
         "{theirs:.2} ({:+.2} ± {:.2}{mark})",

@@ -121,7 +121,17 @@ fn what_cannot_be_meant_is_answered_with_what_to_type() {
         (
             "compare alone/other.csv",
             "alone/other.csv: a file; experiments are given as folders",
-            "`stickslip filter alone/other.csv --scene SCENE`",
+            "`stickslip compare alone/other.csv --scene SCENE`",
+        ),
+        (
+            "compare only.toml a",
+            "only.toml: a file; experiments are given as folders",
+            "`stickslip compare DIR --scene only.toml`",
+        ),
+        (
+            "compare a/scene.toml --scene only.toml",
+            "a/scene.toml and only.toml: these are two scenes",
+            "`stickslip compare LOG --scene only.toml`",
         ),
         (
             "fit only.toml --out out",
@@ -147,9 +157,47 @@ fn compare_takes_a_scene_or_a_log_for_its_folder() {
         succeeds(&mut case.command(&words)).stdout
     };
     let folder = compared("a");
-    for way in ["a/log.csv", "a/scene.toml", "a/scene.toml a/log.csv"] {
+    for way in [
+        "a/log.csv",
+        "a/scene.toml",
+        "a/scene.toml a/log.csv",
+        "a --scene a/scene.toml",
+        "--scene a a/log.csv",
+    ] {
         assert_eq!(compared(way), folder, "{way}");
     }
+}
+
+#[test]
+fn compare_takes_one_scene_for_all_logs() {
+    let case = Case::new("one_scene");
+    let above = case.0.folder.parent().unwrap();
+    fs::rename(case.0.scene(), above.join("only.toml")).unwrap();
+    fs::rename(above.join("alone/other.csv"), above.join("alone/log.csv")).unwrap();
+    fs::copy(above.join("alone/log.csv"), above.join("alone/third.csv")).unwrap();
+    let compared = |words: &str| {
+        let options = "--occlude 300: --particles 8 --threads 1 --json";
+        let run = succeeds(&mut case.command(&format!("compare {words} {options}")));
+        serde_json::from_slice::<serde_json::Value>(&run.stdout).unwrap()["folders"].clone()
+    };
+    let found = compared("a alone alone/third.csv --scene only.toml");
+    let names: Vec<&str> = found
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["folder"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["a", "alone", "alone/third.csv"]);
+    assert_eq!(compared(". --scene only.toml").as_array().unwrap().len(), 2);
+    // the scene that is given counts, although the folder has its own
+    let text = fs::read_to_string(above.join("only.toml")).unwrap();
+    fs::write(
+        case.0.scene(),
+        text.replace("friction = 0.2", "friction = 0.9"),
+    )
+    .unwrap();
+    assert_eq!(compared("a --scene only.toml")[0], found[0]);
+    assert_ne!(compared("a")[0], found[0]);
 }
 
 #[test]

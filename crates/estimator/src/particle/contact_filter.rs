@@ -13,6 +13,7 @@ use crate::mode::Mode;
 use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
 use crate::particle::model::ContactModel;
+use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::observer::Observer;
 use crate::particle::replay::Replay;
@@ -52,6 +53,7 @@ pub(crate) struct ContactFilter<'o> {
     history: PoseHistory,
     latency: f64,
     camera: CameraClock,
+    noise: NoiseClock,
     plan: StepPlan,
     observation: Observation,
     latest: EstimateRow,
@@ -133,6 +135,7 @@ impl<'o> ContactFilter<'o> {
             history,
             latency: camera.latency,
             camera: CameraClock::new(time),
+            noise: NoiseClock::default(),
             plan: StepPlan::none(reference),
             observation: Observation::default(),
             latest: EstimateRow::default(),
@@ -279,6 +282,7 @@ impl<'o> ContactFilter<'o> {
             false => ParameterNoise::Drawn,
             true => ParameterNoise::Frozen,
         };
+        plan.noise_age = self.noise.age(plan.duration());
         if let Some(reference) = Reference::of(&self.latest) {
             plan.reference = reference;
         }

@@ -8,7 +8,8 @@ use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, flag, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::model::write;
-use crate::particle::propagation::{NOISE_STEP, Propagation, Transition};
+use crate::particle::noise_clock::NOISE_STEP;
+use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
@@ -51,6 +52,24 @@ impl Propagation {
             #[inline(always)]
             || self.vary_friction(transition, plan, block),
         );
+        // drawn anew in every row of a fast pusher, its offset would be the largest of many when it comes near
+        if plan.noise_age == 0 {
+            self.draw_rig(transition, plan, draw, block);
+        }
+        self.load_offsets(transition, block);
+        for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
+            *before = squared(particles.pusher_lag);
+        }
+    }
+
+    /// Draws what is unknown of the rig.
+    fn draw_rig(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+    ) {
         for j in 0..transition.columns.fixels() {
             self.normals_of(draw, FIXEL_PAIR + 2 * j as u32, block);
             self.draw_fixel_offset(transition, plan, j, block);
@@ -62,10 +81,6 @@ impl Propagation {
         if let Some(velocity) = plan.steady {
             self.normals_of(draw, EXCHANGE_PAIR, block);
             self.exchange_latency(transition, plan, velocity, block);
-        }
-        self.load_offsets(transition, block);
-        for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
-            *before = squared(particles.pusher_lag);
         }
     }
 

@@ -10,6 +10,7 @@ mod contact_mode;
 mod history;
 mod model;
 mod moved;
+mod noise_clock;
 pub(crate) mod observation;
 pub(crate) mod observer;
 mod propagation;

@@ -10,6 +10,7 @@ use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::contact_mode::note_felt;
+use crate::particle::noise_clock::{NOISE_STEP, sharing};
 use crate::particle::observer::{Observer, SolvedStep};
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::setup::{Limits, Setup};
@@ -17,15 +18,12 @@ use crate::setup::{Limits, Setup};
 /// Chunks of particles in a block.
 const CHUNKS: usize = BLOCK / LANES;
 
-/// Time step to which the noise settings refer (s).
-pub(super) const NOISE_STEP: f64 = 1.0 / 30.0;
-
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).
 const MOVING: f64 = 1e-9;
 
-/// Pairs of normal numbers: two for the parameters, then two for the force in each substep, of
-/// which three numbers are used.
+/// Pairs of normal numbers: two for the parameters, then two for each force, of which three numbers
+/// are used.
 const FORCE_PAIR: u32 = 2;
 
 /// Γ' of one setup: what moves the particles.
@@ -133,12 +131,13 @@ impl Propagation {
         if mode == Mode::Contact {
             self.draw_unknowns(transition, plan, draw, block);
         }
-        for (part, input) in plan.substeps.iter().enumerate() {
-            let pair = FORCE_PAIR + 2 * part as u32;
+        let of_force = draw.before(plan.noise_age);
+        for (part, input) in (0..).zip(&plan.substeps) {
+            let pair = FORCE_PAIR + 2 * (part / sharing(input.h));
             on_widest(
                 level,
                 #[inline(always)]
-                || self.apply_force(transition, input.h, draw, pair, block),
+                || self.apply_force(transition, input.h, of_force, pair, block),
             );
             if let Some(observer) = transition.observer {
                 observer.before_step(input, &self.particles[..chunks]);
@@ -241,8 +240,8 @@ impl Propagation {
         draw.normal_columns(first, pair + 1, &mut c[..len], &mut d[..len]);
     }
 
-    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, its
-    /// variance proportional to h (docs/method.md (19)).
+    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, the variance of
+    /// what it adds up to proportional to the time that it lasts (docs/method.md (19)).
     #[inline(always)]
     fn apply_force(
         &mut self,
@@ -258,8 +257,11 @@ impl Propagation {
             Mode::Contact => transition.setup.uncertainty.force_std,
             Mode::Paper => transition.setup.filter.force_std,
         };
+        let sharing = f64::from(sharing(h));
+        let lasts = h * sharing;
         let share =
-            per_step * scene.object.mass * scene.gravity * NOISE_STEP * (h / NOISE_STEP).sqrt();
+            per_step * scene.object.mass * scene.gravity * NOISE_STEP * (lasts / NOISE_STEP).sqrt()
+                / sharing;
         let rho = scene.object.gyration_radius();
         for (chunk, particles) in self
             .particles

@@ -7,11 +7,12 @@ use stickslip_filter::{Block, BlockMut};
 use crate::particle::chunk::{Column, LANES, is_set};
 use crate::particle::columns::Columns;
 use crate::particle::contact_mode::wandered;
+use crate::particle::noise_clock::sharing;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
 
-/// Share of their spread by which offsets wander from row to row where the rig is as told: copies of a
-/// particle are to differ.
+/// Share of their spread by which offsets wander from one draw of the noise to the next where the rig is
+/// as told: copies of a particle are to differ.
 const OFFSET_STEP: f64 = 0.1;
 
 /// Share of its mean by which the camera's latency wanders.
@@ -142,7 +143,9 @@ impl Propagation {
         }
     }
 
-    /// Moves particle `i` to where it is `early` seconds later, its past included.
+    /// Moves particle `i` to where it is `early` seconds later, its past included. Velocities in the past
+    /// are those over as long as noise lasts: between rows a millisecond apart they would be mostly noise,
+    /// which every move would multiply.
     fn advance_trajectory(
         &mut self,
         columns: &Columns,
@@ -157,19 +160,18 @@ impl Propagation {
         let at = |block: &BlockMut<'_>, slot: usize, k: usize| {
             block.column(columns.past_pose(slot) + k)[i]
         };
-        for pair in plan.seen.past.windows(2) {
-            let [(before, slot), (after, next)] = [pair[0], pair[1]];
-            for k in 0..3 {
-                let rate = (at(block, next, k) - at(block, slot, k)) / (after - before);
+        let past = &plan.seen.past;
+        for (row, &(before, slot)) in past.iter().enumerate() {
+            let rows = past.get(row + 1).map(|(next, _)| sharing(next - before));
+            let later = rows.and_then(|rows| past.get(row + rows as usize));
+            for (k, velocity) in twist.fields().into_iter().enumerate() {
+                let rate = later.map_or(*velocity, |&(after, next)| {
+                    (at(block, next, k) - at(block, slot, k)) / (after - before)
+                });
                 block.column_mut(columns.past_pose(slot) + k)[i] += rate * early;
             }
         }
         let moved = now.advance(twist, early);
-        if let Some((_, slot)) = plan.seen.past.last() {
-            for (k, value) in moved.fields().into_iter().enumerate() {
-                block.column_mut(columns.past_pose(*slot) + k)[i] = *value;
-            }
-        }
         for (to, from) in pose.fields_mut().into_iter().zip(moved.fields()) {
             to.0[i % LANES] = *from;
         }
@@ -214,7 +216,7 @@ fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
     !fixel && is_set(block, Columns::CONTACT_PUSHER, i) && !is_set(block, Columns::IDLE, i)
 }
 
-/// Share of their spread by which a particle's offsets wander in a row: by the same way (m), however
+/// Share of their spread by which a particle's offsets wander at a time: by the same way (m), however
 /// rough its rig is.
 fn offset_step(roughness: f64) -> f64 {
     (OFFSET_STEP * libm::exp(-roughness)).min(1.0)

@@ -24,6 +24,8 @@ pub struct StepPlan {
     pub driven: bool,
     /// Whether the parameters take a random step.
     pub parameter_noise: ParameterNoise,
+    /// Steps since the one that drew the noise which this step shares with it; 0 where it draws its own.
+    pub noise_age: u64,
     /// The pusher's velocity (m/s), where it has been the same for as long as poses are kept (contact
     /// mode).
     pub steady: Option<[f64; 2]>,
@@ -47,6 +49,7 @@ impl StepPlan {
         self.substeps.clone_from(&other.substeps);
         self.driven = other.driven;
         self.parameter_noise = other.parameter_noise;
+        self.noise_age = other.noise_age;
         self.steady = other.steady;
         self.slot = other.slot;
         self.seen.overwrite(&other.seen);
@@ -73,6 +76,7 @@ impl StepPlan {
             substeps: Vec::new(),
             driven: false,
             parameter_noise: ParameterNoise::Frozen,
+            noise_age: 0,
             steady: None,
             slot: 0,
             seen: Observation::default(),

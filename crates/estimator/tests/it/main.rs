@@ -2,6 +2,7 @@
 
 mod common;
 mod contact_mode;
+mod fast_pusher;
 mod friction_parameters;
 mod jam;
 mod particle_view;

@@ -55,6 +55,30 @@ fn a_page_loads_nothing() {
     }
 }
 
+/// A table is read back from its address as a browser does, by RFC 3986.
+#[test]
+fn a_download_holds_every_byte() {
+    let bytes = "time,x,#,%\n0.5,-1e-9,\"a b\",μ\r\n".as_bytes();
+    let block = Block::Download {
+        name: "t.csv".to_owned(),
+        what: "all".to_owned(),
+        bytes: bytes.to_vec(),
+    };
+    let page = Report {
+        summary: vec![block],
+        ..Report::default()
+    };
+    let page = page.to_html();
+    let (_, data) = page.split_once("href=\"data:text/csv,").unwrap();
+    let mut parts = data.split_once('"').unwrap().0.split('%');
+    let mut read = parts.next().unwrap().as_bytes().to_vec();
+    for part in parts {
+        read.push(u8::from_str_radix(&part[..2], 16).unwrap());
+        read.extend(part[2..].bytes());
+    }
+    assert_eq!(read, bytes);
+}
+
 /// Poses that the camera had lost just before they were hidden belong to the blackout; others do not.
 #[test]
 fn the_camera_is_dark_from_the_last_pose_on() {
