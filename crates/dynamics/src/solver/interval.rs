@@ -1,5 +1,7 @@
 //! Intervals of real numbers: [`Interval`].
 
+use crate::solver::vector::norm;
+
 /// The numbers from `low` to `high`; none where `low` is the larger.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval {
@@ -22,8 +24,8 @@ impl Interval {
     /// meets the origin.
     pub fn of_directions(q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Self {
         let cross = |p: [f64; 2], r: [f64; 2]| p[0] * r[1] - p[1] * r[0];
-        let size = q[0].hypot(q[1]);
-        let (la, lb) = (a[0].hypot(a[1]), b[0].hypot(b[1]));
+        let size = norm(&q);
+        let (la, lb) = (norm(&a), norm(&b));
         let turn = cross(a, b);
         let opposite = a[0] * b[0] + a[1] * b[1] < 0.0 && turn.abs() <= 1e-12 * la * lb;
         if la < 1e-13 || lb < 1e-13 || opposite {

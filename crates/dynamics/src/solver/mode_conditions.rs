@@ -181,7 +181,7 @@ impl ModeConditions {
         self.problem
             .feet
             .iter()
-            .map(|foot| foot.bound * foot.slip(w)[0].hypot(foot.slip(w)[1]))
+            .map(|foot| foot.bound * norm(&foot.slip(w)))
             .sum()
     }
 
