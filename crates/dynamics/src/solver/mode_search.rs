@@ -18,13 +18,13 @@ use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::mode_curve::ModeCurve;
-use crate::solver::mode_line::{Line, LineBalance, ModeLine};
+use crate::solver::mode_line::{Line, ModeLine};
 use crate::solver::piece_search::{Finding, ModePath, Thoroughness, search_pieces};
 use crate::solver::plane_region::{PlaneRegion, complement};
 use crate::solver::redundant_line::RedundantLine;
 use crate::solver::redundant_plane::RedundantPlane;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
-use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares};
+use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares, null_vector};
 use crate::solver::support_friction::SupportFriction;
 use crate::solver::vector::{add_scaled, dot, velocity};
 
@@ -285,21 +285,22 @@ impl ModeSearch {
         certifier: &mut Certifier<'_>,
     ) -> Finding {
         let conditions = &self.conditions;
+        let equations = conditions.equations(chosen);
+        let (rows, values) = (equations.map(|e| e.row), equations.map(|e| e.value));
+        let v = solve_dense(rows, values, DEPENDENT);
+        if v.is_some_and(|v| conditions.violates(chosen, &v, 0.0)) {
+            return Finding::Excluded;
+        }
         let Some(dual) = dual_basis(&chosen.map(|c| c.g)) else {
             return Finding::Excluded;
         };
-        let equations = conditions.equations(chosen);
-        let (rows, values) = (equations.map(|e| e.row), equations.map(|e| e.value));
-        let Some(v) = solve_dense(rows, values, DEPENDENT) else {
+        let Some(v) = v else {
             let Some(line) = Line::of_dependent(&equations) else {
                 return self.degenerate(chosen, certifier);
             };
             let mut path = RedundantLine::new(conditions, chosen, line, dual);
             return search_path(path.interval(), &mut path, thoroughness, certifier);
         };
-        if conditions.violates(chosen, &v, 0.0) {
-            return Finding::Excluded;
-        }
         let ranges = dual.map(|w| conditions.range_along(&w, &v, &v));
         if ranges.iter().any(|range| range.high < -conditions.slack) {
             return Finding::Excluded;
@@ -343,17 +344,29 @@ impl ModeSearch {
         thoroughness: Thoroughness,
         certifier: &mut Certifier<'_>,
     ) -> Finding {
-        let Some(balance) = LineBalance::new(chosen) else {
+        let (conditions, [a, b, c]) = (&self.conditions, chosen.map(|generator| generator.g));
+        let Some(m) = null_vector(&[a, b, c]) else {
             return Finding::Excluded;
         };
-        let Some(line) = Line::new(&self.conditions.equations(chosen)) else {
-            return match RedundantPlane::new(&self.conditions, chosen, balance.dual) {
+        let dual = || dual_basis(&[a, b, c, m]);
+        let Some(line) = Line::new(&conditions.equations(chosen)) else {
+            let Some(dual) = dual() else {
+                return Finding::Excluded;
+            };
+            return match RedundantPlane::new(conditions, chosen, dual) {
                 Some(plane) => plane.search(thoroughness, certifier),
                 None => self.degenerate(chosen, certifier),
             };
         };
-        let mut path = ModeLine::new(&self.conditions, chosen, line, balance);
-        search_path(path.interval(), &mut path, thoroughness, certifier)
+        let interval = line.balanced_interval(conditions, chosen, &m);
+        if interval.is_empty() {
+            return Finding::Excluded;
+        }
+        let Some(dual) = dual() else {
+            return Finding::Excluded;
+        };
+        let mut path = ModeLine::new(conditions, chosen, line, dual);
+        search_path(interval, &mut path, thoroughness, certifier)
     }
 
     /// Two generators: V on a curve.
