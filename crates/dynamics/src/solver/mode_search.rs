@@ -120,6 +120,9 @@ struct ModeSearch {
     conditions: ModeConditions,
     generators: Vec<Generator>,
     rigid: bool,
+    /// The open plane of each two contacts, or of a contact and the stall pair, at the index of
+    /// [`ModeSearch::plane_index`].
+    planes: Vec<Option<PlaneRegion>>,
 }
 
 impl ModeSearch {
@@ -133,11 +136,51 @@ impl ModeSearch {
                 (c.n[3], c.t[3]) = (0.0, 0.0);
             }
         }
-        Self {
+        let mut search = Self {
             generators: Generator::all(&problem),
             conditions: ModeConditions::new(problem),
             rigid,
+            planes: Vec::new(),
+        };
+        search.find_planes();
+        search
+    }
+
+    /// Both edges of a contact ask for the same closed gap: their planes are the same.
+    fn find_planes(&mut self) {
+        let rows = 1 + self.conditions.problem.contacts.len();
+        self.planes.resize(rows * rows, None);
+        let mut firsts = self.generators.clone();
+        firsts.dedup_by_key(|generator| generator.contact);
+        for (k, a) in firsts.iter().enumerate() {
+            for b in &firsts[k + 1..] {
+                let index = self.plane_index(a, b);
+                self.planes[index] = self.conditions.open_plane(&[*a, *b]);
+            }
+            if self.rigid {
+                break;
+            }
         }
+    }
+
+    fn plane_index(&self, a: &Generator, b: &Generator) -> usize {
+        let row = |generator: &Generator| generator.contact.map_or(0, |i| i + 1);
+        row(a) * (1 + self.conditions.problem.contacts.len()) + row(b)
+    }
+
+    /// What a mode's inequalities leave of the plane of two generators; `None` where their equations
+    /// leave none.
+    fn plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
+        let [a, b] = chosen;
+        let mut region = if a.contact == b.contact {
+            self.conditions.open_plane(chosen)?
+        } else {
+            self.planes[self.plane_index(a, b)].clone()?
+        };
+        for inequality in self.conditions.slips(chosen) {
+            region.clip(&inequality, self.conditions.slack);
+        }
+        Some(region)
     }
 
     /// Examines subsets of generators until one has a solution.
@@ -213,14 +256,8 @@ impl ModeSearch {
 
     /// Whether some V meets the conditions of two generators.
     fn plane_is_possible(&self, members: &[usize; 2]) -> bool {
-        let chosen = members.map(|i| self.generators[i]);
-        let Some(mut region) = PlaneRegion::new(&self.conditions.equations(&chosen)) else {
-            return true;
-        };
-        for inequality in self.conditions.inequalities(&chosen) {
-            region.clip(&inequality, self.conditions.slack);
-        }
-        !region.is_empty()
+        self.plane(&members.map(|i| self.generators[i]))
+            .is_none_or(|region| !region.is_empty())
     }
 
     /// Whether some V meets the conditions of three generators.
@@ -389,7 +426,7 @@ impl ModeSearch {
     /// not balance, with impulses α ≥ 0 of theirs.
     fn plane_balances(&self, chosen: &[Generator; 2], certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
-        let Some(mut region) = PlaneRegion::new(&conditions.equations(chosen)) else {
+        let Some(mut region) = self.plane(chosen) else {
             return true;
         };
         let [a, b] = chosen.map(|generator| generator.g);
@@ -398,10 +435,7 @@ impl ModeSearch {
         };
         let [alpha, beta, c, d] = dual.map(|w| conditions.most_along(&w));
         let [less_c, less_d] = [dual[2], dual[3]].map(|w| conditions.most_along(&w.map(|x| -x)));
-        for inequality in conditions
-            .inequalities(chosen)
-            .chain([alpha, beta, c, d, less_c, less_d])
-        {
+        for inequality in [alpha, beta, c, d, less_c, less_d] {
             region.clip(&inequality, conditions.slack);
         }
         let hull: Vec<_> = region.corners().collect();
