@@ -6,6 +6,10 @@ use crate::solver::vector::{Vector, add_scaled, dot, norm};
 /// Slip below which a foot is not taken to slip (m/s, relative to v where above 1).
 const STANDS: f64 = 1e-12;
 
+/// Slip at which a foot is not taken to resist (m/s): within the certificate's tolerance, a foot that
+/// slips as slowly may exert its impulse in another direction.
+const ANY_WAY: f64 = 1e-7;
+
 /// Of a sum of products of a matrix and two vectors.
 const ROUNDING: f64 = 1e-14;
 
@@ -118,10 +122,13 @@ impl Slide<'_> {
         for ((foot, impulse), &fastest) in feet.iter().zip(self.feet).zip(fastest) {
             let slip = foot.slip(&self.v);
             let speed = norm(&slip);
+            if fastest < ANY_WAY {
+                continue;
+            }
             if speed > stands {
                 let size = foot.bound * (fastest + speed) / (2.0 * fastest * fastest);
                 add_along(&mut matrix, foot, [-slip[1] / speed, slip[0] / speed], size);
-            } else if fastest > 0.0 {
+            } else {
                 let spare = (foot.bound - norm(impulse)).max(0.0) / fastest;
                 add_along(&mut matrix, foot, [1.0, 0.0], spare);
                 add_along(&mut matrix, foot, [0.0, 1.0], spare);
