@@ -1,6 +1,13 @@
 //! Decides whether a candidate is a solution, within a limit on work: [`Certifier`].
 
 use crate::solver::scalar_ncp::Candidate;
+use crate::solver::vector::{Vector, add_scaled, norm};
+
+/// Candidates that are refined at the same V, in vain, before others there are given up.
+const PATIENCE: u32 = 4;
+
+/// Distance up to which V is the same (m/s).
+const SAME: f64 = 1e-8;
 
 /// A candidate's refinement.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +25,8 @@ pub struct Refined {
 pub struct Certifier<'a> {
     refine: &'a mut dyn FnMut(&Candidate) -> Refined,
     left: u32,
+    /// Where candidates failed since [`Certifier::forget`], and how many.
+    failed: Vec<(Vector<4>, u32)>,
 }
 
 impl<'a> Certifier<'a> {
@@ -26,14 +35,30 @@ impl<'a> Certifier<'a> {
         Self {
             refine,
             left: limit,
+            failed: Vec::new(),
         }
     }
 
-    /// Whether the candidate refines to a certified solution.
+    /// Whether the candidate refines to a certified solution; where all gaps close together, most modes
+    /// have the same V, and only so many of them are tried there.
     pub fn certifies(&mut self, candidate: &Candidate) -> bool {
+        let here = |(v, _): &&mut (Vector<4>, u32)| norm(&add_scaled(v, -1.0, &candidate.v)) < SAME;
+        let failures = self.failed.iter_mut().find(here);
+        if failures.as_ref().is_some_and(|(_, n)| *n == PATIENCE) {
+            return false;
+        }
         let Refined { certified, systems } = (self.refine)(candidate);
+        match failures {
+            Some((_, n)) => *n += 1,
+            None => self.failed.push((candidate.v, 1)),
+        }
         self.spend(systems);
         certified
+    }
+
+    /// Makes all candidates worth a try again.
+    pub fn forget(&mut self) {
+        self.failed.clear();
     }
 
     /// Takes work from what is left.

@@ -74,6 +74,7 @@ pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
     let search = ModeSearch::new(problem);
     let mut unclear = search.subsets(certifier);
     for thoroughness in ROUNDS {
+        certifier.forget();
         match search.round(&unclear, thoroughness, certifier) {
             Round::Solved => return Verdict::Solved,
             Round::Unclear(left) if left.is_empty() => return Verdict::Infeasible,

@@ -17,6 +17,9 @@ const NARROWER: f64 = 1e-3;
 /// Width at which a piece is not halved any more.
 pub const NARROWEST: f64 = 1e-12;
 
+/// Width at which a search that does not exclude pieces by balances gives up.
+const GLANCE: f64 = 1e-8;
+
 /// Miss up to which a point is a root (m/s).
 const ROOT: f64 = 1e-11;
 
@@ -151,6 +154,10 @@ pub fn search_pieces(
         if width < NARROWEST {
             finding = Finding::Unclear;
             continue;
+        }
+        // a first glance leaves the rest to a later round
+        if !thoroughness.separates && width < GLANCE {
+            return Finding::Unclear;
         }
         stack.push([middle, b]);
         stack.push([a, middle]);
