@@ -8,7 +8,7 @@ const STANDS: f64 = 1e-12;
 
 /// Slip at which a foot is not taken to resist (m/s): within the certificate's tolerance, a foot that
 /// slips as slowly may exert its impulse in another direction.
-const ANY_WAY: f64 = 1e-7;
+const ANY_WAY: f64 = 1e-8;
 
 /// Of a sum of products of a matrix and two vectors.
 const ROUNDING: f64 = 1e-14;
