@@ -3,9 +3,6 @@
 use crate::solver::scalar_ncp::Candidate;
 use crate::solver::vector::{Vector, add_scaled, norm};
 
-/// Candidates that are refined at the same V, in vain, before others there are given up.
-const PATIENCE: u32 = 4;
-
 /// Distance up to which V is the same (m/s).
 const SAME: f64 = 1e-8;
 
@@ -25,8 +22,9 @@ pub struct Refined {
 pub struct Certifier<'a> {
     refine: &'a mut dyn FnMut(&Candidate) -> Refined,
     left: u32,
-    /// Where candidates failed since [`Certifier::forget`], and how many.
+    /// Where candidates failed in this round, and how many.
     failed: Vec<(Vector<4>, u32)>,
+    patience: u32,
 }
 
 impl<'a> Certifier<'a> {
@@ -36,15 +34,16 @@ impl<'a> Certifier<'a> {
             refine,
             left: limit,
             failed: Vec::new(),
+            patience: u32::MAX,
         }
     }
 
-    /// Whether the candidate refines to a certified solution; where all gaps close together, most modes
-    /// have the same V, and only so many of them are tried there.
+    /// Whether the candidate refines to a certified solution; no more than so many are tried at the same
+    /// V.
     pub fn certifies(&mut self, candidate: &Candidate) -> bool {
         let here = |(v, _): &&mut (Vector<4>, u32)| norm(&add_scaled(v, -1.0, &candidate.v)) < SAME;
         let failures = self.failed.iter_mut().find(here);
-        if failures.as_ref().is_some_and(|(_, n)| *n == PATIENCE) {
+        if failures.as_ref().is_some_and(|(_, n)| *n >= self.patience) {
             return false;
         }
         let Refined { certified, systems } = (self.refine)(candidate);
@@ -56,9 +55,10 @@ impl<'a> Certifier<'a> {
         certified
     }
 
-    /// Makes all candidates worth a try again.
-    pub fn forget(&mut self) {
+    /// From here on, `patience` candidates are tried at the same V.
+    pub fn begin_round(&mut self, patience: u32) {
         self.failed.clear();
+        self.patience = patience;
     }
 
     /// Takes work from what is left.

@@ -49,18 +49,21 @@ const ROUNDS: [Thoroughness; 3] = [
     Thoroughness {
         pieces: 128,
         attempts: 1,
+        patience: 4,
         separates: false,
         stands: false,
     },
     Thoroughness {
         pieces: 2_000,
         attempts: 6,
+        patience: u32::MAX,
         separates: true,
         stands: false,
     },
     Thoroughness {
         pieces: 50_000,
         attempts: 6,
+        patience: u32::MAX,
         separates: true,
         stands: true,
     },
@@ -74,7 +77,7 @@ pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
     let search = ModeSearch::new(problem);
     let mut unclear = search.subsets(certifier);
     for thoroughness in ROUNDS {
-        certifier.forget();
+        certifier.begin_round(thoroughness.patience);
         match search.round(&unclear, thoroughness, certifier) {
             Round::Solved => return Verdict::Solved,
             Round::Unclear(left) if left.is_empty() => return Verdict::Infeasible,
