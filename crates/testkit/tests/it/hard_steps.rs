@@ -37,6 +37,9 @@ fn hard_steps_are_solved_or_proven_infeasible() {
             "{k}, {}",
             step.class
         );
+        if step.class == "solved" {
+            assert_eq!(answers[0].1.outcome, Outcome::Solved, "{k}");
+        }
         // an independent proof, where there is one, says the same
         let margin = gap_margin(&step.problem, 1.0);
         if margin < -1e-6 {
