@@ -1,6 +1,10 @@
 //! Decides whether a candidate is a solution, within a limit on work: [`Certifier`].
 
 use crate::solver::scalar_ncp::Candidate;
+use crate::solver::vector::{Vector, add_scaled, norm};
+
+/// Distance up to which V is the same (m/s).
+const SAME: f64 = 1e-8;
 
 /// A candidate's refinement.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +22,9 @@ pub struct Refined {
 pub struct Certifier<'a> {
     refine: &'a mut dyn FnMut(&Candidate) -> Refined,
     left: u32,
+    /// Where candidates failed in this round, and how many.
+    failed: Vec<(Vector<4>, u32)>,
+    patience: u32,
 }
 
 impl<'a> Certifier<'a> {
@@ -26,14 +33,32 @@ impl<'a> Certifier<'a> {
         Self {
             refine,
             left: limit,
+            failed: Vec::new(),
+            patience: u32::MAX,
         }
     }
 
-    /// Whether the candidate refines to a certified solution.
+    /// Whether the candidate refines to a certified solution; no more than so many are tried at the same
+    /// V.
     pub fn certifies(&mut self, candidate: &Candidate) -> bool {
+        let here = |(v, _): &&mut (Vector<4>, u32)| norm(&add_scaled(v, -1.0, &candidate.v)) < SAME;
+        let failures = self.failed.iter_mut().find(here);
+        if failures.as_ref().is_some_and(|(_, n)| *n >= self.patience) {
+            return false;
+        }
         let Refined { certified, systems } = (self.refine)(candidate);
+        match failures {
+            Some((_, n)) => *n += 1,
+            None => self.failed.push((candidate.v, 1)),
+        }
         self.spend(systems);
         certified
+    }
+
+    /// From here on, `patience` candidates are tried at the same V.
+    pub fn begin_round(&mut self, patience: u32) {
+        self.failed.clear();
+        self.patience = patience;
     }
 
     /// Takes work from what is left.

@@ -11,6 +11,8 @@
 
 use stickslip_lanes::Lanes;
 
+use crate::solver::vector::add_scaled;
+
 /// The unknowns of three equations: three coefficients each, then the right-hand side.
 #[inline(always)]
 pub fn solve_three<const W: usize>([a, b, c]: &[[Lanes<W>; 4]; 3]) -> [Lanes<W>; 3] {
@@ -77,10 +79,20 @@ fn without_first<const N: usize, const M: usize, const W: usize>(
 /// Solves the dense N×N system m x = b by elimination with row pivoting; `None` where a pivot is at
 /// most `singular` times the largest entry.
 pub fn solve_dense<const N: usize>(
-    mut m: [[f64; N]; N],
-    mut b: [f64; N],
+    m: [[f64; N]; N],
+    b: [f64; N],
     singular: f64,
 ) -> Option<[f64; N]> {
+    let solution = solve_dense_sides(m, b.map(|b| [b]), singular)?;
+    Some(solution.map(|[x]| x))
+}
+
+/// [`solve_dense`] of `M` right-hand sides, the columns of `b`.
+pub fn solve_dense_sides<const N: usize, const M: usize>(
+    mut m: [[f64; N]; N],
+    mut b: [[f64; M]; N],
+    singular: f64,
+) -> Option<[[f64; M]; N]> {
     let largest = m.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs()));
     for c in 0..N {
         let pivot = (c..N).fold(c, |best, r| {
@@ -100,12 +112,14 @@ pub fn solve_dense<const N: usize>(
             for k in c..N {
                 m[r][k] -= f * m[c][k];
             }
-            b[r] -= f * b[c];
+            b[r] = add_scaled(&b[r], -f, &b[c]);
         }
     }
     for c in (0..N).rev() {
-        let tail: f64 = (c + 1..N).map(|k| m[c][k] * b[k]).sum();
-        b[c] = (b[c] - tail) / m[c][c];
+        for k in c + 1..N {
+            b[c] = add_scaled(&b[c], -m[c][k], &b[k]);
+        }
+        b[c] = b[c].map(|x| x / m[c][c]);
     }
     Some(b)
 }

@@ -77,7 +77,7 @@ impl<'a> Load<'a> {
 
     /// No point is longer.
     pub fn size(&self) -> f64 {
-        let foot = |foot: &ScalarFoot| foot.bound * (1.0 + foot.jx.hypot(foot.jy));
+        let foot = |foot: &ScalarFoot| foot.bound * (1.0 + norm(&[foot.jx, foot.jy]));
         let corner = self.corners.iter().map(norm).fold(0.0, f64::max);
         corner + self.feet.iter().map(foot).sum::<f64>()
     }

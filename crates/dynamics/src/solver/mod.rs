@@ -6,6 +6,7 @@ pub(crate) mod chain;
 mod compliant;
 mod contact_mode;
 mod elimination;
+mod enclosure;
 mod fallback;
 mod fixed_mode_newton;
 mod generator;

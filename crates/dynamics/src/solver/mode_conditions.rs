@@ -5,6 +5,7 @@ use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::load::Load;
+use crate::solver::plane_region::PlaneRegion;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
@@ -87,15 +88,29 @@ impl ModeConditions {
         &'a self,
         chosen: &'a [Generator],
     ) -> impl Iterator<Item = Inequality> + 'a {
-        let slips = chosen.iter().filter_map(|generator| {
+        self.open.iter().copied().chain(self.slips(chosen))
+    }
+
+    /// Of these, the slips.
+    pub fn slips<'a>(&'a self, chosen: &'a [Generator]) -> impl Iterator<Item = Inequality> + 'a {
+        chosen.iter().filter_map(|generator| {
             // p_t = sign μ p_n opposes the slip
             let c = &self.problem.contacts[generator.contact?];
             Some(Inequality {
                 row: c.t.map(|x| -generator.sign * x),
                 offset: -generator.sign * c.slip_offset,
             })
-        });
-        self.open.iter().copied().chain(slips)
+        })
+    }
+
+    /// What the open gaps and y ≥ 0 leave of the plane of two generators; `None` where their equations
+    /// leave none.
+    pub fn open_plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
+        let mut region = PlaneRegion::new(&self.equations(chosen))?;
+        for inequality in &self.open {
+            region.clip(inequality, self.slack);
+        }
+        Some(region)
     }
 
     /// Whether V violates a condition of this mode by more than the slack, and more than it can
@@ -181,7 +196,7 @@ impl ModeConditions {
         self.problem
             .feet
             .iter()
-            .map(|foot| foot.bound * foot.slip(w)[0].hypot(foot.slip(w)[1]))
+            .map(|foot| foot.bound * norm(&foot.slip(w)))
             .sum()
     }
 

@@ -1,5 +1,6 @@
 //! The velocities that two generators allow: [`ModeCurve`].
 
+use crate::solver::enclosure::{Between, Enclosure, Slide};
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
@@ -12,6 +13,9 @@ use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 /// Error of a velocity from [`SupportFriction`] (m/s, relative where above 1), unless its residual is
 /// larger.
 const ROUNDING: f64 = 1e-13;
+
+/// Times that an enclosure is made narrower by the slips that it leaves.
+const NARROWER: u32 = 3;
 
 /// The curve v(λ) = T⁻¹(`load_0` + λ `load`), λ the impulse of one generator; the fourth balance
 /// ties the impulse of the other one to it, `ratio` λ + `constant`. Of the two equations, one gives
@@ -32,6 +36,8 @@ pub struct ModeCurve<'a> {
     constant: f64,
     tied_is_first: bool,
     gives_y: Equation,
+    /// What holds at a solution: row·v + offset ≥ 0.
+    limits: Vec<(Vector<3>, f64)>,
 }
 
 impl<'a> ModeCurve<'a> {
@@ -55,15 +61,25 @@ impl<'a> ModeCurve<'a> {
             return None;
         }
         let (ratio, constant) = (-free.g[3] / tied.g[3], problem.stall / tied.g[3]);
-        let k = solve.row[3] / gives_y.row[3];
+        let without_yield = |row: &Vector<4>, offset: f64| {
+            let k = row[3] / gives_y.row[3];
+            let row = add_scaled(&velocity(row), -k, &velocity(&gives_y.row));
+            (row, offset + k * gives_y.value)
+        };
+        let (w, offset) = without_yield(&solve.row, -solve.value);
+        let inequalities = conditions.inequalities(chosen);
+        let limits = [(w, offset), (w.map(|x| -x), -offset)]
+            .into_iter()
+            .chain(inequalities.map(|it| without_yield(&it.row, it.offset)));
         Some(Self {
+            limits: limits.collect(),
             conditions,
             chosen,
             support: SupportFriction::new(&problem.feet),
             load_0: add_scaled(&problem.free, constant, &velocity(&tied.g)),
             load: add_scaled(&velocity(&free.g), ratio, &velocity(&tied.g)),
-            w: add_scaled(&velocity(&solve.row), -k, &velocity(&gives_y.row)),
-            offset: k * gives_y.value - solve.value,
+            w,
+            offset,
             ratio,
             constant,
             tied_is_first,
@@ -79,10 +95,10 @@ impl<'a> ModeCurve<'a> {
             high: f64::INFINITY,
         };
         interval.clip(self.ratio, self.constant + conditions.slack);
-        let bound = conditions.friction_bound(&self.w) + conditions.slack;
-        let (slope, at_0) = (dot(&self.w, &self.load), dot(&self.w, &self.load_0));
-        interval.clip(slope, at_0 + self.offset + bound);
-        interval.clip(-slope, -at_0 - self.offset + bound);
+        for (row, offset) in &self.limits {
+            let most = offset + conditions.friction_bound(row) + conditions.slack;
+            interval.clip(dot(row, &self.load), dot(row, &self.load_0) + most);
+        }
         interval
     }
 
@@ -101,9 +117,12 @@ impl<'a> ModeCurve<'a> {
         (self.gives_y.value - dot(&velocity(&self.gives_y.row), v)) / self.gives_y.row[3]
     }
 
-    /// Most that the yield changes per change of v.
-    fn yield_gain(&self) -> f64 {
-        norm(&velocity(&self.gives_y.row)) / self.gives_y.row[3].abs()
+    /// Whether no v of an enclosure meets all conditions.
+    fn excludes_all(&self, enclosure: &Enclosure) -> bool {
+        self.limits.iter().any(|(row, offset)| {
+            let value = dot(row, &enclosure.centre) + offset + self.conditions.slack;
+            value < 0.0 && value < -enclosure.reach(row)
+        })
     }
 }
 
@@ -121,22 +140,31 @@ impl ModePath for ModeCurve<'_> {
         }
     }
 
-    /// T⁻¹ is firmly nonexpansive, |Δv|² ≤ Δλ load·Δv. Added for both ends, whose velocities are
-    /// v_a and v_b, it leaves to every v between them |v − v_a|² + |v − v_b|² ≤ Δλ load·(v_b − v_a):
-    /// a ball about their middle, of radius zero where the object rests at both ends.
     fn excludes(&self, a: &Sample, b: &Sample) -> bool {
-        let [v_a, v_b] = [velocity(&a.v), velocity(&b.v)];
-        let change = add_scaled(&v_b, -1.0, &v_a);
+        let ends = [a, b].map(|at| Slide {
+            v: velocity(&at.v),
+            feet: &at.feet,
+        });
+        let change = add_scaled(&ends[1].v, -1.0, &ends[0].v);
         let rounding = a.error.max(b.error);
         let along = dot(&self.load, &change).abs() + rounding * norm(&self.load);
-        let squared = 0.5 * (b.x - a.x) * along - 0.25 * dot(&change, &change);
-        let reach = squared.max(0.0).sqrt() + rounding;
-        let middle = add_scaled(&a.v, 1.0, &b.v).map(|x| 0.5 * x);
-        let miss = (dot(&self.w, &velocity(&middle)) + self.offset).abs();
-        miss > reach * norm(&self.w) + self.conditions.slack
-            || self
-                .conditions
-                .violates(self.chosen, &middle, reach * (1.0 + self.yield_gain()))
+        let between = Between {
+            feet: &self.conditions.problem.feet,
+            ends,
+            power: (b.x - a.x) * along,
+            rounding,
+        };
+        let mut enclosure = between.ball();
+        for _ in 0..NARROWER {
+            if self.excludes_all(&enclosure) {
+                return true;
+            }
+            let Some(narrower) = between.narrower(&enclosure) else {
+                return false;
+            };
+            enclosure = narrower;
+        }
+        self.excludes_all(&enclosure)
     }
 
     fn candidate(&self, at: &Sample) -> Candidate {

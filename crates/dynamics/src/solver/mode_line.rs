@@ -5,7 +5,7 @@ use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::{Inequality, ModeConditions};
 use crate::solver::piece_search::{ModePath, Sample};
 use crate::solver::scalar_ncp::Candidate;
-use crate::solver::subspace::{Equation, dual_basis, independence, least_squares, null_vector};
+use crate::solver::subspace::{Equation, independence, least_squares, null_vector};
 use crate::solver::vector::{Vector, add_scaled, dot, velocity};
 
 /// V = origin + x d, where the equations of three generators hold.
@@ -54,24 +54,22 @@ impl Line {
         }
         interval
     }
-}
 
-/// What three generators can balance of a load, and the direction m in which none of them pushes.
-pub struct LineBalance {
-    m: Vector<4>,
-    /// Of the three generators and m.
-    pub dual: [Vector<4>; 4],
-}
-
-impl LineBalance {
-    /// `None` where the generators depend on each other.
-    pub fn new(chosen: &[Generator; 3]) -> Option<Self> {
-        let [a, b, c] = chosen.map(|generator| generator.g);
-        let m = null_vector(&[a, b, c])?;
-        Some(Self {
-            m,
-            dual: dual_basis(&[a, b, c, m])?,
-        })
+    /// The part of it where, too, the friction of the feet can balance along m, in which no generator
+    /// of the mode pushes.
+    pub fn balanced_interval(
+        &self,
+        conditions: &ModeConditions,
+        chosen: &[Generator],
+        m: &Vector<4>,
+    ) -> Interval {
+        let mut interval = self.interval(conditions, chosen);
+        let bound = conditions.friction_bound(&velocity(m)) + conditions.slack;
+        let at_origin = conditions.load_along(m, &self.origin);
+        let slope = dot(&velocity(m), &velocity(&self.d));
+        interval.clip(slope, at_origin + bound);
+        interval.clip(-slope, -at_origin + bound);
+        interval
     }
 }
 
@@ -81,7 +79,8 @@ pub struct ModeLine<'a> {
     conditions: &'a ModeConditions,
     chosen: &'a [Generator; 3],
     line: Line,
-    balance: LineBalance,
+    /// Of the three generators and the direction m in which none of them pushes.
+    dual: [Vector<4>; 4],
 }
 
 impl<'a> ModeLine<'a> {
@@ -90,34 +89,21 @@ impl<'a> ModeLine<'a> {
         conditions: &'a ModeConditions,
         chosen: &'a [Generator; 3],
         line: Line,
-        balance: LineBalance,
+        dual: [Vector<4>; 4],
     ) -> Self {
         Self {
             conditions,
             chosen,
             line,
-            balance,
+            dual,
         }
-    }
-
-    /// The part of the line where the inequalities hold and the friction of the feet can balance
-    /// along m.
-    pub fn interval(&self) -> Interval {
-        let (conditions, Line { origin, d }) = (self.conditions, &self.line);
-        let mut interval = self.line.interval(conditions, self.chosen);
-        let bound = conditions.friction_bound(&velocity(&self.balance.m)) + conditions.slack;
-        let at_origin = conditions.load_along(&self.balance.m, origin);
-        let slope = dot(&velocity(&self.balance.m), &velocity(d));
-        interval.clip(slope, at_origin + bound);
-        interval.clip(-slope, -at_origin + bound);
-        interval
     }
 }
 
 impl ModePath for ModeLine<'_> {
     fn sample(&mut self, x: f64) -> Sample {
         let v = self.line.at(x);
-        let along_m = self.conditions.range_along(&self.balance.dual[3], &v, &v);
+        let along_m = self.conditions.range_along(&self.dual[3], &v, &v);
         Sample {
             x,
             v,
@@ -131,7 +117,6 @@ impl ModePath for ModeLine<'_> {
     fn excludes(&self, a: &Sample, b: &Sample) -> bool {
         let slack = self.conditions.slack;
         let [i, j, k, along_m] = self
-            .balance
             .dual
             .map(|w| self.conditions.range_along(&w, &a.v, &b.v));
         let balances = along_m.low <= slack && along_m.high >= -slack;
@@ -143,7 +128,7 @@ impl ModePath for ModeLine<'_> {
     }
 
     fn candidate(&self, at: &Sample) -> Candidate {
-        let [i, j, k, _] = self.balance.dual;
+        let [i, j, k, _] = self.dual;
         let alpha = [i, j, k].map(|w| {
             let range = self.conditions.range_along(&w, &at.v, &at.v);
             range.midpoint()

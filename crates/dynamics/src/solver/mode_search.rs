@@ -18,13 +18,13 @@ use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::mode_curve::ModeCurve;
-use crate::solver::mode_line::{Line, LineBalance, ModeLine};
+use crate::solver::mode_line::{Line, ModeLine};
 use crate::solver::piece_search::{Finding, ModePath, Thoroughness, search_pieces};
 use crate::solver::plane_region::{PlaneRegion, complement};
 use crate::solver::redundant_line::RedundantLine;
 use crate::solver::redundant_plane::RedundantPlane;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
-use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares};
+use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares, null_vector};
 use crate::solver::support_friction::SupportFriction;
 use crate::solver::vector::{add_scaled, dot, velocity};
 
@@ -49,18 +49,21 @@ const ROUNDS: [Thoroughness; 3] = [
     Thoroughness {
         pieces: 128,
         attempts: 1,
+        patience: 4,
         separates: false,
         stands: false,
     },
     Thoroughness {
         pieces: 2_000,
         attempts: 6,
+        patience: u32::MAX,
         separates: true,
         stands: false,
     },
     Thoroughness {
         pieces: 50_000,
         attempts: 6,
+        patience: u32::MAX,
         separates: true,
         stands: true,
     },
@@ -74,6 +77,7 @@ pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
     let search = ModeSearch::new(problem);
     let mut unclear = search.subsets(certifier);
     for thoroughness in ROUNDS {
+        certifier.begin_round(thoroughness.patience);
         match search.round(&unclear, thoroughness, certifier) {
             Round::Solved => return Verdict::Solved,
             Round::Unclear(left) if left.is_empty() => return Verdict::Infeasible,
@@ -120,6 +124,9 @@ struct ModeSearch {
     conditions: ModeConditions,
     generators: Vec<Generator>,
     rigid: bool,
+    /// The open plane of each two contacts, or of a contact and the stall pair, at the index of
+    /// [`ModeSearch::plane_index`].
+    planes: Vec<Option<PlaneRegion>>,
 }
 
 impl ModeSearch {
@@ -133,11 +140,51 @@ impl ModeSearch {
                 (c.n[3], c.t[3]) = (0.0, 0.0);
             }
         }
-        Self {
+        let mut search = Self {
             generators: Generator::all(&problem),
             conditions: ModeConditions::new(problem),
             rigid,
+            planes: Vec::new(),
+        };
+        search.find_planes();
+        search
+    }
+
+    /// Both edges of a contact ask for the same closed gap: their planes are the same.
+    fn find_planes(&mut self) {
+        let rows = 1 + self.conditions.problem.contacts.len();
+        self.planes.resize(rows * rows, None);
+        let mut firsts = self.generators.clone();
+        firsts.dedup_by_key(|generator| generator.contact);
+        for (k, a) in firsts.iter().enumerate() {
+            for b in &firsts[k + 1..] {
+                let index = self.plane_index(a, b);
+                self.planes[index] = self.conditions.open_plane(&[*a, *b]);
+            }
+            if self.rigid {
+                break;
+            }
         }
+    }
+
+    fn plane_index(&self, a: &Generator, b: &Generator) -> usize {
+        let row = |generator: &Generator| generator.contact.map_or(0, |i| i + 1);
+        row(a) * (1 + self.conditions.problem.contacts.len()) + row(b)
+    }
+
+    /// What a mode's inequalities leave of the plane of two generators; `None` where their equations
+    /// leave none.
+    fn plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
+        let [a, b] = chosen;
+        let mut region = if a.contact == b.contact {
+            self.conditions.open_plane(chosen)?
+        } else {
+            self.planes[self.plane_index(a, b)].clone()?
+        };
+        for inequality in self.conditions.slips(chosen) {
+            region.clip(&inequality, self.conditions.slack);
+        }
+        Some(region)
     }
 
     /// Examines subsets of generators until one has a solution.
@@ -213,14 +260,8 @@ impl ModeSearch {
 
     /// Whether some V meets the conditions of two generators.
     fn plane_is_possible(&self, members: &[usize; 2]) -> bool {
-        let chosen = members.map(|i| self.generators[i]);
-        let Some(mut region) = PlaneRegion::new(&self.conditions.equations(&chosen)) else {
-            return true;
-        };
-        for inequality in self.conditions.inequalities(&chosen) {
-            region.clip(&inequality, self.conditions.slack);
-        }
-        !region.is_empty()
+        self.plane(&members.map(|i| self.generators[i]))
+            .is_none_or(|region| !region.is_empty())
     }
 
     /// Whether some V meets the conditions of three generators.
@@ -285,21 +326,22 @@ impl ModeSearch {
         certifier: &mut Certifier<'_>,
     ) -> Finding {
         let conditions = &self.conditions;
+        let equations = conditions.equations(chosen);
+        let (rows, values) = (equations.map(|e| e.row), equations.map(|e| e.value));
+        let v = solve_dense(rows, values, DEPENDENT);
+        if v.is_some_and(|v| conditions.violates(chosen, &v, 0.0)) {
+            return Finding::Excluded;
+        }
         let Some(dual) = dual_basis(&chosen.map(|c| c.g)) else {
             return Finding::Excluded;
         };
-        let equations = conditions.equations(chosen);
-        let (rows, values) = (equations.map(|e| e.row), equations.map(|e| e.value));
-        let Some(v) = solve_dense(rows, values, DEPENDENT) else {
+        let Some(v) = v else {
             let Some(line) = Line::of_dependent(&equations) else {
                 return self.degenerate(chosen, certifier);
             };
             let mut path = RedundantLine::new(conditions, chosen, line, dual);
             return search_path(path.interval(), &mut path, thoroughness, certifier);
         };
-        if conditions.violates(chosen, &v, 0.0) {
-            return Finding::Excluded;
-        }
         let ranges = dual.map(|w| conditions.range_along(&w, &v, &v));
         if ranges.iter().any(|range| range.high < -conditions.slack) {
             return Finding::Excluded;
@@ -343,17 +385,29 @@ impl ModeSearch {
         thoroughness: Thoroughness,
         certifier: &mut Certifier<'_>,
     ) -> Finding {
-        let Some(balance) = LineBalance::new(chosen) else {
+        let (conditions, [a, b, c]) = (&self.conditions, chosen.map(|generator| generator.g));
+        let Some(m) = null_vector(&[a, b, c]) else {
             return Finding::Excluded;
         };
-        let Some(line) = Line::new(&self.conditions.equations(chosen)) else {
-            return match RedundantPlane::new(&self.conditions, chosen, balance.dual) {
+        let dual = || dual_basis(&[a, b, c, m]);
+        let Some(line) = Line::new(&conditions.equations(chosen)) else {
+            let Some(dual) = dual() else {
+                return Finding::Excluded;
+            };
+            return match RedundantPlane::new(conditions, chosen, dual) {
                 Some(plane) => plane.search(thoroughness, certifier),
                 None => self.degenerate(chosen, certifier),
             };
         };
-        let mut path = ModeLine::new(&self.conditions, chosen, line, balance);
-        search_path(path.interval(), &mut path, thoroughness, certifier)
+        let interval = line.balanced_interval(conditions, chosen, &m);
+        if interval.is_empty() {
+            return Finding::Excluded;
+        }
+        let Some(dual) = dual() else {
+            return Finding::Excluded;
+        };
+        let mut path = ModeLine::new(conditions, chosen, line, dual);
+        search_path(interval, &mut path, thoroughness, certifier)
     }
 
     /// Two generators: V on a curve.
@@ -376,7 +430,7 @@ impl ModeSearch {
     /// not balance, with impulses α ≥ 0 of theirs.
     fn plane_balances(&self, chosen: &[Generator; 2], certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
-        let Some(mut region) = PlaneRegion::new(&conditions.equations(chosen)) else {
+        let Some(mut region) = self.plane(chosen) else {
             return true;
         };
         let [a, b] = chosen.map(|generator| generator.g);
@@ -385,10 +439,7 @@ impl ModeSearch {
         };
         let [alpha, beta, c, d] = dual.map(|w| conditions.most_along(&w));
         let [less_c, less_d] = [dual[2], dual[3]].map(|w| conditions.most_along(&w.map(|x| -x)));
-        for inequality in conditions
-            .inequalities(chosen)
-            .chain([alpha, beta, c, d, less_c, less_d])
-        {
+        for inequality in [alpha, beta, c, d, less_c, less_d] {
             region.clip(&inequality, conditions.slack);
         }
         let hull: Vec<_> = region.corners().collect();

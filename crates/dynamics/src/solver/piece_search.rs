@@ -17,6 +17,9 @@ const NARROWER: f64 = 1e-3;
 /// Width at which a piece is not halved any more.
 pub const NARROWEST: f64 = 1e-12;
 
+/// Width at which a search that does not exclude pieces by balances gives up.
+const GLANCE: f64 = 1e-8;
+
 /// Miss up to which a point is a root (m/s).
 const ROOT: f64 = 1e-11;
 
@@ -31,6 +34,9 @@ pub struct Thoroughness {
     /// Roots that are refined, and middles of pieces at each width; neighbouring pieces differ
     /// little, so that more than some do not help.
     pub attempts: u32,
+    /// Candidates of all lines and curves that are refined at the same V: where all gaps close together,
+    /// most modes have the same.
+    pub patience: u32,
     /// Whether pieces are excluded by balances, too: some linear systems for each.
     pub separates: bool,
     /// Whether candidates that fail are tried with other impulses, too, where feet stand.
@@ -151,6 +157,10 @@ pub fn search_pieces(
         if width < NARROWEST {
             finding = Finding::Unclear;
             continue;
+        }
+        // a first glance leaves the rest to a later round
+        if !thoroughness.separates && width < GLANCE {
+            return Finding::Unclear;
         }
         stack.push([middle, b]);
         stack.push([a, middle]);
@@ -282,6 +292,7 @@ mod tests {
     const THOROUGH: Thoroughness = Thoroughness {
         pieces: 1000,
         attempts: 6,
+        patience: u32::MAX,
         separates: false,
         stands: false,
     };

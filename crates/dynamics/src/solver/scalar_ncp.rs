@@ -5,7 +5,7 @@ use stickslip_lanes::Lanes;
 
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::vector::Vector;
+use crate::solver::vector::{Vector, norm};
 
 /// One contact; the fourth entry of its columns is the effect of the pusher's yield.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,7 @@ impl ScalarFoot {
     /// Its impulse where it slides with V; none where it stands.
     pub fn sliding(&self, v: &Vector<4>) -> [f64; 2] {
         let slip = self.slip(v);
-        let length = slip[0].hypot(slip[1]);
+        let length = norm(&slip);
         if length > 1e-12 {
             slip.map(|s| -self.bound * s / length)
         } else {

@@ -1,7 +1,7 @@
 //! Points, lines and dual bases in the space of (v, y), for the search over contact modes:
 //! [`Equation`].
 
-use crate::solver::elimination::solve_dense;
+use crate::solver::elimination::{solve_dense, solve_dense_sides};
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Pivots below this share of the largest entry make vectors dependent.
@@ -48,15 +48,11 @@ fn cross(rows: &[Vector<4>; 3]) -> Vector<4> {
 
 /// Rows w_j with w_j·g_k = 1 where j = k, else 0; `None` where the vectors are dependent.
 pub fn dual_basis(g: &[Vector<4>; 4]) -> Option<[Vector<4>; 4]> {
-    let mut dual = [[0.0; 4]; 4];
-    for j in 0..4 {
-        dual[j] = solve_dense(
-            *g,
-            std::array::from_fn(|i| f64::from(u8::from(i == j))),
-            DEPENDENT,
-        )?;
-    }
-    Some(dual)
+    // the inverse, whose columns they are
+    let unit = |i: usize, j: usize| f64::from(u8::from(i == j));
+    let sides = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
+    let inverse: [Vector<4>; 4] = solve_dense_sides(*g, sides, DEPENDENT)?;
+    Some(std::array::from_fn(|j| inverse.map(|row| row[j])))
 }
 
 /// The V of least length that best satisfies the equations.

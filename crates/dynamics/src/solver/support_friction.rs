@@ -231,6 +231,11 @@ impl SupportFriction {
             let Some(step) = self.newton_step(load, &now.slip) else {
                 break;
             };
+            // from the last slip, the object may as well come to rest
+            let stops = now.slip.speed + dot(&step, &now.slip.e) <= 0.0;
+            if stops && steps == STEPS_FROM_LAST {
+                break;
+            }
             let rounding = ROUNDING * now.slip.speed * norm(load);
             let next = first_share(
                 |share| self.trial(load, now.slip.after(&step, share)),
@@ -344,8 +349,12 @@ impl Motion {
 
 /// The first of the shares 1, 1/2, 1/4, … whose trial is accepted.
 fn first_share<T>(trial: impl Fn(f64) -> T, accepts: impl Fn(&T) -> bool) -> Option<T> {
+    let mut share = 2.0;
     (0..HALVINGS)
-        .map(|k| trial(libm::exp2(-f64::from(k))))
+        .map(|_| {
+            share *= 0.5;
+            trial(share)
+        })
         .find(accepts)
 }
 

@@ -7,6 +7,9 @@ use stickslip_testkit::{gap_margin, hard_steps, may_jam, residual_si};
 /// Largest residual of a solved step (m/s).
 const TOLERANCE: f64 = 1e-9;
 
+/// Linear systems within which each is decided: fewer than a step of a block may take.
+const MOST_SYSTEMS: u32 = 3_000;
+
 #[test]
 fn hard_steps_are_solved_or_proven_infeasible() {
     let steps = hard_steps();
@@ -21,6 +24,12 @@ fn hard_steps_are_solved_or_proven_infeasible() {
                 Outcome::Infeasible => infeasible += 1,
                 Outcome::Failed => panic!("{k}, {}: failed", step.class),
             }
+            assert!(
+                report.systems <= MOST_SYSTEMS,
+                "{k}, {}: {} systems",
+                step.class,
+                report.systems
+            );
             searched += usize::from(report.route == Route::ModeSearch);
         }
         assert_eq!(
@@ -28,6 +37,9 @@ fn hard_steps_are_solved_or_proven_infeasible() {
             "{k}, {}",
             step.class
         );
+        if step.class == "solved" {
+            assert_eq!(answers[0].1.outcome, Outcome::Solved, "{k}");
+        }
         // an independent proof, where there is one, says the same
         let margin = gap_margin(&step.problem, 1.0);
         if margin < -1e-6 {
