@@ -48,6 +48,7 @@ const CHEAPEST_FIRST: [usize; 4] = [4, 1, 3, 2];
 const ROUNDS: [Thoroughness; 3] = [
     Thoroughness {
         pieces: 128,
+        gives_up: 1e-8,
         attempts: 1,
         patience: 4,
         separates: false,
@@ -55,6 +56,7 @@ const ROUNDS: [Thoroughness; 3] = [
     },
     Thoroughness {
         pieces: 2_000,
+        gives_up: 0.0,
         attempts: 6,
         patience: u32::MAX,
         separates: true,
@@ -62,6 +64,7 @@ const ROUNDS: [Thoroughness; 3] = [
     },
     Thoroughness {
         pieces: 50_000,
+        gives_up: 0.0,
         attempts: 6,
         patience: u32::MAX,
         separates: true,

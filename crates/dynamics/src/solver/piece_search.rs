@@ -17,9 +17,6 @@ const NARROWER: f64 = 1e-3;
 /// Width at which a piece is not halved any more.
 pub const NARROWEST: f64 = 1e-12;
 
-/// Width at which a search that does not exclude pieces by balances gives up.
-const GLANCE: f64 = 1e-8;
-
 /// Miss up to which a point is a root (m/s).
 const ROOT: f64 = 1e-11;
 
@@ -31,6 +28,8 @@ const ROOT_STEPS: u32 = 40;
 pub struct Thoroughness {
     /// Most pieces.
     pub pieces: u32,
+    /// Width of pieces below which it gives up (m/s, relative where above 1).
+    pub gives_up: f64,
     /// Roots that are refined, and middles of pieces at each width; neighbouring pieces differ
     /// little, so that more than some do not help.
     pub attempts: u32,
@@ -158,8 +157,7 @@ pub fn search_pieces(
             finding = Finding::Unclear;
             continue;
         }
-        // a first glance leaves the rest to a later round
-        if !thoroughness.separates && width < GLANCE {
+        if width < thoroughness.gives_up {
             return Finding::Unclear;
         }
         stack.push([middle, b]);
@@ -291,6 +289,7 @@ mod tests {
 
     const THOROUGH: Thoroughness = Thoroughness {
         pieces: 1000,
+        gives_up: 0.0,
         attempts: 6,
         patience: u32::MAX,
         separates: false,
