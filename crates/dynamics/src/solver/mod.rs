@@ -23,6 +23,7 @@ mod newton;
 mod newton_block;
 #[cfg(test)]
 mod numbers;
+mod open_planes;
 mod piece_search;
 mod plane_region;
 mod redundant_line;

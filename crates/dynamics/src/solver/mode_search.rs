@@ -19,8 +19,9 @@ use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::mode_curve::ModeCurve;
 use crate::solver::mode_line::{Line, ModeLine};
+use crate::solver::open_planes::OpenPlanes;
 use crate::solver::piece_search::{Finding, ModePath, Thoroughness, search_pieces};
-use crate::solver::plane_region::{PlaneRegion, complement};
+use crate::solver::plane_region::complement;
 use crate::solver::redundant_line::RedundantLine;
 use crate::solver::redundant_plane::RedundantPlane;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
@@ -127,9 +128,7 @@ struct ModeSearch {
     conditions: ModeConditions,
     generators: Vec<Generator>,
     rigid: bool,
-    /// The open plane of each two contacts, or of a contact and the stall pair, at the index of
-    /// [`ModeSearch::plane_index`].
-    planes: Vec<Option<PlaneRegion>>,
+    planes: OpenPlanes,
 }
 
 impl ModeSearch {
@@ -143,51 +142,16 @@ impl ModeSearch {
                 (c.n[3], c.t[3]) = (0.0, 0.0);
             }
         }
-        let mut search = Self {
-            generators: Generator::all(&problem),
-            conditions: ModeConditions::new(problem),
+        let generators = Generator::all(&problem);
+        let conditions = ModeConditions::new(problem);
+        // with a rigid pusher, every mode has its stall pair
+        let firsts = if rigid { 1 } else { generators.len() };
+        Self {
+            planes: OpenPlanes::new(&conditions, &generators, firsts),
+            generators,
+            conditions,
             rigid,
-            planes: Vec::new(),
-        };
-        search.find_planes();
-        search
-    }
-
-    /// Both edges of a contact ask for the same closed gap: their planes are the same.
-    fn find_planes(&mut self) {
-        let rows = 1 + self.conditions.problem.contacts.len();
-        self.planes.resize(rows * rows, None);
-        let mut firsts = self.generators.clone();
-        firsts.dedup_by_key(|generator| generator.contact);
-        for (k, a) in firsts.iter().enumerate() {
-            for b in &firsts[k + 1..] {
-                let index = self.plane_index(a, b);
-                self.planes[index] = self.conditions.open_plane(&[*a, *b]);
-            }
-            if self.rigid {
-                break;
-            }
         }
-    }
-
-    fn plane_index(&self, a: &Generator, b: &Generator) -> usize {
-        let row = |generator: &Generator| generator.contact.map_or(0, |i| i + 1);
-        row(a) * (1 + self.conditions.problem.contacts.len()) + row(b)
-    }
-
-    /// What a mode's inequalities leave of the plane of two generators; `None` where their equations
-    /// leave none.
-    fn plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
-        let [a, b] = chosen;
-        let mut region = if a.contact == b.contact {
-            self.conditions.open_plane(chosen)?
-        } else {
-            self.planes[self.plane_index(a, b)].clone()?
-        };
-        for inequality in self.conditions.slips(chosen) {
-            region.clip(&inequality, self.conditions.slack);
-        }
-        Some(region)
     }
 
     /// Examines subsets of generators until one has a solution.
@@ -263,7 +227,8 @@ impl ModeSearch {
 
     /// Whether some V meets the conditions of two generators.
     fn plane_is_possible(&self, members: &[usize; 2]) -> bool {
-        self.plane(&members.map(|i| self.generators[i]))
+        self.planes
+            .of(&self.conditions, &members.map(|i| self.generators[i]))
             .is_none_or(|region| !region.is_empty())
     }
 
@@ -433,7 +398,7 @@ impl ModeSearch {
     /// not balance, with impulses α ≥ 0 of theirs.
     fn plane_balances(&self, chosen: &[Generator; 2], certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
-        let Some(mut region) = self.plane(chosen) else {
+        let Some(mut region) = self.planes.of(conditions, chosen) else {
             return true;
         };
         let [a, b] = chosen.map(|generator| generator.g);
