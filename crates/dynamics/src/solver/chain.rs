@@ -29,7 +29,7 @@ const NEWTON: NewtonSettings = NewtonSettings {
 };
 
 /// Of a step of a block: the longest takes about a millisecond. Of 6.6 million steps in 1100 random
-/// scenes two fail with this limit and with 10,000, five with 3000, 23 with 2000: jams at the edge of
+/// scenes two fail with this limit and with 10,000, four with 3000, 24 with 2000: jams at the edge of
 /// having a solution, whose contacts close together, take most.
 pub(crate) const STEP_LIMIT: WorkLimit = WorkLimit {
     search: 4_000,

@@ -51,7 +51,7 @@ const ROUNDS: [Thoroughness; 3] = [
         pieces: 128,
         gives_up: 1e-8,
         attempts: 1,
-        patience: 4,
+        patience: 16,
         separates: false,
         stands: false,
     },
