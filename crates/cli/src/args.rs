@@ -303,7 +303,7 @@ impl FilterArgs {
             tracking: self.shared.tracking(),
             substeps: self.substeps,
             occlusion: self.shared.occlusion(),
-            moving: true,
+            ..RunOptions::default()
         }
     }
 }

@@ -15,7 +15,7 @@ use stickslip_formats::Topics;
 use stickslip_report::{Block, Report, Section, Table};
 
 use crate::args::Program;
-use crate::compare::{Scenes, expand};
+use crate::compare::expand;
 use crate::experiment::{experiment_name, read_folder, text_of};
 use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
 use crate::fit_args::FitArgs;
@@ -52,14 +52,13 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
         parameters,
         seed: args.seed,
     };
-    let scenes = Scenes::Named(&args.scene_name);
-    let folders = expand(&args.folders, scenes)?;
+    let folders = expand(&args.folders, args.scenes())?;
     let test_folders = test_folders(args, &folders)?;
     let topics = args.topics.topics(Program::command())?;
     let pool = args.threads.pool()?;
     let [scene_out, json_out] = ["scene.toml", "fit.json"].map(|name| args.out.join(name));
     let all = folders.iter().chain(&test_folders);
-    let scenes: Vec<PathBuf> = all.map(|folder| scenes.of(folder)).collect();
+    let scenes: Vec<PathBuf> = all.map(|folder| args.scenes().of(folder)).collect();
     let scenes: Vec<&Path> = scenes.iter().map(PathBuf::as_path).collect();
     refuse_inputs(&scene_out, &scenes)?;
     if let Some(report) = &args.report {
@@ -101,7 +100,7 @@ fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if args.test.is_empty() {
         return Ok(Vec::new());
     }
-    let test = expand(&args.test, Scenes::Named(&args.scene_name))?;
+    let test = expand(&args.test, args.scenes())?;
     let seen: Vec<PathBuf> = folders.iter().flat_map(std::fs::canonicalize).collect();
     for folder in &test {
         if std::fs::canonicalize(folder).is_ok_and(|folder| seen.contains(&folder)) {
@@ -154,7 +153,7 @@ fn read_pushes(
     folders: &[PathBuf],
 ) -> Result<(Vec<Push>, Verdict)> {
     let read = |folder: &PathBuf| {
-        let (experiment, verdict) = read_folder(folder, &folder.join(&args.scene_name), topics)
+        let (experiment, verdict) = read_folder(folder, &args.scenes().of(folder), topics)
             .with_context(|| folder.display().to_string())?;
         let push = Push {
             name: experiment_name(&log_path(folder)),

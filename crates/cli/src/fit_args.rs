@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::arg_values::ThreadArgs;
+use crate::compare::Scenes;
 use crate::topic_args::TopicArgs;
 
 /// Arguments of `stickslip fit`.
@@ -51,4 +52,11 @@ pub struct FitArgs {
     /// Print one JSON object, that of fit.json
     #[arg(long)]
     pub json: bool,
+}
+
+impl FitArgs {
+    /// Which scene is that of a push.
+    pub fn scenes(&self) -> Scenes<'_> {
+        Scenes::Named(&self.scene_name)
+    }
 }

@@ -1,9 +1,9 @@
 //! How near few particles come to the belief that the model and the data amount to: [`Agreement`] with a
 //! reference of very many particles, which tells what an error is owed to, sampling or model.
 
-use stickslip::{Estimate, Method, Mode, RunError, RunOptions, TactileUse, quantile, run, wrapped};
+use stickslip::{Estimate, Mode, RunError, RunOptions, Tracking, quantile, run, wrapped};
 
-use crate::paper::Replicate;
+use crate::paper::{Replicate, RunSettings};
 use crate::run::ScoredRun;
 use crate::score::Scores;
 use crate::variant::Variant;
@@ -46,18 +46,15 @@ impl Agreement {
 
 /// One run with touch.
 fn scored(replicate: &Replicate, particles: usize, moving: bool) -> Result<ScoredRun, RunError> {
-    let Replicate {
-        experiment, seed, ..
-    } = replicate;
-    let options = RunOptions {
-        method: Method::Particle,
+    let Replicate { experiment, .. } = replicate;
+    let conditions = replicate.conditions(RunSettings {
         mode: Mode::Contact,
-        tactile: TactileUse::Used,
         particles,
-        seed: *seed,
-        occlusion: replicate.occlusion,
+        tracking: Tracking::Smoothed,
+    });
+    let options = RunOptions {
         moving,
-        ..RunOptions::default()
+        ..conditions.options(Variant::Particle)
     };
     let run = run(&experiment.setup, &experiment.log, &options, &mut |_| ())?;
     let scored_on = (replicate.occlusion, experiment.setup.virtual_radius());

@@ -110,7 +110,8 @@ impl ScoredRun {
 }
 
 impl RunConditions {
-    fn options(&self, variant: Variant) -> RunOptions {
+    /// Options of a run of `variant`.
+    pub(crate) fn options(&self, variant: Variant) -> RunOptions {
         RunOptions {
             method: variant.method(),
             mode: self.mode,
@@ -124,7 +125,7 @@ impl RunConditions {
             } else {
                 self.occlusion
             },
-            moving: true,
+            ..RunOptions::default()
         }
     }
 }

@@ -40,7 +40,7 @@ impl RunArguments {
             },
             substeps: self.substeps,
             occlusion: self.occlusion()?,
-            moving: true,
+            ..RunOptions::default()
         })
     }
 

@@ -68,7 +68,7 @@ impl Tracker {
             tactile: touch(options.tactile),
             substeps: options.substeps,
             late: options.late,
-            moving: true,
+            ..TrackerOptions::default()
         };
         Ok(Self {
             tracker: stickslip::Tracker::new(setup, &options).map_err(refused)?,

@@ -3,6 +3,7 @@
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 
 use crate::drawing::Drawing;
 use crate::font::{BOLD, REGULAR};
@@ -11,6 +12,13 @@ use crate::story::{Fate, Story};
 use crate::table::Table;
 
 const STYLE: &str = include_str!("../page/report.css");
+/// What an address may not hold as it stands, of a table that is mostly digits and commas.
+const ESCAPED: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b',')
+    .remove(b'.')
+    .remove(b'-')
+    .remove(b'_');
+
 pub(crate) const SCRIPT: &str = include_str!("../page/player.js");
 
 /// A page with a summary on top.
@@ -127,25 +135,11 @@ impl Block {
             },
             Self::Playback(playback) => playback.html(),
             Self::Download { name, what, bytes } => {
-                let data = format!("data:text/csv,{}", percent_encoded(bytes));
+                let data = format!("data:text/csv,{}", percent_encode(bytes, ESCAPED));
                 html! { p class="download" { a download=(name) href=(data) { (name) } " " (what) } }
             }
         }
     }
-}
-
-/// Bytes as an address holds them: shorter than in base64 where nearly all are digits and commas.
-fn percent_encoded(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(bytes.len() + bytes.len() / 16);
-    for byte in bytes {
-        match byte {
-            b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' | b',' | b'.' | b'-' | b'_' => {
-                text.push(char::from(*byte))
-            }
-            _ => text.push_str(&format!("%{byte:02X}")),
-        }
-    }
-    text
 }
 
 fn fates(story: &Story) -> Markup {
