@@ -12,7 +12,9 @@ use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
-use stickslip_formats::{Experiment, write_estimate, write_estimate_mcap, write_estimate_tum};
+use stickslip_formats::{
+    Experiment, write_estimate, write_estimate_mcap, write_estimate_tum, write_modes,
+};
 use stickslip_report::{
     Block, CloudSample, Report, ReportedExperiment, ReportedRun, Table, number,
 };
@@ -196,8 +198,9 @@ fn write_all(
     experiment: &Experiment,
 ) -> Result<Vec<PathBuf>> {
     let estimate = &run.scored.estimate;
-    let mut written = vec![folder.join(ESTIMATE)];
+    let mut written = vec![folder.join(ESTIMATE), folder.join("modes.csv")];
     write_out(&written[0], |file| write_estimate(file, estimate))?;
+    write_out(&written[1], |file| write_modes(file, estimate))?;
     if args.tum {
         let path = folder.join("estimate.tum");
         write_out(&path, |file| write_estimate_tum(file, estimate))?;

@@ -121,6 +121,31 @@ impl<const W: usize> Assembly<W> {
         smallest
     }
 
+    /// Slip velocity (m/s) at one body: the mean of its contacts, each by what it presses; where none
+    /// presses, that of the nearest one, and 0 where there is none.
+    #[inline(always)]
+    pub fn slips(&self, ncp: &Ncp<W>, p: &Unknowns<W>, body: Body) -> Lanes<W> {
+        let (mut pressed, mut pressed_slip) = (Lanes::ZERO, Lanes::ZERO);
+        let (mut nearest, mut nearest_slip) = (Lanes::splat(f64::INFINITY), Lanes::ZERO);
+        let rows = self.rows.iter().zip(&ncp.contacts).zip(&p.normal);
+        for ((row, contact), p_n) in rows {
+            if row.body == body {
+                let slip = contact.slip_velocity(&p.v, p.pusher_yield);
+                pressed += *p_n;
+                pressed_slip += *p_n * slip;
+                let gap = contact.gap_velocity(&p.v, p.pusher_yield);
+                let nearer = row.present & gap.lt(nearest);
+                nearest = nearer.select(gap, nearest);
+                nearest_slip = nearer.select(slip, nearest_slip);
+            }
+        }
+        let presses = pressed.gt(Lanes::ZERO);
+        presses.select(
+            pressed_slip / presses.select(pressed, Lanes::splat(1.0)),
+            nearest_slip,
+        )
+    }
+
     /// Writes the step's problems.
     #[inline(always)]
     pub fn collect(

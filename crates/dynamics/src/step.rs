@@ -75,6 +75,15 @@ impl<const W: usize> StepWork<W> {
         self.chunks[chunk].gaps(&self.ncps[chunk], &self.unknowns[chunk], body)
     }
 
+    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive where
+    /// the object's surface moves to the left of the contact normal, which points into the object: the
+    /// mean of its contacts, each by what it presses; where none presses, that of the nearest one, and 0
+    /// where there is none.
+    #[inline(always)]
+    pub fn slips(&self, chunk: usize, body: Body) -> Lanes<W> {
+        self.chunks[chunk].slips(&self.ncps[chunk], &self.unknowns[chunk], body)
+    }
+
     /// The body of each contact in the last step's problem of one particle.
     pub fn bodies(&self, particle: usize) -> Vec<Body> {
         self.chunks[particle / W].bodies(particle % W)

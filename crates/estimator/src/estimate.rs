@@ -2,6 +2,8 @@
 
 use stickslip_dynamics::{Friction, Pose, Twist};
 
+use crate::belief_mode::BeliefMode;
+use crate::contact_slip::ContactSlip;
 use crate::covariance::PoseCovariance;
 
 /// Standard deviations of an estimate row, and how the errors of its pose go together.
@@ -61,12 +63,22 @@ pub struct EstimateRow {
     pub contact_pusher: Option<f64>,
     /// Posterior probability of contact with each fixel.
     pub contact_fixels: Option<Vec<f64>>,
+    /// How the object slips on what it touches: on the pusher, then on each fixel.
+    pub slip: Option<Vec<ContactSlip>>,
     /// Standard deviations and covariances.
     pub spread: Option<Spread>,
     /// Effective sample size after weighing.
     pub ess: Option<f64>,
     /// Whether this step began with resampling.
     pub resampled: Option<bool>,
+    /// Number of particles of the row before that those of this row descend from.
+    pub distinct: Option<u32>,
+    /// The same of the latest row before with a camera pose.
+    pub ancestors: Option<u32>,
+    /// Whether no particle explained this row's camera pose, so that all were drawn anew around it.
+    pub collapsed: Option<bool>,
+    /// The places where the object may be, the likeliest first; none for methods without particles.
+    pub modes: Vec<BeliefMode>,
     /// Whether a camera pose was used.
     pub visual: bool,
     /// Number of particles whose step has no certified solution.

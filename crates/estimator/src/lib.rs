@@ -5,6 +5,8 @@
 
 mod angle;
 mod baseline;
+mod belief_mode;
+mod contact_slip;
 mod covariance;
 pub mod diagnosis;
 mod error;
@@ -30,6 +32,8 @@ mod uncertainty;
 
 pub use angle::wrapped;
 pub use baseline::predictor::{NominalPrediction, NominalPredictor};
+pub use belief_mode::BeliefMode;
+pub use contact_slip::ContactSlip;
 pub use covariance::PoseCovariance;
 pub use error::RunError;
 pub use estimate::{CrossCovariance, Estimate, EstimateRow, Spread};

@@ -2,6 +2,7 @@
 //! Johansen 2009, algorithm "SMC" with adaptive resampling), over any [`Model`].
 
 use crate::bridge::Bridge;
+use crate::lineage::Lineage;
 use crate::model::{Model, WeightedSums};
 use crate::parallel::PerThread;
 use crate::particles::{BLOCK, ParticleSet};
@@ -23,6 +24,7 @@ pub struct ParticleFilter<M: Model> {
     pub(crate) resetting: Vec<f64>,
     pub(crate) bridge: Bridge,
     ancestors: Vec<u32>,
+    pub(crate) lineage: Lineage,
     scratch: PerThread<M::Scratch>,
     /// The sums over every block, and over all.
     block_sums: Vec<M::Sums>,
@@ -46,6 +48,7 @@ impl<M: Model> ParticleFilter<M> {
             resetting: vec![0.0; settings.particles],
             bridge: Bridge::new(model.ensemble(), &particles),
             ancestors: vec![0; settings.particles],
+            lineage: Lineage::new(settings.particles),
             scratch: PerThread::new(blocks.len(), || model.scratch()),
             block_sums: blocks.map(|_| M::Sums::default()).collect(),
             sums: M::Sums::default(),
@@ -83,6 +86,7 @@ impl<M: Model> ParticleFilter<M> {
     /// an observation move them, it does as far as weighing alone would leave few.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
+        self.lineage.begin_step();
         let resampled = self.satisfies_resample_condition();
         if resampled {
             self.choose_ancestors(Purpose::Resample);
@@ -120,6 +124,7 @@ impl<M: Model> ParticleFilter<M> {
         self.settings
             .resampling
             .ancestors(self.weights.weights(), draw, &mut self.ancestors);
+        self.lineage.follow(&self.ancestors);
         self.weights.reset();
     }
 
@@ -313,6 +318,17 @@ impl<M: Model> ParticleFilter<M> {
     /// The particles.
     pub fn particles(&self) -> &ParticleSet {
         &self.particles
+    }
+
+    /// From which earlier particles they descend; [`count_ancestors_from_now`](Self::count_ancestors_from_now)
+    /// says how early.
+    pub fn lineage(&mut self) -> &mut Lineage {
+        &mut self.lineage
+    }
+
+    /// Lets the lineage count ancestors among the particles as they are now.
+    pub fn count_ancestors_from_now(&mut self) {
+        self.lineage.begin_generation();
     }
 
     /// Their weights.

@@ -2,6 +2,7 @@
 //! [`Checkpoint`] are made again with other random numbers, see [`ParticleFilter::try_again`].
 
 use crate::filter::ParticleFilter;
+use crate::lineage::Lineage;
 use crate::model::Model;
 use crate::particles::{BLOCK, ParticleSet};
 use crate::report::WeightUpdate;
@@ -14,6 +15,7 @@ pub struct Checkpoint {
     step: u64,
     particles: ParticleSet,
     weights: LogWeights,
+    lineage: Lineage,
 }
 
 /// What a second try was worth.
@@ -42,6 +44,7 @@ impl<M: Model> ParticleFilter<M> {
             step: self.step,
             particles: self.particles.clone(),
             weights: self.weights.clone(),
+            lineage: self.lineage.clone(),
         }
     }
 
@@ -50,6 +53,7 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.step = self.step;
         checkpoint.particles.copy_from(&self.particles);
         checkpoint.weights.clone_from(&self.weights);
+        checkpoint.lineage.clone_from(&self.lineage);
     }
 
     /// Makes all steps since `checkpoint` again, with the random numbers of attempt number `attempt`
@@ -84,6 +88,7 @@ impl<M: Model> ParticleFilter<M> {
         let mut rivals = checkpoint.clone();
         std::mem::swap(&mut self.particles, &mut rivals.particles);
         std::mem::swap(&mut self.weights, &mut rivals.weights);
+        std::mem::swap(&mut self.lineage, &mut rivals.lineage);
         self.step = checkpoint.step;
         self.streams = Streams::new(self.settings.seed).attempt(attempt);
         let mut again = 0.0;
@@ -110,6 +115,7 @@ impl<M: Model> ParticleFilter<M> {
         let resampling = self.settings.resampling;
         resampling.ancestors(&weights, draw, &mut ancestors);
         self.particles.gather_from(&rivals.particles, &ancestors);
+        self.lineage.follow_both(&rivals.lineage, &ancestors);
         self.weights.reset();
         if let Some(input) = last {
             self.recompute_sums(input);

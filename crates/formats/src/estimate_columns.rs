@@ -4,6 +4,7 @@
 use stickslip::{Estimate, EstimateRow, Spread};
 use stickslip_dynamics::{Friction, Pose};
 
+use crate::belief_columns;
 use crate::estimate_csv::{cross_numbers, header};
 use crate::named_columns::{ColumnError, NamedColumns};
 
@@ -97,6 +98,8 @@ fn push_row(numbers: &mut Vec<f64>, row: &EstimateRow, estimate: &Estimate) {
     push(numbers, row.failed.map(|count| [f64::from(count)]));
     let cross = row.spread.and_then(|spread| spread.cross);
     push(numbers, cross.map(cross_numbers));
+    let belief = belief_columns::numbers(row, estimate.fixels).into_iter();
+    numbers.extend(belief.map(|number| number.unwrap_or(f64::NAN)));
 }
 
 fn push<const N: usize>(numbers: &mut Vec<f64>, values: Option<[f64; N]>) {

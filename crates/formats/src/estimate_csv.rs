@@ -2,14 +2,16 @@
 //! [`read_estimate`].
 //!
 //! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,
-//! std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta`, in this order. A cell is empty where the method has no
+//! std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta,collapsed,distinct,ancestors,modes,
+//! mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...`, in this order. A cell is empty where the method has no
 //! value; `d_tri` and `std_d_tri` are empty throughout where the feet are known.
 
 use std::io::{Read, Write};
 
-use stickslip::{CrossCovariance, Estimate, EstimateRow, Spread};
+use stickslip::{ContactSlip, CrossCovariance, Estimate, EstimateRow, Spread};
 use stickslip_dynamics::{Friction, Pose, Twist};
 
+use crate::belief_columns;
 use crate::csv_error::{CsvError, CsvProblem};
 use crate::csv_table::{CsvTable, Row};
 use crate::number;
@@ -47,7 +49,14 @@ const AFTER_FIXELS: [&str; 15] = [
 ];
 
 /// Columns that came later, all at the end; files of earlier versions end after this many of them.
-const LATER: [usize; 3] = [0, 1, 4];
+fn later_counts(fixels: usize) -> [usize; 4] {
+    [0, 1, 4, 4 + belief_columns::count(fixels)]
+}
+
+/// Columns that files of every version have.
+fn oldest_count(fixels: usize) -> usize {
+    BEFORE_FIXELS.len() + fixels + AFTER_FIXELS.len() - 4
+}
 
 /// Column numbers; those after the fixels' contacts count from the first one after them.
 const TIME: usize = 0;
@@ -79,6 +88,8 @@ pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::R
 
 /// Reads an estimate; `name` is shown in errors.
 ///
+/// Of the modes of a belief the file tells the first one only: rows that are read have none.
+///
 /// `has_tripod` is true unless a row has friction values and an empty `d_tri`; `d_tri` then reads
 /// as 0.
 ///
@@ -93,8 +104,7 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
         has_tripod: true,
         ..Estimate::default()
     };
-    let oldest = header(estimate.fixels).len() - LATER[LATER.len() - 1];
-    let later = table.columns().len() - oldest;
+    let later = table.columns().len() - oldest_count(estimate.fixels);
     let mut tripod = None;
     for row in table.rows()? {
         let reader = RowReader {
@@ -128,6 +138,7 @@ pub(crate) fn header(fixels: usize) -> Vec<String> {
         .into_iter()
         .chain(contacts)
         .chain(AFTER_FIXELS.map(str::to_owned))
+        .chain(belief_columns::names(fixels))
         .collect()
 }
 
@@ -144,9 +155,10 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
         .count();
     let expected = header(fixels);
     // files of earlier versions end earlier
-    let oldest = expected.len() - LATER[LATER.len() - 1];
+    let oldest = oldest_count(fixels);
     let later = table.columns().len().saturating_sub(oldest);
-    let begun = LATER.into_iter().find(|count| *count >= later);
+    let counts = later_counts(fixels).into_iter();
+    let begun = counts.filter(|count| *count >= later).min();
     for name in &expected[..oldest + begun.unwrap_or(0)] {
         table.require(name)?;
     }
@@ -163,7 +175,7 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
                 ));
             }
             None => {
-                let last = AFTER_FIXELS[AFTER_FIXELS.len() - 1].to_owned();
+                let last = expected[expected.len() - 1].clone();
                 return Err(table.error(1, Some(index), CsvProblem::ColumnTooMany { last }));
             }
         }
@@ -211,6 +223,8 @@ pub(crate) fn cells(time: f64, row: &EstimateRow, columns: EstimateColumns) -> V
     }
     let cross = row.spread.and_then(|spread| spread.cross);
     push(&mut cells, cross.map(cross_numbers));
+    let belief = belief_columns::numbers(row, columns.fixels).into_iter();
+    cells.extend(belief.map(|number| number.map_or(String::new(), number::text)));
     cells
 }
 
@@ -254,7 +268,7 @@ impl RowReader<'_, '_> {
         } else {
             row.group(&contacts)?
         };
-        Ok(EstimateRow {
+        let mut read = EstimateRow {
             pose: self.pose(POSE)?,
             twist: row.group(&TWIST)?.map(|v| Twist {
                 vx: v[0],
@@ -272,7 +286,34 @@ impl RowReader<'_, '_> {
                 .ok_or_else(|| row.error(self.after(9), CsvProblem::EmptyCell))?,
             unsolved: row.count(self.after(10))?,
             failed: self.failed()?,
-        })
+            ..EstimateRow::default()
+        };
+        self.belief(&mut read)?;
+        Ok(read)
+    }
+
+    /// Columns that files of earlier versions do not have.
+    fn belief(&self, into: &mut EstimateRow) -> Result<(), CsvError> {
+        if self.later <= 4 {
+            return Ok(());
+        }
+        into.collapsed = self.row.binary(self.after(15))?;
+        into.distinct = self.row.count(self.after(16))?;
+        into.ancestors = self.row.count(self.after(17))?;
+        self.row.count(self.after(18))?;
+        self.row
+            .group(&[19, 20, 21, 22].map(|index| self.after(index)))?;
+        let first = self.after(15 + belief_columns::OF_ROW.len());
+        let of_bodies: Vec<usize> = (first..first + 3 * (1 + self.fixels)).collect();
+        into.slip = self.row.group(&of_bodies)?.map(|numbers| {
+            let slips = numbers.chunks(3).map(|of_body| ContactSlip {
+                stick: of_body[0],
+                left: of_body[1],
+                right: of_body[2],
+            });
+            slips.collect()
+        });
+        Ok(())
     }
 
     /// A column that files of earlier versions do not have.

@@ -8,6 +8,7 @@
 //! as it stands or refused.
 
 mod bag_metadata;
+mod belief_columns;
 mod csv_error;
 mod csv_table;
 mod estimate_columns;
@@ -19,6 +20,7 @@ mod log_columns;
 mod log_csv;
 mod log_mcap;
 mod log_warning;
+mod modes_csv;
 mod mounts;
 mod named_columns;
 mod nearest;
@@ -47,6 +49,7 @@ pub use log_mcap::{
     write_log_mcap,
 };
 pub use log_warning::LogWarning;
+pub use modes_csv::write_modes;
 pub use mounts::Mounts;
 pub use named_columns::{ColumnError, NamedColumns};
 pub use nearest::nearest;

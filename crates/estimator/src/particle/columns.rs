@@ -9,10 +9,10 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel.
-const SINGLE: usize = 9;
+const SINGLE: usize = 11;
 
 /// Flags of each fixel.
-const FLAGS_PER_FIXEL: usize = 3;
+const FLAGS_PER_FIXEL: usize = 5;
 
 /// Columns of contact mode that do not belong to a fixel.
 const UNKNOWNS: usize = 13;
@@ -27,6 +27,15 @@ pub struct Flag {
     pub column: usize,
     /// Number of the bit, below 52.
     pub bit: u32,
+}
+
+/// How a particle's object slips on a body that it touches: to the right where neither is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlipFlags {
+    /// Whether it sticks.
+    pub stick: Flag,
+    /// Whether it slides to the left.
+    pub left: Flag,
 }
 
 /// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, in contact mode
@@ -63,6 +72,12 @@ impl Columns {
 
     /// Whether the pusher ever was so near that contacts with it were sought (contact mode).
     pub const PUSHER_WAS_NEAR: Flag = Self::flag(8);
+
+    /// Whether the object sticks to the pusher, and whether it slides to the left on it.
+    pub const SLIP_PUSHER: SlipFlags = SlipFlags {
+        stick: Self::flag(9),
+        left: Self::flag(10),
+    };
 
     /// For `fixels` fixels and `history` past poses.
     pub fn new(mode: Mode, fixels: usize, history: usize) -> Self {
@@ -108,6 +123,15 @@ impl Columns {
     /// Contact flag of fixel j in the last step in which the object was driven.
     pub fn driven_contact_fixel(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + self.fixels + fixel)
+    }
+
+    /// The same on fixel j.
+    pub fn slip_fixel(&self, fixel: usize) -> SlipFlags {
+        let first = SINGLE + 3 * self.fixels + 2 * fixel;
+        SlipFlags {
+            stick: Self::flag(first),
+            left: Self::flag(first + 1),
+        }
     }
 
     /// Whether fixel j ever was so near that contacts with it were sought (contact mode).

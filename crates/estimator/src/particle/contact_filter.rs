@@ -12,6 +12,7 @@ use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
+use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
@@ -57,6 +58,7 @@ pub(crate) struct ContactFilter<'o> {
     plan: StepPlan,
     observation: Observation,
     latest: EstimateRow,
+    modes: ModeFinder,
     collapses: u32,
     /// Whether the latest row drew the particles anew.
     collapsed: bool,
@@ -139,6 +141,7 @@ impl<'o> ContactFilter<'o> {
             plan: StepPlan::none(reference),
             observation: Observation::default(),
             latest: EstimateRow::default(),
+            modes: ModeFinder::new(setup.scene.object.gyration_radius(), camera.position_std),
             collapses: 0,
             collapsed: false,
             log_evidence: 0.0,
@@ -151,7 +154,7 @@ impl<'o> ContactFilter<'o> {
             moving: options.moving && options.mode == Mode::Contact,
         };
         this.filter.recompute_sums(&this.plan);
-        summarise(&this.filter, &this.plan.reference, &mut this.latest);
+        this.summarise();
         this.latest.visual = true;
         Ok(this)
     }
@@ -309,16 +312,33 @@ impl<'o> ContactFilter<'o> {
         self.collapsed = false;
         self.learn_where_it_rests();
         self.replay.forget();
-        summarise(&self.filter, &self.plan.reference, &mut self.latest);
+        self.summarise();
         &self.latest
     }
 
     /// Writes the estimate at the row just made.
     fn report(&mut self, report: &StepReport, visual: bool) {
-        summarise(&self.filter, &self.plan.reference, &mut self.latest);
+        self.summarise();
         self.latest.ess = Some(report.effective_sample_size);
         self.latest.resampled = Some(report.resampled);
+        self.latest.collapsed = Some(self.collapsed);
         self.latest.visual = visual;
+        if visual {
+            self.filter.count_ancestors_from_now();
+        }
+    }
+
+    /// Writes what the particles amount to.
+    fn summarise(&mut self) {
+        let row = &mut self.latest;
+        summarise(&self.filter, &self.plan.reference, row);
+        if let Some((pose, spread)) = row.pose.zip(row.spread) {
+            let belief = (pose, spread.pose);
+            self.modes.find(&self.filter, belief, &mut row.modes);
+        }
+        let lineage = self.filter.lineage();
+        row.distinct = Some(lineage.parents() as u32);
+        row.ancestors = Some(lineage.ancestors() as u32);
     }
 
     /// The estimate at the latest row.

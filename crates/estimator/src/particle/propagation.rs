@@ -8,7 +8,7 @@ use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
-use crate::particle::columns::Columns;
+use crate::particle::columns::{Columns, SlipFlags};
 use crate::particle::contact_mode::note_felt;
 use crate::particle::noise_clock::{NOISE_STEP, sharing};
 use crate::particle::observer::{Observer, SolvedStep};
@@ -21,6 +21,10 @@ const CHUNKS: usize = BLOCK / LANES;
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).
 const MOVING: f64 = 1e-9;
+
+/// Slip velocity (m/s) above which a contact slides: a thousand times what a certified step leaves of a
+/// contact that sticks.
+const SLIDING: f64 = 1e-6;
 
 /// Pairs of normal numbers: two for the parameters, then two for each force, of which three numbers
 /// are used.
@@ -361,7 +365,14 @@ impl Propagation {
                 .normal_impulses(chunk, Body::Pusher)
                 .gt(Lanes::ZERO);
             let close = self.close(transition, chunk, Body::Pusher);
-            flags.set(Columns::CONTACT_PUSHER, pusher | close);
+            let touches = pusher | close;
+            flags.set(Columns::CONTACT_PUSHER, touches);
+            self.store_slip(
+                &mut flags,
+                Columns::SLIP_PUSHER,
+                touches,
+                (chunk, Body::Pusher),
+            );
             let before = flags.get(Columns::PUSHER_WAS_NEAR);
             let near = before | self.near(chunk, Body::Pusher);
             flags.set(Columns::PUSHER_WAS_NEAR, near);
@@ -372,6 +383,8 @@ impl Propagation {
                 let touches = impulse.gt(touch_impulse);
                 let close = self.close(transition, chunk, Body::Fixel(j));
                 flags.set(transition.columns.contact_fixel(j), touches | close);
+                let slip = transition.columns.slip_fixel(j);
+                self.store_slip(&mut flags, slip, touches | close, (chunk, Body::Fixel(j)));
                 let against = transition.columns.driven_contact_fixel(j);
                 let near = transition.columns.fixel_was_near(j);
                 let before = flags.get(near);
@@ -389,6 +402,23 @@ impl Propagation {
                 );
             }
         }
+    }
+}
+
+impl Propagation {
+    /// How the object slips on a body in the lanes that touch it.
+    #[inline(always)]
+    fn store_slip(
+        &self,
+        flags: &mut FlagsMut<'_, '_>,
+        which: SlipFlags,
+        touches: Mask<LANES>,
+        (chunk, body): (usize, Body),
+    ) {
+        let slip = self.work.slips(chunk, body);
+        let slides = slip.abs().gt(Lanes::splat(SLIDING));
+        flags.set(which.stick, touches & !slides);
+        flags.set(which.left, touches & slides & slip.gt(Lanes::ZERO));
     }
 }
 

@@ -55,6 +55,7 @@ pub(crate) fn summarise(
     row.contact_fixels
         .get_or_insert_default()
         .clone_from(&sums.contact_fixels);
+    row.slip.get_or_insert_default().clone_from(&sums.slips);
     row.unsolved = Some(sums.unsolved as u32);
     row.failed = Some(sums.failed as u32);
     row.ess = Some(filter.weights().effective_sample_size());

@@ -4,9 +4,10 @@ use stickslip_dynamics::{Friction, Lanes, Pose, Twist, sin_cos};
 use stickslip_filter::{Block, WeightedSums};
 
 use crate::angle::nearest_zero;
+use crate::contact_slip::ContactSlip;
 use crate::estimate::EstimateRow;
 use crate::particle::chunk::{Column, LANES, flag, load_chunk};
-use crate::particle::columns::{Columns, Flag};
+use crate::particle::columns::{Columns, Flag, SlipFlags};
 
 /// θ.
 pub(crate) const ANGLE: usize = Columns::POSE + 2;
@@ -151,6 +152,8 @@ pub struct Sums {
     pub contact_pusher: f64,
     /// Σ w c_j of every fixel.
     pub contact_fixels: Vec<f64>,
+    /// How the object slips, Σ w of the particles that do so: on the pusher, then on every fixel.
+    pub slips: Vec<ContactSlip>,
 }
 
 impl Sums {
@@ -224,9 +227,17 @@ impl Sums {
         self.failed = total(failed);
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
         self.contact_fixels.clear();
+        self.slips.clear();
+        self.slips.push(slips(
+            block,
+            weights,
+            (Columns::CONTACT_PUSHER, Columns::SLIP_PUSHER),
+        ));
         for j in 0..columns.fixels() {
             let contact = columns.contact_fixel(j);
             self.contact_fixels.push(share(block, weights, contact));
+            let how = (contact, columns.slip_fixel(j));
+            self.slips.push(slips(block, weights, how));
         }
     }
 }
@@ -241,6 +252,23 @@ fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
     total(sum)
 }
 
+/// Weight of the particles that stick and slide on a body.
+#[inline(always)]
+fn slips(block: &Block<'_>, weights: &[f64], (contact, slip): (Flag, SlipFlags)) -> ContactSlip {
+    let mut sums = [Column::ZERO; 3];
+    for chunk in 0..block.len().div_ceil(LANES) {
+        let w = load_chunk(weights, chunk, 0.0);
+        let stick = flag(block, slip.stick, chunk);
+        let left = flag(block, slip.left, chunk);
+        let right = flag(block, contact, chunk) & !stick & !left;
+        for (sum, of) in sums.iter_mut().zip([stick, left, right]) {
+            *sum += of.zero_unless(w);
+        }
+    }
+    let [stick, left, right] = sums.map(total);
+    ContactSlip { stick, left, right }
+}
+
 #[inline(always)]
 fn total(lanes: Column) -> f64 {
     lanes.0.iter().sum()
@@ -249,9 +277,12 @@ fn total(lanes: Column) -> f64 {
 impl WeightedSums for Sums {
     fn clear(&mut self) {
         let mut contact_fixels = std::mem::take(&mut self.contact_fixels);
+        let mut slips = std::mem::take(&mut self.slips);
         contact_fixels.clear();
+        slips.clear();
         *self = Self {
             contact_fixels,
+            slips,
             ..Self::default()
         };
     }
@@ -281,6 +312,12 @@ impl WeightedSums for Sums {
         self.contact_fixels.resize(fixels, 0.0);
         let fixels = self.contact_fixels.iter_mut().zip(&other.contact_fixels);
         fixels.for_each(|(to, from)| add(to, from));
+        self.slips.resize(other.slips.len(), ContactSlip::default());
+        for (to, from) in self.slips.iter_mut().zip(&other.slips) {
+            add(&mut to.stick, &from.stick);
+            add(&mut to.left, &from.left);
+            add(&mut to.right, &from.right);
+        }
         self.widest = self.widest.max(other.widest);
         self.unsolved += other.unsolved;
         self.failed += other.failed;

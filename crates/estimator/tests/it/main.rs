@@ -1,5 +1,6 @@
 //! The estimator on scenes whose answer is known.
 
+mod belief;
 mod common;
 mod contact_mode;
 mod fast_pusher;

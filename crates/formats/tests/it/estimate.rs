@@ -1,12 +1,14 @@
 //! `estimate.csv`: the contract's columns, empty cells, bad input, and the way there and back.
 
 use proptest::prelude::*;
-use stickslip::{CrossCovariance, Estimate, EstimateRow, Spread};
+use stickslip::{ContactSlip, CrossCovariance, Estimate, EstimateRow, Spread};
 use stickslip_dynamics::{Friction, Pose, Twist};
 use stickslip_formats::{read_estimate, write_estimate};
 
 const HEADER: &str = "time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,contact_2,\
-                      std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta";
+                      std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta,\
+                      collapsed,distinct,ancestors,modes,mode_weight,mode_x,mode_y,mode_theta,\
+                      stick_pusher,left_pusher,right_pusher,stick_1,left_1,right_1,stick_2,left_2,right_2";
 
 fn full_row() -> EstimateRow {
     EstimateRow {
@@ -43,8 +45,26 @@ fn full_row() -> EstimateRow {
         visual: false,
         unsolved: Some(3),
         failed: Some(1),
+        slip: Some(slips([0.5, 0.0, 0.0, 0.0, 0.25, 0.0, 0.25, 0.0, 0.5])),
+        distinct: Some(300),
+        ancestors: Some(20),
+        collapsed: Some(false),
+        modes: Vec::new(),
     }
 }
+
+/// Of two fixels and the pusher before them.
+fn slips(numbers: [f64; 9]) -> Vec<ContactSlip> {
+    let slips = numbers.chunks(3).map(|of_body| ContactSlip {
+        stick: of_body[0],
+        left: of_body[1],
+        right: of_body[2],
+    });
+    slips.collect()
+}
+
+/// The last cells of [`full_row`].
+const BELIEF: &str = "0,300,20,,,,,,0.5,0,0,0,0.25,0,0.25,0,0.5";
 
 fn estimate(rows: Vec<EstimateRow>, has_tripod: bool) -> Estimate {
     Estimate {
@@ -79,7 +99,8 @@ fn refused(text: &str, place: &str, words: &[&str]) {
 fn write_estimate_writes_the_contract() {
     let rows = vec![EstimateRow::default(), full_row()];
     let expected = format!(
-        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,,,,,\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,-2.5,3.5\n"
+        "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,,,,,{}\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,-2.5,3.5,{BELIEF}\n",
+        ",".repeat(17)
     );
     assert_eq!(written(&estimate(rows, true)), expected);
 }
@@ -90,7 +111,8 @@ fn known_feet_leave_the_d_tri_columns_empty() {
     assert_eq!(
         text.lines().nth(1),
         Some(
-            "0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3,1,1.5,-2.5,3.5"
+            format!("0,1,2,3,4,5,6,0.1,0.2,0.3,,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,,250.5,1,0,3,1,1.5,-2.5,3.5,{BELIEF}")
+                .as_str()
         )
     );
     let back = read_estimate(text.as_bytes(), "estimate.csv").expect("an estimate");
@@ -117,15 +139,21 @@ fn estimate_without_fixels_has_no_contact_columns() {
     let text = written(&none);
     assert_eq!(
         text.lines().next(),
-        Some(HEADER.replace("contact_1,contact_2,", "").as_str())
+        Some(
+            HEADER
+                .replace("contact_1,contact_2,", "")
+                .replace(",stick_1,left_1,right_1,stick_2,left_2,right_2", "")
+                .as_str()
+        )
     );
     assert_eq!(read_estimate(text.as_bytes(), "estimate.csv"), Ok(none));
 }
 
 #[test]
 fn header_of_another_order_or_kind_is_refused() {
-    let row =
-        "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,0,0,0";
+    let row = format!(
+        "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,0,0,0,{BELIEF}"
+    );
     refused(
         &format!(
             "{}\n{row}\n",
@@ -141,8 +169,8 @@ fn header_of_another_order_or_kind_is_refused() {
     );
     refused(
         &format!("{HEADER},more\n{row},0\n"),
-        "1: column 30 (more)",
-        &["no such column", "`cov_y_theta`"],
+        "1: column 47 (more)",
+        &["no such column", "`right_2`"],
     );
     refused(
         &format!("{}\n{row}\n", HEADER.replace("contact_2", "contact_3")),
@@ -153,7 +181,9 @@ fn header_of_another_order_or_kind_is_refused() {
 
 #[test]
 fn bad_cells_are_refused() {
-    let good = "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,2.5,3.5";
+    let good = format!(
+        "0,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,2.5,3.5,{BELIEF}"
+    );
     let with = |from: &str, to: &str| format!("{HEADER}\n{}\n", good.replacen(from, to, 1));
     refused(&with("1,2,3", "1,,3"), "2: column 3 (y)", &["empty", "`x`"]);
     refused(
@@ -180,6 +210,21 @@ fn bad_cells_are_refused() {
     refused(
         &with("1.5,2.5", "1.5,"),
         "2: column 28 (cov_x_theta)",
+        &["empty"],
+    );
+    refused(
+        &with("0,300,20", "3,300,20"),
+        "2: column 30 (collapsed)",
+        &["`3`", "neither 0 nor 1"],
+    );
+    refused(
+        &with("0,300,20", "0,300,-20"),
+        "2: column 32 (ancestors)",
+        &["`-20`", "whole number"],
+    );
+    refused(
+        &with("0.25,0,0.5", "0.25,,0.5"),
+        "2: column 45 (left_2)",
         &["empty"],
     );
     refused(&with("7,8,9", ",,"), "2: column 15 (std_x)", &["empty"]);
@@ -230,6 +275,8 @@ prop_compose! {
         spread in prop::option::of((any_pose(), any_cross(), any_friction())),
         ess in prop::option::of(number()),
         (resampled, visual, unsolved, failed) in any::<(Option<bool>, bool, Option<u32>, Option<u32>)>(),
+        slip in prop::option::of(prop::array::uniform9(number())),
+        (collapsed, distinct, ancestors) in any::<(Option<bool>, Option<u32>, Option<u32>)>(),
     ) -> EstimateRow {
         EstimateRow {
             pose,
@@ -243,6 +290,11 @@ prop_compose! {
             visual,
             unsolved,
             failed,
+            slip: slip.map(slips),
+            distinct,
+            ancestors,
+            collapsed,
+            modes: Vec::new(),
         }
     }
 }
@@ -259,14 +311,22 @@ fn files_without_the_columns_that_came_later_are_read() {
         let earlier: Vec<_> = text.lines().map(cut).collect();
         read_estimate(earlier.join("\n").as_bytes(), "estimate.csv")
     };
-    for (columns, failed) in [(3, Some(1)), (4, None)] {
+    let belief = BELIEF.split(',').count();
+    let row = without(belief).expect("sound");
+    let row = &row.rows[0];
+    assert_eq!(
+        (row.failed, row.distinct, &row.slip),
+        (Some(1), None, &None)
+    );
+    assert!(row.spread.expect("a spread").cross.is_some());
+    for (columns, failed) in [(belief + 3, Some(1)), (belief + 4, None)] {
         let row = &without(columns).expect("sound").rows[0];
         assert_eq!((row.unsolved, row.failed), (Some(3), failed));
         let spread = row.spread.expect("a spread");
         assert_eq!((spread.pose.x, spread.cross), (7.0, None));
     }
     // no version ended there
-    for columns in [1, 2] {
+    for columns in [1, 2, belief - 1, belief + 1, belief + 2] {
         let error = without(columns).expect_err("must be refused").to_string();
         assert!(error.contains("missing"), "{error}");
     }

@@ -1,0 +1,142 @@
+//! What a row says of the shape of the belief: modes, how contacts slip, and who descends from whom.
+
+use crate::common::{log, setup};
+use stickslip::dynamics::Pose;
+use stickslip::{Estimate, EstimateRow, Log, Mode, Occlusion, RunOptions, Setup, run};
+
+const SPEED: f64 = 0.02;
+
+/// Radius of the object, and of pusher and fixels (m).
+const OBJECT: f64 = 0.03;
+const FINGER: f64 = 0.005;
+
+/// A slippery disc that is pushed straight at a fixel, hidden from 0.5 s on: it leaves to the one side
+/// or to the other, alike.
+fn head_on(mode: Mode) -> (Setup, Estimate) {
+    let mut setup = setup(&[[0.06, 0.0]]);
+    let nominal = &mut setup.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (0.05, 0.05);
+    let stopped = |time: f64| time.min(3.5);
+    let pusher = |time: f64| Some(Pose::new(-0.036 + SPEED * stopped(time), 0.0, 0.0));
+    let log = log(140, |_| Some(Pose::default()), pusher);
+    let hidden = Occlusion::Rows { from: 15, to: None };
+    let estimate = estimate(&setup, &log, mode, hidden);
+    (setup, estimate)
+}
+
+fn estimate(setup: &Setup, log: &Log, mode: Mode, occlusion: Occlusion) -> Estimate {
+    let options = RunOptions {
+        mode,
+        occlusion,
+        particles: 400,
+        ..RunOptions::default()
+    };
+    let run = run(setup, log, &options, &mut |_| ());
+    run.expect("a run").estimate
+}
+
+fn last(estimate: &Estimate) -> &EstimateRow {
+    estimate.rows.last().expect("rows")
+}
+
+#[test]
+fn a_belief_that_falls_apart_has_a_mode_on_each_side() {
+    for mode in [Mode::Paper, Mode::Contact] {
+        let (_, estimate) = head_on(mode);
+
+        // before the fork there is one, which holds all of the belief
+        let before = &estimate.rows[30].modes;
+        assert_eq!(before.len(), 1, "{before:?}");
+        assert!((before[0].weight - 1.0).abs() < 1e-12);
+
+        // then one on each side, the weights of a mirror image: of 400 particles that go either way
+        // half ± 0.1, four standard errors
+        let row = last(&estimate);
+        let [a, b] = row.modes[..] else {
+            panic!("{mode:?}: {:?}", row.modes)
+        };
+        assert!((a.weight + b.weight - 1.0).abs() < 1e-12);
+        assert!((a.weight - 0.5).abs() < 0.1, "{mode:?}: {}", a.weight);
+        assert!(a.pose.y * b.pose.y < 0.0, "{a:?}, {b:?}");
+        let mean = row.pose.expect("a pose");
+        assert!(mean.y.abs() < 0.5 * a.pose.y.abs(), "{mean:?}, {a:?}");
+    }
+}
+
+#[test]
+fn a_modes_pose_overlaps_nothing_where_the_mean_does() {
+    // in paper mode bodies are where they are told
+    let (setup, estimate) = head_on(Mode::Paper);
+    let fixel = setup.scene.fixels[0].pose;
+    let gap = |pose: Pose| (pose.x - fixel.x).hypot(pose.y - fixel.y) - OBJECT - FINGER;
+    let row = last(&estimate);
+    let mean = gap(row.pose.expect("a pose"));
+    assert!(mean < -1e-3, "the mean overlaps by {mean} m");
+    for row in &estimate.rows {
+        for mode in &row.modes {
+            assert!(gap(mode.pose) > -1e-5, "{mode:?}");
+        }
+    }
+}
+
+/// Stick, left and right on the pusher where a slippery disc is touched from its left by a pusher that
+/// moves on at `sideways` (m/s).
+fn slip_beside(sideways: f64) -> [f64; 3] {
+    let mut setup = setup(&[]);
+    setup.scene.nominal.mu_p = 0.02;
+    let start = 1.0;
+    let pusher = |time: f64| {
+        let on = (time - start).max(0.0);
+        let x = -OBJECT - FINGER + SPEED * (time.min(start + 1.0) - start);
+        Some(Pose::new(x, sideways * on, 0.0))
+    };
+    let log = log(40, |_| None, pusher);
+    let log = Log {
+        object: (0..40).map(|row| (row < 30).then(Pose::default)).collect(),
+        ..log
+    };
+    let estimate = estimate(&setup, &log, Mode::Paper, Occlusion::None);
+    let slip = last(&estimate).slip.as_ref().expect("bodies")[0];
+    [slip.stick, slip.left, slip.right]
+}
+
+#[test]
+fn a_slippery_contact_slides_away_from_where_the_pusher_goes() {
+    // the normal points along x into the object, so left of it is y
+    let [_, left, right] = slip_beside(0.02);
+    assert!(right > 0.99 && left < 0.01, "{left}, {right}");
+    let [_, left, right] = slip_beside(-0.02);
+    assert!(left > 0.99 && right < 0.01, "{left}, {right}");
+}
+
+#[test]
+fn slips_and_contact_agree() {
+    let (_, estimate) = head_on(Mode::Contact);
+    for row in &estimate.rows {
+        let contacts = std::iter::once(row.contact_pusher.expect("a share"))
+            .chain(row.contact_fixels.iter().flatten().copied());
+        for (contact, slip) in contacts.zip(row.slip.as_ref().expect("bodies")) {
+            let sum = slip.stick + slip.left + slip.right;
+            assert!((sum - contact).abs() < 1e-9, "{slip:?}, {contact}");
+        }
+    }
+
+    // the pusher stands at the end: nothing slides
+    let slip = &last(&estimate).slip.as_ref().expect("bodies")[0];
+    assert!(slip.left + slip.right < 0.02, "{slip:?}");
+}
+
+#[test]
+fn ancestors_are_lost_in_the_dark_and_counted_anew_in_the_light() {
+    let (_, estimate) = head_on(Mode::Contact);
+    let counts = |row: &EstimateRow| {
+        let (distinct, ancestors) = (row.distinct.expect("a count"), row.ancestors.expect("one"));
+        assert!(ancestors <= distinct && distinct <= 400);
+        ancestors
+    };
+    let lit: Vec<u32> = estimate.rows[..=15].iter().map(counts).collect();
+    let dark: Vec<u32> = estimate.rows[15..].iter().map(counts).collect();
+    assert!(lit.iter().all(|count| *count > 100), "{lit:?}");
+    assert!(dark.is_sorted_by(|a, b| a >= b), "{dark:?}");
+    assert!(dark.last() < dark.first(), "{dark:?}");
+}

@@ -1,0 +1,142 @@
+//! Which particles of earlier steps those of now descend from: [`Lineage`].
+
+/// Counts ancestors: of the latest step, and of a generation further back.
+///
+/// Few of either say that the particles, however many and however equal their weights, are copies of a
+/// few (Doucet & Johansen 2009, section 4.3, on path degeneracy).
+#[derive(Debug)]
+pub struct Lineage {
+    /// For each particle the one of the generation that it descends from.
+    roots: Vec<u32>,
+    spare: Vec<u32>,
+    /// Particles of that generation.
+    generation: usize,
+    parents: usize,
+    counted: Vec<bool>,
+}
+
+impl Lineage {
+    /// `particles` that descend from themselves.
+    pub(crate) fn new(particles: usize) -> Self {
+        let mut lineage = Self {
+            roots: Vec::with_capacity(particles),
+            spare: vec![0; particles],
+            generation: 0,
+            parents: 0,
+            counted: Vec::with_capacity(2 * particles),
+        };
+        lineage.roots.resize(particles, 0);
+        lineage.begin_step();
+        lineage.begin_generation();
+        lineage
+    }
+
+    /// Number of particles before the latest step that those of now descend from.
+    #[must_use]
+    pub fn parents(&self) -> usize {
+        self.parents
+    }
+
+    /// Number of particles of the generation that those of now descend from.
+    #[must_use]
+    pub fn ancestors(&mut self) -> usize {
+        count_distinct(&self.roots, self.generation, &mut self.counted)
+    }
+
+    /// The particles as they are now become the generation that is counted.
+    pub(crate) fn begin_generation(&mut self) {
+        self.generation = self.roots.len();
+        self.roots
+            .iter_mut()
+            .zip(0..)
+            .for_each(|(root, i)| *root = i);
+    }
+
+    /// The particles as they are now become parents.
+    pub(crate) fn begin_step(&mut self) {
+        self.parents = self.roots.len();
+    }
+
+    /// Particle i becomes a copy of particle `ancestors[i]`.
+    pub(crate) fn follow(&mut self, ancestors: &[u32]) {
+        let before = self.roots.len();
+        self.parents = count_distinct(ancestors, before, &mut self.counted);
+        self.spare.clear();
+        let roots = ancestors.iter().map(|i| self.roots[*i as usize]);
+        self.spare.extend(roots);
+        std::mem::swap(&mut self.roots, &mut self.spare);
+    }
+
+    /// The same with ancestors of this set or, counted on, of `other`, whose roots are of the same
+    /// generation.
+    pub(crate) fn follow_both(&mut self, other: &Self, ancestors: &[u32]) {
+        assert_eq!(self.generation, other.generation, "one generation");
+        let here = self.roots.len();
+        self.roots.extend_from_slice(&other.roots);
+        self.follow(ancestors);
+        debug_assert_eq!(self.roots.len(), here, "as many as before");
+    }
+}
+
+impl Clone for Lineage {
+    fn clone(&self) -> Self {
+        let mut lineage = Self::new(0);
+        lineage.clone_from(self);
+        lineage
+    }
+
+    /// Allocates nothing where as many were kept.
+    fn clone_from(&mut self, other: &Self) {
+        self.roots.clone_from(&other.roots);
+        (self.generation, self.parents) = (other.generation, other.parents);
+    }
+}
+
+/// Number of different numbers below `below` among `of`.
+fn count_distinct(of: &[u32], below: usize, counted: &mut Vec<bool>) -> usize {
+    counted.clear();
+    counted.resize(below, false);
+    let mut count = 0;
+    for i in of {
+        count += usize::from(!std::mem::replace(&mut counted[*i as usize], true));
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ancestors_are_those_of_the_generation_and_parents_those_of_the_step() {
+        let mut lineage = Lineage::new(4);
+        assert_eq!((lineage.parents(), lineage.ancestors()), (4, 4));
+        lineage.follow(&[0, 0, 2, 3]);
+        assert_eq!((lineage.parents(), lineage.ancestors()), (3, 3));
+
+        // copies of one particle are parents of their own, and of one ancestor
+        lineage.begin_step();
+        lineage.follow(&[0, 1, 1, 2]);
+        assert_eq!((lineage.parents(), lineage.ancestors()), (3, 2));
+        lineage.begin_step();
+        assert_eq!((lineage.parents(), lineage.ancestors()), (4, 2));
+
+        // another number of particles, then a new generation
+        lineage.follow(&[3, 3, 0, 0, 1]);
+        assert_eq!((lineage.parents(), lineage.ancestors()), (3, 2));
+        lineage.begin_generation();
+        assert_eq!(lineage.ancestors(), 5);
+    }
+
+    #[test]
+    fn two_sets_of_one_generation_share_their_ancestors() {
+        let (mut a, mut b) = (Lineage::new(3), Lineage::new(3));
+        a.follow(&[0, 0, 1]);
+        b.follow(&[2, 1, 1]);
+        a.begin_step();
+
+        // particle 2 of the first set, and 1 and 2 of the other, all of ancestor 1
+        a.follow_both(&b, &[2, 4, 5]);
+        assert_eq!((a.parents(), a.ancestors()), (3, 1));
+    }
+}
