@@ -6,6 +6,7 @@ use std::io::{Seek, Write};
 use stickslip::{Estimate, EstimateRow, Setup};
 use stickslip_dynamics::{Friction, Pose};
 
+use crate::belief_columns;
 use crate::log_mcap::drawing::{Body, bodies, markers, outline_points};
 use crate::log_mcap::output_message::{MarkerArray, Numbers, PointCloud, PoseArray};
 use crate::log_mcap::pose_message::{PoseWithCovarianceStamped, TfMessage, TransformStamped};
@@ -24,7 +25,7 @@ use crate::number;
 ///   count the same; none where the slice is shorter or the row has none,
 /// - `/stickslip/points/...`, `sensor_msgs/msg/PointCloud2`, for viewers without markers: points along the
 ///   outlines of the `object`, and of `pusher` and `fixels` where they are not `touched`; `particles`,
-/// - `/stickslip/friction`, `friction_std`, `contacts` and `health`, `std_msgs/msg/Float64MultiArray`:
+/// - `/stickslip/friction`, `friction_std`, `contacts`, `health` and `belief`, `std_msgs/msg/Float64MultiArray`:
 ///   numbers of `estimate.csv`, the columns that the label of the dimension names; NaN for empty cells.
 ///
 /// The same estimate gives the same bytes.
@@ -65,7 +66,7 @@ struct Messages<W: Write + Seek> {
     /// Topics of the particles, as poses and as points.
     particles: Option<[u16; 2]>,
     clouds: [u16; 4],
-    numbers: [u16; 4],
+    numbers: [u16; 5],
 }
 
 impl<W: Write + Seek> Messages<W> {
@@ -78,11 +79,11 @@ impl<W: Write + Seek> Messages<W> {
         for (cloud, name) in clouds.iter_mut().zip(CLOUDS) {
             *cloud = recorder.topic::<PointCloud>(&format!("/stickslip/points/{name}"))?;
         }
-        let mut numbers = [0; 4];
+        let mut numbers = [0; 5];
         for (topic, name) in
             numbers
                 .iter_mut()
-                .zip(["friction", "friction_std", "contacts", "health"])
+                .zip(["friction", "friction_std", "contacts", "health", "belief"])
         {
             *topic = recorder.topic::<Numbers>(&format!("/stickslip/{name}"))?;
         }
@@ -161,6 +162,7 @@ impl<W: Write + Seek> Messages<W> {
     fn write_numbers(&mut self, stamp: i64, row: &EstimateRow) -> Result<(), McapWriteError> {
         let tripod = self.has_tripod;
         let fixels = row.contact_fixels.as_deref().unwrap_or_default();
+        let belief = belief_columns::numbers(row, fixels.len()).into_iter();
         let names: Vec<_> = (1..=fixels.len())
             .map(|k| format!(",contact_{k}"))
             .collect();
@@ -183,6 +185,12 @@ impl<W: Write + Seek> Messages<W> {
                     row.unsolved.map_or(f64::NAN, f64::from),
                     row.failed.map_or(f64::NAN, f64::from),
                 ],
+            ),
+            Numbers::new(
+                &belief_columns::names(fixels.len())
+                    .collect::<Vec<_>>()
+                    .join(","),
+                belief.map(|number| number.unwrap_or(f64::NAN)).collect(),
             ),
         ];
         for (topic, message) in self.numbers.into_iter().zip(messages) {

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::ros2_peer::{folder, peer};
-use stickslip::{CrossCovariance, Estimate, EstimateRow, Setup, Spread};
+use stickslip::{BeliefMode, ContactSlip, CrossCovariance, Estimate, EstimateRow, Setup, Spread};
 use stickslip_dynamics::{Friction, Part, Pose};
 use stickslip_formats::{read_scene, write_estimate_mcap, write_estimate_tum};
 
@@ -18,6 +18,11 @@ fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
     let scene = include_str!("../../../cli/demo/stop-square50-bar-000/scene.toml");
     let setup = read_scene(scene, "scene.toml").unwrap();
     let fixels = setup.scene.fixels.len();
+    let quarters = ContactSlip {
+        stick: 0.25,
+        left: 0.25,
+        right: 0.0,
+    };
     let seen = EstimateRow {
         pose: Some(pose),
         contact_pusher: Some(0.5),
@@ -29,6 +34,13 @@ fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
             d_tri: 0.0625,
         }),
         ess: Some(64.0),
+        distinct: Some(60),
+        modes: vec![BeliefMode {
+            weight: 1.0,
+            pose,
+            std,
+        }],
+        slip: Some(vec![quarters; 1 + fixels]),
         unsolved: Some(3),
         spread: Some(Spread {
             pose: std,
@@ -118,7 +130,7 @@ fn others_read_an_estimate() {
             topics.push((*topic).to_owned());
         }
         let parts = parts_of_others(&setup);
-        assert_eq!(topics.len(), 13 + parts, "{program}: {told}");
+        assert_eq!(topics.len(), 14 + parts, "{program}: {told}");
     }
 }
 
@@ -165,6 +177,19 @@ fn assert_drawn((topic, label): (&str, &str), numbers: &[f64], (pose, setup): (P
                 numbers[1].is_nan() && numbers[4].is_nan(),
                 "{topic}: {numbers:?}"
             );
+        }
+        ("/stickslip/belief", label) => {
+            let [distinct, mode_x, stick] = ["distinct", "mode_x", "stick_1"].map(|name| {
+                label
+                    .split(',')
+                    .position(|column| column == name)
+                    .expect(name)
+            });
+            assert_eq!(
+                [numbers[distinct], numbers[mode_x], numbers[stick]],
+                [60.0, 0.5, 0.25]
+            );
+            assert!(numbers[0].is_nan(), "{topic}: {numbers:?}");
         }
         _ => panic!("{topic}"),
     }
