@@ -1,6 +1,7 @@
 //! How a run is made: [`RunOptions`].
 
 use crate::mode::Mode;
+use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::pusher::track::Tracking;
 
@@ -49,9 +50,8 @@ pub struct RunOptions {
     pub substeps: Option<u32>,
     /// What is hidden from the method.
     pub occlusion: Occlusion,
-    /// Whether camera poses that would leave few particles also move them (contact mode; docs/method.md
-    /// (45)). Weighing alone is exact for very many particles.
-    pub moving: bool,
+    /// What brings particles to where weighing alone would leave few (contact mode).
+    pub moves: Moves,
 }
 
 impl Default for RunOptions {
@@ -65,7 +65,7 @@ impl Default for RunOptions {
             tracking: Tracking::Smoothed,
             substeps: None,
             occlusion: Occlusion::None,
-            moving: true,
+            moves: Moves::default(),
         }
     }
 }

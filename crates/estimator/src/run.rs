@@ -158,7 +158,7 @@ fn track_smoothed(
         particles: options.particles,
         seed: options.seed,
         late: 0.0,
-        moving: options.moving,
+        moves: options.moves,
         observer: *observer,
     };
     let start = PoseAt {

@@ -7,6 +7,7 @@ use stickslip_dynamics::StepInput;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::mode::Mode;
+use crate::moves::Moves;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
 use crate::particle::observation::PoseAt;
@@ -43,8 +44,8 @@ pub struct TrackerOptions {
     /// How far behind the latest row a row may come and still count (s); the particles keep their
     /// poses for as long.
     pub late: f64,
-    /// Whether camera poses also move particles, see [`RunOptions::moving`].
-    pub moving: bool,
+    /// What brings particles to where weighing alone would leave few (contact mode).
+    pub moves: Moves,
 }
 
 impl Default for TrackerOptions {
@@ -66,7 +67,7 @@ impl TrackerOptions {
             tactile: options.tactile,
             substeps: options.substeps,
             late: 0.0,
-            moving: options.moving,
+            moves: options.moves,
         }
     }
 
@@ -196,7 +197,7 @@ impl<'o> Tracker<'o> {
             particles: self.options.particles,
             seed: self.options.seed,
             late: self.options.late,
-            moving: self.options.moving,
+            moves: self.options.moves,
             observer: self.observer,
         }
     }

@@ -5,6 +5,7 @@
 
 mod belief;
 mod calibration;
+mod ingredient;
 mod learned_friction;
 pub mod paper;
 mod reference;
@@ -16,6 +17,7 @@ mod variant;
 
 pub use belief::Belief;
 pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally, TruthSource};
+pub use ingredient::Ingredient;
 pub use learned_friction::LearnedParameter;
 pub use reference::Agreement;
 pub use run::{RunConditions, ScoredRun};

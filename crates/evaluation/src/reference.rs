@@ -1,7 +1,7 @@
 //! How near few particles come to the belief that the model and the data amount to: [`Agreement`] with a
 //! reference of very many particles, which tells what an error is owed to, sampling or model.
 
-use stickslip::{Estimate, Mode, RunError, RunOptions, Tracking, quantile, run, wrapped};
+use stickslip::{Estimate, Mode, Moves, RunError, RunOptions, Tracking, quantile, run, wrapped};
 
 use crate::paper::{Replicate, RunSettings};
 use crate::run::ScoredRun;
@@ -29,8 +29,12 @@ impl Agreement {
     /// # Errors
     /// Those of [`stickslip::run`].
     pub fn of(replicate: &Replicate, few: usize, many: usize) -> Result<Self, RunError> {
-        let few = scored(replicate, few, true)?;
-        let reference = scored(replicate, many, false)?;
+        let few = scored(replicate, few, Moves::default())?;
+        let alone = Moves {
+            camera: false,
+            ..Moves::default()
+        };
+        let reference = scored(replicate, many, alone)?;
         let hidden = replicate.occlusion.hidden(&replicate.experiment.log);
         let pairs = apart(&few.estimate, &reference.estimate, |row| hidden[row]);
         let squares: f64 = pairs.iter().map(|(distance, _)| distance * distance).sum();
@@ -45,7 +49,7 @@ impl Agreement {
 }
 
 /// One run with touch.
-fn scored(replicate: &Replicate, particles: usize, moving: bool) -> Result<ScoredRun, RunError> {
+fn scored(replicate: &Replicate, particles: usize, moves: Moves) -> Result<ScoredRun, RunError> {
     let Replicate { experiment, .. } = replicate;
     let conditions = replicate.conditions(RunSettings {
         mode: Mode::Contact,
@@ -53,7 +57,7 @@ fn scored(replicate: &Replicate, particles: usize, moving: bool) -> Result<Score
         tracking: Tracking::Smoothed,
     });
     let options = RunOptions {
-        moving,
+        moves,
         ..conditions.options(Variant::Particle)
     };
     let run = run(&experiment.setup, &experiment.log, &options, &mut |_| ())?;

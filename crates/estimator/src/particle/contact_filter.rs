@@ -10,6 +10,7 @@ use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::mode::Mode;
+use crate::moves::Moves;
 use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
@@ -73,8 +74,8 @@ pub(crate) struct ContactFilter<'o> {
     resting: RestingPose,
     /// Whether a particle has touched anything.
     touched: bool,
-    /// Whether camera poses move particles from then on.
-    moving: bool,
+    /// What brings particles to where weighing would leave few.
+    moves: Moves,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -94,8 +95,8 @@ pub(crate) struct FilterOptions<'o> {
     pub seed: u64,
     /// How far before the latest row late poses may show the object (s).
     pub late: f64,
-    /// Whether camera poses also move particles (contact mode).
-    pub moving: bool,
+    /// What brings particles to where weighing would leave few (contact mode).
+    pub moves: Moves,
     /// Is shown every time step.
     pub observer: Option<&'o dyn Observer>,
 }
@@ -151,7 +152,7 @@ impl<'o> ContactFilter<'o> {
             steadiness: Steadiness::new(camera.latency + unknown),
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
             touched: false,
-            moving: options.moving && options.mode == Mode::Contact,
+            moves: options.moves,
         };
         this.filter.recompute_sums(&this.plan);
         this.summarise();
@@ -174,10 +175,11 @@ impl<'o> ContactFilter<'o> {
         let contact = self.filter.model().columns().mode() == Mode::Contact;
         self.observation.felt = contact;
         self.touched |= self.latest.any_contact();
-        self.observation.moves = self.moving && self.touched;
+        self.observation.moves = contact && self.moves.camera && self.touched;
 
         let seen = self.observation.pose.is_some();
-        self.replay.before(&self.filter, seen);
+        let again = self.moves.second_tries;
+        self.replay.before(&self.filter, seen || !again);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
         self.collapsed = report.collapsed();
@@ -232,7 +234,7 @@ impl<'o> ContactFilter<'o> {
     fn learn_where_it_rests(&mut self) {
         self.plan.resting = None;
         let contact = self.filter.model().columns().mode() == Mode::Contact;
-        let Some(pose) = self.observation.pose.filter(|_| contact) else {
+        let Some(pose) = (self.observation.pose).filter(|_| contact && self.moves.waiting) else {
             return;
         };
         let seen = (pose, self.observation.covariance);
@@ -290,6 +292,7 @@ impl<'o> ContactFilter<'o> {
             plan.reference = reference;
         }
         plan.steady = self.steadiness.velocity(measured.time, drive.substeps);
+        plan.steady = plan.steady.filter(|_| self.moves.steady_push);
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
         if slots > self.filter.model().columns().history() {

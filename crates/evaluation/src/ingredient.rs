@@ -1,0 +1,110 @@
+//! What contact mode is made of, to be left out one by one: [`Ingredient`].
+
+use stickslip::dynamics::Friction;
+use stickslip::{RunOptions, Setup, TactileUse};
+
+/// One thing that contact mode allows for or does, see docs/decisions/007.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ingredient {
+    /// Priors of the friction parameters, and their drift.
+    FrictionPriors,
+    /// Friction that differs from place to place.
+    Variation,
+    /// Four fifths of the random force: without any, particles would have one future.
+    Force,
+    /// An offset between the camera's frame and the pusher's.
+    PusherOffset,
+    /// The pusher as a sensor.
+    PusherAsSensor,
+    /// Errors of the fixels' positions.
+    FixelPositions,
+    /// An error of the object's outline.
+    Outline,
+    /// Rigs that differ in how rough they are.
+    Roughness,
+    /// A camera of unknown noise.
+    CameraNoise,
+    /// A camera of unknown latency.
+    Latency,
+    /// Touch.
+    Touch,
+    /// Steps made again, (42).
+    SecondTries,
+    /// Latency exchanged for offset under a steady push, (43).
+    SteadyPush,
+    /// The pose of an object that waits drawn anew, (44).
+    Waiting,
+    /// Camera poses that move particles, (45).
+    CameraMoves,
+}
+
+impl Ingredient {
+    /// All of them.
+    pub const ALL: [Self; 15] = [
+        Self::FrictionPriors,
+        Self::Variation,
+        Self::Force,
+        Self::PusherOffset,
+        Self::PusherAsSensor,
+        Self::FixelPositions,
+        Self::Outline,
+        Self::Roughness,
+        Self::CameraNoise,
+        Self::Latency,
+        Self::Touch,
+        Self::SecondTries,
+        Self::SteadyPush,
+        Self::Waiting,
+        Self::CameraMoves,
+    ];
+
+    /// What a run without it is called.
+    #[must_use]
+    pub fn left_out(self) -> &'static str {
+        match self {
+            Self::FrictionPriors => "friction as told, no drift",
+            Self::Variation => "no variation from place to place",
+            Self::Force => "a fifth of the force",
+            Self::PusherOffset => "pusher where logged",
+            Self::PusherAsSensor => "pusher no sensor",
+            Self::FixelPositions => "fixels where told",
+            Self::Outline => "outline as told",
+            Self::Roughness => "all rigs alike",
+            Self::CameraNoise => "camera as noisy as told",
+            Self::Latency => "camera as late as told",
+            Self::Touch => "no touch",
+            Self::SecondTries => "no second try, (42)",
+            Self::SteadyPush => "no exchange of latency, (43)",
+            Self::Waiting => "waiting object not redrawn, (44)",
+            Self::CameraMoves => "weighing alone, (45)",
+        }
+    }
+
+    /// Takes it out of a run.
+    pub fn remove_from(self, setup: &mut Setup, options: &mut RunOptions) {
+        let (unknown, moves) = (&mut setup.uncertainty, &mut options.moves);
+        match self {
+            Self::FrictionPriors => {
+                unknown.friction = Friction::default();
+                unknown.drift = 0.0;
+            }
+            Self::Variation => unknown.variation = 0.0,
+            Self::Force => unknown.force_std *= 0.2,
+            Self::PusherOffset => unknown.pusher_offset = 0.0,
+            Self::PusherAsSensor => unknown.pusher_lag = FAR,
+            Self::FixelPositions => unknown.fixel_position = 0.0,
+            Self::Outline => unknown.outline = 0.0,
+            Self::Roughness => unknown.roughness = 0.0,
+            Self::CameraNoise => unknown.camera_noise = 0.0,
+            Self::Latency => unknown.latency = 0.0,
+            Self::Touch => options.tactile = TactileUse::Ignored,
+            Self::SecondTries => moves.second_tries = false,
+            Self::SteadyPush => moves.steady_push = false,
+            Self::Waiting => moves.waiting = false,
+            Self::CameraMoves => moves.camera = false,
+        }
+    }
+}
+
+/// A lag that contradicts nothing (m).
+const FAR: f64 = 1e3;
