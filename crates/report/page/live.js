@@ -38,8 +38,9 @@ class Live {
   /** The picture: the fixels, and all that has been seen of object and pusher. */
   frame() {
     const [left, low, right, high] = this.view;
-    const width = Math.max(right - left, (high - low) / 0.7);
-    const height = Math.max(high - low, 0.62 * width);
+    const room = 0.05 * Math.max(right - left, high - low) + 1;
+    const width = Math.max(right - left + 2 * room, (high - low + 2 * room) / 0.7);
+    const height = Math.max(high - low + 2 * room, 0.62 * width);
     const [x, y] = [(left + right - width) / 2, (low + high - height) / 2];
     this.svg.setAttribute("viewBox", `${x} ${-y - height} ${width} ${height}`);
     this.svg.style.aspectRatio = `${width} / ${height}`;
@@ -104,10 +105,10 @@ class Live {
   }
 
   tell({ estimate, count, missed, latency_ms }) {
-    const spread = (key, unit, scale) => (estimate[`std_${key}`] === null ? "–" : `± ${(scale * estimate[`std_${key}`]).toFixed(2)} ${unit}`);
+    const spread = (key, unit, scale) => (estimate[`std_${key}`] === null ? "–" : `± ${(scale * estimate[`std_${key}`]).toFixed(2)}${unit}`);
     const shown = [
-      ["x", `${(1000 * estimate.x).toFixed(1)} mm`, spread("x", "mm", 1000)],
-      ["y", `${(1000 * estimate.y).toFixed(1)} mm`, spread("y", "mm", 1000)],
+      ["x", `${(1000 * estimate.x).toFixed(1)} mm`, spread("x", " mm", 1000)],
+      ["y", `${(1000 * estimate.y).toFixed(1)} mm`, spread("y", " mm", 1000)],
       ["θ", `${((180 / Math.PI) * estimate.theta).toFixed(1)}°`, spread("theta", "°", 180 / Math.PI)],
       ...["mu_s", "mu_p", "mu_f"].map((key) => [key, estimate[key]?.toFixed(3) ?? "–", spread(key, "", 1)]),
       ["particles", String(count), ""],

@@ -91,9 +91,10 @@ class Player {
       return ghost;
     });
     for (const k of data.order) world.append(this.ghosts[k]);
+    const length = [50, 20, 10, 5, 2, 1].find((mm) => mm <= 0.15 * width) ?? 1;
     const bar = add(this.svg, "g", { class: "scale" });
-    add(bar, "path", { d: `M${left + 0.04 * width} ${-low - 0.05 * height}h20` });
-    add(bar, "text", { x: left + 0.04 * width + 10, y: -low - 0.05 * height - 2 }).textContent = "20 mm";
+    add(bar, "path", { d: `M${left + 0.04 * width} ${-low - 0.05 * height}h${length}` });
+    add(bar, "text", { x: left + 0.04 * width + length / 2, y: -low - 0.06 * height }).textContent = `${length} mm`;
     this.svg.style.setProperty("--letter", `${width / 32}px`);
   }
 
@@ -115,15 +116,16 @@ class Player {
       put(this.find(".strip"), "span", "decade", `${10 ** Math.round(decade)} mm`).style.top = `${y(10 ** decade)}%`;
     }
     this.curves = data.methods.map((method) => {
-      let pen = "M";
-      const points = method.error.map((error, row) => {
-        const point = error === null ? "" : `${pen}${this.place(row).toFixed(1)} ${y(error / 1000).toFixed(1)}`;
-        pen = error === null ? "M" : "L";
-        return point;
-      });
-      const curve = add(strip, "path", { class: "curve", d: points.join("") });
+      const known = (row) => (method.error[row] ?? null) !== null;
+      const point = (row) => `${this.place(row).toFixed(1)} ${y(method.error[row] / 1000).toFixed(1)}`;
+      const rows = [...method.error.keys()].filter(known);
+      const curve = add(strip, "g", { class: "curve" });
       curve.style.setProperty("--colour", method.colour);
-      if (method.dashes) curve.style.strokeDasharray = method.dashes;
+      const line = add(curve, "path", { d: rows.map((row) => `${known(row - 1) ? "L" : "M"}${point(row)}`).join("") });
+      if (method.dashes) line.style.strokeDasharray = method.dashes;
+      // between two rows without an error there is no line to draw
+      const alone = rows.filter((row) => !known(row - 1) && !known(row + 1));
+      if (alone.length > 0) add(curve, "path", { class: "dots", d: alone.map((row) => `M${point(row)}h0`).join("") });
       return curve;
     });
     for (const k of data.order) strip.append(this.curves[k]);
@@ -282,7 +284,7 @@ class Player {
       const touches = known === 1 || (known === null && sensed === 1);
       const words = [known === null ? null : known ? "touches" : "apart", sensed === null ? null : `sensor ${sensed}`];
       if (guess !== null) words.push(`${this.guesser.name}: ${guess} %`);
-      this.chips[k].words.textContent = words.filter((word) => word !== null).join(" · ");
+      this.chips[k].words.textContent = words.filter((word) => word !== null).join(" · ") || "not known";
       this.chips[k].item.classList.toggle("touching", touches);
       const body = k === 0 ? this.pusher : this.fixels[k - 1];
       body.classList.toggle("touching", touches);
@@ -292,8 +294,9 @@ class Player {
 
   /** The whole table, or near the object. */
   zoom(row) {
-    const [x, y] = [this.data.truth.x[row], this.data.truth.y[row]];
-    const near = this.find(".view").value === "near" && x !== null;
+    const known = [this.data.truth, (this.guesser ?? this.data.methods[0])?.pose].find((pose) => pose && pose.x[row] !== null);
+    const [x, y] = known ? at(known, row) : [];
+    const near = this.find(".view").value === "near" && known !== undefined;
     const [, , width, height] = this.data.view;
     const size = 2.4 * this.data.reach;
     const scale = Math.min(1, size / Math.min(width, height));

@@ -1,4 +1,4 @@
-//! Colours that colour-blind people can tell apart (Okabe and Ito 2008): [`Colour`].
+//! Colours that colour-blind people can tell apart (Okabe and Ito 2008, and two more): [`Colour`].
 
 use stickslip_evaluation::Variant;
 
@@ -17,22 +17,25 @@ impl Colour {
     pub const SKY: Self = Self(86, 180, 233);
     /// Bluish green.
     pub const GREEN: Self = Self(0, 158, 115);
-    /// Yellow; too light for lines on white.
-    pub const YELLOW: Self = Self(240, 228, 66);
     /// Blue.
     pub const BLUE: Self = Self(0, 114, 178);
     /// Vermillion.
     pub const VERMILLION: Self = Self(213, 94, 0);
     /// Reddish purple.
     pub const PURPLE: Self = Self(204, 121, 167);
+    /// Brown.
+    pub const BROWN: Self = Self(153, 85, 68);
+    /// Violet.
+    pub const VIOLET: Self = Self(136, 119, 255);
 
     /// Of a variant, in every figure, table and playback.
     #[must_use]
     pub fn of(variant: Variant) -> Self {
         match variant {
             Variant::Nominal => Self::GREY,
-            Variant::Kalman | Variant::KalmanStops => Self::ORANGE,
-            Variant::WithPusher => Self::YELLOW,
+            Variant::Kalman => Self::ORANGE,
+            Variant::KalmanStops => Self::BROWN,
+            Variant::WithPusher => Self::VIOLET,
             Variant::KalmanCameraOn => Self::PURPLE,
             Variant::ParticleNoTouch => Self::SKY,
             Variant::ParticleNoTouchCameraOn => Self::BLUE,
@@ -52,8 +55,8 @@ impl Colour {
     }
 }
 
-/// How a line is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// How a line is drawn; the later ones lie on the earlier ones, which one sees through their gaps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Line {
     /// Through.
     #[default]
@@ -85,6 +88,45 @@ impl Line {
             Self::Solid => None,
             Self::Dashed => Some("7 4"),
             Self::Dotted => Some("1.5 3"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast of two colours (WCAG 2.2), 1 to 21.
+    fn contrast(a: Colour, b: Colour) -> f64 {
+        let light = |Colour(r, g, b): Colour| {
+            let [r, g, b] = [r, g, b].map(|part| {
+                let part = f64::from(part) / 255.0;
+                if part <= 0.04045 {
+                    part / 12.92
+                } else {
+                    libm::pow((part + 0.055) / 1.055, 2.4)
+                }
+            });
+            0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
+        };
+        let [a, b] = [a, b].map(light);
+        (a / b).max(b / a)
+    }
+
+    #[test]
+    fn no_two_variants_share_a_colour_and_all_are_seen_on_light_and_dark_pages() {
+        let others = [Variant::ParticleNoTouchCameraOn];
+        let all: Vec<Variant> = Variant::COMPARED.into_iter().chain(others).collect();
+        let [light, dark] = [Colour(251, 250, 247), Colour(23, 23, 27)];
+        for (k, variant) in all.iter().enumerate() {
+            let colour = Colour::of(*variant);
+            assert!(
+                all[..k].iter().all(|other| Colour::of(*other) != colour),
+                "{}",
+                variant.name()
+            );
+            let seen = contrast(colour, light).min(contrast(colour, dark));
+            assert!(seen > 2.0, "{}: {seen}", variant.name());
         }
     }
 }

@@ -62,6 +62,15 @@ impl ContactLane {
 }
 
 impl ContactTimeline {
+    /// Whether anything is known of any contact.
+    #[must_use]
+    pub fn tells(&self) -> bool {
+        let known = |body: &ContactLane| {
+            body.truth.is_some() || body.sensed.is_some() || !body.estimates.is_empty()
+        };
+        self.bodies.iter().any(known)
+    }
+
     /// The figure as SVG text.
     #[must_use]
     pub fn to_svg(&self) -> String {

@@ -209,7 +209,7 @@ impl<'a> Text<'a> {
         let content = html! {
             (first)
             @for (index, rest) in parts.map(|part| part.split_at(index(part))) {
-                tspan dy=(drop) font-size=(px(0.75 * size)) { (index) }
+                tspan dy=(drop) font-size=(px(0.8 * size)) { (index) }
                 @if !rest.is_empty() { tspan dy={ "-" (drop) } { (rest) } }
             }
         };

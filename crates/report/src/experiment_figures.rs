@@ -17,7 +17,7 @@ use crate::particle_cloud::ParticleCloud;
 use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
 use crate::time_figure::{Curve, Panel, TimeFigure};
-use crate::touch::rule;
+use crate::touch::TouchRule;
 
 /// Smallest error drawn (mm, degrees).
 const FLOOR: f64 = 0.01;
@@ -49,23 +49,26 @@ impl ReportedExperiment<'_> {
     /// All figures, each with a name for its files.
     #[must_use]
     pub fn figures(&self) -> Vec<Figure> {
-        let always = [
-            Figure::new(
-                "errors",
-                self.errors().drawing(),
-                "Errors against time, those below 0.01 drawn there; shaded in a method's colour: its own standard deviation.",
-            ),
-            Figure::new(
-                "poses",
-                self.poses(),
-                "Bodies at the first contact with a fixel, if one is known, and at the end of the time shown; an estimate far off may be outside the picture.",
-            ),
-            Figure::new(
-                "contacts",
-                self.contact_timeline().drawing(),
-                &format!("Who touches the object when: {}.", rule()),
-            ),
-        ];
+        let shaded = match self.learner() {
+            Some(_) => "; shaded in a method's colour: its own standard deviation",
+            None => "",
+        };
+        let errors = Figure::new(
+            "errors",
+            self.errors().drawing(),
+            &format!("Errors against time, those below {FLOOR} drawn there{shaded}."),
+        );
+        let poses = Figure::new(
+            "poses",
+            self.poses(),
+            "Bodies at the first contact with a fixel, if one is known, and at the end of the time shown; an estimate far off may be outside the picture.",
+        );
+        let timeline = self.contact_timeline();
+        let contacts = timeline.tells().then(|| {
+            let rule = TouchRule::measured(self.setup);
+            let text = format!("Who touches the object when: {}.", rule.words());
+            Figure::new("contacts", timeline.drawing(), &text)
+        });
         let friction = self.friction_figure().map(|figure| {
             Figure::new(
                 "friction",
@@ -83,12 +86,11 @@ impl ReportedExperiment<'_> {
             let text = "How many particles count: effective sample size after weighing, and how many are no copies of others.";
             Figure::new("particles", figure.drawing(), text)
         });
-        let [errors, poses, contacts] = always;
         let shown = [
             Some(errors),
             Some(poses),
             cloud,
-            Some(contacts),
+            contacts,
             friction,
             particles,
         ];
@@ -259,6 +261,8 @@ impl ReportedExperiment<'_> {
                     .line(Line::of(run.scored.variant)),
             )
         });
+        let mut estimates: Vec<Body> = estimates.collect();
+        estimates.sort_by_key(|body| body.line);
         Overlay {
             title: self.instant(row),
             view: Some(view_of(self.in_view(row))),

@@ -3,6 +3,7 @@
 use maud::{DOCTYPE, PreEscaped, html};
 use serde_json::json;
 use stickslip::dynamics::Scene;
+use stickslip_evaluation::Variant;
 
 use crate::colour::Colour;
 use crate::outline::{Outline, bounds};
@@ -29,7 +30,7 @@ pub fn live_page(scene: &Scene, title: &str) -> String {
         "fixels": fixels.iter().map(body).collect::<Vec<_>>(),
         "reach": 1e3 * scene.object.shape.bounding_radius(),
         "view": view,
-        "colour": Colour::BLUE.hex(),
+        "colour": Colour::of(Variant::Particle).hex(),
     });
     let data = data.to_string().replace('<', "\\u003c");
     let page = html! {
@@ -52,7 +53,7 @@ pub fn live_page(scene: &Scene, title: &str) -> String {
                             }
                             p class="legend" {
                                 "Filled: what the camera measures. Coloured: the estimate; thin: particles. Fixels are yellow while their sensor "
-                                "is touched; rims turn yellow with the estimated probability of contact."
+                                "is touched; rims turn yellow with the estimated probability that they press on the object: at rest they may touch without."
                             }
                         }
                         script type="application/json" { (PreEscaped(data)) }

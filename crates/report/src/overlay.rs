@@ -208,7 +208,7 @@ impl Overlay {
             (Text { weight: Weight::Bold, ..Text::at([MARGIN, 23.0], &self.title) }.sized(TITLE))
             svg x=(px(MARGIN)) y=(px(head)) width=(px(width)) height=(px(height)) viewBox={ "0 0 " (px(width)) " " (px(height)) } overflow="hidden" {
                 (background)
-                @for body in &self.bodies { (body.draw(&body.outline.mapped(map))) }
+                @for body in &self.bodies { (body.draw(&body.outline.mapped(map), scale <= 0.0)) }
             }
             rect class="axis" x=(px(MARGIN)) y=(px(head)) width=(px(width)) height=(px(height)) fill="none" stroke=(Colour::INK.hex()) {}
             (legend)
@@ -233,8 +233,9 @@ impl Overlay {
 }
 
 impl Body {
-    /// Draws the body with its outline in pixels.
-    fn draw(&self, outline: &Outline) -> Markup {
+    /// Draws the body with its outline in pixels; on an image with a light rim about its boundary, which
+    /// is seen whatever the image has there.
+    fn draw(&self, outline: &Outline, on_image: bool) -> Markup {
         let area: String = outline
             .areas
             .iter()
@@ -253,6 +254,7 @@ impl Body {
         });
         html! {
             path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
+            @if on_image { path d=(boundary) fill="none" stroke="#ffffff" stroke-width="4.5" stroke-opacity="0.75" stroke-linejoin="round" {} }
             path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round"
                 stroke-dasharray=[self.line.dashes()] {}
             @if let Some(at) = middle.filter(|_| !self.tag.is_empty()) {

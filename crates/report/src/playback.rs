@@ -9,7 +9,7 @@ use crate::colour::{Colour, Line};
 use crate::curves::PoseError;
 use crate::marks::Mark;
 use crate::outline::Outline;
-use crate::playback_data::data;
+use crate::playback_data::{data, has_cloud, knows_contacts};
 
 /// What is shown of an experiment, row by row; every column has one entry per row of the log.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -166,10 +166,7 @@ impl Playback {
                     }
                     h3 { "Contacts of the object" }
                     ul class="contacts" {}
-                    p class="legend" {
-                        "Filled: the " (self.reference_name) ", dashed while the camera is dark. Coloured outlines: estimates; thin ones: particles. "
-                        "Pusher and fixels are yellow while they touch the object; their rim turns yellow with the estimated probability."
-                    }
+                    p class="legend" { (self.legend()) }
                 }
                 div class="time" {
                     div class="marks" {}
@@ -184,6 +181,33 @@ impl Playback {
                 script type="application/json" { (PreEscaped(data)) }
             }
         }
+    }
+
+    /// What is drawn how; nothing is named that is not there.
+    fn legend(&self) -> String {
+        let any = |of: fn(&Touch) -> bool| self.touches.iter().any(of);
+        let yellow = if any(|touch| touch.truth.is_some()) {
+            match self.fixels.is_empty() {
+                true => " The pusher is yellow while it touches the object.",
+                false => " Pusher and fixels are yellow while they touch the object.",
+            }
+        } else if any(|touch| touch.sensed.is_some()) {
+            " Fixels are yellow while their sensors are touched."
+        } else {
+            ""
+        };
+        let particles = match self.runs.iter().any(has_cloud) {
+            true => "; thin ones: particles",
+            false => "",
+        };
+        let rims = match self.runs.iter().any(knows_contacts) {
+            true => " Rims turn yellow with the estimated probability of contact.",
+            false => "",
+        };
+        format!(
+            "Filled: the {}, dashed while the camera is dark. Coloured outlines: estimates{particles}.{yellow}{rims}",
+            self.reference_name
+        )
     }
 
     /// The rows played back, among those there are.

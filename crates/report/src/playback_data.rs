@@ -122,8 +122,6 @@ fn run(run: &PlaybackRun, bodies: usize, rows: Range<usize>) -> Value {
         let cell = |row| probability(row).map(|p| whole(p, 100.0));
         rows.clone().map(|row| json!(cell(row))).collect()
     };
-    let knows_contacts = run.contacts.iter().any(Option::is_some);
-    let has_cloud = run.cloud.iter().any(|row| !row.is_empty());
     json!({
         "name": run.name,
         "colour": run.colour.hex(),
@@ -131,9 +129,19 @@ fn run(run: &PlaybackRun, bodies: usize, rows: Range<usize>) -> Value {
         "pose": poses(&run.poses, rows.clone()),
         "error": error(PoseError::distance_mm),
         "turn": error(|error| error.turn_deg),
-        "contact": knows_contacts.then(|| (0..bodies).map(contact).collect::<Vec<_>>()),
-        "cloud": has_cloud.then(|| rows.clone().map(|row| cloud(run, row)).collect::<Vec<_>>()),
+        "contact": knows_contacts(run).then(|| (0..bodies).map(contact).collect::<Vec<_>>()),
+        "cloud": has_cloud(run).then(|| rows.clone().map(|row| cloud(run, row)).collect::<Vec<_>>()),
     })
+}
+
+/// Whether a run has probabilities of contact.
+pub(crate) fn knows_contacts(run: &PlaybackRun) -> bool {
+    run.contacts.iter().any(Option::is_some)
+}
+
+/// Whether particles of a run are drawn.
+pub(crate) fn has_cloud(run: &PlaybackRun) -> bool {
+    run.cloud.iter().any(|row| !row.is_empty())
 }
 
 /// Particles of a row from the estimate on: three numbers each.
@@ -174,7 +182,7 @@ fn contact(touch: &Touch, rows: Range<usize>) -> Value {
 }
 
 /// Left, low, width and height (mm) of what holds the object and the pusher on their way, and the
-/// fixels.
+/// fixels; where nobody knows the object's way, that of the run whose contacts are shown, or of the first.
 fn view(playback: &Playback) -> [f64; 4] {
     let rows = playback.shown();
     let swept = |outline: &Outline, poses: &[Option<Pose>]| -> Vec<[f64; 2]> {
@@ -187,8 +195,15 @@ fn view(playback: &Playback) -> [f64; 4] {
             .collect()
     };
     let fixels = playback.fixels.iter().filter_map(Outline::bounds).flatten();
+    let mut runs = playback.runs.iter();
+    let guess = runs.clone().find(|run| knows_contacts(run)).or(runs.next());
+    let guessed = |row: usize| guess?.poses.get(row).copied()?;
+    let reference = playback.reference.iter().enumerate();
+    let object: Vec<Option<Pose>> = reference
+        .map(|(row, known)| known.or_else(|| guessed(row)))
+        .collect();
     let all = fixels
-        .chain(swept(&playback.object, &playback.reference))
+        .chain(swept(&playback.object, &object))
         .chain(swept(&playback.pusher, &playback.pusher_poses));
     let [[left, low], [right, high]] = bounds(all)
         .unwrap_or([[-0.05; 2], [0.05; 2]])

@@ -148,11 +148,24 @@ impl Plot<'_> {
         [self.x.at(x), self.y.at(y)]
     }
 
-    /// A line through points; points that are not finite break it.
+    /// A line through points; points that are not finite break it, and one between two of them is a
+    /// dot.
     pub fn curve(&self, points: &[[f64; 2]], colour: Colour, line: Line) -> Markup {
-        let d = path(points.iter().map(|point| self.at(*point)), false);
+        let pixels: Vec<[f64; 2]> = points.iter().map(|point| self.at(*point)).collect();
+        let is_drawn = |k: usize| {
+            let point = pixels.get(k);
+            point.is_some_and(|point| point.iter().all(|value| value.is_finite()))
+        };
+        let is_alone = |k: &usize| {
+            is_drawn(*k)
+                && !is_drawn(k + 1)
+                && k.checked_sub(1).is_none_or(|before| !is_drawn(before))
+        };
         html! {
-            path d=(d) fill="none" stroke=(colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-dasharray=[line.dashes()] {}
+            path d=(path(pixels.iter().copied(), false)) fill="none" stroke=(colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-dasharray=[line.dashes()] {}
+            @for [x, y] in (0..pixels.len()).filter(is_alone).map(|k| pixels[k]) {
+                circle cx=(px(x)) cy=(px(y)) r="3" fill=(colour.hex()) {}
+            }
         }
     }
 

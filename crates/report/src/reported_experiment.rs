@@ -14,7 +14,7 @@ use crate::playback::{Playback, PlaybackRun};
 use crate::reported_run::ReportedRun;
 use crate::story::{Fate, Outcome, Story};
 use crate::table::{Table, number};
-use crate::touch::{rule, true_touches};
+use crate::touch::{TouchRule, true_touches};
 
 /// Time that is shown before the first contact and after the last one begins (s).
 const BEFORE: f64 = 1.0;
@@ -156,11 +156,13 @@ impl<'a> ReportedExperiment<'a> {
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
-                 angles weighted by the radius of gyration, against the {}. {} Unsolved: steps of particles that the \
-                 solver left unsolved; collapses: rows that no particle explained. Contact: {}.",
+                 angles weighted by the radius of gyration, against the {}{}. {} Own spread: what a method holds that error \
+                 to be; moving: from the pusher's first contact to the object's last motion; final: at the last row. Unsolved: \
+                 steps of particles that the solver left unsolved; collapses: rows that no particle explained. Contact: {}.",
                 self.reference_name,
+                self.where_known(),
                 Fate::rule(),
-                rule()
+                TouchRule::measured(self.setup).words()
             )),
         ];
         let estimate = self.learner().map(|run| {
@@ -190,6 +192,16 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
+    /// ", known in 2 of 199 rows" of what estimates are scored against; nothing where it always is.
+    fn where_known(&self) -> String {
+        let rows = &self.reference.pose;
+        let known = rows.iter().filter(|pose| pose.is_some()).count();
+        match known == rows.len() {
+            true => String::new(),
+            false => format!(", known in {known} of {} rows", rows.len()),
+        }
+    }
+
     /// The scores of all runs.
     #[must_use]
     pub fn scores(&self) -> Table {
@@ -203,7 +215,7 @@ impl<'a> ReportedExperiment<'a> {
             wmse,
             "own spread (mm)",
             "verdict",
-            "WMSE moving",
+            "WMSE moving (mm)",
             "final (mm)",
             "final (°)",
             "unsolved",
@@ -266,9 +278,8 @@ impl<'a> ReportedExperiment<'a> {
             track
         };
 
-        // runs with the camera on lie below all others
         let mut lowest_first: Vec<usize> = (0..self.runs.len()).collect();
-        lowest_first.sort_by_key(|k| !self.runs[*k].camera_on());
+        lowest_first.sort_by_key(|k| Line::of(self.runs[*k].scored.variant));
 
         let [from, to] = self.span();
         let name = if self.what.is_empty() {
@@ -314,8 +325,8 @@ impl<'a> ReportedExperiment<'a> {
         intervals(&self.log.time, &self.blind())
     }
 
-    /// From a little before the first contact to a while after the last one begins; all times where
-    /// none is known.
+    /// From a little before the first contact to a while after the last one begins, and on to where
+    /// the estimates can be compared to something; all times where no contact is known.
     pub(crate) fn span(&self) -> [f64; 2] {
         let time = &self.log.time;
         let first = time.first().copied().unwrap_or(0.0);
@@ -326,7 +337,12 @@ impl<'a> ReportedExperiment<'a> {
             return [first, last];
         };
         let end = contacts.fold(start, f64::max) + AFTER;
-        [(start - BEFORE).max(first), end.min(last)]
+        let mut later = time[self.row_at(end)..].iter().copied();
+        let compared = later.find(|time| self.reference.pose_at(*time).is_some());
+        [
+            (start - BEFORE).max(first),
+            compared.map_or(end, |time| time.max(end)).min(last),
+        ]
     }
 
     /// The last row up to a time.
@@ -338,7 +354,10 @@ impl<'a> ReportedExperiment<'a> {
     /// The row whose picture tells most.
     pub(crate) fn poster(&self) -> usize {
         let [from, to] = self.span();
-        self.row_at((to - AFTER + POSTER).max(from))
+        let contacts = self.contacts.iter().map(|mark| mark.time);
+        let last = contacts.filter(|time| time.is_finite()).reduce(f64::max);
+        let shown = last.map_or(to - AFTER, |last| last.min(to)) + POSTER;
+        self.row_at(shown.min(to).max(from))
     }
 
     /// The run whose particles and friction are shown: the last one that learns friction with the

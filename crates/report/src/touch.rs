@@ -8,17 +8,13 @@ use stickslip::{EstimateRow, Setup};
 use stickslip_evaluation::Reference;
 use stickslip_formats::Experiment;
 
+use crate::drawing::px;
+
 /// Gap up to which two bodies touch (m).
 const GAP: f64 = 2e-4;
 
 /// Largest offset of a row of the truth from a row of the log at the same time (s).
 const SAME_TIME: f64 = 5e-4;
-
-/// The rule in words.
-pub(crate) fn rule() -> String {
-    let gap = 1e3 * GAP;
-    format!("two bodies touch where they press on each other or their gap is at most {gap} mm")
-}
 
 /// What counts as contact in a scene.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +41,18 @@ impl<'a> TouchRule<'a> {
         Self {
             pusher_gap: GAP + 2.0 * noise,
             ..Self::exact(setup)
+        }
+    }
+
+    /// The rule in words.
+    pub fn words(&self) -> String {
+        let [gap, pusher_gap] = [GAP, self.pusher_gap].map(|gap| px(1e3 * gap));
+        let rule = format!(
+            "two bodies touch where they press on each other or their gap is at most {gap} mm"
+        );
+        match pusher_gap == gap {
+            true => rule,
+            false => format!("{rule}; for an estimate, {pusher_gap} mm to the pusher as measured"),
         }
     }
 
@@ -132,7 +140,7 @@ pub(crate) fn true_touches(
 #[cfg(test)]
 mod tests {
     use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pusher};
-    use stickslip::{FilterSettings, Log, Tactile, Uncertainty};
+    use stickslip::{Camera, FilterSettings, Log, Tactile, Uncertainty};
     use stickslip_formats::{Truth, TruthFacts};
 
     use super::*;
@@ -206,6 +214,24 @@ mod tests {
             let expected = [vec![first, true, false], vec![false, true, true]];
             assert_eq!(touches, expected.map(Some));
         }
+    }
+
+    #[test]
+    fn the_rule_tells_the_gap_to_a_pusher_whose_pose_is_noisy() {
+        let exact = setup();
+        let noisy = Setup {
+            camera: Some(Camera {
+                position_std: 3e-4,
+                orientation_std: 5e-3,
+                latency: 0.0,
+                pusher_position_std: 4e-5,
+                pusher_orientation_std: 0.0,
+            }),
+            ..setup()
+        };
+        let told = |setup: &Setup| TouchRule::measured(setup).words();
+        assert!(told(&exact).ends_with("gap is at most 0.2 mm"));
+        assert!(told(&noisy).ends_with("for an estimate, 0.28 mm to the pusher as measured"));
     }
 
     #[test]

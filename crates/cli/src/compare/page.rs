@@ -1,11 +1,17 @@
 //! A comparison as a page: [`report`].
 
+use stickslip_evaluation::Variant;
 use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
 
 use super::results::{Comparison, LEGEND, Overall};
 use super::tables;
 use crate::origin::origin;
 use crate::output::counted;
+
+/// What the legend of the tables leaves out.
+const REST: &str = "WMSE is the paper's name for the weighted root mean square error of the pose, angles times the radius of gyration; \
+    moving: the same from the pusher's first contact to the object's last motion; final: errors at the last row. Unsolved: steps of \
+    particles that the solver left unsolved; collapses: rows that no particle explained; both summed.";
 
 /// The table over all folders on top, then those `played` back, then each folder's.
 pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
@@ -18,19 +24,6 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         errors,
         touch_gain,
     } = comparison;
-    let outcome = |row: &Overall| Outcome {
-        // medians over other experiments than the rest are not to be set beside theirs
-        name: match row.folders == folders.len() {
-            true => row.variant.title().to_owned(),
-            false => format!("{} on {} of them", row.variant.title(), row.folders),
-        },
-        camera_on: row.variant.camera_on(),
-        wmse_mm: row.median.wmse_mm,
-    };
-    let story = Story {
-        outcomes: overall.iter().map(outcome).collect(),
-        ..Story::default()
-    };
     let text = format!(
         "{}, every method on each: particle filters with {particles} particles, {}. \
          Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
@@ -41,16 +34,22 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         }
     );
     let gain = touch_gain.map_or_else(String::new, |gain| format!("{} ", gain.to_string().trim()));
-    let note = format!("{LEGEND} Quantiles: {quantile}. {gain}{}", Fate::rule());
+    let note = format!(
+        "{LEGEND} {REST} Quantiles: {quantile}. {gain}{}",
+        Fate::rule()
+    );
     let all = [
         Block::Table(
-            tables::overall(overall),
+            tables::overall(overall, Variant::title),
             "Over all experiments: median (90th percentile)".to_owned(),
         ),
         Block::Note(note),
     ];
     let each = folders.iter().flat_map(|folder| {
-        let table = Block::Table(tables::entries(&folder.methods), folder.folder.clone());
+        let table = Block::Table(
+            tables::entries(&folder.methods, Variant::title),
+            folder.folder.clone(),
+        );
         let notes = folder.note.iter().chain(&folder.warnings);
         [table].into_iter().chain(notes.cloned().map(Block::Note))
     });
@@ -73,11 +72,31 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
     sections.splice(first..first, played);
     Report {
         title: "Methods compared".to_owned(),
-        summary: vec![Block::Text(text), Block::Fates(story)],
+        summary: vec![
+            Block::Text(text),
+            Block::Fates(story(overall, folders.len())),
+        ],
         sections,
         origin: origin([
             ("particles", particles.to_string()),
             ("seeds", seeds.to_string()),
         ]),
+    }
+}
+
+/// How each variant fares over so many experiments.
+fn story(overall: &[Overall], experiments: usize) -> Story {
+    let outcome = |row: &Overall| Outcome {
+        // medians over other experiments than the rest are not to be set beside theirs
+        name: match row.folders == experiments {
+            true => row.variant.title().to_owned(),
+            false => format!("{} on {} of them", row.variant.title(), row.folders),
+        },
+        camera_on: row.variant.camera_on(),
+        wmse_mm: row.median.wmse_mm,
+    };
+    Story {
+        outcomes: overall.iter().map(outcome).collect(),
+        ..Story::default()
     }
 }

@@ -1,10 +1,12 @@
 //! A comparison as text: [`text`].
 
+use stickslip_evaluation::Variant;
 use stickslip_report::{Colour, Table, number};
 
 use super::results::{
     COLUMNS, Column, Comparison, LEGEND, Over, Overall, TouchGain, VariantScores,
 };
+use crate::output::counted;
 
 /// A table per folder, then one over all of them; nothing where there is no folder.
 pub fn text(comparison: &Comparison) -> String {
@@ -18,15 +20,16 @@ pub fn text(comparison: &Comparison) -> String {
         let note = folder.note.iter().map(|note| format!("note: {note}\n"));
         let warnings = folder.warnings.iter();
         let notes = note.chain(warnings.map(|warning| format!("warning: {warning}\n")));
-        let table = entries(&folder.methods);
+        let table = entries(&folder.methods, Variant::name);
         format!("{}\n{table}{}", folder.folder, notes.collect::<String>())
     });
     let overall = (!folders.is_empty()).then(|| {
         format!(
-            "median (90th percentile) over {} folders, each the median of {seeds} seeds\n{}\
+            "median (90th percentile) over {}, each the median of {}\n{}\
              {LEGEND} Quantiles: {quantile}.\n{}",
-            folders.len(),
-            overall(&comparison.overall),
+            counted(folders.len() as u64, "folder"),
+            counted(*seeds, "seed"),
+            overall(&comparison.overall, Variant::name),
             comparison
                 .touch_gain
                 .map_or_else(String::new, |gain| gain.to_string())
@@ -35,8 +38,8 @@ pub fn text(comparison: &Comparison) -> String {
     folder_tables.chain(overall).collect::<Vec<_>>().join("\n")
 }
 
-/// The scores of each variant on one experiment.
-pub fn entries(entries: &[VariantScores]) -> Table {
+/// The scores of each variant on one experiment, by their `names`.
+pub fn entries(entries: &[VariantScores], names: fn(Variant) -> &'static str) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved", "collapses"]));
     for entry in entries {
         let scores = COLUMNS
@@ -44,7 +47,7 @@ pub fn entries(entries: &[VariantScores]) -> Table {
             .map(|column| number((column.of)(&entry.scores), 3));
         table.push_coloured(
             Colour::of(entry.variant),
-            [entry.variant.name().to_owned()]
+            [names(entry.variant).to_owned()]
                 .into_iter()
                 .chain(scores)
                 .chain([
@@ -56,8 +59,8 @@ pub fn entries(entries: &[VariantScores]) -> Table {
     table
 }
 
-/// Each variant over all folders: median (90th percentile).
-pub fn overall(rows: &[Overall]) -> Table {
+/// Each variant over all folders, by their `names`: median (90th percentile).
+pub fn overall(rows: &[Overall], names: fn(Variant) -> &'static str) -> Table {
     let mut table = Table::new(titles(["method"], ["unsolved", "collapses", "folders"]));
     for row in rows {
         let both = |column: &Column| match column.over {
@@ -75,7 +78,7 @@ pub fn overall(rows: &[Overall]) -> Table {
         ];
         table.push_coloured(
             Colour::of(row.variant),
-            [row.variant.name().to_owned()]
+            [names(row.variant).to_owned()]
                 .into_iter()
                 .chain(COLUMNS.iter().map(both))
                 .chain(counts),

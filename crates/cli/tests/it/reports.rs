@@ -211,10 +211,11 @@ fn compare_writes_a_report_of_all_folders() {
         "class=\"player\"",
         "number 1 of 1 by the particle filter's WMSE",
         "compare_report",
-        "particle, no tactile",
+        "particle filter without touch",
     ] {
         assert!(page.contains(text), "{text}");
     }
+    assert!(!page.contains("particle, no tactile"), "one name for each");
 }
 
 /// A log's clock reads seconds since 1970; a page that counts from the log's start says from when.

@@ -3,7 +3,7 @@
 
 use crate::common::{experiment, log, setup, truth};
 use serde_json::Value;
-use stickslip_report::{Block, Outcome, Report, Section, Story, Table};
+use stickslip_report::{Block, Outcome, Report, ReportedExperiment, Section, Story, Table};
 
 const HOSTILE: &str = "</script><script>alert(1)</script> \"'<b>&amp; http://example.org";
 
@@ -191,7 +191,8 @@ fn data_read_back_to_the_numbers_they_were() {
         data["methods"][2]["contact"].is_null(),
         "only one method's contacts are shown"
     );
-    assert_eq!(data["order"], serde_json::json!([4, 0, 1, 2, 3]));
+    // the filter without touch is dashed, the one whose camera is on dotted
+    assert_eq!(data["order"], serde_json::json!([0, 1, 3, 2, 4]));
 }
 
 #[test]
@@ -242,4 +243,71 @@ fn pages_of_nothing_and_of_one_row_are_pages() {
         !plain.to_html().contains("<script"),
         "no script where nothing is played back"
     );
+}
+
+/// The paragraph beside the stage.
+fn legend(experiment: &ReportedExperiment<'_>) -> String {
+    let sections = vec![experiment.section()];
+    let page = Report {
+        sections,
+        ..Report::default()
+    };
+    let text = page.to_html();
+    let (_, after) = text.split_once("<p class=\"legend\">").unwrap();
+    after.split_once("</p>").unwrap().0.to_owned()
+}
+
+/// A log of a camera tells of no contact; without sensors nothing is ever yellow, and a Kalman filter
+/// has neither particles nor probabilities.
+#[test]
+fn the_legend_names_what_is_there() {
+    let (setup, log) = (setup(), log(60));
+    let known = experiment("test", &setup, &log, 5);
+    assert_eq!(
+        legend(&known),
+        "Filled: the truth, dashed while the camera is dark. Coloured outlines: estimates; thin ones: particles. \
+         Pusher and fixels are yellow while they touch the object. \
+         Rims turn yellow with the estimated probability of contact."
+    );
+    let mut sensed = experiment("test", &setup, &log, 5);
+    sensed.touches.fill(None);
+    assert!(legend(&sensed).contains("Fixels are yellow while their sensors are touched."));
+
+    let mut bare = log.clone();
+    bare.tactile.clear();
+    let mut unknown = experiment("test", &setup, &bare, 5);
+    unknown.touches.fill(None);
+    unknown.runs.truncate(2);
+    assert_eq!(
+        legend(&unknown),
+        "Filled: the truth, dashed while the camera is dark. Coloured outlines: estimates."
+    );
+    let figures = unknown.figures();
+    assert!(figures.iter().all(|figure| figure.name != "contacts"));
+    assert!(!figures[0].caption.contains("shaded"));
+}
+
+/// A camera that sees the object before and after a push only: what is scored is shown.
+#[test]
+fn an_object_that_is_seen_at_the_ends_only_is_in_the_picture_and_compared() {
+    let (setup, log) = (setup(), log(300));
+    let mut experiment = experiment("test", &setup, &log, 5);
+    experiment.reference.pose[1..299].fill(None);
+    // without the pose at the end, the picture would end 4 s after the contact
+    experiment.contacts.truncate(1);
+    let sections = vec![experiment.section()];
+    let text = Report {
+        sections,
+        ..Report::default()
+    }
+    .to_html();
+    assert!(text.contains("against the truth, known in 2 of 300 rows."));
+    let data = data(&text);
+    assert_eq!(data["time"].as_array().unwrap().len(), 300);
+    let view: Vec<f64> = serde_json::from_value(data["view"].clone()).unwrap();
+    let [left, right] = [view[0], view[0] + view[2]];
+    assert!(left < -25.0 && right > 60.0 + 25.0, "{view:?}");
+    // the error at the end stands alone
+    let errors = &experiment.figures()[0].drawing;
+    assert!(errors.to_svg().contains("<circle"));
 }
