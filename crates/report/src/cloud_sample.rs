@@ -1,4 +1,4 @@
-//! A few particles of every row, to be drawn, and how many there are: [`CloudSample`].
+//! A few particles of every row, to be drawn: [`CloudSample`].
 
 use std::sync::{Mutex, PoisonError};
 
@@ -6,21 +6,14 @@ use stickslip::dynamics::Pose;
 use stickslip::{Observer, ParticleView, SolvedStep};
 use stickslip_evaluation::ScoredRun;
 
-use crate::reported_run::{Distinct, ReportedRun};
+use crate::reported_run::ReportedRun;
 
 /// Watches a run and keeps the poses of some particles after every row, drawn by their weights, so
 /// that all kept ones count the same.
 #[derive(Debug)]
 pub struct CloudSample {
     kept: usize,
-    rows: Mutex<Vec<(usize, SampledRow)>>,
-}
-
-/// What is kept of one row.
-#[derive(Debug)]
-struct SampledRow {
-    poses: Vec<Pose>,
-    distinct: Distinct,
+    rows: Mutex<Vec<(usize, Vec<Pose>)>>,
 }
 
 impl CloudSample {
@@ -37,19 +30,14 @@ impl CloudSample {
     #[must_use]
     pub fn into_run(self, scored: ScoredRun) -> ReportedRun {
         let rows = scored.estimate.rows.len();
-        let (mut cloud, mut distinct) = (vec![Vec::new(); rows], vec![None; rows]);
+        let mut cloud = vec![Vec::new(); rows];
         let sampled = self.rows.into_inner();
-        for (row, sampled) in sampled.unwrap_or_else(PoisonError::into_inner) {
+        for (row, poses) in sampled.unwrap_or_else(PoisonError::into_inner) {
             if row < rows {
-                cloud[row] = sampled.poses;
-                distinct[row] = Some(sampled.distinct);
+                cloud[row] = poses;
             }
         }
-        ReportedRun {
-            scored,
-            cloud,
-            distinct,
-        }
+        ReportedRun { scored, cloud }
     }
 }
 
@@ -61,29 +49,11 @@ impl Observer for CloudSample {
             .into_iter()
             .map(|particle| cloud.pose(particle))
             .collect();
-        let distinct = Distinct {
-            poses: different(cloud.len(), |k| {
-                let Pose { x, y, theta } = cloud.pose(k);
-                [x, y, theta, 0.0]
-            }),
-            frictions: different(cloud.len(), |k| {
-                let friction = cloud.friction(k);
-                [friction.mu_s, friction.mu_p, friction.mu_f, friction.d_tri]
-            }),
-        };
         self.rows
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
-            .push((row, SampledRow { poses, distinct }));
+            .push((row, poses));
     }
-}
-
-/// How many of `count` particles differ in what is taken of them, to the bit.
-fn different(count: usize, of: impl Fn(usize) -> [f64; 4]) -> usize {
-    let mut all: Vec<[u64; 4]> = (0..count).map(|k| of(k).map(f64::to_bits)).collect();
-    all.sort_unstable();
-    all.dedup();
-    all.len()
 }
 
 /// The particles at which the running sum of weights passes (k + 1/2) / `count`: systematic
@@ -105,13 +75,6 @@ fn systematic(weights: &[f64], count: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn copies_are_counted_once() {
-        let values = [1.0, 2.0, 1.0, 1.0, -0.0, 0.0];
-        assert_eq!(different(6, |k| [values[k], 0.0, 0.0, 0.0]), 4);
-        assert_eq!(different(0, |_| [0.0; 4]), 0);
-    }
 
     #[test]
     fn systematic_draws_by_weight() {

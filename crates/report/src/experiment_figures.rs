@@ -82,17 +82,14 @@ impl ReportedExperiment<'_> {
             let text = "Particles at the same instants; the ellipse holds 95 % of a normal distribution with their covariance.";
             Figure::new("cloud", drawing, text)
         });
-        let particles = self.particles().map(|figure| {
-            let text = "How many particles count: effective sample size after weighing, and how many are no copies of others.";
-            Figure::new("particles", figure.drawing(), text)
-        });
         let shown = [
             Some(errors),
             Some(poses),
             cloud,
             contacts,
+            self.slips(),
             friction,
-            particles,
+            self.particles(),
         ];
         shown.into_iter().flatten().collect()
     }
@@ -176,7 +173,7 @@ impl ReportedExperiment<'_> {
     }
 
     /// What all figures against time share.
-    fn time_figure(&self) -> TimeFigure {
+    pub(crate) fn time_figure(&self) -> TimeFigure {
         TimeFigure {
             span: self.span(),
             dark: self.dark(),
@@ -339,42 +336,6 @@ impl ReportedExperiment<'_> {
             compared: reference.into_iter().chain([mean]).collect(),
             turn_factor: 10.0,
             width: 441.0,
-        })
-    }
-
-    /// How many of the learner's particles count.
-    fn particles(&self) -> Option<TimeFigure> {
-        let run = self.learner()?;
-        let estimate = &run.scored.estimate;
-        let curve = |name: &str, colour: Colour, of: &dyn Fn(usize) -> Option<f64>| {
-            let point = |(row, time): (usize, &f64)| [*time, of(row).unwrap_or(f64::NAN)];
-            Curve::new(
-                name,
-                colour,
-                estimate.time.iter().enumerate().map(point).collect(),
-            )
-        };
-        let ess = |row: usize| estimate.rows[row].ess;
-        let distinct = |row: usize| run.distinct.get(row).copied().flatten();
-        let poses = |row: usize| distinct(row).map(|found| found.poses as f64);
-        let frictions = |row: usize| distinct(row).map(|found| found.frictions as f64);
-        let panel = Panel {
-            label: "particles".to_owned(),
-            scale: Scale::Log { floor: 1.0 },
-            curves: vec![
-                curve("effective sample size", run.colour(), &ess),
-                curve("different poses", Colour::INK, &poses),
-                Curve {
-                    line: Line::Dashed,
-                    ..curve("different friction values", Colour::INK, &frictions)
-                },
-            ],
-            ..Panel::default()
-        };
-        let known = run.distinct.iter().any(Option::is_some);
-        known.then(|| TimeFigure {
-            panels: vec![panel],
-            ..self.time_figure()
         })
     }
 }

@@ -6,6 +6,7 @@
 //! turns them into pixels.
 
 mod axis;
+mod belief_figures;
 mod cloud_sample;
 mod colour;
 mod contact_timeline;
@@ -50,7 +51,7 @@ pub use particle_cloud::ParticleCloud;
 pub use playback::{Playback, PlaybackRun, Touch};
 pub use png::{PngError, png_of};
 pub use reported_experiment::ReportedExperiment;
-pub use reported_run::{Distinct, ReportedRun};
+pub use reported_run::ReportedRun;
 pub use story::{Fate, KEPT_MM, LOST_MM, Outcome, Story};
 pub use table::{Table, number};
 pub use time_figure::{Curve, Level, Panel, TimeFigure};

@@ -12,8 +12,6 @@ pub struct ReportedRun {
     pub scored: ScoredRun,
     /// Particles to draw, row by row; none for variants without.
     pub cloud: Vec<Vec<Pose>>,
-    /// How many of all its particles are different, row by row.
-    pub distinct: Vec<Option<Distinct>>,
 }
 
 impl ReportedRun {
@@ -39,13 +37,4 @@ impl ReportedRun {
     pub(crate) fn camera_on(&self) -> bool {
         self.scored.variant.camera_on()
     }
-}
-
-/// Particles that are not copies of others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Distinct {
-    /// Different poses.
-    pub poses: usize,
-    /// Different friction values.
-    pub frictions: usize,
 }

@@ -169,7 +169,6 @@ pub fn experiment<'a>(
             } else {
                 Vec::new()
             },
-            distinct: Vec::new(),
         }
     };
     ReportedExperiment {
