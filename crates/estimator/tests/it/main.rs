@@ -2,6 +2,7 @@
 
 mod common;
 mod contact_mode;
+mod extended_kalman;
 mod fast_pusher;
 mod friction_parameters;
 mod jam;
