@@ -17,6 +17,7 @@ from stickslip._score import score
 _VARIANTS: dict[str, dict[str, Any]] = {
     "nominal": {"method": "nominal"},
     "kalman": {"method": "kalman"},
+    "extended_kalman": {"method": "extended-kalman"},
     "particle_no_tactile": {"tactile": False},
     "particle": {},
     "particle_always_on": {"camera_on": True},
@@ -35,8 +36,8 @@ def compare(
 
     A folder that is none itself stands for those below it.
 
-    ``variants``: ``nominal``, ``kalman``, ``particle_no_tactile``, ``particle``, ``particle_always_on`` (the
-    camera stays on). Those that do not differ on a log (no tactile columns, nothing hidden) are left out. The
+    ``variants``: ``nominal``, ``kalman``, ``extended_kalman``, ``particle_no_tactile``, ``particle``,
+    ``particle_always_on`` (the camera stays on). Those that do not differ on a log (no tactile columns, nothing hidden) are left out. The
     camera is hidden as ``options`` say, else from ``occlude_from`` of ``truth.json`` on. Scores are against
     ``truth.csv`` where there is one, else against the log's own poses.
 

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 class FilterOptions(TypedDict, total=False):
     """How a log is run; the defaults are those of the program."""
 
-    #: ``particle`` (default), ``kalman`` (knows nothing of contact) or ``nominal`` (looks once).
-    method: Literal["particle", "kalman", "nominal"]
+    #: ``particle`` (default), ``kalman`` (knows nothing of contact), ``extended-kalman`` (knows contact, feels no
+    #: touch) or ``nominal`` (looks once).
+    method: Literal["particle", "kalman", "extended-kalman", "nominal"]
     #: Rules of the particle filter: ``contact`` (default) or ``paper``.
     mode: Literal["contact", "paper"]
     #: Number of particles, 500 by default.

@@ -35,6 +35,7 @@ def _by_program(program: str, folder: Path, out: Path, *options: str) -> pd.Data
          {"mode": "paper", "seed": 7, "particles": 96, "tactile": False, "occlude": (150, 300)}),
         (["--causal", "--occlude-middle", "1"], {"causal": True, "occlude_middle": 1.0, "threads": 2}),
         (["--method", "kalman"], {"method": "kalman"}),
+        (["--method", "extended-kalman", "--occlude", "200"], {"method": "extended-kalman", "occlude": 200}),
         (["--method", "nominal", "--substeps", "2"], {"method": "nominal", "substeps": 2}),
     ],
 )  # fmt: skip

@@ -223,6 +223,8 @@ pub enum MethodName {
     KalmanStops,
     /// The same, which in the dark moves with the pusher as if glued to it
     WithPusher,
+    /// Extended Kalman filter over contact dynamics; it does not feel touch
+    ExtendedKalman,
     /// Simulation with the nominal friction, blind after the first pose
     Nominal,
 }
@@ -315,6 +317,7 @@ impl From<MethodName> for Method {
             MethodName::Kalman => Self::Kalman,
             MethodName::KalmanStops => Self::KalmanStops,
             MethodName::WithPusher => Self::WithPusher,
+            MethodName::ExtendedKalman => Self::ExtendedKalman,
             MethodName::Nominal => Self::Nominal,
         }
     }

@@ -17,6 +17,8 @@ pub enum Method {
     KalmanStops,
     /// The same, which in the dark moves with the pusher as if glued to it.
     WithPusher,
+    /// An extended Kalman filter over contact dynamics, which does not feel touch.
+    ExtendedKalman,
     /// The nominal simulation, which never looks at the camera after the first pose.
     Nominal,
 }

@@ -1,6 +1,6 @@
 //! Runs a method over a recorded log: [`run`].
 
-use crate::baseline::{kalman, nominal, stopping, with_pusher};
+use crate::baseline::{extended_kalman, kalman, nominal, stopping, with_pusher};
 use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
@@ -112,6 +112,15 @@ fn run_prepared(
         (Method::WithPusher, _) => {
             let kalman = kalman::track(setup, &camera()?, prepared)?;
             (with_pusher(kalman, prepared), no_particles)
+        }
+        (Method::ExtendedKalman, _) => {
+            let (estimate, collapses) =
+                extended_kalman::track(setup, camera()?, prepared, progress);
+            let run = ParticleRun {
+                collapses,
+                ..no_particles
+            };
+            (estimate, run)
         }
         (Method::Nominal, _) => (nominal::simulate(setup, prepared, progress), no_particles),
     };

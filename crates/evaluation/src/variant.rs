@@ -18,6 +18,10 @@ pub enum Variant {
     KalmanStops,
     /// The Kalman filter that in the dark moves with the pusher as if glued to it.
     WithPusher,
+    /// Extended Kalman filter over contact dynamics, which does not feel touch.
+    ExtendedKalman,
+    /// The same with nothing hidden from it.
+    ExtendedKalmanCameraOn,
     /// Particle filter without tactile readings.
     ParticleNoTouch,
     /// The same with nothing hidden from it.
@@ -30,14 +34,16 @@ pub enum Variant {
 
 impl Variant {
     /// Those that `compare` runs, in the order of its tables.
-    pub const COMPARED: [Self; 8] = [
+    pub const COMPARED: [Self; 10] = [
         Self::Nominal,
         Self::Kalman,
         Self::KalmanStops,
         Self::WithPusher,
+        Self::ExtendedKalman,
         Self::ParticleNoTouch,
         Self::Particle,
         Self::KalmanCameraOn,
+        Self::ExtendedKalmanCameraOn,
         Self::ParticleCameraOn,
     ];
 
@@ -58,6 +64,7 @@ impl Variant {
             (Method::Kalman, _) => Self::Kalman,
             (Method::KalmanStops, _) => Self::KalmanStops,
             (Method::WithPusher, _) => Self::WithPusher,
+            (Method::ExtendedKalman, _) => Self::ExtendedKalman,
             (Method::Particle, TactileUse::Ignored) => Self::ParticleNoTouch,
             (Method::Particle, TactileUse::Used) => Self::Particle,
         }
@@ -84,7 +91,10 @@ impl Variant {
         );
         all.iter().copied().filter(move |variant| match variant {
             Self::ParticleNoTouch => touch,
-            Self::ParticleCameraOn | Self::KalmanCameraOn | Self::WithPusher => hides,
+            Self::ParticleCameraOn
+            | Self::KalmanCameraOn
+            | Self::ExtendedKalmanCameraOn
+            | Self::WithPusher => hides,
             Self::KalmanStops => touch && hides,
             _ => true,
         })
@@ -98,6 +108,7 @@ impl Variant {
             Self::Kalman | Self::KalmanCameraOn => Method::Kalman,
             Self::KalmanStops => Method::KalmanStops,
             Self::WithPusher => Method::WithPusher,
+            Self::ExtendedKalman | Self::ExtendedKalmanCameraOn => Method::ExtendedKalman,
             _ => Method::Particle,
         }
     }
@@ -116,7 +127,10 @@ impl Variant {
     pub fn camera_on(self) -> bool {
         matches!(
             self,
-            Self::KalmanCameraOn | Self::ParticleNoTouchCameraOn | Self::ParticleCameraOn
+            Self::KalmanCameraOn
+                | Self::ExtendedKalmanCameraOn
+                | Self::ParticleNoTouchCameraOn
+                | Self::ParticleCameraOn
         )
     }
 
@@ -182,6 +196,16 @@ impl Variant {
                 "Kalman filter that stops at touch",
             ],
             Self::WithPusher => ["with_pusher", "with the pusher", "moved with the pusher"],
+            Self::ExtendedKalman => [
+                "extended_kalman",
+                "extended kalman",
+                "extended Kalman filter",
+            ],
+            Self::ExtendedKalmanCameraOn => [
+                "extended_kalman_camera_on",
+                "extended kalman, camera on",
+                "extended Kalman filter, camera on",
+            ],
             Self::ParticleNoTouch => [
                 "particle_no_tactile",
                 "particle, no tactile",

@@ -62,9 +62,10 @@ pub fn method(name: &str) -> PyResult<Method> {
     match name {
         "particle" => Ok(Method::Particle),
         "kalman" => Ok(Method::Kalman),
+        "extended-kalman" => Ok(Method::ExtendedKalman),
         "nominal" => Ok(Method::Nominal),
         _ => Err(refused(format!(
-            "method is `{name}`; it must be `particle`, `kalman` or `nominal`"
+            "method is `{name}`; it must be `particle`, `kalman`, `extended-kalman` or `nominal`"
         ))),
     }
 }

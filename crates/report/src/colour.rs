@@ -38,7 +38,9 @@ impl Colour {
             Variant::WithPusher => Self::VIOLET,
             Variant::KalmanCameraOn => Self::PURPLE,
             Variant::ParticleNoTouch => Self::SKY,
-            Variant::ParticleNoTouchCameraOn => Self::BLUE,
+            Variant::ExtendedKalman
+            | Variant::ExtendedKalmanCameraOn
+            | Variant::ParticleNoTouchCameraOn => Self::BLUE,
             Variant::Particle => Self::VERMILLION,
             Variant::ParticleCameraOn => Self::GREEN,
         }
@@ -73,12 +75,16 @@ impl Line {
     #[must_use]
     pub fn of(variant: Variant) -> Self {
         match variant {
-            Variant::Nominal | Variant::Kalman | Variant::Particle => Self::Solid,
+            Variant::Nominal | Variant::Kalman | Variant::ExtendedKalman | Variant::Particle => {
+                Self::Solid
+            }
             Variant::KalmanStops
             | Variant::WithPusher
             | Variant::ParticleNoTouch
             | Variant::ParticleNoTouchCameraOn => Self::Dashed,
-            Variant::KalmanCameraOn | Variant::ParticleCameraOn => Self::Dotted,
+            Variant::KalmanCameraOn
+            | Variant::ExtendedKalmanCameraOn
+            | Variant::ParticleCameraOn => Self::Dotted,
         }
     }
 

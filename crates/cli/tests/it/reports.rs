@@ -42,9 +42,11 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
             "kalman",
             "kalman_stops",
             "with_pusher",
+            "extended_kalman",
             "particle_no_tactile",
             "particle",
             "kalman_camera_on",
+            "extended_kalman_camera_on",
             "particle_always_on"
         ]
     );
@@ -56,7 +58,7 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
     );
     // a simulation without a spread believes nothing; a share is one
     assert!(overall["mean"]["covered_90"].is_null());
-    let covered = report["folders"][0]["methods"][5]["covered_90"].as_f64();
+    let covered = report["folders"][0]["methods"][6]["covered_90"].as_f64();
     assert!(covered.is_some_and(|share| (0.0..=1.0).contains(&share)));
     assert!(
         report["touch_gain"].is_null(),

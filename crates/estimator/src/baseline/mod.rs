@@ -1,9 +1,13 @@
-//! What the particle filter is compared with: the nominal simulation, the Kalman filter, and what a
-//! line of code makes of it in the dark.
+//! What the particle filter is compared with: the nominal simulation, the Kalman filter, what a line of
+//! code makes of it in the dark, and an extended Kalman filter through Γ.
 
+mod belief;
+pub(crate) mod extended_kalman;
 mod in_the_dark;
 pub(crate) mod kalman;
+mod linearised_step;
 pub(crate) mod nominal;
+mod pose_update;
 pub(crate) mod predictor;
 
 pub(crate) use in_the_dark::{stopping, with_pusher};

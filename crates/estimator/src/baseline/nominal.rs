@@ -66,7 +66,12 @@ fn advance(
     worst
 }
 
-fn touch_flags(setup: &Setup, work: &StepWork<1>, h: f64) -> (f64, Vec<f64>) {
+/// Whether the first particle of a step of `h` seconds touches pusher and fixels: 1 or 0 each.
+pub(super) fn touch_flags<const W: usize>(
+    setup: &Setup,
+    work: &StepWork<W>,
+    h: f64,
+) -> (f64, Vec<f64>) {
     let flag = |touches: bool| f64::from(u8::from(touches));
     let fixels = 0..setup.scene.fixels.len();
     let touch_impulse = setup.tactile.touch_force * h;

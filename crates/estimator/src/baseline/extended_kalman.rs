@@ -1,0 +1,206 @@
+//! The extended Kalman filter baseline: a normal distribution of pose, twist and friction that goes
+//! through Γ, as the particles do (docs/method.md (46) to (48)).
+//!
+//! It takes friction and the disturbing force for unknown as contact mode does, and moves by the same
+//! pusher track; its belief of them is normal and its transition linear, by differences. Tactile readings
+//! are not used: a reading is 0 or 1, and its derivative by the state, all that this filter could use of
+//! it, is 0 nearly everywhere. Offsets, outline and what is unknown of the latency are left out, too.
+
+use crate::baseline::belief::Belief;
+use crate::baseline::linearised_step::{LinearisedStep, NOISE_STEP};
+use crate::baseline::nominal::touch_flags;
+use crate::baseline::pose_update::PoseUpdate;
+use crate::estimate::{Estimate, EstimateRow};
+use crate::prepared_log::PreparedLog;
+use crate::setup::{Camera, Setup};
+
+/// Filters the visible object poses of `prepared`; also how often the belief began anew, since several
+/// poses in a row were not to be expected.
+pub(crate) fn track(
+    setup: &Setup,
+    camera: Camera,
+    prepared: &PreparedLog<'_>,
+    progress: &mut dyn FnMut(usize),
+) -> (Estimate, u32) {
+    let first = prepared.first;
+    let mut camera = PoseUpdate::new(camera, prepared.start);
+    let noise = camera.noise(prepared.covariance(first));
+    let mut belief = Belief::at_rest(setup, prepared.start, &noise);
+    let mut step = LinearisedStep::new(setup, prepared.observer);
+    let mut estimate = prepared.empty_estimate(setup);
+    estimate.rows[first] = EstimateRow {
+        visual: true,
+        ..belief.row()
+    };
+    for row in first + 1..prepared.log.len() {
+        predict(&mut step, &mut belief, (setup, prepared, row));
+        let noise = camera.noise(prepared.covariance(row));
+        let pose = prepared.visible(row);
+        let visual = pose.is_some_and(|pose| camera.see(&mut belief, pose, &noise));
+        let last_h = prepared.schedule.step(row - 1).last().map_or(0.0, |s| s.h);
+        let (pusher, fixels) = touch_flags(setup, step.work(), last_h);
+        let [unsolved, failed] = step.since.counts();
+        estimate.rows[row] = EstimateRow {
+            contact_pusher: Some(pusher),
+            contact_fixels: Some(fixels),
+            visual,
+            unsolved: Some(unsolved),
+            failed: Some(failed),
+            ..belief.row()
+        };
+        progress(row);
+    }
+    (estimate, camera.restarts)
+}
+
+/// The steps that lead to a row, and the drift of friction on the way.
+fn predict(
+    step: &mut LinearisedStep<'_>,
+    belief: &mut Belief,
+    (setup, prepared, row): (&Setup, &PreparedLog<'_>, usize),
+) {
+    step.begin_row();
+    for input in prepared.schedule.step(row - 1) {
+        step.advance(belief, input);
+    }
+    if prepared.schedule.driven(row - 1) || prepared.visible(row).is_some() {
+        let h = prepared.log.time[row] - prepared.log.time[row - 1];
+        let (took_part, drift) = (&step.since.took_part, setup.uncertainty.drift);
+        belief.drift(took_part, drift, h / NOISE_STEP);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::baseline::belief::TWIST;
+    use crate::baseline::pose_update::PoseNoise;
+    use crate::setup::{FilterSettings, Tactile};
+    use crate::uncertainty::Uncertainty;
+    use stickslip_dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape, StepInput};
+
+    const LATENCY: f64 = 0.02;
+
+    /// A disc of known friction on its tripod, and nothing beside it.
+    fn alone() -> Setup {
+        let disc = |radius| {
+            let centre = [0.0, 0.0];
+            Shape::new(vec![Part::Disc { radius, centre }]).expect("a disc")
+        };
+        Setup {
+            scene: Scene {
+                gravity: 9.81,
+                object: Object {
+                    mass: 0.5,
+                    inertia: 2e-4,
+                    shape: disc(0.03),
+                },
+                feet: Feet::Tripod { angle: 0.0 },
+                pusher: Pusher {
+                    shape: disc(0.005),
+                    stall_force: Some(20.0),
+                },
+                fixels: Vec::new(),
+                nominal: Friction {
+                    mu_s: 0.3,
+                    mu_p: 0.3,
+                    mu_f: 0.3,
+                    d_tri: 0.02,
+                },
+            },
+            stall_force_assumed: false,
+            camera: None,
+            tactile: Tactile::default(),
+            filter: FilterSettings::default(),
+            uncertainty: Uncertainty {
+                friction: Friction::default(),
+                force_std: 0.1,
+                ..Uncertainty::default()
+            },
+            start: None,
+        }
+    }
+
+    /// Along its way, a disc that slides without turning is braked by the same force at any speed: x and
+    /// v_x are a linear system, and this its Kalman filter, written out.
+    #[test]
+    fn a_disc_that_slides_freely_has_the_exact_answer_along_its_way() {
+        let (setup, h) = (alone(), 1.0 / 30.0);
+        let (sigma, turn) = (3e-4, 5e-3);
+        let camera = Camera {
+            position_std: sigma,
+            orientation_std: turn,
+            latency: LATENCY,
+            pusher_position_std: 0.0,
+            pusher_orientation_std: 0.0,
+        };
+        let mut camera = PoseUpdate::new(camera, Pose::default());
+        let noise = camera.noise(None);
+        let mut belief = Belief::at_rest(&setup, Pose::default(), &noise);
+        let mut step = LinearisedStep::new(&setup, None);
+        belief.normal.mean[TWIST] = 2.0;
+        belief.normal.covariance[(TWIST, TWIST)] = 1e-4;
+
+        let brake: f64 = 0.3 * 9.81 * h;
+        let force = (0.1 * brake).powi(2);
+        let (mut x, mut v) = (0.0, 2.0);
+        let (mut xx, mut xv, mut vv) = (sigma * sigma, 0.0, 1e-4);
+        for row in 1..15 {
+            let input = StepInput { h, pusher: None };
+            step.begin_row();
+            step.advance(&mut belief, &input);
+            // v' = v - brake + w, x' = x + h v'
+            v -= brake;
+            x += h * v;
+            vv += force;
+            (xx, xv) = (xx + 2.0 * h * xv + h * h * vv, xv + h * vv);
+            if row % 3 == 0 {
+                // off by a part of the noise, other at every row
+                let z = x - LATENCY * v + sigma * (f64::from(row) / 6.0 - 1.0);
+                assert!(camera.see(&mut belief, Pose::new(z, 0.0, 0.0), &noise));
+                // of x - L v
+                let (to_x, to_v) = (xx - LATENCY * xv, xv - LATENCY * vv);
+                let s = to_x - LATENCY * to_v + sigma * sigma;
+                let innovation = z - x + LATENCY * v;
+                (x, v) = (x + to_x / s * innovation, v + to_v / s * innovation);
+                xx -= to_x * to_x / s;
+                xv -= to_x * to_v / s;
+                vv -= to_v * to_v / s;
+            }
+            let (mean, covariance) = (&belief.normal.mean, &belief.normal.covariance);
+            for (found, expected, scale) in [
+                (mean[0], x, xx.sqrt()),
+                (mean[TWIST], v, vv.sqrt()),
+                (covariance[(0, 0)], xx, xx),
+                (covariance[(0, TWIST)], xv, (xx * vv).sqrt()),
+                (covariance[(TWIST, TWIST)], vv, vv),
+            ] {
+                assert!(
+                    (found - expected).abs() < 1e-6 * scale,
+                    "row {row}: {found} {expected}"
+                );
+            }
+        }
+        assert_eq!(step.since.counts(), [0, 0]);
+    }
+
+    #[test]
+    fn forces_last_for_a_thirtieth_of_a_second() {
+        // thirty steps of a millisecond add up to one of their length, of the same force
+        let setup = alone();
+        let after = |h: f64, steps: u32| {
+            let mut belief = Belief::at_rest(&setup, Pose::default(), &PoseNoise::zeros());
+            let mut step = LinearisedStep::new(&setup, None);
+            belief.normal.mean[TWIST] = 2.0;
+            step.begin_row();
+            for _ in 0..steps {
+                step.advance(&mut belief, &StepInput { h, pusher: None });
+            }
+            belief.normal.covariance[(TWIST, TWIST)].sqrt()
+        };
+        // 33 steps of 1 ms make 33 ms of the 33.3 that a force lasts: √(33 · 0.03)
+        let (slow, fast) = (after(1.0 / 30.0, 1), after(1e-3, 33));
+        let expected = slow * (33.0_f64 * 0.03).sqrt();
+        assert!((fast / expected - 1.0).abs() < 1e-6, "{fast} {expected}");
+    }
+}
