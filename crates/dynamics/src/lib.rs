@@ -3,6 +3,7 @@
 mod assembly;
 mod block_problems;
 mod compiled_step;
+mod contact_state;
 mod feet;
 mod friction;
 mod geometry;

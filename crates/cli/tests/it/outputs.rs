@@ -86,7 +86,7 @@ fn two_runs_into_one_folder_leave_one_of_their_files() {
             }
         }
         assert!(both.contains(&fs::read(&file).unwrap()));
-        assert_eq!(names(&shared), ["estimate.csv"]);
+        assert_eq!(names(&shared), ["estimate.csv", "modes.csv"]);
     }
 }
 

@@ -7,10 +7,11 @@
 //! it, is 0 nearly everywhere. Offsets, outline and what is unknown of the latency are left out, too.
 
 use crate::baseline::belief::Belief;
-use crate::baseline::linearised_step::{LinearisedStep, NOISE_STEP};
+use crate::baseline::linearised_step::LinearisedStep;
 use crate::baseline::nominal::touch_flags;
 use crate::baseline::pose_update::PoseUpdate;
 use crate::estimate::{Estimate, EstimateRow};
+use crate::particle::noise_clock::NOISE_STEP;
 use crate::prepared_log::PreparedLog;
 use crate::setup::{Camera, Setup};
 

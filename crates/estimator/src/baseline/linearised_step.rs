@@ -7,6 +7,7 @@ use stickslip_dynamics::{
 use stickslip_filter::Gaussian;
 
 use crate::baseline::belief::{Belief, FRICTION, STATES, State, StateMatrix};
+use crate::particle::noise_clock::{NOISE_STEP, ROUNDED, sharing};
 use crate::particle::observer::{Observer, SolvedStep};
 use crate::setup::Setup;
 
@@ -20,11 +21,6 @@ const POINTS: usize = 1 + 2 * STATES;
 /// How far from the mean its neighbours are, in standard deviations: √3, by which the difference over
 /// an odd cubic has the mean slope that it has under a normal distribution.
 const REACH: f64 = 1.732_050_807_568_877_2;
-
-/// For so long a random force stays the same (s), as the noise settings mean it (docs/method.md (19)),
-/// and by how much times may be off for being rounded.
-pub(super) const NOISE_STEP: f64 = 1.0 / 30.0;
-const ROUNDED: f64 = 1.0 + 1e-4;
 
 /// Speed above which an object counts as moving, mass-normalised (m/s) (docs/method.md (21)).
 const MOVING: f64 = 1e-9;
@@ -88,7 +84,7 @@ impl<'a> LinearisedStep<'a> {
     /// Advances `belief` by one substep; forces are renewed where they have lasted long enough.
     pub fn advance(&mut self, belief: &mut Belief, input: &StepInput) {
         self.lasted += input.h;
-        if self.lasted > NOISE_STEP * ROUNDED {
+        if self.lasted > NOISE_STEP * (1.0 + ROUNDED) {
             self.lasted = input.h;
             belief.renew_force();
         }
@@ -105,7 +101,7 @@ impl<'a> LinearisedStep<'a> {
     /// Writes the mean and the states on either side of it; lanes that are left repeat the mean.
     fn place_points(&mut self, belief: &Belief, root: &StateMatrix, h: f64) {
         let scene = &self.setup.scene;
-        let sharing = f64::from(((NOISE_STEP / h * ROUNDED) as u32).max(1));
+        let sharing = f64::from(sharing(h));
         let weight = scene.object.mass * scene.gravity;
         let lasts = (h * sharing / NOISE_STEP).sqrt() * NOISE_STEP;
         let share = self.setup.uncertainty.force_std * weight * lasts / sharing;

@@ -1,4 +1,4 @@
-//! Collapses of the particle filter: rows at which no particle explained the camera.
+//! Collapses: rows at which no belief of the filter explained the camera.
 
 use super::finding::{Finding, Subject};
 
@@ -11,12 +11,12 @@ const MOST: f64 = 0.2;
 /// What `collapses` among `seen` rows with a camera pose mean; `None` where they are too few to mean
 /// anything.
 ///
-/// At a collapse all particles are drawn anew around the camera's pose: where there are many, an estimate
-/// is near the camera because it was put there.
+/// At a collapse all particles are drawn anew around the camera's pose, or an extended Kalman filter begins
+/// anew at it: where there are many, an estimate is near the camera because it was put there.
 pub fn collapsed(collapses: u32, seen: usize) -> Option<Finding> {
     let share = f64::from(collapses) / seen.max(1) as f64;
     let found = format!(
-        "at {collapses} of {seen} rows with a camera pose no particle explained it, and all were drawn anew around it"
+        "at {collapses} of {seen} rows with a camera pose the belief did not explain it, and began anew around it"
     );
     if collapses < 2 || share < MANY {
         return None;

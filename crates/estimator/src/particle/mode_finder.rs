@@ -1,4 +1,4 @@
-//! Where a particle set falls into groups: [`ModeFinder`], docs/method.md, "Modes of a belief".
+//! Where a particle set falls into groups: [`ModeFinder`], docs/method.md (49).
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;

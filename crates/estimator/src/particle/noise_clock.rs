@@ -4,7 +4,7 @@
 pub(crate) const NOISE_STEP: f64 = 1.0 / 30.0;
 
 /// By how much a step's length may be off for its times being rounded.
-const ROUNDED: f64 = 1e-4;
+pub(crate) const ROUNDED: f64 = 1e-4;
 
 /// Steps of `h` seconds that share one draw of the noise: those that fit into [`NOISE_STEP`], or one.
 pub(crate) fn sharing(h: f64) -> u32 {

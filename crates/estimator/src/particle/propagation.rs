@@ -8,7 +8,7 @@ use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
-use crate::particle::columns::{Columns, SlipFlags};
+use crate::particle::columns::Columns;
 use crate::particle::contact_mode::note_felt;
 use crate::particle::noise_clock::{NOISE_STEP, sharing};
 use crate::particle::observer::{Observer, SolvedStep};
@@ -21,10 +21,6 @@ const CHUNKS: usize = BLOCK / LANES;
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).
 const MOVING: f64 = 1e-9;
-
-/// Slip velocity (m/s) above which a contact slides: a thousand times what a certified step leaves of a
-/// contact that sticks.
-const SLIDING: f64 = 1e-6;
 
 /// Pairs of normal numbers: two for the parameters, then two for each force, of which three numbers
 /// are used.
@@ -330,10 +326,6 @@ impl Propagation {
     /// paper Table I).
     #[inline(always)]
     fn store(&mut self, transition: &Transition<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
-        let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
-        let touch_impulse = Lanes::splat(transition.setup.tactile.touch_force * last_h);
-        let rho = transition.setup.scene.object.gyration_radius();
-        let driven = Mask::splat(plan.driven);
         for chunk in 0..block.len().div_ceil(LANES) {
             let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
             store_columns(block, Columns::POSE, chunk, particles.pose.fields());
@@ -360,38 +352,7 @@ impl Propagation {
             let mut flags = FlagsMut::new(block, chunk);
             flags.set(Columns::UNSOLVED, involved.unsolved);
             flags.set(Columns::FAILED, involved.failed);
-            let pusher = self
-                .work
-                .normal_impulses(chunk, Body::Pusher)
-                .gt(Lanes::ZERO);
-            let close = self.close(transition, chunk, Body::Pusher);
-            let touches = pusher | close;
-            flags.set(Columns::CONTACT_PUSHER, touches);
-            self.store_slip(
-                &mut flags,
-                Columns::SLIP_PUSHER,
-                touches,
-                (chunk, Body::Pusher),
-            );
-            let before = flags.get(Columns::PUSHER_WAS_NEAR);
-            let near = before | self.near(chunk, Body::Pusher);
-            flags.set(Columns::PUSHER_WAS_NEAR, near);
-            let pressed = moving(&particles.twist, rho) | pusher;
-            flags.set(Columns::IDLE, !(pressed & driven));
-            for j in 0..transition.setup.scene.fixels.len() {
-                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j));
-                let touches = impulse.gt(touch_impulse);
-                let close = self.close(transition, chunk, Body::Fixel(j));
-                flags.set(transition.columns.contact_fixel(j), touches | close);
-                let slip = transition.columns.slip_fixel(j);
-                self.store_slip(&mut flags, slip, touches | close, (chunk, Body::Fixel(j)));
-                let against = transition.columns.driven_contact_fixel(j);
-                let near = transition.columns.fixel_was_near(j);
-                let before = flags.get(near);
-                flags.set(near, before | self.near(chunk, Body::Fixel(j)));
-                let before = flags.get(against);
-                flags.set(against, pressed & touches | !pressed & before);
-            }
+            self.store_contacts(transition, plan, chunk, &mut flags);
             flags.write();
             if transition.columns.history() > 0 {
                 store_columns(
@@ -405,26 +366,9 @@ impl Propagation {
     }
 }
 
-impl Propagation {
-    /// How the object slips on a body in the lanes that touch it.
-    #[inline(always)]
-    fn store_slip(
-        &self,
-        flags: &mut FlagsMut<'_, '_>,
-        which: SlipFlags,
-        touches: Mask<LANES>,
-        (chunk, body): (usize, Body),
-    ) {
-        let slip = self.work.slips(chunk, body);
-        let slides = slip.abs().gt(Lanes::splat(SLIDING));
-        flags.set(which.stick, touches & !slides);
-        flags.set(which.left, touches & slides & slip.gt(Lanes::ZERO));
-    }
-}
-
 /// Where ‖v‖, mass-normalised, is above [`MOVING`].
 #[inline(always)]
-fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
+pub(super) fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
     let turn = *omega * rho;
     (*vx * *vx + *vy * *vy + turn * turn).gt(Lanes::splat(MOVING * MOVING))
 }

@@ -1,0 +1,71 @@
+//! What a step leaves of its contacts in the flags of the particles: who touches, and how it slips.
+
+use stickslip_dynamics::{Body, Lanes, Mask};
+
+use crate::particle::chunk::{FlagsMut, LANES};
+use crate::particle::columns::{Columns, SlipFlags};
+use crate::particle::propagation::{Propagation, Transition, moving};
+use crate::particle::step_plan::StepPlan;
+
+/// Slip velocity (m/s) above which a contact slides: a thousand times what a certified step leaves of a
+/// contact that sticks.
+const SLIDING: f64 = 1e-6;
+
+impl Propagation {
+    /// Sets the flags of contact of one chunk (docs/method.md, "Contact flags").
+    #[inline(always)]
+    pub(super) fn store_contacts(
+        &self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        chunk: usize,
+        flags: &mut FlagsMut<'_, '_>,
+    ) {
+        let Transition { setup, columns, .. } = transition;
+        let presses = |body| self.work.normal_impulses(chunk, body);
+        let rho = setup.scene.object.gyration_radius();
+
+        // the pusher
+        let pusher = presses(Body::Pusher).gt(Lanes::ZERO);
+        let touches = pusher | self.close(transition, chunk, Body::Pusher);
+        flags.set(Columns::CONTACT_PUSHER, touches);
+        self.store_slip(flags, Columns::SLIP_PUSHER, touches, (chunk, Body::Pusher));
+        let before = flags.get(Columns::PUSHER_WAS_NEAR);
+        let near = before | self.near(chunk, Body::Pusher);
+        flags.set(Columns::PUSHER_WAS_NEAR, near);
+        let pressed = moving(&self.particles[chunk].twist, rho) | pusher;
+        flags.set(Columns::IDLE, !(pressed & Mask::splat(plan.driven)));
+
+        // the fixels
+        let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
+        let touch_impulse = Lanes::splat(setup.tactile.touch_force * last_h);
+        for j in 0..setup.scene.fixels.len() {
+            let body = Body::Fixel(j);
+            let felt = presses(body).gt(touch_impulse);
+            let touches = felt | self.close(transition, chunk, body);
+            flags.set(columns.contact_fixel(j), touches);
+            self.store_slip(flags, columns.slip_fixel(j), touches, (chunk, body));
+            let near = columns.fixel_was_near(j);
+            let before = flags.get(near);
+            flags.set(near, before | self.near(chunk, body));
+            let against = columns.driven_contact_fixel(j);
+            let before = flags.get(against);
+            flags.set(against, pressed & felt | !pressed & before);
+        }
+    }
+
+    /// How the object slips on a body in the lanes that touch it.
+    #[inline(always)]
+    fn store_slip(
+        &self,
+        flags: &mut FlagsMut<'_, '_>,
+        which: SlipFlags,
+        touches: Mask<LANES>,
+        (chunk, body): (usize, Body),
+    ) {
+        let slip = self.work.slips(chunk, body);
+        let slides = slip.abs().gt(Lanes::splat(SLIDING));
+        flags.set(which.stick, touches & !slides);
+        flags.set(which.left, touches & slides & slip.gt(Lanes::ZERO));
+    }
+}
