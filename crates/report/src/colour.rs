@@ -27,6 +27,10 @@ impl Colour {
     pub const BROWN: Self = Self(153, 85, 68);
     /// Violet.
     pub const VIOLET: Self = Self(136, 119, 255);
+    /// Olive.
+    pub const OLIVE: Self = Self(128, 128, 0);
+    /// Wine.
+    pub const WINE: Self = Self(170, 51, 85);
 
     /// Of a variant, in every figure, table and playback.
     #[must_use]
@@ -38,9 +42,9 @@ impl Colour {
             Variant::WithPusher => Self::VIOLET,
             Variant::KalmanCameraOn => Self::PURPLE,
             Variant::ParticleNoTouch => Self::SKY,
-            Variant::ExtendedKalman
-            | Variant::ExtendedKalmanCameraOn
-            | Variant::ParticleNoTouchCameraOn => Self::BLUE,
+            Variant::ExtendedKalman => Self::OLIVE,
+            Variant::ExtendedKalmanCameraOn => Self::WINE,
+            Variant::ParticleNoTouchCameraOn => Self::BLUE,
             Variant::Particle => Self::VERMILLION,
             Variant::ParticleCameraOn => Self::GREEN,
         }
