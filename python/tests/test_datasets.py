@@ -189,7 +189,8 @@ def test_plates_have_the_moments_of_their_shape():
 def test_the_occlusion_benchmark_has_the_scores_of_the_program(program, data, tmp_path):
     folders = sorted((data / "real/zhou-two-finger-pushes").glob("bigrect*"))[:2]
     rows = datasets.occlusion_benchmark(folders, seconds=1.0, particles=100)
-    assert {row["variant"] for row in rows} == {"nominal", "kalman", "extended_kalman", "particle", "particle_always_on"}
+    variants = {"nominal", "kalman", "extended_kalman", "particle", "particle_always_on"}
+    assert {row["variant"] for row in rows} == variants
     command = [program, "filter", folders[0] / "log.csv", "--scene", folders[0] / "scene.toml", "--particles", "100"]
     done = subprocess.run([*command, "--occlude-middle", "1", "--json"], check=True, capture_output=True, text=True)
     expected = json.loads(done.stdout)
