@@ -38,8 +38,8 @@ def compare(
 
     ``variants``: ``nominal``, ``kalman``, ``extended_kalman``, ``particle_no_tactile``, ``particle``,
     ``particle_always_on`` (the camera stays on). Those that do not differ on a log (no tactile columns, nothing
-    hidden) are left out. The camera is hidden as ``options`` say, else from ``occlude_from`` of ``truth.json`` on. Scores are against
-    ``truth.csv`` where there is one, else against the log's own poses.
+    hidden) are left out. The camera is hidden as ``options`` say, else from ``occlude_from`` of ``truth.json`` on.
+    Scores are against ``truth.csv`` where there is one, else against the log's own poses.
 
     Returns a dict per run: ``folder``, ``variant``, ``seed``, and the scores of :func:`stickslip.score`.
     """
