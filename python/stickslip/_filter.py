@@ -54,8 +54,11 @@ def filter(log: Log, scene: Scene, **options: Unpack[FilterOptions]) -> Columns:
     ``mu_s``, ``mu_p``, ``mu_f`` and tripod radius ``d_tri`` (m); posterior probabilities of contact
     ``contact_pusher``, ``contact_1``, ...; standard deviations ``std_x``, ...; effective sample size
     ``ess``; ``resampled`` and ``visual`` (0 or 1); particles without a certified solution ``unsolved``
-    and, of them, ``failed``. NaN where the method has no value. The numbers have the bits of those in the
-    program's ``estimate.csv``.
+    and, of them, ``failed``; covariances ``cov_x_y``, ``cov_x_theta``, ``cov_y_theta``; ``collapsed`` (0 or 1);
+    surviving particles ``distinct`` and ``ancestors``; the number of ``modes``, weight and pose of the likeliest
+    one, ``mode_weight``, ``mode_x``, ``mode_y``, ``mode_theta``; and how the object slips on what it touches,
+    ``stick_pusher``, ``left_pusher``, ``right_pusher``, ``stick_1``, ... NaN where the method has no value. The
+    numbers have the bits of those in the program's ``estimate.csv``.
 
     Raises :class:`stickslip.Error` where log, scene or options cannot be used.
     """
