@@ -9,6 +9,7 @@ use stickslip_filter::Gaussian;
 use crate::baseline::belief::{Belief, FRICTION, STATES, State, StateMatrix};
 use crate::particle::noise_clock::{NOISE_STEP, ROUNDED, sharing};
 use crate::particle::observer::{Observer, SolvedStep};
+use crate::particle::propagation::MOVING;
 use crate::setup::Setup;
 
 /// States side by side.
@@ -21,9 +22,6 @@ const POINTS: usize = 1 + 2 * STATES;
 /// How far from the mean its neighbours are, in standard deviations: √3, by which the difference over
 /// an odd cubic has the mean slope that it has under a normal distribution.
 const REACH: f64 = 1.732_050_807_568_877_2;
-
-/// Speed above which an object counts as moving, mass-normalised (m/s) (docs/method.md (21)).
-const MOVING: f64 = 1e-9;
 
 /// What is left of a variance once the numbers before it are known is at least this share of it: less is
 /// rounding.

@@ -29,7 +29,8 @@ pub struct Flag {
     pub bit: u32,
 }
 
-/// How a particle's object slips on a body that it touches: to the right where neither is set.
+/// How a particle's object slips on a body that it touches: to the right where neither is set. Where it
+/// does not touch, they mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlipFlags {
     /// Whether it sticks.

@@ -54,7 +54,7 @@ impl Propagation {
         }
     }
 
-    /// How the object slips on a body in the lanes that touch it.
+    /// How the object slips on a body in the lanes that touch it; flags of the others mean nothing.
     #[inline(always)]
     fn store_slip(
         &self,
@@ -63,9 +63,12 @@ impl Propagation {
         touches: Mask<LANES>,
         (chunk, body): (usize, Body),
     ) {
+        if !touches.any() {
+            return;
+        }
         let slip = self.work.slips(chunk, body);
         let slides = slip.abs().gt(Lanes::splat(SLIDING));
-        flags.set(which.stick, touches & !slides);
-        flags.set(which.left, touches & slides & slip.gt(Lanes::ZERO));
+        flags.set(which.stick, !slides);
+        flags.set(which.left, slides & slip.gt(Lanes::ZERO));
     }
 }

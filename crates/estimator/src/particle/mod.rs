@@ -16,7 +16,7 @@ mod moved;
 pub(crate) mod noise_clock;
 pub(crate) mod observation;
 pub(crate) mod observer;
-mod propagation;
+pub(crate) mod propagation;
 mod replay;
 mod resting_pose;
 mod rig;

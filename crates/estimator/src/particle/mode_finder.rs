@@ -98,14 +98,16 @@ impl ModeFinder {
 
     /// Takes all particles for one group.
     fn read(&mut self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) {
-        let particles = filter.particles().len();
         self.points.clear();
-        for particle in 0..particles {
-            let point = self.point(pose_of(filter, particle), mean);
-            self.points.push(point);
+        for block in filter.particles().blocks() {
+            let [x, y, theta] = [0, 1, 2].map(|k| block.column(Columns::POSE + k));
+            for i in 0..block.len() {
+                let point = self.point(Pose::new(x[i], y[i], theta[i]), mean);
+                self.points.push(point);
+            }
         }
         self.mode_of.clear();
-        self.mode_of.resize(particles, 0);
+        self.mode_of.resize(self.points.len(), 0);
     }
 
     /// Cuts groups in two until none falls apart; returns their number.

@@ -20,7 +20,7 @@ const CHUNKS: usize = BLOCK / LANES;
 
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).
-const MOVING: f64 = 1e-9;
+pub(crate) const MOVING: f64 = 1e-9;
 
 /// Pairs of normal numbers: two for the parameters, then two for each force, of which three numbers
 /// are used.

@@ -228,16 +228,15 @@ impl Sums {
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
         self.contact_fixels.clear();
         self.slips.clear();
-        self.slips.push(slips(
-            block,
-            weights,
-            (Columns::CONTACT_PUSHER, Columns::SLIP_PUSHER),
-        ));
+        let how = (Columns::CONTACT_PUSHER, Columns::SLIP_PUSHER);
+        self.slips
+            .push(slips(block, weights, self.contact_pusher, how));
         for j in 0..columns.fixels() {
             let contact = columns.contact_fixel(j);
-            self.contact_fixels.push(share(block, weights, contact));
+            let touch = share(block, weights, contact);
+            self.contact_fixels.push(touch);
             let how = (contact, columns.slip_fixel(j));
-            self.slips.push(slips(block, weights, how));
+            self.slips.push(slips(block, weights, touch, how));
         }
     }
 }
@@ -252,15 +251,25 @@ fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
     total(sum)
 }
 
-/// Weight of the particles that stick and slide on a body.
+/// Weight of the particles that stick and slide on a body, which particles of weight `touch` touch: in most
+/// blocks none.
 #[inline(always)]
-fn slips(block: &Block<'_>, weights: &[f64], (contact, slip): (Flag, SlipFlags)) -> ContactSlip {
+fn slips(
+    block: &Block<'_>,
+    weights: &[f64],
+    touch: f64,
+    (contact, slip): (Flag, SlipFlags),
+) -> ContactSlip {
+    if touch <= 0.0 {
+        return ContactSlip::default();
+    }
     let mut sums = [Column::ZERO; 3];
     for chunk in 0..block.len().div_ceil(LANES) {
         let w = load_chunk(weights, chunk, 0.0);
-        let stick = flag(block, slip.stick, chunk);
-        let left = flag(block, slip.left, chunk);
-        let right = flag(block, contact, chunk) & !stick & !left;
+        let touches = flag(block, contact, chunk);
+        let stick = touches & flag(block, slip.stick, chunk);
+        let left = touches & flag(block, slip.left, chunk);
+        let right = touches & !stick & !left;
         for (sum, of) in sums.iter_mut().zip([stick, left, right]) {
             *sum += of.zero_unless(w);
         }
