@@ -25,8 +25,13 @@ const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
 /// Most substeps from row to row.
 const MOST_SUBSTEPS: u32 = 10_000;
 
-/// Memory that a particle takes, its past poses not counted.
-const PARTICLE_BYTES: usize = 600;
+/// Memory that a particle takes (bytes), as measured with four bodies to touch; past poses are not counted.
+fn particle_bytes(mode: Mode) -> usize {
+    match mode {
+        Mode::Contact => 2600,
+        Mode::Paper => 600,
+    }
+}
 
 /// How a tracker works; the defaults are those of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +88,7 @@ impl TrackerOptions {
         if !(0.0..=LONGEST_PAUSE).contains(&late) {
             return Err(RunError::Late { late });
         }
-        let bytes = particles.saturating_mul(PARTICLE_BYTES);
+        let bytes = particles.saturating_mul(particle_bytes(self.mode));
         let given = Vec::<u8>::new().try_reserve_exact(bytes);
         given.map_err(|_| RunError::Memory {
             particles,

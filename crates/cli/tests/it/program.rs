@@ -181,6 +181,8 @@ fn filter_gives_the_same_estimate_on_any_number_of_threads() {
         fs::read(out.join("estimate.csv")).unwrap()
     };
     assert!(estimate("1") == estimate("3"));
+    // more than there are processors, or particles for, neither hang nor count
+    assert!(estimate("1") == estimate("1000"));
 }
 
 #[test]
