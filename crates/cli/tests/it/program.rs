@@ -180,9 +180,10 @@ fn filter_gives_the_same_estimate_on_any_number_of_threads() {
         assert_eq!(run.unwrap().status.code(), Some(0));
         fs::read(out.join("estimate.csv")).unwrap()
     };
-    assert!(estimate("1") == estimate("3"));
+    let one = estimate("1");
+    assert!(one == estimate("3"));
     // more than there are processors, or particles for, neither hang nor count
-    assert!(estimate("1") == estimate("1000"));
+    assert!(one == estimate("1000"));
 }
 
 #[test]
