@@ -1,6 +1,6 @@
 //! Where the step is compiled: [`CompiledStep`].
 
-use stickslip_lanes::on_widest;
+use stickslip_lanes::on_vectors;
 
 use crate::particles::Particles;
 use crate::prepared_scene::Pushers;
@@ -48,7 +48,7 @@ impl CompiledStep<2> for StepWork<2> {
     }
 }
 
-/// Eight, on the widest vector instructions.
+/// Eight, on the widest vector instructions; one after the other where none are wide enough.
 impl CompiledStep<8> for StepWork<8> {
     fn step(
         &mut self,
@@ -57,10 +57,13 @@ impl CompiledStep<8> for StepWork<8> {
         pushers: &Pushers<'_, 8>,
         particles: &mut [Particles<8>],
     ) {
-        on_widest(
+        let stepped = on_vectors(
             dynamics.level,
             #[inline(always)]
             || dynamics.step_lanes(h, pushers, particles, self),
         );
+        if stepped.is_none() {
+            self.step_by_lane(dynamics, h, pushers, particles);
+        }
     }
 }

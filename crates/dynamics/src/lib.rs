@@ -2,6 +2,7 @@
 
 mod assembly;
 mod block_problems;
+mod by_lane;
 mod compiled_step;
 mod contact_state;
 mod feet;

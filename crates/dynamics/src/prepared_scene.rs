@@ -191,6 +191,28 @@ impl<const W: usize> PusherContext<W> {
         }
     }
 
+    /// One lane.
+    pub(crate) fn lane(&self, lane: usize) -> PusherContext<1> {
+        let alone = |x: Lanes<W>| Lanes([x.0[lane]]);
+        let Self {
+            motion, transform, ..
+        } = self;
+        PusherContext {
+            motion: PusherMotion {
+                pose: motion.pose.map(alone),
+                twist: motion.twist.map(alone),
+                direction: motion.direction.map(alone),
+            },
+            transform: Transform {
+                origin: transform.origin.map(alone),
+                cos: alone(transform.cos),
+                sin: alone(transform.sin),
+            },
+            speed: alone(self.speed),
+            present: Mask::splat(self.present.lane(lane)),
+        }
+    }
+
     fn numbers(&self) -> [&Lanes<W>; 13] {
         let PusherMotion {
             pose: Pose { x, y, theta },

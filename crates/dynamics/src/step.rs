@@ -48,11 +48,13 @@ pub struct StepWork<const W: usize> {
     chunks: Vec<Assembly<W>>,
     ncps: Vec<Ncp<W>>,
     unknowns: Vec<Unknowns<W>>,
-    reports: Vec<[Report; W]>,
+    pub(crate) reports: Vec<[Report; W]>,
     solver: Solver<W>,
     kept: KeptLanes<W>,
     /// Of steps in which every particle has its own.
     pushers: Vec<Option<PusherContext<W>>>,
+    /// Of the particles one by one, where they are stepped so; else empty.
+    pub(crate) by_lane: Vec<StepWork<1>>,
 }
 
 impl<const W: usize> StepWork<W> {
@@ -65,14 +67,22 @@ impl<const W: usize> StepWork<W> {
     /// contacts, by lane of a chunk.
     #[inline(always)]
     pub fn normal_impulses(&self, chunk: usize, body: Body) -> Lanes<W> {
-        self.chunks[chunk].normal_impulses(&self.unknowns[chunk], body)
+        if self.by_lane.is_empty() {
+            self.chunks[chunk].normal_impulses(&self.unknowns[chunk], body)
+        } else {
+            self.asked_by_lane(chunk, |work| work.normal_impulses(0, body))
+        }
     }
 
     /// Smallest gap (m) between the object and a body at the end of the last step, as its contacts
     /// tell it, by lane of a chunk; infinite where none was near.
     #[inline(always)]
     pub fn gaps(&self, chunk: usize, body: Body) -> Lanes<W> {
-        self.chunks[chunk].gaps(&self.ncps[chunk], &self.unknowns[chunk], body)
+        if self.by_lane.is_empty() {
+            self.chunks[chunk].gaps(&self.ncps[chunk], &self.unknowns[chunk], body)
+        } else {
+            self.asked_by_lane(chunk, |work| work.gaps(0, body))
+        }
     }
 
     /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive where
@@ -81,12 +91,19 @@ impl<const W: usize> StepWork<W> {
     /// where there is none.
     #[inline(always)]
     pub fn slips(&self, chunk: usize, body: Body) -> Lanes<W> {
-        self.chunks[chunk].slips(&self.ncps[chunk], &self.unknowns[chunk], body)
+        if self.by_lane.is_empty() {
+            self.chunks[chunk].slips(&self.ncps[chunk], &self.unknowns[chunk], body)
+        } else {
+            self.asked_by_lane(chunk, |work| work.slips(0, body))
+        }
     }
 
     /// The body of each contact in the last step's problem of one particle.
     pub fn bodies(&self, particle: usize) -> Vec<Body> {
-        self.chunks[particle / W].bodies(particle % W)
+        match self.by_lane.get(particle) {
+            Some(work) => work.bodies(0),
+            None => self.chunks[particle / W].bodies(particle % W),
+        }
     }
 
     /// Normal impulse (N s) of one particle, counted over all chunks.
@@ -97,12 +114,18 @@ impl<const W: usize> StepWork<W> {
     /// The last step's problem of one particle, in SI units; the applied impulse is part of its
     /// twist.
     pub fn problem(&self, particle: usize) -> StepProblem {
+        if let Some(work) = self.by_lane.get(particle) {
+            return work.problem(0);
+        }
         let (chunk, lane) = (particle / W, particle % W);
         self.chunks[chunk].problem(&self.ncps[chunk], lane)
     }
 
     /// The last step's solution of one particle.
     pub fn solution(&self, particle: usize) -> StepSolution {
+        if let Some(work) = self.by_lane.get(particle) {
+            return work.solution(0);
+        }
         let (chunk, lane) = (particle / W, particle % W);
         let problem = self.problem(particle);
         let mut alone = Unknowns::<1>::zero(problem.contacts.len());
@@ -244,6 +267,7 @@ impl Dynamics {
         work: &mut StepWork<W>,
     ) {
         // how far apart contacts are looked for
+        work.by_lane.clear();
         work.resize(particles.len());
         for (chunk, particles) in particles.iter().enumerate() {
             work.chunks[chunk].set_search_distance(self.search_distance(

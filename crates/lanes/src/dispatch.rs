@@ -1,4 +1,4 @@
-//! The choice of vector instructions at run time: [`on_widest`].
+//! The choice of vector instructions at run time: [`on_widest`], [`on_vectors`].
 
 use fearless_simd::Level;
 #[cfg(target_arch = "x86_64")]
@@ -24,4 +24,18 @@ pub fn on_widest<R>(level: Level, work: impl FnOnce() -> R) -> R {
     }
     let _ = level;
     work()
+}
+
+/// [`on_widest`], but `None`, and not compiled, where eight lanes are slower than one after the
+/// other: on x86-64 without AVX2, where every fused operation is a call.
+#[inline(always)]
+pub fn on_vectors<R>(level: Level, work: impl FnOnce() -> R) -> Option<R> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx512) = level.as_avx512() {
+        Some(avx512.vectorize(work))
+    } else {
+        level.as_avx2().map(|avx2| avx2.vectorize(work))
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    Some(on_widest(level, work))
 }
