@@ -19,7 +19,7 @@ impl<const W: usize> KeptLanes<W> {
     /// Copies a chunk's answers; memory is reused.
     #[inline(always)]
     pub fn keep(&mut self, ncp: &Ncp<W>, unknowns: &Unknowns<W>, reports: &[Report; W]) {
-        self.ncp.clone_from(ncp);
+        self.ncp.copy_from(ncp);
         self.unknowns.copy_from(unknowns);
         self.reports.clear();
         self.reports.extend(reports);

@@ -199,6 +199,15 @@ impl<const W: usize> Ncp<W> {
         self.compliance = Lanes::ZERO;
     }
 
+    /// Copies all lanes; memory is reused.
+    pub fn copy_from(&mut self, from: &Self) {
+        self.free = from.free;
+        self.feet = from.feet;
+        self.contacts.clone_from(&from.contacts);
+        self.stall = from.stall;
+        self.compliance = from.compliance;
+    }
+
     /// Fills these problems from ones in SI units; memory is reused, shorter contact lists are
     /// padded.
     pub fn assign(&mut self, problems: &[StepProblem; W]) {

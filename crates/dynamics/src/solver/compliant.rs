@@ -67,7 +67,7 @@ impl CompliantNewton {
     ///
     /// Returns the linear systems that it took; the last compliance may exceed the limit.
     pub fn solve(&mut self, ncp: &Ncp<1>, limit: u32) -> u32 {
-        self.ncp.clone_from(ncp);
+        self.ncp.copy_from(ncp);
         self.cold.cold_start(ncp);
         self.z.copy_from(&self.cold);
         let (mut compliance, mut systems) = (FIRST, 0);
