@@ -12,16 +12,26 @@ const PARTIAL: usize = 8;
 pub struct EnsembleShape {
     /// Quantities that are moved, on scales on which they are about normal.
     pub quantities: usize,
-    /// Errors of what is observed, independent and of variance 1.
+    /// Errors of what is observed, whose noise is independent.
     pub errors: usize,
 }
 
 impl EnsembleShape {
-    /// Columns of one block: the quantities, then the errors.
+    /// Columns of one block: the quantities, the errors, the standard deviations of their noise.
     pub(crate) fn columns(self) -> usize {
+        self.moved() + self.errors
+    }
+
+    /// Those of them that move.
+    fn moved(self) -> usize {
         self.quantities + self.errors
     }
 }
+
+/// Groups of particles, each of which goes by what the others say: a particle that had a part in its own
+/// gain would go too near to the measurement, and all of them would end too close together (Houtekamer &
+/// Mitchell 1998). Descendants of one particle lie side by side, mostly in one group.
+const GROUPS: usize = 8;
 
 /// The quantities and errors of all particles.
 #[derive(Clone, Debug, Default)]
@@ -29,24 +39,35 @@ pub(crate) struct Ensemble {
     shape: EnsembleShape,
     /// `[block][column][lane]`, as in a particle set.
     values: Vec<f64>,
-    /// By column: weighted mean, variance, and covariance with one error.
-    moments: Vec<Moments>,
+    /// Weighted mean by column.
+    means: Vec<f64>,
+    /// `[group][column]`.
+    sums: Vec<Sums>,
+    /// `[group][column]`: by how much a column moves where the error does by one.
+    gains: Vec<f64>,
 }
 
+/// Of some particles: sums of the weights w and their squares, and of one column's distances x from its
+/// mean, with the distances e of one error from its own.
 #[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    mean: f64,
-    variance: f64,
-    covariance: f64,
+struct Sums {
+    w: f64,
+    ww: f64,
+    x: f64,
+    xx: f64,
+    xe: f64,
 }
 
 impl Ensemble {
     /// For so many blocks of particles.
     pub fn new(shape: EnsembleShape, blocks: usize) -> Self {
+        let groups = blocks.min(GROUPS);
         Self {
             shape,
             values: vec![0.0; shape.columns() * blocks * BLOCK],
-            moments: vec![Moments::default(); shape.columns()],
+            means: vec![0.0; shape.moved()],
+            sums: vec![Sums::default(); shape.moved() * groups],
+            gains: vec![0.0; shape.moved() * groups],
         }
     }
 
@@ -71,81 +92,150 @@ impl Ensemble {
     /// particle goes its own way to a measurement disturbed by its own error. The errors' noise is
     /// independent, so that they can be taken one after the other.
     pub fn update(&mut self, weights: &[f64], share: f64, draw: Draw) {
-        let noise = 1.0 / share;
-        let count = 1.0 / weights.iter().fold(0.0, |sum, w| sum + w * w);
         for k in 0..self.shape.errors {
-            let error = self.shape.quantities + k;
-            self.take_moments(error, weights);
-            let observed = self.moments[error].variance;
-            for (j, of) in self.moments.iter_mut().enumerate() {
-                let kept = match j < self.shape.quantities {
-                    true => of.certain(observed, count),
-                    false => 1.0,
-                };
-                of.covariance *= kept / (observed + noise);
-            }
-            self.go(error, noise.sqrt(), |particle| {
-                draw.normal(particle, k as u32)
-            });
+            self.take_sums(k, weights);
+            self.take_gains(k, self.noise(k, weights) / share);
+            self.go(k, share, |particle| draw.normal(particle, k as u32));
         }
     }
 
-    /// Weighted moments of all columns, with one error.
-    fn take_moments(&mut self, error: usize, weights: &[f64]) {
-        let stride = self.stride();
+    /// Mean variance of the noise of one error.
+    fn noise(&self, error: usize, weights: &[f64]) -> f64 {
+        let column = self.shape.moved() + error;
+        let blocks = self.blocks().zip(weights.chunks(BLOCK));
+        let of_blocks = blocks.map(|(block, weights)| {
+            let (weights, std) = (padded(weights), &block.as_chunks::<BLOCK>().0[column]);
+            sum(|i| weights[i] * std[i] * std[i])
+        });
+        of_blocks.fold(0.0, |sum, x| sum + x)
+    }
+
+    /// Weighted sums of all columns, with one error, group by group.
+    fn take_sums(&mut self, error: usize, weights: &[f64]) {
+        let (stride, columns) = (self.stride(), self.shape.moved());
+        let error = self.shape.quantities + error;
         let Self {
-            values, moments, ..
+            values,
+            means,
+            sums,
+            ..
         } = self;
-        moments.fill(Moments::default());
-        let blocks = || values.chunks(stride).zip(weights.chunks(BLOCK));
+        let count = values.len() / stride;
+        let blocks = || {
+            let blocks = values.chunks(stride).zip(weights.chunks(BLOCK));
+            blocks.map(|(block, weights)| (block.as_chunks::<BLOCK>().0, padded(weights)))
+        };
+        means.fill(0.0);
         for (block, weights) in blocks() {
-            let weights = padded(weights);
-            for (of, column) in moments.iter_mut().zip(block.as_chunks::<BLOCK>().0) {
-                of.mean += sum(|i| weights[i] * column[i]);
+            for (mean, column) in means.iter_mut().zip(block) {
+                *mean += sum(|i| weights[i] * column[i]);
             }
         }
-        let observed = moments[error].mean;
-        for (block, weights) in blocks() {
-            let weights = padded(weights);
-            let columns = block.as_chunks::<BLOCK>().0;
-            let away: [f64; BLOCK] = std::array::from_fn(|i| columns[error][i] - observed);
-            for (of, column) in moments.iter_mut().zip(columns) {
-                let mean = of.mean;
-                of.variance += sum(|i| weights[i] * (column[i] - mean) * (column[i] - mean));
-                of.covariance += sum(|i| weights[i] * (column[i] - mean) * away[i]);
+        sums.fill(Sums::default());
+        for (index, (block, weights)) in blocks().enumerate() {
+            let e: [f64; BLOCK] = std::array::from_fn(|i| block[error][i] - means[error]);
+            let (w, ww) = (sum(|i| weights[i]), sum(|i| weights[i] * weights[i]));
+            let sums = &mut sums[group(index, count) * columns..][..columns];
+            for ((of, column), mean) in sums.iter_mut().zip(block).zip(&*means) {
+                of.w += w;
+                of.ww += ww;
+                of.x += sum(|i| weights[i] * (column[i] - mean));
+                of.xx += sum(|i| weights[i] * (column[i] - mean) * (column[i] - mean));
+                of.xe += sum(|i| weights[i] * (column[i] - mean) * e[i]);
             }
         }
     }
 
-    /// Moves all columns by their gains, which are in the place of the covariances.
-    fn go(&mut self, error: usize, std: f64, normal: impl Fn(u32) -> f64) {
-        let stride = self.stride();
+    /// Every group's gains, by the sums of the others.
+    fn take_gains(&mut self, error: usize, noise: f64) {
+        let columns = self.shape.moved();
+        let error = self.shape.quantities + error;
+        let groups = self.sums.len() / columns;
+        let of = |column: usize| {
+            let sums = self.sums.iter().skip(column).step_by(columns);
+            sums.fold(Sums::default(), |all, group| all.with(group, 1.0))
+        };
+        for column in 0..columns {
+            let (all, observed) = (of(column), of(error));
+            for group in 0..groups {
+                let others = |all: Sums, column| match groups {
+                    1 => all,
+                    _ => all.with(&self.sums[group * columns + column], -1.0),
+                };
+                let others = (others(all, column), others(observed, error));
+                let certain = column >= self.shape.quantities;
+                self.gains[group * columns + column] = gain(&others.0, &others.1, noise, certain);
+            }
+        }
+    }
+
+    /// Moves all columns by their gains.
+    fn go(&mut self, error: usize, share: f64, normal: impl Fn(u32) -> f64) {
+        let (stride, columns) = (self.stride(), self.shape.moved());
+        let (error, std) = (self.shape.quantities + error, columns + error);
+        let scale = 1.0 / share.sqrt();
+        let count = self.values.len() / stride;
         for (index, block) in self.values.chunks_mut(stride).enumerate() {
-            let columns = block.as_chunks_mut::<BLOCK>().0;
+            let gains = &self.gains[group(index, count) * columns..][..columns];
+            let block = block.as_chunks_mut::<BLOCK>().0;
             let first = (index * BLOCK) as u32;
-            let way: [f64; BLOCK] =
-                std::array::from_fn(|i| std * normal(first + i as u32) - columns[error][i]);
-            for (of, column) in self.moments.iter().zip(columns) {
+            let way: [f64; BLOCK] = std::array::from_fn(|i| {
+                scale * block[std][i] * normal(first + i as u32) - block[error][i]
+            });
+            for (gain, column) in gains.iter().zip(block) {
                 for (x, way) in column.iter_mut().zip(&way) {
-                    *x += of.covariance * way;
+                    *x += gain * way;
                 }
             }
         }
     }
 }
 
-impl Moments {
-    /// Share of a covariance that is not chance: of `count` independent particles, two columns that have
-    /// nothing to do with each other have a squared correlation of 1 / `count` (Anderson 2012). 0 to 1.
-    fn certain(&self, observed: f64, count: f64) -> f64 {
-        let product = self.variance * observed;
-        let square = self.covariance * self.covariance;
-        if square <= 0.0 || product <= 0.0 {
-            return 0.0;
+impl Sums {
+    /// The same of more particles, or, for `sign` -1, of fewer.
+    fn with(&self, others: &Self, sign: f64) -> Self {
+        Self {
+            w: self.w + sign * others.w,
+            ww: self.ww + sign * others.ww,
+            x: self.x + sign * others.x,
+            xx: self.xx + sign * others.xx,
+            xe: self.xe + sign * others.xe,
         }
-        let chance = (product - square).max(0.0) / count;
-        (1.0 - chance / square).max(0.0)
     }
+}
+
+/// The group of a block.
+fn group(block: usize, blocks: usize) -> usize {
+    block * blocks.min(GROUPS) / blocks
+}
+
+/// By how much a column moves where an error does by one that is observed under `noise`; a covariance
+/// that is not `certain` counts only by the share that is not chance.
+fn gain(of: &Sums, error: &Sums, noise: f64, certain: bool) -> f64 {
+    if of.w <= 0.0 {
+        return 0.0;
+    }
+    let (x, e) = (of.x / of.w, error.x / of.w);
+    let variance = of.xx / of.w - x * x;
+    let observed = error.xx / of.w - e * e;
+    let covariance = of.xe / of.w - x * e;
+    let share = match certain {
+        true => 1.0,
+        false => not_chance(covariance, variance * observed, of.w * of.w / of.ww),
+    };
+    share * covariance / (observed + noise)
+}
+
+/// Share of a covariance that is not chance: of `count` independent particles, two columns that have
+/// nothing to do with each other have a squared correlation of 1 / `count` (Anderson 2012). 0 to 1;
+/// `product` is that of their variances.
+fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
+    let square = covariance * covariance;
+    if square <= 0.0 || product <= 0.0 {
+        return 0.0;
+    }
+    let chance = (product - square).max(0.0) / count;
+    (1.0 - chance / square).max(0.0)
 }
 
 /// The weights of one block; particles past the last one have none.

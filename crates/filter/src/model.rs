@@ -98,14 +98,14 @@ pub trait Model: Sync {
 
     /// Whether an observation may move what [`ensemble`](Self::ensemble) says. The part of it that moves
     /// is that of [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about normal: ln of
-    /// its likelihood is −½ the sum of the squared errors, up to a constant.
+    /// its likelihood is −½ the sum of the squared errors over their noise, up to a constant.
     fn moves(&self, _observation: &Self::Observation) -> bool {
         false
     }
 
     /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then each
-    /// error, what a particle expects less what was observed, in standard deviations of the noise. Places
-    /// past the block's last particle hold any finite number.
+    /// error, what a particle expects less what was observed, then the standard deviation of each error's
+    /// noise that the particle believes in. Places past the block's last particle hold any finite number.
     fn read_ensemble(&self, _observation: &Self::Observation, _block: &Block<'_>, _to: &mut [f64]) {
     }
 

@@ -109,27 +109,22 @@ impl CameraLikelihood {
         noise.store(self.columns, block, chunk);
     }
 
-    /// What one chunk's particles show less the measured pose, as independent numbers in units of the noise
-    /// that they believe in.
+    /// The noise of [`errors`](Self::errors) that one chunk's particles believe in: standard deviations
+    /// in units of the told ones.
     #[inline(always)]
-    pub fn errors(
-        &self,
-        observation: &Observation,
-        block: &Block<'_>,
-        chunk: usize,
-    ) -> [Column; 3] {
-        let [x, y, theta] = self.told_errors(observation, block, chunk);
+    pub fn believed_noise(&self, block: &Block<'_>, chunk: usize) -> [Column; 3] {
         let Some(prior) = self.noise else {
-            return [x, y, theta];
+            return [Column::splat(1.0); 3];
         };
         let noise = CameraNoise::load(self.columns, block, chunk);
         let [position, angle] = noise.believed(prior);
-        [x / position, y / position, theta / angle]
+        [position, position, angle]
     }
 
-    /// The same in units of the told noise.
+    /// What one chunk's particles show less the measured pose, as independent numbers in units of the told
+    /// noise.
     #[inline(always)]
-    fn told_errors(
+    pub fn errors(
         &self,
         observation: &Observation,
         block: &Block<'_>,
@@ -166,7 +161,7 @@ impl CameraLikelihood {
         chunk: usize,
     ) -> Option<Residual> {
         observation.pose?;
-        let [x, y, theta] = self.told_errors(observation, block, chunk);
+        let [x, y, theta] = self.errors(observation, block, chunk);
         Some(Residual {
             position: x * x + y * y,
             angle: theta * theta,

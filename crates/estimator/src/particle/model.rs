@@ -267,7 +267,9 @@ impl Model for ContactModel<'_> {
         moved::read(self.columns(), block, quantities);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_chunk = self.camera_likelihood.errors(observation, block, chunk);
-            for (errors, column) in errors.chunks_mut(BLOCK).zip(&of_chunk) {
+            let noise = self.camera_likelihood.believed_noise(block, chunk);
+            let of_chunk = of_chunk.iter().chain(&noise);
+            for (errors, column) in errors.chunks_mut(BLOCK).zip(of_chunk) {
                 errors[chunk * LANES..][..LANES].copy_from_slice(&column.0);
             }
         }

@@ -14,10 +14,10 @@ struct TwoNumbers {
 const OBSERVED: f64 = 1.2;
 
 impl TwoNumbers {
-    /// Errors of a block's particles, in standard deviations.
-    fn errors(&self, observed: f64, block: &Block<'_>) -> Vec<f64> {
+    /// Errors of a block's particles.
+    fn errors(observed: f64, block: &Block<'_>) -> Vec<f64> {
         let sums = block.column(0).iter().zip(block.column(1));
-        sums.map(|(a, b)| (a + b - observed) / self.noise).collect()
+        sums.map(|(a, b)| a + b - observed).collect()
     }
 
     /// Mean and variance of each number after one observation, and ln of its density.
@@ -54,8 +54,8 @@ impl Model for TwoNumbers {
 
     fn log_likelihood(&self, observed: &f64, block: &Block<'_>, out: &mut [f64]) {
         let constant = -libm::log(self.noise * std::f64::consts::TAU.sqrt());
-        for (out, error) in out.iter_mut().zip(self.errors(*observed, block)) {
-            *out = constant - 0.5 * error * error;
+        for (out, error) in out.iter_mut().zip(Self::errors(*observed, block)) {
+            *out = constant - 0.5 * (error / self.noise).powi(2);
         }
     }
 
@@ -76,7 +76,8 @@ impl Model for TwoNumbers {
         let n = block.len();
         to[..n].copy_from_slice(block.column(0));
         to[BLOCK..][..n].copy_from_slice(block.column(1));
-        to[2 * BLOCK..][..n].copy_from_slice(&self.errors(*observed, block));
+        to[2 * BLOCK..][..n].copy_from_slice(&Self::errors(*observed, block));
+        to[3 * BLOCK..].fill(self.noise);
     }
 
     fn write_ensemble(&self, from: &[f64], block: &mut BlockMut<'_>) {

@@ -4,6 +4,7 @@
 
 mod allocation;
 mod bridge;
+mod bystander;
 mod collapse;
 mod common;
 mod imm;
