@@ -12,7 +12,7 @@ use crate::particle::noise_clock::NOISE_STEP;
 use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
-use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
+use crate::particle::touch_channel::{SensorBelief, TouchChannel, touch};
 use crate::setup::Limits;
 
 /// Numbers for what is unknown: behind those of all substeps.
@@ -297,12 +297,11 @@ impl Propagation {
                     let gap = gap.0[i % LANES] / setup.uncertainty.touch_gap;
                     let idle = is_set(&block.as_block(), Columns::IDLE, i);
                     let impulse = impulse.0[i % LANES] / threshold;
-                    let touch = felt_or_idle(impulse, gap, idle, reading);
-                    let stuck = [0, 1].map(|k| block.column(columns.stuck(j) + k)[i]);
-                    let (stuck, log_likelihood) = channel.read(stuck, h, touch, reading);
-                    for (k, stuck) in stuck.into_iter().enumerate() {
-                        block.column_mut(columns.stuck(j) + k)[i] = stuck;
-                    }
+                    let touch = touch(impulse, gap, idle);
+                    let before = std::array::from_fn(|k| block.column(columns.sensor(j) + k)[i]);
+                    let before = SensorBelief::of(before);
+                    let (after, log_likelihood) = channel.read(before, h, touch, reading);
+                    write(block, columns.sensor(j), i, after.fields());
                     block.column_mut(columns.felt_log_likelihood())[i] += log_likelihood;
                 }
             }

@@ -146,7 +146,7 @@ impl<'o> ContactModel<'o> {
         }
         let start = TouchChannel::new(&setup.tactile).start();
         for j in 0..columns.fixels() {
-            write(block, columns.stuck(j), i, [&start[0], &start[1]]);
+            write(block, columns.sensor(j), i, start.fields());
             let offset = draw.normals::<2>(particle, 18 + 2 * j as u32);
             write(block, columns.fixel_offset(j), i, [&offset[0], &offset[1]]);
         }

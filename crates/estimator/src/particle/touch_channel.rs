@@ -3,7 +3,45 @@
 use crate::setup::Tactile;
 
 /// Probabilities that a sensor is stuck at 0 and at 1.
-pub(crate) type Stuck = [f64; 2];
+type Stuck = [f64; 2];
+
+/// What a particle believes of a sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SensorBelief {
+    stuck: Stuck,
+    /// Probability that the contact presses, while it is idle, if the sensor works; else that of one
+    /// that begins to be.
+    presses: f64,
+}
+
+impl SensorBelief {
+    /// Its numbers, to be stored in columns.
+    pub const LEN: usize = 3;
+
+    /// From its numbers.
+    pub fn of([zero, one, presses]: [f64; Self::LEN]) -> Self {
+        Self {
+            stuck: [zero, one],
+            presses,
+        }
+    }
+
+    /// Its numbers.
+    pub fn fields(&self) -> [&f64; Self::LEN] {
+        let [zero, one] = &self.stuck;
+        [zero, one, &self.presses]
+    }
+}
+
+/// How a contact stands to its sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Touch {
+    /// It is felt with this probability, row by row.
+    Felt(f64),
+    /// It is near and idle (docs/method.md (25)): no step tells whether it presses and so is felt, but
+    /// it goes on as it is.
+    Idle,
+}
 
 /// A sensor that works, or is stuck at one reading for a while; which, is not known, but inferred
 /// from its readings, particle by particle (docs/method.md, "Contact mode").
@@ -16,7 +54,7 @@ pub(crate) struct TouchChannel {
     reads_one: [f64; 2],
     /// Share of time for which a sensor is stuck at 0 and at 1.
     share: Stuck,
-    /// Rate at which what is stuck gets free (1/s).
+    /// Rate at which what is stuck gets free, and what is idle changes (1/s).
     recovery: f64,
 }
 
@@ -30,21 +68,40 @@ impl TouchChannel {
     }
 
     /// Before the first reading.
-    pub fn start(&self) -> Stuck {
-        self.share
+    pub fn start(&self) -> SensorBelief {
+        SensorBelief {
+            stuck: self.share,
+            presses: PRESSES,
+        }
     }
 
-    /// After `h` seconds and a reading of a sensor that is touched with probability `touch`: the
-    /// probabilities, and the log-likelihood of the reading.
-    pub fn read(&self, stuck: Stuck, h: f64, touch: f64, reading: bool) -> (Stuck, f64) {
+    /// After `h` seconds and a reading: what is believed, and the log-likelihood of the reading.
+    pub fn read(
+        &self,
+        SensorBelief { stuck, presses }: SensorBelief,
+        h: f64,
+        touch: Touch,
+        reading: bool,
+    ) -> (SensorBelief, f64) {
         // what may have happened since the last reading
         let freed = 1.0 - libm::exp(-self.recovery * h);
+        let repaired = freed * (stuck[0] + stuck[1]) * (1.0 - self.share[0] - self.share[1]);
         let stuck: Stuck = std::array::from_fn(|k| stuck[k] + freed * (self.share[k] - stuck[k]));
         let works = 1.0 - stuck[0] - stuck[1];
+        let felt = match touch {
+            Touch::Felt(felt) => felt,
+            Touch::Idle => {
+                // a sensor that was stuck has told nothing of it
+                let known = (1.0 - freed) * (1.0 - repaired / works);
+                PRESSES + known * (presses - PRESSES)
+            }
+        };
 
         // Bayes' rule
-        let one = touch * self.reads_one[1] + (1.0 - touch) * self.reads_one[0];
-        let of_working = if reading { one } else { 1.0 - one };
+        let of_working = [0, 1].map(|touched| {
+            let one = self.reads_one[touched];
+            if reading { one } else { 1.0 - one }
+        });
         let of_stuck = [0, 1].map(|at| {
             if reading == (at == 1) {
                 1.0 - SLIP
@@ -53,30 +110,49 @@ impl TouchChannel {
             }
         });
         let joint: Stuck = std::array::from_fn(|k| stuck[k] * of_stuck[k]);
-        let likelihood = works * of_working + joint[0] + joint[1];
-        (joint.map(|joint| joint / likelihood), libm::log(likelihood))
+        let of_works = (1.0 - felt) * of_working[0] + felt * of_working[1];
+        let likelihood = works * of_works + joint[0] + joint[1];
+        let after = SensorBelief {
+            stuck: joint.map(|joint| joint / likelihood),
+            presses: match touch {
+                Touch::Felt(_) => PRESSES,
+                Touch::Idle => felt * of_working[1] / of_works,
+            },
+        };
+        (after, libm::log(likelihood))
     }
 
-    /// A reading by the same rules: of a sensor that is in `state`, drawn with three uniform numbers,
-    /// after `h` seconds with a touch felt with probability `touch`; with its state then.
+    /// A reading by the same rules, `h` seconds after the state given, drawn with four uniform
+    /// numbers; with the state then.
     pub fn drawn(
         &self,
-        state: SensorState,
+        before: DrawnSensor,
         h: f64,
-        touch: f64,
-        [change, feel, read]: [f64; 3],
-    ) -> (SensorState, bool) {
+        touch: Touch,
+        [change, turn, feel, read]: [f64; 4],
+    ) -> (DrawnSensor, bool) {
         let freed = 1.0 - libm::exp(-self.recovery * h);
         let state = match change < freed {
             true => self.state_at(change / freed),
-            false => state,
+            false => before.state,
         };
-        let one = match state {
-            SensorState::Works => return (state, self.drawn_working(touch, [feel, read])),
-            SensorState::StuckAt(false) => SLIP,
-            SensorState::StuckAt(true) => 1.0 - SLIP,
+        let presses = match touch {
+            Touch::Felt(_) => None,
+            Touch::Idle => Some(match before.presses.filter(|_| turn >= freed) {
+                Some(presses) => presses,
+                None => feel < PRESSES,
+            }),
         };
-        (state, read < one)
+        let felt = match touch {
+            Touch::Felt(felt) => felt,
+            Touch::Idle => f64::from(u8::from(presses == Some(true))),
+        };
+        let reading = match state {
+            SensorState::Works => self.drawn_working(felt, [feel, read]),
+            SensorState::StuckAt(false) => read < SLIP,
+            SensorState::StuckAt(true) => read < 1.0 - SLIP,
+        };
+        (DrawnSensor { state, presses }, reading)
     }
 
     /// A reading of a sensor that works, drawn with two uniform numbers.
@@ -93,6 +169,14 @@ impl TouchChannel {
             _ => SensorState::Works,
         }
     }
+}
+
+/// A sensor of which all is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DrawnSensor {
+    pub state: SensorState,
+    /// Whether its contact presses, while that is idle.
+    pub presses: Option<bool>,
 }
 
 /// Whether a sensor works.
@@ -115,19 +199,21 @@ pub(crate) fn felt(impulse: f64, gap: f64) -> f64 {
     }
 }
 
-/// The same for a contact that may be idle, given the reading: an idle one that is near may press or
-/// not, so that it explains either reading (docs/method.md (25)).
-pub(crate) fn felt_or_idle(impulse: f64, gap: f64, idle: bool, reading: bool) -> f64 {
+/// A contact with this impulse and gap, in the units of [`felt`].
+pub(crate) fn touch(impulse: f64, gap: f64, idle: bool) -> Touch {
     match idle && gap < NEAR {
-        true => f64::from(u8::from(reading)),
-        false => felt(impulse, gap),
+        true => Touch::Idle,
+        false => Touch::Felt(felt(impulse, gap)),
     }
 }
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
 const NEAR: f64 = 2.0;
 
-/// Rate at which a stuck sensor gets free (1/s).
+/// Probability that a contact presses which has just become idle.
+const PRESSES: f64 = 0.5;
+
+/// Rate at which a stuck sensor gets free, and an idle contact changes (1/s).
 const RECOVERY: f64 = 0.5;
 
 /// Probability that a stuck sensor reads the other value after all.
@@ -141,24 +227,31 @@ mod tests {
         TouchChannel::new(&Tactile::default())
     }
 
-    /// log-likelihood of `rows` equal readings of a sensor that is touched or not.
-    fn evidence(rows: usize, touch: f64, reading: bool) -> f64 {
-        let (mut stuck, mut sum) = (channel().start(), 0.0);
-        for _ in 0..rows {
-            let (next, log_likelihood) = channel().read(stuck, 1.0 / 30.0, touch, reading);
-            (stuck, sum) = (next, sum + log_likelihood);
+    /// log-likelihood of `rows` equal readings of a contact.
+    fn evidence(rows: usize, touch: Touch, reading: bool) -> f64 {
+        evidence_of(std::iter::repeat_n(reading, rows), touch)
+    }
+
+    fn evidence_of(readings: impl Iterator<Item = bool>, touch: Touch) -> f64 {
+        let (mut belief, mut sum) = (channel().start(), 0.0);
+        for reading in readings {
+            let (next, log_likelihood) = channel().read(belief, 1.0 / 30.0, touch, reading);
+            (belief, sum) = (next, sum + log_likelihood);
         }
         sum
     }
 
     #[test]
     fn the_likelihoods_of_both_readings_sum_to_one() {
-        for touch in [0.0, 0.3, 1.0] {
-            for stuck in [[0.05, 0.01], [0.9, 0.0], [0.0, 0.7]] {
-                let of = |reading| libm::exp(channel().read(stuck, 0.1, touch, reading).1);
+        let idle = [0.0, 0.4, 1.0].map(|presses| (Touch::Idle, presses));
+        let felt = [0.0, 0.3, 1.0].map(|felt| (Touch::Felt(felt), PRESSES));
+        for (touch, presses) in idle.into_iter().chain(felt) {
+            for [zero, one] in [[0.05, 0.01], [0.9, 0.0], [0.0, 0.7]] {
+                let belief = SensorBelief::of([zero, one, presses]);
+                let of = |reading| libm::exp(channel().read(belief, 0.1, touch, reading).1);
                 assert!(
                     (of(false) + of(true) - 1.0).abs() < 1e-12,
-                    "{touch}, {stuck:?}"
+                    "{touch:?}, {belief:?}"
                 );
             }
         }
@@ -167,33 +260,57 @@ mod tests {
     #[test]
     fn a_reading_that_stays_wrong_counts_once_not_row_by_row() {
         // independent misses of 5 % would count 3 each
-        let (few, many) = (evidence(5, 1.0, false), evidence(100, 1.0, false));
+        let touched = Touch::Felt(1.0);
+        let (few, many) = (evidence(5, touched, false), evidence(100, touched, false));
         assert!((-6.0..-2.0).contains(&few), "{few}");
         assert!(many > few - 10.0, "{many}");
-        assert!(evidence(100, 1.0, true) > -8.0);
+        assert!(evidence(100, touched, true) > -8.0);
+    }
+
+    #[test]
+    fn an_idle_contact_explains_readings_of_either_kind_and_no_mixture() {
+        let away = Touch::Felt(0.0);
+        let against = |readings: Vec<bool>| {
+            let idle = evidence_of(readings.iter().copied(), Touch::Idle);
+            idle - evidence_of(readings.into_iter(), away)
+        };
+        // zeros tell little against an idle contact, ones tell for it what a sensor stuck at 1 does not
+        let zeros = against(vec![false; 300]);
+        assert!((-4.0..0.0).contains(&zeros), "{zeros}");
+        let ones = against(vec![true; 10]);
+        assert!(ones > 1.5, "{ones}");
+
+        // false alarms among zeros tell nothing for it, however many they are
+        let alarms = |every: usize| (0..300).map(|row| row % every == every - 1).collect();
+        for every in [30, 60, 100] {
+            let told = against(alarms(every));
+            assert!((-12.0..1.0).contains(&told), "{told}, every {every} rows");
+        }
     }
 
     #[test]
     fn a_wrong_reading_after_right_ones_makes_the_sensor_suspect() {
-        let channel = channel();
-        let (stuck, _) = channel.read(channel.start(), 0.03, 1.0, true);
-        let (suspect, _) = channel.read(stuck, 0.03, 1.0, false);
+        let (channel, touched) = (channel(), Touch::Felt(1.0));
+        let (before, _) = channel.read(channel.start(), 0.03, touched, true);
+        let (after, _) = channel.read(before, 0.03, touched, false);
         assert!(
-            suspect[0] > 10.0 * stuck[0] && suspect[1] < stuck[1],
-            "{stuck:?}, {suspect:?}"
+            after.stuck[0] > 10.0 * before.stuck[0] && after.stuck[1] < before.stuck[1],
+            "{before:?}, {after:?}"
         );
     }
 
-    #[test]
-    fn readings_drawn_come_as_often_as_their_likelihood_says() {
+    /// Share of 200,000 sensors that read each series of four readings, and its likelihood.
+    fn drawn_and_expected(touches: [Touch; 4]) -> Vec<(f64, f64)> {
         use stickslip_filter::Streams;
-        // share of sensors that read these rows, against the product of the rows' likelihoods
-        let (channel, touches) = (channel(), [0.0, 0.9, 0.9, 0.2]);
+        let channel = channel();
         let mut counts = [0_u32; 16];
         let sensors: u32 = 200_000;
         for sensor in 0..sensors {
             let draw = Streams::new(5).at(u64::from(sensor));
-            let mut state = channel.state_at(draw.uniform(0, 9));
+            let mut state = DrawnSensor {
+                state: channel.state_at(draw.uniform(0, 9)),
+                presses: None,
+            };
             let mut read = 0;
             for (row, touch) in (0..).zip(touches) {
                 let uniform = std::array::from_fn(|k| draw.uniform(row, k as u32));
@@ -203,16 +320,33 @@ mod tests {
             }
             counts[read] += 1;
         }
-        for (read, count) in counts.into_iter().enumerate() {
-            let (mut stuck, mut log_likelihood) = (channel.start(), 0.0);
+        let of = |read: usize| {
+            let (mut belief, mut log_likelihood) = (channel.start(), 0.0);
             for (row, touch) in touches.into_iter().enumerate() {
                 let reading = read >> (3 - row) & 1 == 1;
-                let (next, more) = channel.read(stuck, 0.4, touch, reading);
-                (stuck, log_likelihood) = (next, log_likelihood + more);
+                let (next, more) = channel.read(belief, 0.4, touch, reading);
+                (belief, log_likelihood) = (next, log_likelihood + more);
             }
-            let expected = libm::exp(log_likelihood) * f64::from(sensors);
-            let error = (f64::from(count) - expected) / expected.sqrt();
-            assert!(error.abs() < 4.0, "{read:04b}: {count}, {expected}");
+            libm::exp(log_likelihood)
+        };
+        let share = |count: u32| f64::from(count) / f64::from(sensors);
+        (counts.into_iter().map(share).zip((0..16).map(of))).collect()
+    }
+
+    #[test]
+    fn readings_drawn_come_as_often_as_their_likelihood_says() {
+        let felt = [0.0, 0.9, 0.9, 0.2].map(Touch::Felt);
+        for (read, (share, expected)) in drawn_and_expected(felt).into_iter().enumerate() {
+            let error = (share - expected) / (expected / 200_000.0).sqrt();
+            assert!(error.abs() < 4.0, "{read:04b}: {share}, {expected}");
+        }
+        // of an idle contact, what was known before its sensor got stuck counts as forgotten
+        let idle = [Touch::Felt(0.9), Touch::Idle, Touch::Idle, Touch::Idle];
+        for (read, (share, expected)) in drawn_and_expected(idle).into_iter().enumerate() {
+            assert!(
+                (share - expected).abs() < 0.1 * expected + 0.002,
+                "{read:04b}: {share}, {expected}"
+            );
         }
     }
 
