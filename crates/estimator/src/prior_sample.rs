@@ -12,7 +12,7 @@ use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::camera_noise::NoisePrior;
 use crate::particle::observer::{Observer, SolvedStep};
-use crate::particle::touch_channel::{DrawnSensor, Touch, TouchChannel, touch};
+use crate::particle::touch_channel::{DrawnSensor, TouchChannel, felt_or_idle};
 use crate::particle::view::ParticleView;
 use crate::run::run_observed;
 use crate::setup::{Camera, Setup};
@@ -79,8 +79,8 @@ struct Witnessed {
     truth: SampledState,
     /// The pose that the camera shows.
     shown: Pose,
-    /// How the object touches each sensor.
-    touch: Vec<Touch>,
+    /// Probability that each sensor feels a contact.
+    touch: Vec<f64>,
 }
 
 /// Looks on as a single particle moves.
@@ -94,7 +94,7 @@ struct Witness<'a> {
 #[derive(Debug, Default)]
 struct WitnessState {
     rows: Vec<Witnessed>,
-    /// Of each fixel in the latest step: impulse and gap, in the units of [`touch`].
+    /// Of each fixel in the latest step: impulse and gap, in the units of [`felt_or_idle`].
     contacts: Vec<(f64, f64)>,
 }
 
@@ -141,8 +141,8 @@ impl Observer for Witness<'_> {
         let mut state = self.state.lock().expect("one thread");
         let idle = particles.is_idle(0);
         let felt = |&(impulse, gap): &(f64, f64)| match self.mode {
-            Mode::Contact => touch(impulse, gap, idle),
-            Mode::Paper => Touch::Felt(f64::from(u8::from(impulse > 1.0))),
+            Mode::Contact => felt_or_idle(impulse, gap, idle),
+            Mode::Paper => f64::from(u8::from(impulse > 1.0)),
         };
         let row = Witnessed {
             truth: SampledState {
@@ -208,23 +208,21 @@ impl Readings<'_> {
         let channel = TouchChannel::new(&self.setup.tactile);
         let particle = FIRST_SENSOR + j as u32;
         let mut sensor = DrawnSensor {
-            state: channel.state_at(streams.uniform(0, particle, 4)),
-            presses: None,
+            state: channel.state_at(streams.uniform(0, particle, 3)),
+            threshold: streams.uniform(0, particle, 4),
         };
         let mut before = None;
         for (k, ((reading, row), time)) in rows.enumerate() {
             let h = time - before.replace(*time).unwrap_or(*time);
-            let touch = row.touch.get(j).copied().unwrap_or(Touch::Felt(0.0));
+            let touch = row.touch.get(j).copied().unwrap_or(0.0);
             let uniform = std::array::from_fn(|n| streams.uniform(k as u64, particle, n as u32));
-            let drawn = match (self.mode, touch) {
-                (Mode::Paper, Touch::Felt(felt)) => {
-                    channel.drawn_working(felt, [uniform[2], uniform[3]])
-                }
-                _ => {
+            let drawn = match self.mode {
+                Mode::Contact => {
                     let drawn = channel.drawn(sensor, h, touch, uniform);
                     sensor = drawn.0;
                     drawn.1
                 }
+                Mode::Paper => channel.drawn_working(touch, [uniform[1], uniform[2]]),
             };
             *reading = reading.map(|_| drawn);
         }

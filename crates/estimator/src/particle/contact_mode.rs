@@ -12,7 +12,7 @@ use crate::particle::noise_clock::NOISE_STEP;
 use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
-use crate::particle::touch_channel::{SensorBelief, TouchChannel, touch};
+use crate::particle::touch_channel::{SensorBelief, TouchChannel, felt_or_idle};
 use crate::setup::Limits;
 
 /// Numbers for what is unknown: behind those of all substeps.
@@ -297,7 +297,7 @@ impl Propagation {
                     let gap = gap.0[i % LANES] / setup.uncertainty.touch_gap;
                     let idle = is_set(&block.as_block(), Columns::IDLE, i);
                     let impulse = impulse.0[i % LANES] / threshold;
-                    let touch = touch(impulse, gap, idle);
+                    let touch = felt_or_idle(impulse, gap, idle);
                     let before = std::array::from_fn(|k| block.column(columns.sensor(j) + k)[i]);
                     let before = SensorBelief::of(before);
                     let (after, log_likelihood) = channel.read(before, h, touch, reading);

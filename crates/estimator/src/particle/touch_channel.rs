@@ -9,52 +9,42 @@ type Stuck = [f64; 2];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SensorBelief {
     stuck: Stuck,
-    /// Probability that the contact presses, while it is idle, if the sensor works; else that of one
-    /// that begins to be.
-    presses: f64,
+    /// If it works, in which quarter from 0 to 1 the probability of a touch lies from which on it feels it.
+    threshold: [f64; LEVELS],
 }
 
 impl SensorBelief {
     /// Its numbers, to be stored in columns.
-    pub const LEN: usize = 3;
+    pub const LEN: usize = 2 + LEVELS;
 
     /// From its numbers.
-    pub fn of([zero, one, presses]: [f64; Self::LEN]) -> Self {
+    pub fn of([zero, one, threshold @ ..]: [f64; Self::LEN]) -> Self {
         Self {
             stuck: [zero, one],
-            presses,
+            threshold,
         }
     }
 
     /// Its numbers.
     pub fn fields(&self) -> [&f64; Self::LEN] {
-        let [zero, one] = &self.stuck;
-        [zero, one, &self.presses]
+        let ([zero, one], [a, b, c, d]) = (&self.stuck, &self.threshold);
+        [zero, one, a, b, c, d]
     }
-}
-
-/// How a contact stands to its sensor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Touch {
-    /// It is felt with this probability, row by row.
-    Felt(f64),
-    /// It is near and idle (docs/method.md (25)): no step tells whether it presses and so is felt, but
-    /// it goes on as it is.
-    Idle,
 }
 
 /// A sensor that works, or is stuck at one reading for a while; which, is not known, but inferred
 /// from its readings, particle by particle (docs/method.md, "Contact mode").
 ///
 /// Readings of a sensor that misses a touch now will miss it in the next frame, too: they count
-/// once, not frame by frame.
+/// once, not frame by frame. So does what is not known of a contact, its gap or whether it presses: it is
+/// felt where its probability of being so exceeds a number between 0 and 1, that stays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchChannel {
     /// Of a sensor that works: probability of reading 1 without touch, and with it.
     reads_one: [f64; 2],
     /// Share of time for which a sensor is stuck at 0 and at 1.
     share: Stuck,
-    /// Rate at which what is stuck gets free, and what is idle changes (1/s).
+    /// Rate at which what is stuck gets free, and thresholds change (1/s).
     recovery: f64,
 }
 
@@ -71,16 +61,17 @@ impl TouchChannel {
     pub fn start(&self) -> SensorBelief {
         SensorBelief {
             stuck: self.share,
-            presses: PRESSES,
+            threshold: [LEVEL; LEVELS],
         }
     }
 
-    /// After `h` seconds and a reading: what is believed, and the log-likelihood of the reading.
+    /// After `h` seconds and a reading of a sensor that is touched with probability `touch`: what is
+    /// believed, and the log-likelihood of the reading.
     pub fn read(
         &self,
-        SensorBelief { stuck, presses }: SensorBelief,
+        SensorBelief { stuck, threshold }: SensorBelief,
         h: f64,
-        touch: Touch,
+        touch: f64,
         reading: bool,
     ) -> (SensorBelief, f64) {
         // what may have happened since the last reading
@@ -88,14 +79,9 @@ impl TouchChannel {
         let repaired = freed * (stuck[0] + stuck[1]) * (1.0 - self.share[0] - self.share[1]);
         let stuck: Stuck = std::array::from_fn(|k| stuck[k] + freed * (self.share[k] - stuck[k]));
         let works = 1.0 - stuck[0] - stuck[1];
-        let felt = match touch {
-            Touch::Felt(felt) => felt,
-            Touch::Idle => {
-                // a sensor that was stuck has told nothing of it
-                let known = (1.0 - freed) * (1.0 - repaired / works);
-                PRESSES + known * (presses - PRESSES)
-            }
-        };
+        // a sensor that was stuck has told nothing of its threshold
+        let known = (1.0 - freed) * (1.0 - repaired / works);
+        let threshold = threshold.map(|share| LEVEL + known * (share - LEVEL));
 
         // Bayes' rule
         let of_working = [0, 1].map(|touched| {
@@ -110,54 +96,49 @@ impl TouchChannel {
             }
         });
         let joint: Stuck = std::array::from_fn(|k| stuck[k] * of_stuck[k]);
-        let of_works = (1.0 - felt) * of_working[0] + felt * of_working[1];
+        let of_levels: [f64; LEVELS] = std::array::from_fn(|k| {
+            let felt = (LEVELS as f64 * touch - k as f64).clamp(0.0, 1.0);
+            threshold[k] * ((1.0 - felt) * of_working[0] + felt * of_working[1])
+        });
+        let of_works: f64 = of_levels.iter().sum();
         let likelihood = works * of_works + joint[0] + joint[1];
         let after = SensorBelief {
             stuck: joint.map(|joint| joint / likelihood),
-            presses: match touch {
-                Touch::Felt(_) => PRESSES,
-                Touch::Idle => felt * of_working[1] / of_works,
-            },
+            threshold: of_levels.map(|level| level / of_works),
         };
         (after, libm::log(likelihood))
     }
 
-    /// A reading by the same rules, `h` seconds after the state given, drawn with four uniform
-    /// numbers; with the state then.
+    /// A reading by the same rules, `h` seconds after the state given, with a touch of this probability,
+    /// drawn with three uniform numbers; with the state then.
     pub fn drawn(
         &self,
         before: DrawnSensor,
         h: f64,
-        touch: Touch,
-        [change, turn, feel, read]: [f64; 4],
+        touch: f64,
+        [change, turn, read]: [f64; 3],
     ) -> (DrawnSensor, bool) {
         let freed = 1.0 - libm::exp(-self.recovery * h);
         let state = match change < freed {
             true => self.state_at(change / freed),
             false => before.state,
         };
-        let presses = match touch {
-            Touch::Felt(_) => None,
-            Touch::Idle => Some(match before.presses.filter(|_| turn >= freed) {
-                Some(presses) => presses,
-                None => feel < PRESSES,
-            }),
-        };
-        let felt = match touch {
-            Touch::Felt(felt) => felt,
-            Touch::Idle => f64::from(u8::from(presses == Some(true))),
+        let threshold = match turn < freed {
+            true => turn / freed,
+            false => before.threshold,
         };
         let reading = match state {
-            SensorState::Works => self.drawn_working(felt, [feel, read]),
+            SensorState::Works => self.drawn_working(touch, [threshold, read]),
             SensorState::StuckAt(false) => read < SLIP,
             SensorState::StuckAt(true) => read < 1.0 - SLIP,
         };
-        (DrawnSensor { state, presses }, reading)
+        (DrawnSensor { state, threshold }, reading)
     }
 
-    /// A reading of a sensor that works, drawn with two uniform numbers.
-    pub fn drawn_working(&self, touch: f64, [feel, read]: [f64; 2]) -> bool {
-        read < self.reads_one[usize::from(feel < touch)]
+    /// A reading of a sensor that works, drawn with two uniform numbers, of which the first is its
+    /// threshold.
+    pub fn drawn_working(&self, touch: f64, [threshold, read]: [f64; 2]) -> bool {
+        read < self.reads_one[usize::from(threshold < touch)]
     }
 
     /// The state of a sensor of which nothing is known, by a uniform number.
@@ -175,8 +156,8 @@ impl TouchChannel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnSensor {
     pub state: SensorState,
-    /// Whether its contact presses, while that is idle.
-    pub presses: Option<bool>,
+    /// Probability of a touch from which on it feels it.
+    pub threshold: f64,
 }
 
 /// Whether a sensor works.
@@ -199,21 +180,26 @@ pub(crate) fn felt(impulse: f64, gap: f64) -> f64 {
     }
 }
 
-/// A contact with this impulse and gap, in the units of [`felt`].
-pub(crate) fn touch(impulse: f64, gap: f64, idle: bool) -> Touch {
+/// The same of a contact that may be idle: no step tells whether one that is near presses (docs/method.md
+/// (25)).
+pub(crate) fn felt_or_idle(impulse: f64, gap: f64, idle: bool) -> f64 {
     match idle && gap < NEAR {
-        true => Touch::Idle,
-        false => Touch::Felt(felt(impulse, gap)),
+        true => PRESSES,
+        false => felt(impulse, gap),
     }
 }
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
 const NEAR: f64 = 2.0;
 
-/// Probability that a contact presses which has just become idle.
+/// Probability that an idle contact which is near presses.
 const PRESSES: f64 = 0.5;
 
-/// Rate at which a stuck sensor gets free, and an idle contact changes (1/s).
+/// Parts of equal size in which a threshold may lie, and the probability of each.
+const LEVELS: usize = 4;
+const LEVEL: f64 = 1.0 / LEVELS as f64;
+
+/// Rate at which a stuck sensor gets free, and a threshold changes (1/s).
 const RECOVERY: f64 = 0.5;
 
 /// Probability that a stuck sensor reads the other value after all.
@@ -228,11 +214,11 @@ mod tests {
     }
 
     /// log-likelihood of `rows` equal readings of a contact.
-    fn evidence(rows: usize, touch: Touch, reading: bool) -> f64 {
+    fn evidence(rows: usize, touch: f64, reading: bool) -> f64 {
         evidence_of(std::iter::repeat_n(reading, rows), touch)
     }
 
-    fn evidence_of(readings: impl Iterator<Item = bool>, touch: Touch) -> f64 {
+    fn evidence_of(readings: impl Iterator<Item = bool>, touch: f64) -> f64 {
         let (mut belief, mut sum) = (channel().start(), 0.0);
         for reading in readings {
             let (next, log_likelihood) = channel().read(belief, 1.0 / 30.0, touch, reading);
@@ -243,16 +229,16 @@ mod tests {
 
     #[test]
     fn the_likelihoods_of_both_readings_sum_to_one() {
-        let idle = [0.0, 0.4, 1.0].map(|presses| (Touch::Idle, presses));
-        let felt = [0.0, 0.3, 1.0].map(|felt| (Touch::Felt(felt), PRESSES));
-        for (touch, presses) in idle.into_iter().chain(felt) {
+        for touch in [0.0, 0.3, 0.5, 1.0] {
             for [zero, one] in [[0.05, 0.01], [0.9, 0.0], [0.0, 0.7]] {
-                let belief = SensorBelief::of([zero, one, presses]);
-                let of = |reading| libm::exp(channel().read(belief, 0.1, touch, reading).1);
-                assert!(
-                    (of(false) + of(true) - 1.0).abs() < 1e-12,
-                    "{touch:?}, {belief:?}"
-                );
+                for [a, b, c, d] in [[LEVEL; 4], [0.7, 0.0, 0.1, 0.2]] {
+                    let belief = SensorBelief::of([zero, one, a, b, c, d]);
+                    let of = |reading| libm::exp(channel().read(belief, 0.1, touch, reading).1);
+                    assert!(
+                        (of(false) + of(true) - 1.0).abs() < 1e-12,
+                        "{touch}, {belief:?}"
+                    );
+                }
             }
         }
     }
@@ -260,7 +246,7 @@ mod tests {
     #[test]
     fn a_reading_that_stays_wrong_counts_once_not_row_by_row() {
         // independent misses of 5 % would count 3 each
-        let touched = Touch::Felt(1.0);
+        let touched = 1.0;
         let (few, many) = (evidence(5, touched, false), evidence(100, touched, false));
         assert!((-6.0..-2.0).contains(&few), "{few}");
         assert!(many > few - 10.0, "{many}");
@@ -269,10 +255,9 @@ mod tests {
 
     #[test]
     fn an_idle_contact_explains_readings_of_either_kind_and_no_mixture() {
-        let away = Touch::Felt(0.0);
         let against = |readings: Vec<bool>| {
-            let idle = evidence_of(readings.iter().copied(), Touch::Idle);
-            idle - evidence_of(readings.into_iter(), away)
+            let idle = evidence_of(readings.iter().copied(), PRESSES);
+            idle - evidence_of(readings.into_iter(), 0.0)
         };
         // zeros tell little against an idle contact, ones tell for it what a sensor stuck at 1 does not
         let zeros = against(vec![false; 300]);
@@ -290,7 +275,7 @@ mod tests {
 
     #[test]
     fn a_wrong_reading_after_right_ones_makes_the_sensor_suspect() {
-        let (channel, touched) = (channel(), Touch::Felt(1.0));
+        let (channel, touched) = (channel(), 1.0);
         let (before, _) = channel.read(channel.start(), 0.03, touched, true);
         let (after, _) = channel.read(before, 0.03, touched, false);
         assert!(
@@ -300,7 +285,7 @@ mod tests {
     }
 
     /// Share of 200,000 sensors that read each series of four readings, and its likelihood.
-    fn drawn_and_expected(touches: [Touch; 4]) -> Vec<(f64, f64)> {
+    fn drawn_and_expected(touches: [f64; 4]) -> Vec<(f64, f64)> {
         use stickslip_filter::Streams;
         let channel = channel();
         let mut counts = [0_u32; 16];
@@ -309,7 +294,7 @@ mod tests {
             let draw = Streams::new(5).at(u64::from(sensor));
             let mut state = DrawnSensor {
                 state: channel.state_at(draw.uniform(0, 9)),
-                presses: None,
+                threshold: draw.uniform(0, 10),
             };
             let mut read = 0;
             for (row, touch) in (0..).zip(touches) {
@@ -335,18 +320,14 @@ mod tests {
 
     #[test]
     fn readings_drawn_come_as_often_as_their_likelihood_says() {
-        let felt = [0.0, 0.9, 0.9, 0.2].map(Touch::Felt);
-        for (read, (share, expected)) in drawn_and_expected(felt).into_iter().enumerate() {
-            let error = (share - expected) / (expected / 200_000.0).sqrt();
-            assert!(error.abs() < 4.0, "{read:04b}: {share}, {expected}");
-        }
-        // of an idle contact, what was known before its sensor got stuck counts as forgotten
-        let idle = [Touch::Felt(0.9), Touch::Idle, Touch::Idle, Touch::Idle];
-        for (read, (share, expected)) in drawn_and_expected(idle).into_iter().enumerate() {
-            assert!(
-                (share - expected).abs() < 0.1 * expected + 0.002,
-                "{read:04b}: {share}, {expected}"
-            );
+        // what was known of a threshold before its sensor got stuck counts as forgotten
+        for touches in [[0.0, 1.0, 1.0, 0.0], [0.75, 0.5, 0.5, 0.25]] {
+            for (read, (share, expected)) in drawn_and_expected(touches).into_iter().enumerate() {
+                assert!(
+                    (share - expected).abs() < 0.1 * expected + 0.002,
+                    "{touches:?}, {read:04b}: {share}, {expected}"
+                );
+            }
         }
     }
 
