@@ -24,7 +24,14 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
             "stated_problem",
             "block_problems",
         ],
-        &["kept_lanes", "step", "compiled_step", "rollout"],
+        &[
+            "kept_lanes",
+            "step_work",
+            "by_lane",
+            "step",
+            "compiled_step",
+            "rollout",
+        ],
     ],
 )];
 

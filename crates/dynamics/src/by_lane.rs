@@ -7,7 +7,8 @@ use crate::input::Offsets;
 use crate::ncp::report::Report;
 use crate::particles::Particles;
 use crate::prepared_scene::Pushers;
-use crate::step::{Dynamics, StepWork};
+use crate::step::Dynamics;
+use crate::step_work::StepWork;
 
 impl<const W: usize> StepWork<W> {
     /// Advances chunks of particles by `h` seconds, one particle after the other, each as the step of

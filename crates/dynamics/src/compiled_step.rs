@@ -4,7 +4,8 @@ use stickslip_lanes::on_vectors;
 
 use crate::particles::Particles;
 use crate::prepared_scene::Pushers;
-use crate::step::{Dynamics, StepWork};
+use crate::step::Dynamics;
+use crate::step_work::StepWork;
 
 /// Numbers of particles side by side for which the step is compiled: 1, 2 and 8.
 ///

@@ -20,6 +20,7 @@ mod solver;
 mod start;
 mod stated_problem;
 mod step;
+mod step_work;
 
 pub use compiled_step::CompiledStep;
 pub use friction::Friction;
@@ -42,5 +43,6 @@ pub use scene::{Feet, Fixel, Object, Pusher, Scene};
 pub use se2::{Pose, Twist, Wrench};
 pub use solver::chain::{Solver, solve, solve_from};
 pub use start::{SpeedProfile, Start};
-pub use step::{Dynamics, StepWork};
+pub use step::Dynamics;
+pub use step_work::StepWork;
 pub use stickslip_lanes::{Lanes, Level, Mask, on_widest, sin_cos};

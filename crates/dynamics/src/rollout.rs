@@ -6,7 +6,8 @@ use crate::input::PusherMotion;
 use crate::ncp::report::Outcome;
 use crate::particles::{Particle, Particles};
 use crate::se2::{Pose, Twist};
-use crate::step::{Dynamics, StepWork};
+use crate::step::Dynamics;
+use crate::step_work::StepWork;
 
 /// Trajectories side by side.
 const LANES: usize = 8;

@@ -8,22 +8,16 @@ use std::ops::Range;
 
 use stickslip_lanes::{Lanes, Level, Mask};
 
-use crate::assembly::Assembly;
 use crate::block_problems::BlockProblems;
 use crate::compiled_step::CompiledStep;
 use crate::friction::Friction;
-use crate::geometry::narrow_phase::NarrowPhase;
-use crate::input::{Body, Offsets, PusherMotion, StepInput};
-use crate::kept_lanes::KeptLanes;
-use crate::ncp::problem::{StepProblem, StepSolution};
+use crate::input::{Offsets, PusherMotion, StepInput};
 use crate::ncp::report::{Outcome, Report};
-use crate::ncp::rows::Ncp;
-use crate::ncp::unknowns::Unknowns;
 use crate::particles::{Particle, Particles};
 use crate::prepared_scene::{PreparedScene, PusherContext, Pushers, SharedPusher, StepContext};
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
-use crate::solver::chain::Solver;
+use crate::step_work::StepWork;
 
 /// Added to the distance that bodies can close within one step when contacts are sought (m).
 const MARGIN: f64 = 5e-4;
@@ -38,110 +32,6 @@ pub struct Dynamics {
     /// Radius of the object's bounding circle about its centre of mass (m).
     object_radius: f64,
     pub(crate) level: Level,
-}
-
-/// Working memory of [`Dynamics::step_block`], `W` particles to a chunk; nothing is allocated once
-/// it has grown.
-#[derive(Clone, Debug, Default)]
-pub struct StepWork<const W: usize> {
-    narrow: NarrowPhase<W>,
-    chunks: Vec<Assembly<W>>,
-    ncps: Vec<Ncp<W>>,
-    unknowns: Vec<Unknowns<W>>,
-    pub(crate) reports: Vec<[Report; W]>,
-    solver: Solver<W>,
-    kept: KeptLanes<W>,
-    /// Of steps in which every particle has its own.
-    pushers: Vec<Option<PusherContext<W>>>,
-    /// Of the particles one by one, where they are stepped so; else empty.
-    pub(crate) by_lane: Vec<StepWork<1>>,
-}
-
-impl<const W: usize> StepWork<W> {
-    /// How the last step of each particle ended, chunk by chunk.
-    pub fn reports(&self) -> &[[Report; W]] {
-        &self.reports
-    }
-
-    /// Normal impulses (N s) between the object and a body in the last step, summed over their
-    /// contacts, by lane of a chunk.
-    #[inline(always)]
-    pub fn normal_impulses(&self, chunk: usize, body: Body) -> Lanes<W> {
-        if self.by_lane.is_empty() {
-            self.chunks[chunk].normal_impulses(&self.unknowns[chunk], body)
-        } else {
-            self.asked_by_lane(chunk, |work| work.normal_impulses(0, body))
-        }
-    }
-
-    /// Smallest gap (m) between the object and a body at the end of the last step, as its contacts
-    /// tell it, by lane of a chunk; infinite where none was near.
-    #[inline(always)]
-    pub fn gaps(&self, chunk: usize, body: Body) -> Lanes<W> {
-        if self.by_lane.is_empty() {
-            self.chunks[chunk].gaps(&self.ncps[chunk], &self.unknowns[chunk], body)
-        } else {
-            self.asked_by_lane(chunk, |work| work.gaps(0, body))
-        }
-    }
-
-    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive where
-    /// the object's surface moves to the left of the contact normal, which points into the object: the
-    /// mean of its contacts, each by what it presses; where none presses, that of the nearest one, and 0
-    /// where there is none.
-    #[inline(always)]
-    pub fn slips(&self, chunk: usize, body: Body) -> Lanes<W> {
-        if self.by_lane.is_empty() {
-            self.chunks[chunk].slips(&self.ncps[chunk], &self.unknowns[chunk], body)
-        } else {
-            self.asked_by_lane(chunk, |work| work.slips(0, body))
-        }
-    }
-
-    /// The body of each contact in the last step's problem of one particle.
-    pub fn bodies(&self, particle: usize) -> Vec<Body> {
-        match self.by_lane.get(particle) {
-            Some(work) => work.bodies(0),
-            None => self.chunks[particle / W].bodies(particle % W),
-        }
-    }
-
-    /// Normal impulse (N s) of one particle, counted over all chunks.
-    pub fn normal_impulse(&self, particle: usize, body: Body) -> f64 {
-        self.normal_impulses(particle / W, body).0[particle % W]
-    }
-
-    /// The last step's problem of one particle, in SI units; the applied impulse is part of its
-    /// twist.
-    pub fn problem(&self, particle: usize) -> StepProblem {
-        if let Some(work) = self.by_lane.get(particle) {
-            return work.problem(0);
-        }
-        let (chunk, lane) = (particle / W, particle % W);
-        self.chunks[chunk].problem(&self.ncps[chunk], lane)
-    }
-
-    /// The last step's solution of one particle.
-    pub fn solution(&self, particle: usize) -> StepSolution {
-        if let Some(work) = self.by_lane.get(particle) {
-            return work.solution(0);
-        }
-        let (chunk, lane) = (particle / W, particle % W);
-        let problem = self.problem(particle);
-        let mut alone = Unknowns::<1>::zero(problem.contacts.len());
-        self.unknowns[chunk].pack_lane(&self.ncps[chunk], lane, &mut alone, 0);
-        alone.to_solution(0, &problem)
-    }
-
-    fn resize(&mut self, chunks: usize) {
-        self.chunks
-            .resize_with(chunks.max(self.chunks.len()), Assembly::default);
-        self.ncps
-            .resize_with(chunks.max(self.ncps.len()), Ncp::default);
-        self.unknowns
-            .resize_with(chunks.max(self.unknowns.len()), Unknowns::default);
-        self.reports.resize(chunks, [Report::UNSOLVED; W]);
-    }
 }
 
 impl Dynamics {
@@ -266,9 +156,10 @@ impl Dynamics {
         particles: &mut [Particles<W>],
         work: &mut StepWork<W>,
     ) {
-        // how far apart contacts are looked for
         work.by_lane.clear();
         work.resize(particles.len());
+
+        // how far apart contacts are looked for
         for (chunk, particles) in particles.iter().enumerate() {
             work.chunks[chunk].set_search_distance(self.search_distance(
                 h,
@@ -428,19 +319,6 @@ fn length_at_most<const W: usize>(x: &Lanes<W>, y: &Lanes<W>) -> Lanes<W> {
     const SHORTER: f64 = 0.414_213_562_373_096;
     let (x, y) = (x.abs(), y.abs());
     x.max(y) + x.min(y) * SHORTER
-}
-
-impl<const W: usize> StepWork<W> {
-    /// Solved twists of one chunk.
-    #[inline(always)]
-    fn twist(&self, chunk: usize, inv_rho: f64) -> Twist<Lanes<W>> {
-        let [vx, vy, scaled] = self.unknowns[chunk].v;
-        Twist {
-            vx,
-            vy,
-            omega: scaled * inv_rho,
-        }
-    }
 }
 
 #[cfg(test)]

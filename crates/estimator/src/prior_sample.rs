@@ -209,7 +209,7 @@ impl Readings<'_> {
         let particle = FIRST_SENSOR + j as u32;
         let mut sensor = DrawnSensor {
             state: channel.state_at(streams.uniform(0, particle, 3)),
-            threshold: streams.uniform(0, particle, 4),
+            felt_from: streams.uniform(0, particle, 4),
         };
         let mut before = None;
         for (k, ((reading, row), time)) in rows.enumerate() {

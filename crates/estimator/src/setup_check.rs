@@ -149,7 +149,7 @@ fn camera(camera: &Camera) -> [Number; 5] {
     ]
 }
 
-fn tactile(tactile: &Tactile) -> [Number; 3] {
+fn tactile(tactile: &Tactile) -> [Number; 4] {
     use Rule::{NotNegative, Probability};
     [
         (
@@ -161,6 +161,13 @@ fn tactile(tactile: &Tactile) -> [Number; 3] {
         (
             "tactile.false_negative",
             tactile.false_negative,
+            Probability,
+            Unit::None,
+        ),
+        (
+            // else no sensor works
+            "tactile.false_positive + tactile.false_negative",
+            tactile.false_positive + tactile.false_negative,
             Probability,
             Unit::None,
         ),

@@ -30,8 +30,12 @@ impl EnsembleShape {
 
 /// Groups of particles, each of which goes by what the others say: a particle that had a part in its own
 /// gain would go too near to the measurement, and all of them would end too close together (Houtekamer &
-/// Mitchell 1998). Descendants of one particle lie side by side, mostly in one group.
+/// Mitchell 1998). Descendants of one particle lie side by side, mostly in one group. Of fewer blocks there
+/// are as many groups; one group goes by itself.
 const GROUPS: usize = 8;
+
+/// Effective number of other particles below which a group goes by all.
+const FEWEST: f64 = 10.0;
 
 /// The quantities and errors of all particles.
 #[derive(Clone, Debug, Default)]
@@ -94,13 +98,13 @@ impl Ensemble {
     pub fn update(&mut self, weights: &[f64], share: f64, draw: Draw) {
         for k in 0..self.shape.errors {
             self.take_sums(k, weights);
-            self.take_gains(k, self.noise(k, weights) / share);
+            self.take_gains(k, self.noise_variance(k, weights) / share);
             self.go(k, share, |particle| draw.normal(particle, k as u32));
         }
     }
 
     /// Mean variance of the noise of one error.
-    fn noise(&self, error: usize, weights: &[f64]) -> f64 {
+    fn noise_variance(&self, error: usize, weights: &[f64]) -> f64 {
         let column = self.shape.moved() + error;
         let blocks = self.blocks().zip(weights.chunks(BLOCK));
         let of_blocks = blocks.map(|(block, weights)| {
@@ -147,26 +151,29 @@ impl Ensemble {
     }
 
     /// Every group's gains, by the sums of the others.
-    fn take_gains(&mut self, error: usize, noise: f64) {
+    fn take_gains(&mut self, error: usize, noise_variance: f64) {
         let columns = self.shape.moved();
         let error = self.shape.quantities + error;
-        let groups = self.sums.len() / columns;
-        let of = |column: usize| {
-            let sums = self.sums.iter().skip(column).step_by(columns);
-            sums.fold(Sums::default(), |all, group| all.with(group, 1.0))
-        };
-        for column in 0..columns {
-            let (all, observed) = (of(column), of(error));
-            for group in 0..groups {
-                let others = |all: Sums, column| match groups {
-                    1 => all,
-                    _ => all.with(&self.sums[group * columns + column], -1.0),
-                };
-                let others = (others(all, column), others(observed, error));
+        for group in 0..self.sums.len() / columns {
+            let observed = self.sums_of_others(group, error);
+            for column in 0..columns {
+                let of = self.sums_of_others(group, column);
                 let certain = column >= self.shape.quantities;
-                self.gains[group * columns + column] = gain(&others.0, &others.1, noise, certain);
+                self.gains[group * columns + column] =
+                    gain(&of, &observed, noise_variance, certain);
             }
         }
+    }
+
+    /// Sums of one column over all groups but one, or over all where the others are too few.
+    fn sums_of_others(&self, group: usize, column: usize) -> Sums {
+        let of_groups = self.sums.iter().skip(column).step_by(self.shape.moved());
+        let others = of_groups.clone().enumerate().filter(|(k, _)| *k != group);
+        let others = others.fold(Sums::default(), |all, (_, group)| all.with(group));
+        if others.count() < FEWEST {
+            return of_groups.fold(Sums::default(), Sums::with);
+        }
+        others
     }
 
     /// Moves all columns by their gains.
@@ -192,14 +199,23 @@ impl Ensemble {
 }
 
 impl Sums {
-    /// The same of more particles, or, for `sign` -1, of fewer.
-    fn with(&self, others: &Self, sign: f64) -> Self {
+    /// The same of more particles.
+    fn with(self, others: &Self) -> Self {
         Self {
-            w: self.w + sign * others.w,
-            ww: self.ww + sign * others.ww,
-            x: self.x + sign * others.x,
-            xx: self.xx + sign * others.xx,
-            xe: self.xe + sign * others.xe,
+            w: self.w + others.w,
+            ww: self.ww + others.ww,
+            x: self.x + others.x,
+            xx: self.xx + others.xx,
+            xe: self.xe + others.xe,
+        }
+    }
+
+    /// Effective number of particles; 0 where they have no weight.
+    fn count(&self) -> f64 {
+        if self.ww > 0.0 {
+            self.w * self.w / self.ww
+        } else {
+            0.0
         }
     }
 }
@@ -209,21 +225,18 @@ fn group(block: usize, blocks: usize) -> usize {
     block * blocks.min(GROUPS) / blocks
 }
 
-/// By how much a column moves where an error does by one that is observed under `noise`; a covariance
-/// that is not `certain` counts only by the share that is not chance.
-fn gain(of: &Sums, error: &Sums, noise: f64, certain: bool) -> f64 {
-    if of.w <= 0.0 {
-        return 0.0;
-    }
+/// By how much a column moves where an error does by one that is observed under noise; a covariance that
+/// is not `certain` counts only by the share that is not chance.
+fn gain(of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
     let (x, e) = (of.x / of.w, error.x / of.w);
     let variance = of.xx / of.w - x * x;
     let observed = error.xx / of.w - e * e;
     let covariance = of.xe / of.w - x * e;
     let share = match certain {
         true => 1.0,
-        false => not_chance(covariance, variance * observed, of.w * of.w / of.ww),
+        false => not_chance(covariance, variance * observed, of.count()),
     };
-    share * covariance / (observed + noise)
+    share * covariance / (observed + noise_variance)
 }
 
 /// Share of a covariance that is not chance: of `count` independent particles, two columns that have

@@ -98,7 +98,7 @@ pub trait Model: Sync {
 
     /// Whether an observation may move what [`ensemble`](Self::ensemble) says. The part of it that moves
     /// is that of [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about normal: ln of
-    /// its likelihood is −½ the sum of the squared errors over their noise, up to a constant.
+    /// its likelihood is −½ the sum of the squares of errors over their noise, up to a constant.
     fn moves(&self, _observation: &Self::Observation) -> bool {
         false
     }

@@ -1,8 +1,8 @@
 //! A pusher and fixels beside their poses are a pusher and fixels at other poses.
 
 use stickslip_dynamics::{
-    Dynamics, Feet, Fixel, Friction, Lanes, Object, Offsets, Part, Particle, Particles, Pose,
-    Pusher, PusherMotion, Scene, Shape, StepInput, StepWork, Twist,
+    Body, Dynamics, Feet, Fixel, Friction, Lanes, Level, Object, Offsets, Part, Particle,
+    Particles, Pose, Pusher, PusherMotion, Scene, Shape, StepInput, StepWork, Twist,
 };
 
 const FRICTION: Friction = Friction {
@@ -68,13 +68,19 @@ fn push(step: usize, [dx, dy]: [f64; 2]) -> StepInput {
 
 #[test]
 fn each_lane_steps_as_in_a_scene_of_its_own() {
+    for level in [Level::new(), Level::baseline()] {
+        lanes_step_as_alone(level);
+    }
+}
+
+fn lanes_step_as_alone(level: Level) {
     const LANES: usize = 8;
     let lane = |i: usize, k: usize| 1e-4 * ((7 * i + 3 * k) % 5) as f64 - 2e-4;
     let pusher = |i: usize| [lane(i, 0), lane(i, 1)];
     let fixels = |i: usize| [[lane(i, 2), lane(i, 3)], [lane(i, 4), lane(i, 5)]];
 
     // all lanes at once, with offsets
-    let dynamics = Dynamics::new(scene([[0.0; 2]; 2]));
+    let dynamics = Dynamics::new(scene([[0.0; 2]; 2])).with_level(level);
     let mut chunk = Particles::<LANES>::default();
     (0..LANES).for_each(|i| chunk.set(i, &Particle::default(), &FRICTION));
     let mut chunk = [chunk];
@@ -105,11 +111,31 @@ fn each_lane_steps_as_in_a_scene_of_its_own() {
             );
             *particle = one[0];
             assert_eq!(chunk[0].get(i).pose, particle.pose, "lane {i}, step {step}");
+            assert_eq!(work.reports()[0][i], own_work.reports()[0][0]);
+            for body in [Body::Pusher, Body::Fixel(0), Body::Fixel(1)] {
+                let (of_lane, own) = (told(&work, body).map(|x| x[i]), told(&own_work, body));
+                assert_eq!(
+                    of_lane,
+                    own.map(|x| x[0]),
+                    "{body:?}, lane {i}, step {step}"
+                );
+            }
+            assert_eq!(work.solution(i), own_work.solution(0));
+            assert_eq!(work.problem(i).contacts.len(), work.bodies(i).len());
         }
     }
     let moved: Vec<f64> = alone.iter().map(|particle| particle.pose.x).collect();
     assert!(moved.iter().all(|x| *x > 1e-3), "{moved:?}");
     assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
+}
+
+/// What a step tells of a body, lane by lane.
+fn told<const W: usize>(work: &StepWork<W>, body: Body) -> [[f64; W]; 3] {
+    [
+        work.normal_impulses(0, body).0,
+        work.gaps(0, body).0,
+        work.slips(0, body).0,
+    ]
 }
 
 /// A larger object is one that meets discs which are larger by as much.

@@ -1,8 +1,8 @@
 //! Rollouts: many trajectories side by side are those that come step by step.
 
 use stickslip_dynamics::{
-    Dynamics, Feet, Fixel, Friction, Object, Outcome, Part, Particle, Pose, Pusher, PusherMotion,
-    RolloutEnd, RolloutError, RolloutStart, Scene, Shape, StepInput, StepWork, Twist,
+    Dynamics, Feet, Fixel, Friction, Level, Object, Outcome, Part, Particle, Pose, Pusher,
+    PusherMotion, RolloutEnd, RolloutError, RolloutStart, Scene, Shape, StepInput, StepWork, Twist,
 };
 
 const STEPS: usize = 60;
@@ -122,11 +122,13 @@ fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, RolloutEnd) {
 #[test]
 fn trajectories_side_by_side_are_those_of_single_steps_bit_for_bit() {
     let dynamics = Dynamics::new(scene());
+    let narrow = dynamics.clone().with_level(Level::baseline());
     for count in [1, 7, 8, 9, 65, 130] {
         let starts: Vec<RolloutStart> = (0..count).map(start).collect();
         let pushers: Vec<Pose> = (0..count).flat_map(pusher).collect();
         let rollout = dynamics.rollout(H, &starts, &pushers).expect("a rollout");
         assert_eq!(rollout.steps, STEPS);
+        assert_eq!(narrow.rollout(H, &starts, &pushers), Ok(rollout.clone()));
         for (i, found) in rollout.poses.chunks(STEPS + 1).enumerate() {
             let (expected, end) = alone(&dynamics, i);
             assert_eq!(found, expected, "trajectory {i} of {count}");
