@@ -5,27 +5,42 @@ use stickslip_filter::{
     BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, ParticleFilter, WeightUpdate,
 };
 
-/// Two numbers that stay, standard normal before; their sum is observed with normal noise.
+/// Two numbers that stay, standard normal before; sums of shares of them are observed with normal noise.
 struct TwoNumbers {
-    noise: f64,
+    sensors: Vec<Sensor>,
     moves: bool,
+}
+
+/// What is observed, [`OBSERVED`], is so much of each number, and noise.
+struct Sensor {
+    shares: [f64; 2],
+    noise: f64,
 }
 
 const OBSERVED: f64 = 1.2;
 
-impl TwoNumbers {
-    /// Errors of a block's particles.
-    fn errors(observed: f64, block: &Block<'_>) -> Vec<f64> {
-        let sums = block.column(0).iter().zip(block.column(1));
-        sums.map(|(a, b)| a + b - observed).collect()
-    }
+/// The sum of both.
+fn sum_with(noise: f64) -> Vec<Sensor> {
+    let shares = [1.0, 1.0];
+    vec![Sensor { shares, noise }]
+}
 
-    /// Mean and variance of each number after one observation, and ln of its density.
-    fn exact(&self) -> (f64, f64, f64) {
-        let variance = 2.0 + self.noise * self.noise;
+impl TwoNumbers {
+    /// Mean and variance of each number after the sum was observed once, and ln of its density.
+    fn exact(noise: f64) -> (f64, f64, f64) {
+        let variance = 2.0 + noise * noise;
         let density = -0.5 * (OBSERVED * OBSERVED / variance)
             - 0.5 * libm::log(std::f64::consts::TAU * variance);
         (OBSERVED / variance, 1.0 - 1.0 / variance, density)
+    }
+}
+
+impl Sensor {
+    /// Errors of a block's particles.
+    fn errors(&self, observed: f64, block: &Block<'_>) -> Vec<f64> {
+        let [a, b] = self.shares;
+        let numbers = block.column(0).iter().zip(block.column(1));
+        numbers.map(|(x, y)| a * x + b * y - observed).collect()
     }
 }
 
@@ -53,9 +68,12 @@ impl Model for TwoNumbers {
     fn propagate(&self, (): &(), _: Draw, _: &mut BlockMut<'_>, (): &mut ()) {}
 
     fn log_likelihood(&self, observed: &f64, block: &Block<'_>, out: &mut [f64]) {
-        let constant = -libm::log(self.noise * std::f64::consts::TAU.sqrt());
-        for (out, error) in out.iter_mut().zip(Self::errors(*observed, block)) {
-            *out = constant - 0.5 * (error / self.noise).powi(2);
+        out.fill(0.0);
+        for sensor in &self.sensors {
+            let constant = -libm::log(sensor.noise * std::f64::consts::TAU.sqrt());
+            for (out, error) in out.iter_mut().zip(sensor.errors(*observed, block)) {
+                *out += constant - 0.5 * (error / sensor.noise).powi(2);
+            }
         }
     }
 
@@ -64,7 +82,7 @@ impl Model for TwoNumbers {
     fn ensemble(&self) -> EnsembleShape {
         EnsembleShape {
             quantities: 2,
-            errors: 1,
+            errors: self.sensors.len(),
         }
     }
 
@@ -76,8 +94,14 @@ impl Model for TwoNumbers {
         let n = block.len();
         to[..n].copy_from_slice(block.column(0));
         to[BLOCK..][..n].copy_from_slice(block.column(1));
-        to[2 * BLOCK..][..n].copy_from_slice(&Self::errors(*observed, block));
-        to[3 * BLOCK..].fill(self.noise);
+        let (errors, noise) = to[2 * BLOCK..].split_at_mut(self.sensors.len() * BLOCK);
+        for ((sensor, errors), noise) in (self.sensors.iter())
+            .zip(errors.chunks_mut(BLOCK))
+            .zip(noise.chunks_mut(BLOCK))
+        {
+            errors[..n].copy_from_slice(&sensor.errors(*observed, block));
+            noise.fill(sensor.noise);
+        }
     }
 
     fn write_ensemble(&self, from: &[f64], block: &mut BlockMut<'_>) {
@@ -94,11 +118,12 @@ impl Model for TwoNumbers {
 /// Over 200 seeds: root mean square distance of the mean from the exact one, mean variance, mean of the
 /// evidence, all of the first number after one observation.
 fn after(noise: f64, moves: bool) -> [f64; 3] {
-    let (exact, _, density) = TwoNumbers { noise, moves }.exact();
+    let (exact, _, density) = TwoNumbers::exact(noise);
     let seeds = 200;
     let mut sums = [0.0; 3];
     for seed in 0..seeds {
-        let model = TwoNumbers { noise, moves };
+        let sensors = sum_with(noise);
+        let model = TwoNumbers { sensors, moves };
         let mut filter = ParticleFilter::new(model, settings(500, seed)).unwrap();
         let report = filter.step(&(), Some(&OBSERVED));
         let WeightUpdate::Weighed { log_evidence } = report.weight_update else {
@@ -117,7 +142,7 @@ fn after(noise: f64, moves: bool) -> [f64; 3] {
 #[test]
 fn an_observation_that_is_precise_beside_the_particles_leaves_the_exact_belief() {
     let noise = 0.01;
-    let (_, exact, _) = TwoNumbers { noise, moves: true }.exact();
+    let (_, exact, _) = TwoNumbers::exact(noise);
     let [error, variance, evidence] = after(noise, true);
     // of 500 independent particles from the posterior the mean's standard error is 0.032
     assert!(error < 0.045, "{error}");
@@ -133,11 +158,36 @@ fn an_observation_that_is_precise_beside_the_particles_leaves_the_exact_belief()
 #[test]
 fn an_observation_that_leaves_enough_particles_moves_none() {
     let columns = |moves: bool| {
-        let model = TwoNumbers { noise: 5.0, moves };
+        let sensors = sum_with(5.0);
+        let model = TwoNumbers { sensors, moves };
         let mut filter = ParticleFilter::new(model, settings(500, 3)).unwrap();
         let _ = filter.step(&(), Some(&OBSERVED));
         let particles: Vec<f64> = filter.particles().column(0).collect();
         (particles, filter.weights().clone())
     };
     assert_eq!(columns(true), columns(false));
+}
+
+#[test]
+fn two_sensors_count_by_their_own_noise() {
+    // each number alone: its variance after is n² / (1 + n²)
+    let noise = [0.02, 0.5];
+    let seeds = 100;
+    let mut variances = [0.0; 2];
+    for seed in 0..seeds {
+        let sensor = |shares, noise| Sensor { shares, noise };
+        let model = TwoNumbers {
+            sensors: vec![sensor([1.0, 0.0], noise[0]), sensor([0.0, 1.0], noise[1])],
+            moves: true,
+        };
+        let mut filter = ParticleFilter::new(model, settings(500, seed)).unwrap();
+        let _ = filter.step(&(), Some(&OBSERVED));
+        for (k, variance) in variances.iter_mut().enumerate() {
+            *variance += std(&filter, k).powi(2) / seeds as f64;
+        }
+    }
+    for (variance, noise) in variances.into_iter().zip(noise) {
+        let exact = noise * noise / (1.0 + noise * noise);
+        assert!((variance / exact - 1.0).abs() < 0.06, "{variance}, {exact}");
+    }
 }
