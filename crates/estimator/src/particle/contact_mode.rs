@@ -285,7 +285,7 @@ impl Propagation {
     ) {
         let Transition { setup, columns, .. } = transition;
         let channel = TouchChannel::new(&setup.tactile);
-        let h = plan.duration();
+        let freed = channel.freed(plan.duration());
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let threshold = setup.tactile.touch_force * last_h;
         for (j, reading) in plan.tactile.iter().enumerate() {
@@ -300,7 +300,7 @@ impl Propagation {
                     let touch = felt_or_idle(impulse, gap, idle);
                     let before = std::array::from_fn(|k| block.column(columns.sensor(j) + k)[i]);
                     let before = SensorBelief::of(before);
-                    let (after, log_likelihood) = channel.read(before, h, touch, reading);
+                    let (after, log_likelihood) = channel.read(before, freed, touch, reading);
                     write(block, columns.sensor(j), i, after.fields());
                     block.column_mut(columns.felt_log_likelihood())[i] += log_likelihood;
                 }

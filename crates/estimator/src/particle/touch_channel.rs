@@ -66,17 +66,21 @@ impl TouchChannel {
         }
     }
 
-    /// After `h` seconds and a reading of a sensor that is touched with probability `touch`: what is
-    /// believed, and the log-likelihood of the reading.
+    /// Probability that within `h` seconds what is stuck gets free: the same for all particles.
+    pub fn freed(&self, h: f64) -> f64 {
+        1.0 - libm::exp(-self.recovery * h)
+    }
+
+    /// After some time, in which what is stuck is [`freed`](Self::freed), and a reading of a sensor that is
+    /// touched with probability `touch`: what is believed, and the log-likelihood of the reading.
     pub fn read(
         &self,
         SensorBelief { stuck, felt_from }: SensorBelief,
-        h: f64,
+        freed: f64,
         touch: f64,
         reading: bool,
     ) -> (SensorBelief, f64) {
         // what may have happened since the last reading
-        let freed = 1.0 - libm::exp(-self.recovery * h);
         let repaired = freed * (stuck[0] + stuck[1]) * (1.0 - self.share[0] - self.share[1]);
         let stuck: Stuck = std::array::from_fn(|k| stuck[k] + freed * (self.share[k] - stuck[k]));
         let works = 1.0 - stuck[0] - stuck[1];
@@ -119,7 +123,7 @@ impl TouchChannel {
         touch: f64,
         [change, turn, read]: [f64; 3],
     ) -> (DrawnSensor, bool) {
-        let freed = 1.0 - libm::exp(-self.recovery * h);
+        let freed = self.freed(h);
         let state = match change < freed {
             true => self.state_at(change / freed),
             false => before.state,
@@ -224,7 +228,8 @@ mod tests {
     fn evidence_of(readings: impl Iterator<Item = bool>, touch: f64) -> f64 {
         let (mut belief, mut sum) = (channel().start(), 0.0);
         for reading in readings {
-            let (next, log_likelihood) = channel().read(belief, 1.0 / 30.0, touch, reading);
+            let (next, log_likelihood) =
+                channel().read(belief, channel().freed(1.0 / 30.0), touch, reading);
             (belief, sum) = (next, sum + log_likelihood);
         }
         sum
@@ -236,7 +241,13 @@ mod tests {
             for [zero, one] in [[0.05, 0.01], [0.9, 0.0], [0.0, 0.7]] {
                 for [a, b, c, d] in [[QUARTER; 4], [0.7, 0.0, 0.1, 0.2]] {
                     let belief = SensorBelief::of([zero, one, a, b, c, d]);
-                    let of = |reading| libm::exp(channel().read(belief, 0.1, touch, reading).1);
+                    let of = |reading| {
+                        libm::exp(
+                            channel()
+                                .read(belief, channel().freed(0.1), touch, reading)
+                                .1,
+                        )
+                    };
                     assert!(
                         (of(false) + of(true) - 1.0).abs() < 1e-12,
                         "{touch}, {belief:?}"
@@ -279,8 +290,8 @@ mod tests {
     #[test]
     fn a_wrong_reading_after_right_ones_makes_the_sensor_suspect() {
         let (channel, touched) = (channel(), 1.0);
-        let (before, _) = channel.read(channel.start(), 0.03, touched, true);
-        let (after, _) = channel.read(before, 0.03, touched, false);
+        let (before, _) = channel.read(channel.start(), channel.freed(0.03), touched, true);
+        let (after, _) = channel.read(before, channel.freed(0.03), touched, false);
         assert!(
             after.stuck[0] > 10.0 * before.stuck[0] && after.stuck[1] < before.stuck[1],
             "{before:?}, {after:?}"
@@ -312,7 +323,7 @@ mod tests {
             let (mut belief, mut log_likelihood) = (channel.start(), 0.0);
             for (row, touch) in touches.into_iter().enumerate() {
                 let reading = read >> (3 - row) & 1 == 1;
-                let (next, more) = channel.read(belief, 0.4, touch, reading);
+                let (next, more) = channel.read(belief, channel.freed(0.4), touch, reading);
                 (belief, log_likelihood) = (next, log_likelihood + more);
             }
             libm::exp(log_likelihood)
