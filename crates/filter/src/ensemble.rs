@@ -1,6 +1,8 @@
 //! Particles that an observation moves: [`Ensemble`], the update of the ensemble Kalman filter with
 //! disturbed measurements (Burgers, van Leeuwen & Evensen 1998; docs/method.md (45)).
 
+use stickslip_lanes::{Level, on_widest};
+
 use crate::particles::BLOCK;
 use crate::streams::Draw;
 
@@ -43,20 +45,29 @@ pub(crate) struct Ensemble {
     shape: EnsembleShape,
     /// `[block][column][lane]`, as in a particle set.
     values: Vec<f64>,
-    /// Weighted mean by column.
+    /// Weighted mean by column, before the first error.
     means: Vec<f64>,
+    /// By group.
+    weights: Vec<Weight>,
     /// `[group][column]`.
     sums: Vec<Sums>,
+    /// By column, of all groups but one.
+    others: Vec<Sums>,
     /// `[group][column]`: by how much a column moves where the error does by one.
     gains: Vec<f64>,
 }
 
-/// Of some particles: sums of the weights w and their squares, and of one column's distances x from its
-/// mean, with the distances e of one error from its own.
+/// Sums of the weights of some particles and of their squares.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct Weight {
     w: f64,
     ww: f64,
+}
+
+/// Of some particles: weighted sums of one column's distances x from its mean, with the distances e of one
+/// error from its own. Any point near them would do as the mean.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
     x: f64,
     xx: f64,
     xe: f64,
@@ -70,7 +81,9 @@ impl Ensemble {
             shape,
             values: vec![0.0; shape.columns() * blocks * BLOCK],
             means: vec![0.0; shape.moved()],
+            weights: vec![Weight::default(); groups],
             sums: vec![Sums::default(); shape.moved() * groups],
+            others: vec![Sums::default(); shape.moved()],
             gains: vec![0.0; shape.moved() * groups],
         }
     }
@@ -96,53 +109,65 @@ impl Ensemble {
     /// particle goes its own way to a measurement disturbed by its own error. The errors' noise is
     /// independent, so that they can be taken one after the other.
     pub fn update(&mut self, weights: &[f64], share: f64, draw: Draw) {
-        for k in 0..self.shape.errors {
-            self.take_sums(k, weights);
-            self.take_gains(k, self.noise_variance(k, weights) / share);
-            self.go(k, share, |particle| draw.normal(particle, k as u32));
-        }
+        on_widest(
+            Level::new(),
+            #[inline(always)]
+            || {
+                self.weigh(weights);
+                for k in 0..self.shape.errors {
+                    self.take_sums(k, weights);
+                    self.take_gains(k, self.noise_variance(k, weights) / share);
+                    self.go(k, share, |particle| draw.normal(particle, k as u32));
+                }
+            },
+        );
     }
 
     /// Mean variance of the noise of one error.
+    #[inline(always)]
     fn noise_variance(&self, error: usize, weights: &[f64]) -> f64 {
         let column = self.shape.moved() + error;
-        let blocks = self.blocks().zip(weights.chunks(BLOCK));
-        let of_blocks = blocks.map(|(block, weights)| {
+        let mut variance = 0.0;
+        for (block, weights) in self.values.chunks(self.stride()).zip(weights.chunks(BLOCK)) {
             let (weights, std) = (padded(weights), &block.as_chunks::<BLOCK>().0[column]);
-            sum(|i| weights[i] * std[i] * std[i])
-        });
-        of_blocks.fold(0.0, |sum, x| sum + x)
+            variance += sum(|i| weights[i] * std[i] * std[i]);
+        }
+        variance
     }
 
-    /// Weighted sums of all columns, with one error, group by group.
-    fn take_sums(&mut self, error: usize, weights: &[f64]) {
-        let (stride, columns) = (self.stride(), self.shape.moved());
-        let error = self.shape.quantities + error;
-        let Self {
-            values,
-            means,
-            sums,
-            ..
-        } = self;
-        let count = values.len() / stride;
-        let blocks = || {
-            let blocks = values.chunks(stride).zip(weights.chunks(BLOCK));
-            blocks.map(|(block, weights)| (block.as_chunks::<BLOCK>().0, padded(weights)))
-        };
-        means.fill(0.0);
-        for (block, weights) in blocks() {
-            for (mean, column) in means.iter_mut().zip(block) {
+    /// Weights of the groups, means of the columns.
+    #[inline(always)]
+    fn weigh(&mut self, weights: &[f64]) {
+        let stride = self.stride();
+        let count = self.values.len() / stride;
+        self.means.fill(0.0);
+        self.weights.fill(Weight::default());
+        let blocks = self.values.chunks(stride).zip(weights.chunks(BLOCK));
+        for (index, (block, weights)) in blocks.enumerate() {
+            let weights = padded(weights);
+            let of = &mut self.weights[group(index, count)];
+            of.w += sum(|i| weights[i]);
+            of.ww += sum(|i| weights[i] * weights[i]);
+            for (mean, column) in self.means.iter_mut().zip(block.as_chunks::<BLOCK>().0) {
                 *mean += sum(|i| weights[i] * column[i]);
             }
         }
-        sums.fill(Sums::default());
-        for (index, (block, weights)) in blocks().enumerate() {
-            let e: [f64; BLOCK] = std::array::from_fn(|i| block[error][i] - means[error]);
-            let (w, ww) = (sum(|i| weights[i]), sum(|i| weights[i] * weights[i]));
-            let sums = &mut sums[group(index, count) * columns..][..columns];
-            for ((of, column), mean) in sums.iter_mut().zip(block).zip(&*means) {
-                of.w += w;
-                of.ww += ww;
+    }
+
+    /// Weighted sums of all columns, with one error, group by group.
+    #[inline(always)]
+    fn take_sums(&mut self, error: usize, weights: &[f64]) {
+        let (stride, columns) = (self.stride(), self.shape.moved());
+        let error = self.shape.quantities + error;
+        let count = self.values.len() / stride;
+        self.sums.fill(Sums::default());
+        let blocks = self.values.chunks(stride).zip(weights.chunks(BLOCK));
+        for (index, (block, weights)) in blocks.enumerate() {
+            let (block, weights) = (block.as_chunks::<BLOCK>().0, padded(weights));
+            let mean = self.means[error];
+            let e: [f64; BLOCK] = std::array::from_fn(|i| block[error][i] - mean);
+            let sums = &mut self.sums[group(index, count) * columns..][..columns];
+            for ((of, column), mean) in sums.iter_mut().zip(block).zip(&self.means) {
                 of.x += sum(|i| weights[i] * (column[i] - mean));
                 of.xx += sum(|i| weights[i] * (column[i] - mean) * (column[i] - mean));
                 of.xe += sum(|i| weights[i] * (column[i] - mean) * e[i]);
@@ -150,33 +175,36 @@ impl Ensemble {
         }
     }
 
-    /// Every group's gains, by the sums of the others.
+    /// Every group's gains, by the sums of the others, or by all where the others are too few.
+    #[inline(always)]
     fn take_gains(&mut self, error: usize, noise_variance: f64) {
         let columns = self.shape.moved();
         let error = self.shape.quantities + error;
-        for group in 0..self.sums.len() / columns {
-            let observed = self.sums_of_others(group, error);
-            for column in 0..columns {
-                let of = self.sums_of_others(group, column);
+        for (group, gains) in self.gains.chunks_mut(columns).enumerate() {
+            let mut weight = Weight::default();
+            let others = self.weights.iter().enumerate().filter(|(k, _)| *k != group);
+            others.for_each(|(_, other)| weight.add(other));
+            let all = weight.count() < FEWEST;
+            if all {
+                weight.add(&self.weights[group]);
+            }
+            self.others.fill(Sums::default());
+            for (k, sums) in self.sums.chunks(columns).enumerate() {
+                if all || k != group {
+                    let to = self.others.iter_mut().zip(sums);
+                    to.for_each(|(to, sums)| to.add(sums));
+                }
+            }
+            let observed = self.others[error];
+            for (column, (gain, of)) in gains.iter_mut().zip(&self.others).enumerate() {
                 let certain = column >= self.shape.quantities;
-                self.gains[group * columns + column] =
-                    gain(&of, &observed, noise_variance, certain);
+                *gain = gain_by(&weight, of, &observed, noise_variance, certain);
             }
         }
     }
 
-    /// Sums of one column over all groups but one, or over all where the others are too few.
-    fn sums_of_others(&self, group: usize, column: usize) -> Sums {
-        let of_groups = self.sums.iter().skip(column).step_by(self.shape.moved());
-        let others = of_groups.clone().enumerate().filter(|(k, _)| *k != group);
-        let others = others.fold(Sums::default(), |all, (_, group)| all.with(group));
-        if others.count() < FEWEST {
-            return of_groups.fold(Sums::default(), Sums::with);
-        }
-        others
-    }
-
     /// Moves all columns by their gains.
+    #[inline(always)]
     fn go(&mut self, error: usize, share: f64, normal: impl Fn(u32) -> f64) {
         let (stride, columns) = (self.stride(), self.shape.moved());
         let (error, std) = (self.shape.quantities + error, columns + error);
@@ -198,19 +226,15 @@ impl Ensemble {
     }
 }
 
-impl Sums {
-    /// The same of more particles.
-    fn with(self, others: &Self) -> Self {
-        Self {
-            w: self.w + others.w,
-            ww: self.ww + others.ww,
-            x: self.x + others.x,
-            xx: self.xx + others.xx,
-            xe: self.xe + others.xe,
-        }
+impl Weight {
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        self.w += other.w;
+        self.ww += other.ww;
     }
 
     /// Effective number of particles; 0 where they have no weight.
+    #[inline(always)]
     fn count(&self) -> f64 {
         if self.ww > 0.0 {
             self.w * self.w / self.ww
@@ -220,21 +244,32 @@ impl Sums {
     }
 }
 
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        self.x += other.x;
+        self.xx += other.xx;
+        self.xe += other.xe;
+    }
+}
+
 /// The group of a block.
+#[inline(always)]
 fn group(block: usize, blocks: usize) -> usize {
     block * blocks.min(GROUPS) / blocks
 }
 
 /// By how much a column moves where an error does by one that is observed under noise; a covariance that
 /// is not `certain` counts only by the share that is not chance.
-fn gain(of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
-    let (x, e) = (of.x / of.w, error.x / of.w);
-    let variance = of.xx / of.w - x * x;
-    let observed = error.xx / of.w - e * e;
-    let covariance = of.xe / of.w - x * e;
+#[inline(always)]
+fn gain_by(weight: &Weight, of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
+    let (x, e) = (of.x / weight.w, error.x / weight.w);
+    let variance = of.xx / weight.w - x * x;
+    let observed = error.xx / weight.w - e * e;
+    let covariance = of.xe / weight.w - x * e;
     let share = match certain {
         true => 1.0,
-        false => not_chance(covariance, variance * observed, of.count()),
+        false => not_chance(covariance, variance * observed, weight.count()),
     };
     share * covariance / (observed + noise_variance)
 }
@@ -242,6 +277,7 @@ fn gain(of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
 /// Share of a covariance that is not chance: of `count` independent particles, two columns that have
 /// nothing to do with each other have a squared correlation of 1 / `count` (Anderson 2012). 0 to 1;
 /// `product` is that of their variances.
+#[inline(always)]
 fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
     let square = covariance * covariance;
     if square <= 0.0 || product <= 0.0 {
@@ -252,6 +288,7 @@ fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
 }
 
 /// The weights of one block; particles past the last one have none.
+#[inline(always)]
 fn padded(weights: &[f64]) -> [f64; BLOCK] {
     let mut padded = [0.0; BLOCK];
     padded[..weights.len()].copy_from_slice(weights);
@@ -259,6 +296,7 @@ fn padded(weights: &[f64]) -> [f64; BLOCK] {
 }
 
 /// Σ f(i) over a block.
+#[inline(always)]
 fn sum(f: impl Fn(usize) -> f64) -> f64 {
     let mut partial = [0.0; PARTIAL];
     for i in (0..BLOCK).step_by(PARTIAL) {
