@@ -13,7 +13,8 @@ const STEPS: u32 = 40;
 /// Most columns that are independent.
 const MOST: usize = 5;
 
-/// Distance between set and cone that rounding leaves, relative to the set's size.
+/// Distance between set and cone that rounding leaves, relative to the set's size, and part of a unit vector
+/// across another one that it leaves.
 const ROUNDING: f64 = 1e-13;
 
 /// Progress below which the search ends.
@@ -66,7 +67,7 @@ pub fn balance(generators: &[Vector<4>], load: &Load<'_>, tolerance: f64) -> (Ba
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or((0, f64::NEG_INFINITY));
         let along_point = dot(&w, &point);
-        if along_ray <= PROGRESS * norm(&w) && along_point < -met * norm(&w) {
+        if along_ray <= ROUNDING * norm(&w) && along_point < -met * norm(&w) {
             return (Balance::Separated(w.map(|x| -x / norm(&w))), step);
         }
         let entered = if along_ray > along_point + rest[4] {

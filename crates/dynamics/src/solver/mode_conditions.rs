@@ -121,6 +121,13 @@ impl ModeConditions {
         })
     }
 
+    /// Whether a generator may push at V: its contact is closed, and its friction opposes the slip.
+    pub fn holds(&self, generator: &Generator, v: &Vector<4>) -> bool {
+        let [equation] = self.equations(&[*generator]);
+        (dot(&equation.row, v) - equation.value).abs() <= self.slack
+            && !self.violates(&[*generator], v, 0.0)
+    }
+
     /// Both sides of the generators' equations: V meets one to the slack.
     pub fn both_sides<const N: usize>(&self, chosen: &[Generator; N]) -> Vec<Inequality> {
         let sides = |Equation { row, value }: Equation| {

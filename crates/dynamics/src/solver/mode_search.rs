@@ -79,6 +79,9 @@ const FARTHEST: f64 = 1e6;
 /// Searches all modes, and again more thoroughly where something was unclear and work is left.
 pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
     let search = ModeSearch::new(problem);
+    if search.rests(certifier) {
+        return Verdict::Solved;
+    }
     let mut unclear = search.subsets(certifier);
     for thoroughness in ROUNDS {
         certifier.begin_round(thoroughness.patience);
@@ -152,6 +155,28 @@ impl ModeSearch {
             conditions,
             rigid,
         }
+    }
+
+    /// Whether the object can stand still, held by all contacts that are closed then, while the pusher
+    /// yields as far as it must: of a wedged object nearly all subsets hold it, and each would be searched.
+    fn rests(&self, certifier: &mut Certifier<'_>) -> bool {
+        let conditions = &self.conditions;
+        let contacts = conditions.problem.contacts.iter();
+        let yields = contacts
+            .filter(|c| c.n[3] > 0.0)
+            .map(|c| -c.gap_offset / c.n[3]);
+        let still = [0.0, 0.0, 0.0, yields.fold(0.0, f64::max)];
+        if conditions.violates(&[], &still, 0.0) {
+            return false;
+        }
+        let generators = self.generators.iter();
+        let holding: Vec<_> = generators
+            .filter(|generator| conditions.holds(generator, &still))
+            .copied()
+            .collect();
+        conditions
+            .standing_candidate(&holding, &still, certifier)
+            .is_some_and(|candidate| certifier.certifies(&candidate))
     }
 
     /// Examines subsets of generators until one has a solution.

@@ -61,7 +61,7 @@ impl<'a> RedundantPlane<'a> {
                 return Finding::Unclear;
             }
             certifier.spend(1);
-            if self.excludes(&region) {
+            if self.excludes(&region, thoroughness, certifier) {
                 continue;
             }
             let middle = region.middle();
@@ -70,12 +70,7 @@ impl<'a> RedundantPlane<'a> {
                 && attempts[k] > 0
             {
                 attempts[k] -= 1;
-                let alpha = [0, 1, 2].map(|i| {
-                    let range = self.conditions.range_along(&self.dual[i], &middle, &middle);
-                    range.midpoint()
-                });
-                let candidate = self.conditions.candidate(self.chosen, &alpha, middle);
-                if certifier.certifies(&candidate) {
+                if self.solves(&middle, thoroughness, certifier) {
                     return Finding::Solved;
                 }
             }
@@ -88,13 +83,36 @@ impl<'a> RedundantPlane<'a> {
         finding
     }
 
+    /// Whether V refines to a certified solution.
+    fn solves(
+        &self,
+        v: &Vector<4>,
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> bool {
+        let (conditions, chosen) = (self.conditions, self.chosen);
+        let alpha = [0, 1, 2].map(|i| conditions.range_along(&self.dual[i], v, v).midpoint());
+        certifier.certifies(&conditions.candidate(chosen, &alpha, *v))
+            || thoroughness.stands
+                && conditions
+                    .standing_candidate(chosen, v, certifier)
+                    .is_some_and(|candidate| certifier.certifies(&candidate))
+    }
+
     /// Whether no V of a part has impulses that are positive and balance the load.
-    fn excludes(&self, part: &PlaneRegion) -> bool {
+    fn excludes(
+        &self,
+        part: &PlaneRegion,
+        thoroughness: Thoroughness,
+        certifier: &mut Certifier<'_>,
+    ) -> bool {
         let corners: Vec<_> = part.corners().collect();
         let slack = self.conditions.slack;
         let [a, b, c, along_m] = self.dual.map(|w| self.conditions.range_over(&w, &corners));
         let balances = along_m.low <= slack && along_m.high >= -slack;
-        !balances || [a, b, c].iter().any(|range| range.high < -slack)
+        !balances
+            || [a, b, c].iter().any(|range| range.high < -slack)
+            || thoroughness.separates && self.conditions.separates(self.chosen, &corners, certifier)
     }
 }
 
