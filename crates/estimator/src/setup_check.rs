@@ -253,6 +253,7 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
         ("uncertainty.drift", unknown.drift),
         ("uncertainty.variation", unknown.variation),
         ("uncertainty.force_std", unknown.force_std),
+        ("uncertainty.force_spread", unknown.force_spread),
         ("uncertainty.roughness", unknown.roughness),
         ("uncertainty.camera_noise", unknown.camera_noise),
     ];

@@ -19,6 +19,8 @@ pub struct Uncertainty {
     /// Disturbing force per step of 1/30 s, as a share of μ_s m g on each axis, times the radius of
     /// gyration for rotation.
     pub force_std: f64,
+    /// Standard deviation of the logarithm of a factor of that force: some pushes are smoother than others.
+    pub force_spread: f64,
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
@@ -52,6 +54,7 @@ impl Default for Uncertainty {
             variation: 0.1,
             variation_length: 5e-3,
             force_std: 0.25,
+            force_spread: 0.0,
             pusher_offset: 3e-4,
             pusher_lag: 3e-4,
             fixel_position: 3e-4,

@@ -5,7 +5,8 @@
 use std::sync::Mutex;
 
 use stickslip::{
-    Mode, Observer, ParticleView, PriorSample, SampledState, Setup, SolvedStep, Tracking, wrapped,
+    Mode, Observer, ParticleView, PriorSample, SampledState, Setup, SolvedStep, Tracking,
+    Uncertainty, wrapped,
 };
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
@@ -57,6 +58,8 @@ pub struct CalibrationOptions {
     pub source: TruthSource,
     /// Rules of the particle filter.
     pub mode: Mode,
+    /// What scenes leave open, of truths and in contact mode.
+    pub uncertainty: Uncertainty,
     /// Whether it feels and not only sees.
     pub touch: bool,
     /// Number of particles.
@@ -75,6 +78,7 @@ impl CalibrationRun {
     pub fn new(paper: PaperExperiment, seed: u64, options: &CalibrationOptions) -> Option<Self> {
         let scene = paper.scene();
         let mut setup = read_scene(scene.scene, scene.name).expect("the embedded scene is one");
+        setup.uncertainty = options.uncertainty;
         if options.source == TruthSource::Prior {
             // the camera is as noisy as the prior says, not less
             setup.filter.likelihood_scale = 1.0;

@@ -16,7 +16,7 @@ const SINGLE: usize = 11;
 const FLAGS_PER_FIXEL: usize = 5;
 
 /// Columns of contact mode that do not belong to a fixel.
-const UNKNOWNS: usize = 13;
+const UNKNOWNS: usize = 14;
 
 /// Columns of contact mode for each fixel.
 const PER_FIXEL: usize = SensorBelief::LEN + 2;
@@ -175,6 +175,11 @@ impl Columns {
     /// mode).
     pub fn camera_noise(&self) -> usize {
         self.unknowns() + 10
+    }
+
+    /// Logarithm by which the random force is larger than told (contact mode).
+    pub fn force(&self) -> usize {
+        self.unknowns() + 13
     }
 
     /// log-likelihood of what is known of the latest row without the camera: the pusher's place and

@@ -78,6 +78,7 @@ impl Propagation {
         self.draw_offsets(transition, plan, block);
         self.normals_of(draw, LATENCY_PAIR, block);
         self.draw_latency(transition, plan, block);
+        self.draw_force_factor(transition, block);
         if let Some(velocity) = plan.steady {
             self.normals_of(draw, EXCHANGE_PAIR, block);
             self.exchange_latency(transition, plan, velocity, block);

@@ -139,6 +139,7 @@ impl<'o> ContactModel<'o> {
         }
         block.column_mut(columns.roughness())[i] = prior.roughness * normals[10];
         block.column_mut(columns.growth())[i] = normals[11];
+        block.column_mut(columns.force())[i] = prior.force_spread * draw.normal(particle, 3);
         let [a, b] = [normals[12], normals[13]];
         block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
         for k in 0..3 {

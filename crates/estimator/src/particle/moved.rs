@@ -23,7 +23,13 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let past = (0..columns.history()).map(move |slot| columns.past_pose(slot));
     let poses = std::iter::once(Columns::POSE).chain(past);
     let offset = columns.pusher_offset();
-    let rig = [offset, offset + 1, columns.growth(), columns.roughness()];
+    let rig = [
+        offset,
+        offset + 1,
+        columns.growth(),
+        columns.roughness(),
+        columns.force(),
+    ];
     let fixels = (0..columns.fixels()).map(move |j| columns.fixel_offset(j));
     let linear = poses
         .flat_map(|first| first..first + 3)

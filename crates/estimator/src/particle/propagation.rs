@@ -252,10 +252,11 @@ impl Propagation {
         block: &BlockMut<'_>,
     ) {
         self.draw_normals(draw, pair, block);
-        let scene = &transition.setup.scene;
-        let per_step = match transition.columns.mode() {
-            Mode::Contact => transition.setup.uncertainty.force_std,
-            Mode::Paper => transition.setup.filter.force_std,
+        let Transition { setup, columns, .. } = transition;
+        let scene = &setup.scene;
+        let (per_step, factor) = match columns.mode() {
+            Mode::Contact => (setup.uncertainty.force_std, Some(columns.force())),
+            Mode::Paper => (setup.filter.force_std, None),
         };
         let sharing = f64::from(sharing(h));
         let lasts = h * sharing;
@@ -270,7 +271,10 @@ impl Propagation {
             .take(block.len().div_ceil(LANES))
         {
             let disturbed = !self.untouched[chunk];
-            let std = disturbed.zero_unless(particles.friction.mu_s * share);
+            let factor = factor.map_or(Lanes::splat(1.0), |column| {
+                load_chunk(block.column(column), chunk, 0.0).exp()
+            });
+            let std = disturbed.zero_unless(particles.friction.mu_s * share * factor);
             for (k, (impulse, arm)) in particles
                 .applied
                 .fields_mut()

@@ -75,6 +75,20 @@ impl Propagation {
         }
     }
 
+    /// How smooth the push is, by the number that the latency leaves: drawn anew until the pusher comes near.
+    pub(super) fn draw_force_factor(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        block: &mut BlockMut<'_>,
+    ) {
+        let spread = setup.uncertainty.force_spread;
+        for (i, _) in block.particles() {
+            if !is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i) {
+                block.column_mut(columns.force())[i] = spread * self.normals[3][i];
+            }
+        }
+    }
+
     /// How late the camera is: drawn anew until the pusher comes near; then a random walk that keeps
     /// the prior (Metropolis).
     pub(super) fn draw_latency(

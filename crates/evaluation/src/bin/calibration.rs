@@ -1,19 +1,31 @@
-//! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]]`: where the truth
-//! lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by the
-//! filter's own noisy dynamics, by these without noise and by the testbed, with touch and without, in
-//! both modes. "last seen" is the coverage when the camera goes dark, in all runs.
+//! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...`: where
+//! the truth lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by
+//! the filter's own noisy dynamics, by these without noise and by the testbed, with touch and without, in
+//! both modes. "last seen" is the coverage when the camera goes dark, in all runs. Keys are those of a
+//! scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is what they cost. With keys
+//! only contact mode, which knows them, is run.
 
-use stickslip::Mode;
+use std::error::Error;
+
+use stickslip::{Mode, Uncertainty};
 use stickslip_evaluation::paper::PaperExperiment;
 use stickslip_evaluation::{
     CalibrationOptions, CalibrationRun, Physics, QUANTITIES, Tally, TruthSource,
 };
+use stickslip_formats::read_scene;
 
-fn main() -> Result<(), std::num::ParseIntError> {
-    let numbers: Result<Vec<usize>, _> = std::env::args().skip(1).map(|n| n.parse()).collect();
+fn main() -> Result<(), Box<dyn Error>> {
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    let (keys, numbers): (Vec<_>, Vec<_>) = given.iter().partition(|word| word.contains('='));
+    let numbers: Result<Vec<usize>, _> = numbers.iter().map(|n| n.parse()).collect();
     let numbers = numbers?;
     let runs = numbers.first().copied().unwrap_or(200);
     let particles = numbers.get(1).copied().unwrap_or(500);
+    let uncertainty = uncertainty(&keys)?;
+    let modes = match keys.is_empty() {
+        true => &[(Mode::Contact, "contact"), (Mode::Paper, "paper")][..],
+        false => &[(Mode::Contact, "contact")],
+    };
     println!(
         "{runs} runs each, {particles} particles; coverage of 90 % intervals at the end of the run"
     );
@@ -26,11 +38,12 @@ fn main() -> Result<(), std::num::ParseIntError> {
         (TruthSource::Simulated(Physics::Testbed), "testbed"),
     ];
     for (source, truth) in sources {
-        for (mode, name) in [(Mode::Contact, "contact"), (Mode::Paper, "paper")] {
+        for &(mode, name) in modes {
             for touch in [true, false] {
                 let options = CalibrationOptions {
                     source,
                     mode,
+                    uncertainty,
                     touch,
                     particles,
                 };
@@ -41,6 +54,14 @@ fn main() -> Result<(), std::num::ParseIntError> {
         }
     }
     Ok(())
+}
+
+/// What `keys` say, read as a scene file's; the rest by default.
+fn uncertainty(keys: &[&String]) -> Result<Uncertainty, Box<dyn Error>> {
+    let lines: Vec<String> = keys.iter().map(|key| key.replacen('=', " = ", 1)).collect();
+    let scene = PaperExperiment::A.scene().scene;
+    let text = format!("{scene}\n[uncertainty]\n{}\n", lines.join("\n"));
+    Ok(read_scene(&text, "the given keys")?.uncertainty)
 }
 
 /// The paper's experiments in turn.

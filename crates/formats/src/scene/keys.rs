@@ -52,6 +52,7 @@ pub(super) const TABLES: [(&str, &[&str]); 11] = [
         "filter",
         &[
             "force_std",
+            "force_spread",
             "parameter_std",
             "resample_below",
             "likelihood_scale",

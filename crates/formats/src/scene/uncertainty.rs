@@ -55,6 +55,12 @@ const FORCE_STD: Quantity = Quantity::new(
     Unit::None,
     Rule::NotNegative,
 );
+const FORCE_SPREAD: Quantity = Quantity::new(
+    "force_spread",
+    "the relative standard deviation of a factor of the disturbance",
+    Unit::None,
+    Rule::NotNegative,
+);
 const PUSHER_OFFSET: Quantity = Quantity::new(
     "pusher_offset",
     "the standard deviation of the offset between the pusher's frame and the camera's",
@@ -119,6 +125,7 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
         variation: number(&VARIATION, default.variation)?,
         variation_length: number(&VARIATION_LENGTH, default.variation_length)?,
         force_std: number(&FORCE_STD, default.force_std)?,
+        force_spread: number(&FORCE_SPREAD, default.force_spread)?,
         pusher_offset: number(&PUSHER_OFFSET, default.pusher_offset)?,
         pusher_lag: number(&PUSHER_LAG, default.pusher_lag)?,
         fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,
