@@ -10,6 +10,7 @@ mod jam;
 mod particle_view;
 mod pose_covariance;
 mod prior_sample;
+mod random_force;
 mod refused;
 mod rivals;
 mod tactile;

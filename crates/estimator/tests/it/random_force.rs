@@ -1,0 +1,72 @@
+//! The random force of contact mode, as particles meet it before anything is learned of it.
+
+use std::sync::Mutex;
+
+use crate::common::{RATE, log, setup};
+use stickslip::dynamics::{Particles, Pose, StepInput};
+use stickslip::{Observer, RunOptions, SolvedStep, run_observed};
+
+/// Particles of a block, which are shown in one piece.
+const BLOCK: usize = 64;
+
+/// Of the first step in which a force acts on a particle: the impulse along x, as a share of its μ_s m g h.
+#[derive(Debug)]
+struct FirstForce(Mutex<[f64; BLOCK]>);
+
+impl Observer for FirstForce {
+    fn on_step(&self, _: &SolvedStep<'_>) {}
+
+    fn before_step(&self, input: &StepInput, particles: &[Particles<8>]) {
+        let mut shares = self.0.lock().expect("no test panicked here");
+        let object = setup(&[]).scene.object;
+        for (chunk, shares) in particles.iter().zip(shares.chunks_mut(8)) {
+            let forces = chunk.applied.fx.0.iter().zip(&chunk.friction.mu_s.0);
+            for (share, (fx, mu_s)) in shares.iter_mut().zip(forces) {
+                if *share == 0.0 {
+                    *share = fx / (mu_s * object.mass * 9.81 * input.h);
+                }
+            }
+        }
+    }
+}
+
+/// Mean square of what acts on particles that a pusher comes near, in the dark, over many seeds.
+fn mean_square(force_spread: f64) -> f64 {
+    let mut setup = setup(&[]);
+    setup.uncertainty.force_spread = force_spread;
+    let object = Pose::new(0.0, 0.0, 0.0);
+    let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
+    // what is seen would tell of the force
+    let log = log(60, |time| (time < 0.5).then_some(object), pusher);
+    assert_eq!(log.time[1], 1.0 / RATE, "one draw of the force a row");
+    let mut squares = Vec::new();
+    for seed in 0..100 {
+        let options = RunOptions {
+            particles: BLOCK,
+            seed,
+            ..RunOptions::default()
+        };
+        let force = FirstForce(Mutex::new([0.0; BLOCK]));
+        run_observed(&setup, &log, &options, &force, &mut |_| ()).expect("a run");
+        let shares = force.0.into_inner().expect("no test panicked here");
+        squares.extend(shares.iter().filter(|x| **x != 0.0).map(|x| x * x));
+    }
+    assert!(squares.len() > 3000, "{} forces", squares.len());
+    squares.iter().sum::<f64>() / squares.len() as f64
+}
+
+#[test]
+fn random_force_is_as_large_as_told() {
+    let told = 0.25 * 0.25;
+    let ratio = mean_square(0.0) / told;
+    assert!((ratio - 1.0).abs() < 0.08, "{ratio}");
+}
+
+#[test]
+fn factor_of_the_force_is_log_normal() {
+    // of a normal number times e^f, f ~ N(0, s²), the mean square is e^(2 s²)
+    let spread = 0.5_f64;
+    let told = 0.25 * 0.25 * (2.0 * spread * spread).exp();
+    let ratio = mean_square(spread) / told;
+    assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
+}
