@@ -15,12 +15,11 @@
 use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
 use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::mode_curve::ModeCurve;
 use crate::solver::mode_line::{Line, ModeLine};
 use crate::solver::open_planes::OpenPlanes;
-use crate::solver::piece_search::{Finding, ModePath, Thoroughness, search_pieces};
+use crate::solver::piece_search::{Finding, Thoroughness, search_path};
 use crate::solver::plane_region::complement;
 use crate::solver::redundant_line::RedundantLine;
 use crate::solver::redundant_plane::RedundantPlane;
@@ -72,9 +71,6 @@ const ROUNDS: [Thoroughness; 3] = [
         stands: true,
     },
 ];
-
-/// End of lines and curves (m/s): no impulse or speed is so large.
-const FARTHEST: f64 = 1e6;
 
 /// Searches all modes, and again more thoroughly where something was unclear and work is left.
 pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
@@ -438,21 +434,4 @@ impl ModeSearch {
         let hull: Vec<_> = region.corners().collect();
         !hull.is_empty() && !conditions.separates(chosen, &hull, certifier)
     }
-}
-
-/// Searches a line or curve as far as solutions are sought.
-fn search_path(
-    Interval { low, high }: Interval,
-    path: &mut impl ModePath,
-    thoroughness: Thoroughness,
-    certifier: &mut Certifier<'_>,
-) -> Finding {
-    let whole = Interval {
-        low: low.max(-FARTHEST),
-        high: high.min(FARTHEST),
-    };
-    if whole.is_empty() {
-        return Finding::Excluded;
-    }
-    search_pieces(whole, thoroughness, path, certifier)
 }

@@ -1,4 +1,4 @@
-//! Search along a line or curve by halving it: [`search_pieces`].
+//! Search along a line or curve by halving it: [`search_path`].
 
 use crate::solver::certifier::Certifier;
 use crate::solver::generator::Generator;
@@ -22,6 +22,9 @@ const ROOT: f64 = 1e-11;
 
 /// Most steps of the search for a root.
 const ROOT_STEPS: u32 = 40;
+
+/// End of lines and curves (m/s): no impulse or speed is so large.
+const FARTHEST: f64 = 1e6;
 
 /// How thoroughly a line or curve is searched.
 #[derive(Clone, Copy, Debug)]
@@ -111,9 +114,26 @@ pub trait ModePath {
     }
 }
 
+/// Searches a line or curve as far as solutions are sought.
+pub fn search_path(
+    Interval { low, high }: Interval,
+    path: &mut impl ModePath,
+    thoroughness: Thoroughness,
+    certifier: &mut Certifier<'_>,
+) -> Finding {
+    let whole = Interval {
+        low: low.max(-FARTHEST),
+        high: high.min(FARTHEST),
+    };
+    if whole.is_empty() {
+        return Finding::Excluded;
+    }
+    search_pieces(whole, thoroughness, path, certifier)
+}
+
 /// Halves the whole interval until every piece is excluded or a candidate is certified; gives up
 /// after so many pieces, or where no work is left.
-pub fn search_pieces(
+fn search_pieces(
     whole: Interval,
     thoroughness: Thoroughness,
     path: &mut impl ModePath,
