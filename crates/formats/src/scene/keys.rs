@@ -52,7 +52,6 @@ pub(super) const TABLES: [(&str, &[&str]); 11] = [
         "filter",
         &[
             "force_std",
-            "force_spread",
             "parameter_std",
             "resample_below",
             "likelihood_scale",
@@ -73,6 +72,7 @@ pub(super) const TABLES: [(&str, &[&str]); 11] = [
             "variation",
             "variation_length",
             "force_std",
+            "force_spread",
             "pusher_offset",
             "pusher_lag",
             "fixel_position",
