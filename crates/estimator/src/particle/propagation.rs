@@ -26,6 +26,9 @@ pub(crate) const MOVING: f64 = 1e-9;
 /// are used.
 const FORCE_PAIR: u32 = 2;
 
+/// Spreads of its logarithm within which the factor of the random force lies: what moves it knows no bounds.
+const MOST_SPREADS: f64 = 3.0;
+
 /// Γ' of one setup: what moves the particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Transition<'o> {
@@ -258,6 +261,7 @@ impl Propagation {
             Mode::Contact => (setup.uncertainty.force_std, Some(columns.force())),
             Mode::Paper => (setup.filter.force_std, None),
         };
+        let most = Lanes::splat(MOST_SPREADS * setup.uncertainty.force_spread);
         let sharing = f64::from(sharing(h));
         let lasts = h * sharing;
         let share =
@@ -272,7 +276,8 @@ impl Propagation {
         {
             let disturbed = !self.untouched[chunk];
             let factor = factor.map_or(Lanes::splat(1.0), |column| {
-                load_chunk(block.column(column), chunk, 0.0).exp()
+                let logarithm = load_chunk(block.column(column), chunk, 0.0);
+                logarithm.max(-most).min(most).exp()
             });
             let std = disturbed.zero_unless(particles.friction.mu_s * share * factor);
             for (k, (impulse, arm)) in particles
