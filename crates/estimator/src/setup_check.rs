@@ -253,7 +253,6 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
         ("uncertainty.drift", unknown.drift),
         ("uncertainty.variation", unknown.variation),
         ("uncertainty.force_std", unknown.force_std),
-        ("uncertainty.force_spread", unknown.force_spread),
         ("uncertainty.roughness", unknown.roughness),
         ("uncertainty.camera_noise", unknown.camera_noise),
     ];
@@ -278,5 +277,7 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     numbers.extend(lengths.map(|(name, value)| (name, value, NotNegative, Unit::Metre)));
     numbers.extend(positive.map(|(name, value)| (name, value, Positive, Unit::Metre)));
     numbers.push(("uncertainty.latency", unknown.latency, Share, Unit::Second));
+    let spread = unknown.force_spread;
+    numbers.push(("uncertainty.force_spread", spread, Share, Unit::None));
     numbers
 }

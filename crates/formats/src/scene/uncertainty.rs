@@ -59,7 +59,7 @@ const FORCE_SPREAD: Quantity = Quantity::new(
     "force_spread",
     "the relative standard deviation of a factor of the disturbance",
     Unit::None,
-    Rule::NotNegative,
+    Rule::Share,
 );
 const PUSHER_OFFSET: Quantity = Quantity::new(
     "pusher_offset",
