@@ -128,8 +128,8 @@ impl Ensemble {
     fn noise_variance(&self, error: usize, weights: &[f64]) -> f64 {
         let column = self.shape.moved() + error;
         let mut variance = 0.0;
-        for (block, weights) in self.values.chunks(self.stride()).zip(weights.chunks(BLOCK)) {
-            let (weights, std) = (padded(weights), &block.as_chunks::<BLOCK>().0[column]);
+        for (_, block, weights) in weighted(&self.values, self.stride(), weights) {
+            let std = &block[column];
             variance += sum(|i| weights[i] * std[i] * std[i]);
         }
         variance
@@ -138,17 +138,13 @@ impl Ensemble {
     /// Weights of the groups, means of the columns.
     #[inline(always)]
     fn weigh(&mut self, weights: &[f64]) {
-        let stride = self.stride();
-        let count = self.values.len() / stride;
         self.means.fill(0.0);
         self.weights.fill(Weight::default());
-        let blocks = self.values.chunks(stride).zip(weights.chunks(BLOCK));
-        for (index, (block, weights)) in blocks.enumerate() {
-            let weights = padded(weights);
-            let of = &mut self.weights[group(index, count)];
+        for (group, block, weights) in weighted(&self.values, self.stride(), weights) {
+            let of = &mut self.weights[group];
             of.w += sum(|i| weights[i]);
             of.ww += sum(|i| weights[i] * weights[i]);
-            for (mean, column) in self.means.iter_mut().zip(block.as_chunks::<BLOCK>().0) {
+            for (mean, column) in self.means.iter_mut().zip(block) {
                 *mean += sum(|i| weights[i] * column[i]);
             }
         }
@@ -159,14 +155,11 @@ impl Ensemble {
     fn take_sums(&mut self, error: usize, weights: &[f64]) {
         let (stride, columns) = (self.stride(), self.shape.moved());
         let error = self.shape.quantities + error;
-        let count = self.values.len() / stride;
         self.sums.fill(Sums::default());
-        let blocks = self.values.chunks(stride).zip(weights.chunks(BLOCK));
-        for (index, (block, weights)) in blocks.enumerate() {
-            let (block, weights) = (block.as_chunks::<BLOCK>().0, padded(weights));
+        for (group, block, weights) in weighted(&self.values, stride, weights) {
             let mean = self.means[error];
             let e: [f64; BLOCK] = std::array::from_fn(|i| block[error][i] - mean);
-            let sums = &mut self.sums[group(index, count) * columns..][..columns];
+            let sums = &mut self.sums[group * columns..][..columns];
             for ((of, column), mean) in sums.iter_mut().zip(block).zip(&self.means) {
                 of.x += sum(|i| weights[i] * (column[i] - mean));
                 of.xx += sum(|i| weights[i] * (column[i] - mean) * (column[i] - mean));
@@ -285,6 +278,21 @@ fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
     }
     let chance = (product - square).max(0.0) / count;
     (1.0 - chance / square).max(0.0)
+}
+
+/// Of every block of so many numbers: its group, its columns and the weights of its particles.
+#[inline(always)]
+fn weighted<'a>(
+    values: &'a [f64],
+    stride: usize,
+    weights: &'a [f64],
+) -> impl Iterator<Item = (usize, &'a [[f64; BLOCK]], [f64; BLOCK])> {
+    let count = values.len() / stride;
+    let blocks = values.chunks(stride).zip(weights.chunks(BLOCK));
+    blocks.enumerate().map(move |(index, (block, weights))| {
+        let columns = block.as_chunks::<BLOCK>().0;
+        (group(index, count), columns, padded(weights))
+    })
 }
 
 /// The weights of one block; particles past the last one have none.

@@ -179,6 +179,31 @@ impl ModeConditions {
         Some(candidate)
     }
 
+    /// Whether V with the impulses `alpha` refines to a certified solution, or, where `stands` asks for it, with
+    /// those that balance the load.
+    pub fn solves(
+        &self,
+        chosen: &[Generator],
+        alpha: &[f64],
+        v: &Vector<4>,
+        stands: bool,
+        certifier: &mut Certifier<'_>,
+    ) -> bool {
+        certifier.certifies(&self.candidate(chosen, alpha, *v))
+            || stands && self.stands(chosen, v, certifier)
+    }
+
+    /// Whether V with impulses that balance the load where feet stand refines to a certified solution.
+    pub fn stands(
+        &self,
+        chosen: &[Generator],
+        v: &Vector<4>,
+        certifier: &mut Certifier<'_>,
+    ) -> bool {
+        self.standing_candidate(chosen, v, certifier)
+            .is_some_and(|candidate| certifier.certifies(&candidate))
+    }
+
     /// Whether no impulses of the generators balance the load for any V of the hull of some.
     pub fn separates(
         &self,

@@ -170,9 +170,7 @@ impl ModeSearch {
             .filter(|generator| conditions.holds(generator, &still))
             .copied()
             .collect();
-        conditions
-            .standing_candidate(&holding, &still, certifier)
-            .is_some_and(|candidate| certifier.certifies(&candidate))
+        conditions.stands(&holding, &still, certifier)
     }
 
     /// Examines subsets of generators until one has a solution.
@@ -339,11 +337,7 @@ impl ModeSearch {
             return Finding::Excluded;
         }
         let alpha = ranges.map(|range| range.midpoint());
-        let solved = certifier.certifies(&conditions.candidate(chosen, &alpha, v))
-            || thoroughness.stands
-                && conditions
-                    .standing_candidate(chosen, &v, certifier)
-                    .is_some_and(|candidate| certifier.certifies(&candidate));
+        let solved = conditions.solves(chosen, &alpha, &v, thoroughness.stands, certifier);
         Finding::of_candidate(solved)
     }
 

@@ -70,7 +70,15 @@ impl<'a> RedundantPlane<'a> {
                 && attempts[k] > 0
             {
                 attempts[k] -= 1;
-                if self.solves(&middle, thoroughness, certifier) {
+                let alpha = [0, 1, 2].map(|i| {
+                    let range = self.conditions.range_along(&self.dual[i], &middle, &middle);
+                    range.midpoint()
+                });
+                let stands = thoroughness.stands;
+                if self
+                    .conditions
+                    .solves(self.chosen, &alpha, &middle, stands, certifier)
+                {
                     return Finding::Solved;
                 }
             }
@@ -81,22 +89,6 @@ impl<'a> RedundantPlane<'a> {
             stack.extend(region.halves());
         }
         finding
-    }
-
-    /// Whether V refines to a certified solution.
-    fn solves(
-        &self,
-        v: &Vector<4>,
-        thoroughness: Thoroughness,
-        certifier: &mut Certifier<'_>,
-    ) -> bool {
-        let (conditions, chosen) = (self.conditions, self.chosen);
-        let alpha = [0, 1, 2].map(|i| conditions.range_along(&self.dual[i], v, v).midpoint());
-        certifier.certifies(&conditions.candidate(chosen, &alpha, *v))
-            || thoroughness.stands
-                && conditions
-                    .standing_candidate(chosen, v, certifier)
-                    .is_some_and(|candidate| certifier.certifies(&candidate))
     }
 
     /// Whether no V of a part has impulses that are positive and balance the load.

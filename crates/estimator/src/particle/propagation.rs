@@ -258,7 +258,10 @@ impl Propagation {
         let Transition { setup, columns, .. } = transition;
         let scene = &setup.scene;
         let (per_step, factor) = match columns.mode() {
-            Mode::Contact => (setup.uncertainty.force_std, Some(columns.force())),
+            Mode::Contact => {
+                let factor = (setup.uncertainty.force_spread > 0.0).then(|| columns.force());
+                (setup.uncertainty.force_std, factor)
+            }
             Mode::Paper => (setup.filter.force_std, None),
         };
         let most = Lanes::splat(MOST_SPREADS * setup.uncertainty.force_spread);
