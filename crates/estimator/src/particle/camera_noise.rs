@@ -41,10 +41,16 @@ impl NoisePrior {
     /// Variances of position and angle, in units of the told ones, after so many poses with these sums
     /// of squared residuals.
     pub fn variances(&self, poses: f64, position: f64, angle: f64) -> [f64; 2] {
+        let [of_position, of_angle] = self.freedoms(poses);
         [
-            (self.freedom + position) / (self.freedom + 2.0 * poses),
-            (self.freedom + angle) / (self.freedom + poses),
+            (self.freedom + position) / of_position,
+            (self.freedom + angle) / of_angle,
         ]
+    }
+
+    /// Degrees of freedom by which they are known after so many poses.
+    pub fn freedoms(&self, poses: f64) -> [f64; 2] {
+        [self.freedom + 2.0 * poses, self.freedom + poses]
     }
 }
 

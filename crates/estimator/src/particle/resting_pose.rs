@@ -9,17 +9,18 @@ use crate::particle::camera_likelihood::WRONG;
 use crate::particle::camera_noise::{CameraNoise, MEMORY, NoisePrior};
 use crate::setup::{Camera, Setup};
 
-/// The belief about the pose of an object at rest, which is normal, axis by axis: the camera's poses
-/// are all that is known of it, and no particle filter is needed to say what they add up to.
+/// The belief about the pose of an object at rest, axis by axis: the camera's poses are all that is
+/// known of it, and no particle filter is needed to say what they add up to. The first of them is as noisy
+/// as the others, and how noisy they are is learned from all, so that the belief is Student's t.
 ///
 /// Particles that nothing has come near draw their pose anew from it, so that resampling cannot thin
 /// them out while the object waits for the pusher.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestingPose {
     mean: Pose,
-    /// Variances of x, y (m²) and θ (rad²).
+    /// What the variances of x, y (m²) and θ (rad²) would be, were the camera as noisy as told.
     variance: [f64; 3],
-    /// Number of the poses seen, each by how likely it is not wrong.
+    /// Number of the poses seen, with the first one, each by how likely it is not wrong.
     poses: f64,
     /// Sums of their precisions as told, axis by axis.
     precision: [f64; 3],
@@ -57,24 +58,22 @@ impl RestingPose {
 
     /// The same before anything but `start` is seen.
     pub fn started_at(self, (start, covariance): (Pose, Option<PoseCovariance>)) -> Self {
+        let told = self.told(covariance);
         Self {
             mean: start,
-            variance: self.told(covariance),
-            poses: 0.0,
-            precision: [0.0; 3],
+            variance: told,
+            poses: 1.0,
+            precision: told.map(f64::recip),
             centre: start,
             squares: [0.0; 2],
             ..self
         }
     }
 
-    /// Bayes' rule with one more pose of the camera, whose noise is what the poses before say. By as
-    /// much as the pose may be wrong, it counts less.
+    /// Bayes' rule with one more pose of the camera. By as much as the pose may be wrong, it counts less.
     pub fn see(&mut self, (pose, covariance): (Pose, Option<PoseCovariance>)) {
         let told = self.told(covariance);
-        let levels = self.noise_levels();
-        let wide = self.widened * self.widened;
-        let measured: [f64; 3] = std::array::from_fn(|k| told[k] * wide * levels[GROUP[k]]);
+        let measured = told.map(|variance| variance * self.widened * self.widened);
         let right = self.is_right(&pose, told, measured);
 
         // the pose
@@ -103,13 +102,14 @@ impl RestingPose {
     }
 
     /// A pose drawn from the belief, by three normal numbers.
-    pub fn drawn(&self, [x, y, theta]: [f64; 3]) -> Pose {
-        let [std_x, std_y, std_theta] = self.variance.map(f64::sqrt);
-        Pose {
-            x: self.mean.x + std_x * x,
-            y: self.mean.y + std_y * y,
-            theta: self.mean.theta + std_theta * theta,
+    pub fn drawn(&self, normals: [f64; 3]) -> Pose {
+        let (levels, freedom) = (self.noise_levels(), self.noise_freedom());
+        let mut pose = self.mean;
+        for (k, x) in pose.fields_mut().into_iter().enumerate() {
+            let variance = self.variance[k] * levels[GROUP[k]];
+            *x += variance.sqrt() * student(normals[k], freedom[GROUP[k]]);
         }
+        pose
     }
 
     /// What a particle that has rested at `pose` all the time knows of the camera's noise: the number
@@ -137,13 +137,22 @@ impl RestingPose {
         }
     }
 
-    /// Variances of the camera's noise, in units of the told ones: of positions, of angles.
+    /// Variances of the camera's noise, in units of the told ones: of positions, of angles. One pose was
+    /// needed to know where the object is.
     fn noise_levels(&self) -> [f64; 2] {
         let Some(prior) = self.noise else {
             return [1.0; 2];
         };
         let [poses, position, angle] = self.noise_seen_at(&self.mean);
-        prior.variances(poses, position, angle)
+        prior.variances((poses - 1.0).max(0.0), position, angle)
+    }
+
+    /// Degrees of freedom by which these are known.
+    fn noise_freedom(&self) -> [f64; 2] {
+        match self.noise {
+            Some(prior) => prior.freedoms((self.poses - 1.0).max(0.0)),
+            None => [f64::INFINITY; 2],
+        }
     }
 
     /// Probability that a pose is not wrong, by its distance from the mean; `measured` are its variances.
@@ -170,6 +179,12 @@ impl RestingPose {
         let right = libm::exp(right);
         right / (right + WRONG)
     }
+}
+
+/// The number of Student's t distribution that stands where `z` stands in the normal one, to first order in
+/// 1 / `freedom` (Fisher and Cornish 1960).
+fn student(z: f64, freedom: f64) -> f64 {
+    z + (z * z * z + z) / (4.0 * freedom)
 }
 
 /// From `from` to `to`, θ on the circle.
@@ -262,8 +277,10 @@ mod tests {
         let particle = Pose::new(0.0203, 0.0099, -0.296);
         let (mut position, mut angle, mut count) = (0.0, 0.0, 0.0);
         let kept = 1.0 - 1.0 / MEMORY;
-        for pose in &seen {
-            resting.see((*pose, None));
+        for pose in std::iter::once(&at).chain(&seen) {
+            if count > 0.0 {
+                resting.see((*pose, None));
+            }
             let (dx, dy) = (pose.x - particle.x, pose.y - particle.y);
             let turn = (pose.theta - particle.theta) / CAMERA.orientation_std;
             let std = CAMERA.position_std;

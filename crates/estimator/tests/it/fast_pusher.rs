@@ -69,7 +69,7 @@ fn belief(mode: Mode, between: u32) -> [f64; 4] {
 fn rows_of_the_pusher_alone_do_not_change_the_belief() {
     for mode in [Mode::Paper, Mode::Contact] {
         let slow = belief(mode, 1);
-        for between in [2, 4, 33] {
+        for between in [3, 33] {
             let fast = belief(mode, between);
             let ratio = [0, 1, 2, 3].map(|k| fast[k] / slow[k]);
             let spreads = ratio[..3].iter().all(|ratio| (0.6..1.6).contains(ratio));

@@ -11,7 +11,7 @@ use stickslip::{
 };
 
 /// Experiments that are drawn.
-const SAMPLES: u64 = 150;
+const SAMPLES: u64 = 100;
 
 /// A disc that is pushed against a fixel, from 1.25 s on; it gets there at about 2.5 s.
 fn scene() -> Setup {
@@ -87,11 +87,8 @@ fn beliefs_of_where_an_object_waits_hold_what_they_say() {
             *held += u32::from((0.05..=0.95).contains(&rank));
         }
     }
-    // 90 % of 150, whose standard deviation is 3.7
-    assert!(
-        held.iter().all(|held| (120..=149).contains(held)),
-        "{held:?}"
-    );
+    // 90 % of 100, whose standard deviation is 3
+    assert!(held.iter().all(|held| (80..=99).contains(held)), "{held:?}");
 }
 
 #[test]

@@ -32,7 +32,7 @@ fn deviation(fit: &Fit, name: &str, truth: f64) -> f64 {
 
 #[test]
 fn friction_of_the_model_is_found_within_its_spread() {
-    let pushes = pushes(TRUTH, Physics::Model, 8, 1);
+    let pushes = pushes(TRUTH, Physics::Model, 6, 1);
     let fit = fit(&pushes, &options(&["mu_p", "tripod_radius"])).unwrap();
     for (name, truth) in [("mu_p", TRUTH.mu_p), ("tripod_radius", TRUTH.d_tri)] {
         assert!(deviation(&fit, name, truth).abs() < 3.0, "{name} {fit:?}");
@@ -145,7 +145,7 @@ fn other_pushes_are_predicted_as_a_fold_is() {
 
 #[test]
 fn same_seed_same_bits_on_any_number_of_threads() {
-    let pushes = pushes(TRUTH, Physics::Model, 3, 60);
+    let pushes = pushes(TRUTH, Physics::Model, 2, 60);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let fit = pool
