@@ -37,6 +37,18 @@ impl Log {
         self.time.last().copied().unwrap_or(0.0) - self.time.first().copied().unwrap_or(0.0)
     }
 
+    /// Ends the log after `rows` rows; a shorter one stays as it is.
+    pub fn truncate(&mut self, rows: usize) {
+        self.time.truncate(rows);
+        self.object.truncate(rows);
+        self.object_covariance.truncate(rows);
+        self.pusher.truncate(rows);
+        for sensor in &mut self.tactile {
+            sensor.truncate(rows);
+        }
+        self.force.truncate(rows);
+    }
+
     /// What was measured at row `row`.
     ///
     /// # Panics

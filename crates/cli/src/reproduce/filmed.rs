@@ -125,12 +125,7 @@ mod tests {
             &mut short.experiment.log,
             short.experiment.truth.as_mut().unwrap(),
         );
-        log.time.truncate(rows);
-        log.object.truncate(rows);
-        log.pusher.truncate(rows);
-        log.tactile
-            .iter_mut()
-            .for_each(|sensor| sensor.truncate(rows));
+        log.truncate(rows);
         truth.time.truncate(rows);
         truth.pose.truncate(rows);
         truth.pusher.truncate(rows);

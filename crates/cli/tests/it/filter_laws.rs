@@ -35,19 +35,6 @@ impl Experiment {
         run(&self.setup, &self.log, options, &mut |_| {}).unwrap()
     }
 
-    /// Ends the log after so many rows.
-    fn keep(&mut self, rows: usize) {
-        let log = &mut self.log;
-        log.time.truncate(rows);
-        log.object.truncate(rows);
-        log.object_covariance.truncate(rows);
-        log.pusher.truncate(rows);
-        log.tactile
-            .iter_mut()
-            .for_each(|sensor| sensor.truncate(rows));
-        log.force.truncate(rows);
-    }
-
     /// Root mean square position error over some rows (m).
     fn error(&self, run: &Run, rows: std::ops::Range<usize>) -> f64 {
         let count = rows.len() as f64;
@@ -64,7 +51,7 @@ impl Experiment {
 #[test]
 fn filter_hidden_for_60_frames_in_mid_push_recovers_within_10_frames() {
     let mut experiment = stop_experiment();
-    experiment.keep(160);
+    experiment.log.truncate(160);
     let hidden = Occlusion::Rows {
         from: 80,
         to: Some(140),

@@ -23,7 +23,7 @@ fn names(rows: &Value, of: &str) -> Vec<String> {
 
 #[test]
 fn reproduce_gives_the_same_bytes_on_one_and_two_threads() {
-    let run = |threads: &str| succeeds(small("1").args(["--json", "--threads", threads]));
+    let run = |threads: &str| succeeds(small("2").args(["--json", "--threads", threads]));
     let (one, two) = (run("1"), run("2"));
     assert!(one.stdout == two.stdout);
     let report: Value = serde_json::from_slice(&one.stdout).unwrap();

@@ -119,13 +119,14 @@ impl Propagation {
         resting: &RestingPose,
         block: &mut BlockMut<'_>,
     ) {
+        let belief = resting.belief();
         for (i, _) in block.particles() {
             let (chunk, lane) = (i / LANES, i % LANES);
             if !self.untouched[chunk].lane(lane) {
                 continue;
             }
             let [x, y, theta, _] = self.normals.each_ref().map(|column| column[i]);
-            let pose = resting.drawn([x, y, theta]);
+            let pose = belief.at([x, y, theta]);
             let now = self.particles[chunk].pose.fields_mut();
             for (now, drawn) in now.into_iter().zip(pose.fields()) {
                 now.0[lane] = *drawn;

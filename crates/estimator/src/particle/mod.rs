@@ -22,6 +22,7 @@ mod resting_pose;
 mod rig;
 mod steadiness;
 mod step_plan;
+mod student_pose;
 mod summary;
 mod sums;
 mod tactile_likelihood;

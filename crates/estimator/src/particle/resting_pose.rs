@@ -7,6 +7,7 @@ use crate::angle::wrapped;
 use crate::covariance::PoseCovariance;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::camera_noise::{CameraNoise, MEMORY, NoisePrior};
+use crate::particle::student_pose::StudentPose;
 use crate::setup::{Camera, Setup};
 
 /// The belief about the pose of an object at rest, axis by axis: the camera's poses are all that is
@@ -101,15 +102,14 @@ impl RestingPose {
         }
     }
 
-    /// A pose drawn from the belief, by three normal numbers.
-    pub fn drawn(&self, normals: [f64; 3]) -> Pose {
-        let (levels, freedom) = (self.noise_levels(), self.noise_freedom());
-        let mut pose = self.mean;
-        for (k, x) in pose.fields_mut().into_iter().enumerate() {
-            let variance = self.variance[k] * levels[GROUP[k]];
-            *x += variance.sqrt() * student(normals[k], freedom[GROUP[k]]);
+    /// What all poses seen say together.
+    pub fn belief(&self) -> StudentPose {
+        let (levels, freedoms) = self.noise_levels();
+        StudentPose {
+            mean: self.mean,
+            scale: std::array::from_fn(|k| (self.variance[k] * levels[GROUP[k]]).sqrt()),
+            freedom: GROUP.map(|group| freedoms[group]),
         }
-        pose
     }
 
     /// What a particle that has rested at `pose` all the time knows of the camera's noise: the number
@@ -137,22 +137,18 @@ impl RestingPose {
         }
     }
 
-    /// Variances of the camera's noise, in units of the told ones: of positions, of angles. One pose was
-    /// needed to know where the object is.
-    fn noise_levels(&self) -> [f64; 2] {
+    /// Variances of the camera's noise, in units of the told ones, of positions and of angles, and the degrees
+    /// of freedom by which they are known. One pose was needed to know where the object is.
+    fn noise_levels(&self) -> ([f64; 2], [f64; 2]) {
         let Some(prior) = self.noise else {
-            return [1.0; 2];
+            return ([1.0; 2], [f64::INFINITY; 2]);
         };
         let [poses, position, angle] = self.noise_seen_at(&self.mean);
-        prior.variances((poses - 1.0).max(0.0), position, angle)
-    }
-
-    /// Degrees of freedom by which these are known.
-    fn noise_freedom(&self) -> [f64; 2] {
-        match self.noise {
-            Some(prior) => prior.freedoms((self.poses - 1.0).max(0.0)),
-            None => [f64::INFINITY; 2],
-        }
+        let others = (poses - 1.0).max(0.0);
+        (
+            prior.variances(others, position, angle),
+            prior.freedoms(others),
+        )
     }
 
     /// Probability that a pose is not wrong, by its distance from the mean; `measured` are its variances.
@@ -179,12 +175,6 @@ impl RestingPose {
         let right = libm::exp(right);
         right / (right + WRONG)
     }
-}
-
-/// The number of Student's t distribution that stands where `z` stands in the normal one, to first order in
-/// 1 / `freedom` (Fisher and Cornish 1960).
-fn student(z: f64, freedom: f64) -> f64 {
-    z + (z * z * z + z) / (4.0 * freedom)
 }
 
 /// From `from` to `to`, θ on the circle.
@@ -277,10 +267,8 @@ mod tests {
         let particle = Pose::new(0.0203, 0.0099, -0.296);
         let (mut position, mut angle, mut count) = (0.0, 0.0, 0.0);
         let kept = 1.0 - 1.0 / MEMORY;
+        seen.iter().for_each(|pose| resting.see((*pose, None)));
         for pose in std::iter::once(&at).chain(&seen) {
-            if count > 0.0 {
-                resting.see((*pose, None));
-            }
             let (dx, dy) = (pose.x - particle.x, pose.y - particle.y);
             let turn = (pose.theta - particle.theta) / CAMERA.orientation_std;
             let std = CAMERA.position_std;
@@ -292,6 +280,37 @@ mod tests {
         for (found, expected) in found.into_iter().zip([count, position, angle]) {
             // poses far from the mean count a little less than 1
             assert!((found / expected - 1.0).abs() < 1e-3, "{found}, {expected}");
+        }
+    }
+
+    /// Poses of objects under cameras whose noise is drawn from the prior, the first one, too.
+    #[test]
+    fn under_unknown_noise_intervals_hold_what_they_say() {
+        let noise = NoisePrior::new(0.4);
+        let prior = noise.unwrap();
+        let truths = 4000;
+        let mut held = [0_u32; 3];
+        for truth in 0..truths {
+            let draw = Streams::new(7).at(truth);
+            let levels = [0, 1].map(|sensor| prior.drawn(draw, sensor).sqrt());
+            let seen = |i| {
+                let normals = Streams::new(truth).normals::<3>(i, 0, 0);
+                let noise = |k: usize, std| levels[GROUP[k]] * std * normals[k];
+                let (position, angle) = (CAMERA.position_std, CAMERA.orientation_std);
+                Pose::new(noise(0, position), noise(1, position), noise(2, angle))
+            };
+            let mut resting = told_noise(seen(0), 1.0);
+            resting.noise = noise;
+            (1..20).for_each(|i| resting.see((seen(i), None)));
+            let [low, high] = [-1.645, 1.645].map(|z| resting.belief().at([z; 3]));
+            for ((held, low), high) in held.iter_mut().zip(low.fields()).zip(high.fields()) {
+                *held += u32::from((*low..=*high).contains(&0.0));
+            }
+        }
+        // 90 %, within four standard errors
+        for held in held {
+            let share = f64::from(held) / truths as f64;
+            assert!((share - 0.9).abs() < 0.019, "{share}");
         }
     }
 
