@@ -8,6 +8,7 @@ use stickslip_filter::{Purpose, Streams};
 use crate::error::RunError;
 use crate::log::Log;
 use crate::mode::Mode;
+use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::camera_noise::NoisePrior;
@@ -47,29 +48,68 @@ pub struct SampledState {
 }
 
 impl PriorSample {
-    /// Draws one under the pusher of `log`, from around its first object pose on.
+    /// Draws one under the pusher of `log`, from around its first object pose on. That pose stays: the filter
+    /// knows nothing of where the object is before, so that what it believes first is a distribution around
+    /// what the camera shows first.
     ///
     /// # Errors
     /// Those of [`run`](crate::run).
     pub fn draw(setup: &Setup, log: &Log, mode: Mode, seed: u64) -> Result<Self, RunError> {
         let camera = setup.camera.ok_or(RunError::NoCamera)?;
+        let streams = Streams::new(seed).of(Purpose::Measure);
+        let mut log = log.clone();
+        log.object_covariance.clear();
+
+        // what happens: second tries would favour what the pusher agrees with, as `chance` does already, and
+        // where the object waits is known as well as the first pose is
         let options = RunOptions {
             mode,
             particles: 1,
             seed,
             tactile: TactileUse::Ignored,
             occlusion: Occlusion::Rows { from: 1, to: None },
+            moves: Moves {
+                second_tries: false,
+                waiting: false,
+                ..Moves::default()
+            },
             ..RunOptions::default()
         };
-        let witness = Witness::new(setup, mode);
-        let run = run_observed(setup, log, &options, &witness, &mut |_| ())?;
+        let camera = with_noise_drawn(camera, setup, mode, streams);
+        let setup = Setup {
+            camera: Some(camera),
+            ..setup.clone()
+        };
+        let witness = Witness::new(&setup, mode);
+        let run = run_observed(&setup, &log, &options, &witness, &mut |_| ())?;
         let rows = witness.state.into_inner();
         let rows = rows.expect("no thread panicked").rows;
+
+        // what is measured of it
+        let readings = Readings {
+            setup: &setup,
+            camera,
+            mode,
+            streams,
+        };
+        readings.write(&rows, &mut log);
         Ok(Self {
-            log: Readings { setup, mode, seed }.of(&rows, log, camera),
+            log,
             truth: rows.into_iter().map(|row| row.truth).collect(),
             chance: run.log_evidence.map_or(0.0, libm::exp),
         })
+    }
+}
+
+/// The camera, as noisy as nobody knows.
+fn with_noise_drawn(camera: Camera, setup: &Setup, mode: Mode, streams: Streams) -> Camera {
+    let prior = NoisePrior::new(setup.uncertainty.camera_noise);
+    let prior = prior.filter(|_| mode == Mode::Contact);
+    let level = |sensor| prior.map_or(1.0, |prior| prior.drawn(streams.at(0), sensor).sqrt());
+    Camera {
+        position_std: level(NOISE_LEVELS) * camera.position_std,
+        orientation_std: level(NOISE_LEVELS + 1) * camera.orientation_std,
+        ..camera
     }
 }
 
@@ -160,42 +200,39 @@ impl Observer for Witness<'_> {
 #[derive(Clone, Copy, Debug)]
 struct Readings<'a> {
     setup: &'a Setup,
+    /// With its true noise.
+    camera: Camera,
     mode: Mode,
-    seed: u64,
+    streams: Streams,
 }
 
 impl Readings<'_> {
-    /// `given` with what they read of a particle, where it says that they read something.
-    fn of(&self, rows: &[Witnessed], given: &Log, camera: Camera) -> Log {
-        let streams = Streams::new(self.seed).of(Purpose::Measure);
-        let mut log = given.clone();
-        log.object_covariance.clear();
+    /// Writes what they read of a particle into `log`, where that has readings; its first object pose stays.
+    fn write(&self, rows: &[Witnessed], log: &mut Log) {
+        let streams = self.streams;
+        let first = log.len() - rows.len();
 
-        let first = given.len() - rows.len();
-
-        // the camera, as noisy as nobody knows
-        let prior = NoisePrior::new(self.setup.uncertainty.camera_noise);
-        let prior = prior.filter(|_| self.mode == Mode::Contact);
-        let level = |sensor| prior.map_or(1.0, |prior| prior.drawn(streams.at(0), sensor).sqrt());
-        let (metres, radians) = (level(NOISE_LEVELS), level(NOISE_LEVELS + 1));
-        for (k, (row, pose)) in rows.iter().zip(&mut log.object[first..]).enumerate() {
+        // the camera
+        let camera = self.camera;
+        let later = rows
+            .iter()
+            .zip(&mut log.object[first..])
+            .enumerate()
+            .skip(1);
+        for (k, (row, pose)) in later {
             let [x, y, theta] = streams.normals(k as u64, 0, 0);
             *pose = pose.map(|_| Pose {
-                x: row.shown.x + metres * camera.position_std * x,
-                y: row.shown.y + metres * camera.position_std * y,
-                theta: row.shown.theta + radians * camera.orientation_std * theta,
+                x: row.shown.x + camera.position_std * x,
+                y: row.shown.y + camera.position_std * y,
+                theta: row.shown.theta + camera.orientation_std * theta,
             });
         }
 
         // the sensors
         for (j, sensor) in log.tactile.iter_mut().enumerate() {
-            let sensor = sensor[first..]
-                .iter_mut()
-                .zip(rows)
-                .zip(&given.time[first..]);
-            self.read_touch(j, sensor, streams);
+            let sensor = sensor[first..].iter_mut().zip(rows);
+            self.read_touch(j, sensor.zip(&log.time[first..]));
         }
-        log
     }
 
     /// What sensor `j` reads, row by row.
@@ -203,8 +240,8 @@ impl Readings<'_> {
         &self,
         j: usize,
         rows: impl Iterator<Item = ((&'r mut Option<bool>, &'r Witnessed), &'r f64)>,
-        streams: Streams,
     ) {
+        let streams = self.streams;
         let channel = TouchChannel::new(&self.setup.tactile);
         let particle = FIRST_SENSOR + j as u32;
         let mut sensor = DrawnSensor {

@@ -18,14 +18,46 @@ pub struct Checkpoint {
     lineage: Lineage,
 }
 
+/// Independent sets of particles that made the same steps, drawn together into one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pool {
+    /// How many sets they are.
+    pub sets: u32,
+    /// ln of the mean of their evidences.
+    pub log_evidence: f64,
+}
+
+impl Pool {
+    /// One set with this evidence.
+    pub fn of_one(log_evidence: f64) -> Self {
+        Self {
+            sets: 1,
+            log_evidence,
+        }
+    }
+
+    /// With one more set, and the share of all evidence that is its.
+    fn with(self, log_evidence: f64) -> (Self, f64) {
+        let sets = f64::from(self.sets);
+        let best = log_evidence.max(self.log_evidence);
+        let new = libm::exp(log_evidence - best);
+        let sum = sets * libm::exp(self.log_evidence - best) + new;
+        let pool = Self {
+            sets: self.sets + 1,
+            log_evidence: best + libm::log(sum / (sets + 1.0)),
+        };
+        (pool, new / sum)
+    }
+}
+
 /// What a second try was worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondTry {
     /// ln of the evidence of the steps since the checkpoint under the new particles; −∞ where they
     /// explained some step not at all.
     pub log_evidence: f64,
-    /// ln of the mean of both, that of the particles now.
-    pub pooled: f64,
+    /// All sets so far, those whose particles are the present ones.
+    pub pool: Pool,
     /// Share of the particles that are new ones now.
     pub share: f64,
 }
@@ -58,9 +90,9 @@ impl<M: Model> ParticleFilter<M> {
 
     /// Makes all steps since `checkpoint` again, with the random numbers of attempt number `attempt`
     /// (from 1 on), and draws as many particles from the new set as its evidence is worth beside
-    /// that of the present one, `log_evidence`, the sum over the same steps: two independent
-    /// particle filters of the same observations, each weighed by its estimate of their likelihood,
-    /// are one of twice as many particles (Del Moral 2004, section 7.4). The weights become equal.
+    /// that of the sets in `pool`, which the present particles are drawn from: independent particle
+    /// filters of the same observations, each weighed by its estimate of their likelihood, are one of
+    /// as many particles as all have (Del Moral 2004, section 7.4). The weights become equal.
     ///
     /// # Panics
     /// If the checkpoint is not as many steps old as there are `steps`, or of another number of
@@ -69,7 +101,7 @@ impl<M: Model> ParticleFilter<M> {
         &mut self,
         checkpoint: &Checkpoint,
         steps: impl ExactSizeIterator<Item = (&'a M::Input, Option<&'a M::Observation>)>,
-        log_evidence: f64,
+        pool: Pool,
         attempt: u64,
     ) -> SecondTry
     where
@@ -104,7 +136,7 @@ impl<M: Model> ParticleFilter<M> {
         self.streams = Streams::new(self.settings.seed);
 
         // as many of each as their evidence is worth
-        let share = 1.0 / (1.0 + libm::exp(log_evidence - again));
+        let (pool, share) = pool.with(again);
         self.keep_failed_out();
         let before = rivals.weights.weights().iter();
         let weights: Vec<f64> = (self.weights.weights().iter().map(|w| w * share))
@@ -120,11 +152,9 @@ impl<M: Model> ParticleFilter<M> {
         if let Some(input) = last {
             self.recompute_sums(input);
         }
-        let best = again.max(log_evidence);
-        let sum = libm::exp(again - best) + libm::exp(log_evidence - best);
         SecondTry {
             log_evidence: again,
-            pooled: best + libm::log(0.5 * sum),
+            pool,
             share,
         }
     }

@@ -23,8 +23,8 @@ const ROOT: f64 = 1e-11;
 /// Most steps of the search for a root.
 const ROOT_STEPS: u32 = 40;
 
-/// End of lines and curves (m/s): no impulse or speed is so large.
-const FARTHEST: f64 = 1e6;
+/// Where lines, curves and planes end (m/s): no impulse or speed is so large.
+pub const FARTHEST: f64 = 1e6;
 
 /// How thoroughly a line or curve is searched.
 #[derive(Clone, Copy, Debug)]

@@ -2,11 +2,9 @@
 
 use crate::solver::interval::Interval;
 use crate::solver::mode_conditions::Inequality;
+use crate::solver::piece_search::FARTHEST;
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
-
-/// Half the edge of the square from which a region is cut (m/s): no solution is faster.
-const FARTHEST: f64 = 1e6;
 
 /// What is left of a unit vector across another below which the two are parallel.
 const PARALLEL: f64 = 1e-9;
@@ -34,6 +32,7 @@ impl PlaneRegion {
         Some(Self {
             origin: add_scaled(&along.map(|x| a * x), b, &across),
             axes: [third, fourth],
+            // a square that no solution lies outside of
             corners: square.map(|p: [f64; 2]| p.map(|x| FARTHEST * x)).to_vec(),
         })
     }

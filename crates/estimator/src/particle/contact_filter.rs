@@ -154,6 +154,7 @@ impl<'o> ContactFilter<'o> {
             touched: false,
             moves: options.moves,
         };
+        this.plan.resting = this.where_it_rests();
         this.filter.recompute_sums(&this.plan);
         this.summarise();
         this.latest.visual = true;
@@ -233,8 +234,7 @@ impl<'o> ContactFilter<'o> {
     /// were drawn anew around it, it is the first one.
     fn learn_where_it_rests(&mut self) {
         self.plan.resting = None;
-        let contact = self.filter.model().columns().mode() == Mode::Contact;
-        let Some(pose) = (self.observation.pose).filter(|_| contact && self.moves.waiting) else {
+        let Some(pose) = self.observation.pose else {
             return;
         };
         let seen = (pose, self.observation.covariance);
@@ -242,7 +242,13 @@ impl<'o> ContactFilter<'o> {
             true => self.resting = self.resting.started_at(seen),
             false => self.resting.see(seen),
         }
-        self.plan.resting = Some(self.resting);
+        self.plan.resting = self.where_it_rests();
+    }
+
+    /// What particles that nothing has moved yet are drawn anew from, in contact mode.
+    fn where_it_rests(&self) -> Option<RestingPose> {
+        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        (contact && self.moves.waiting).then_some(self.resting)
     }
 
     /// Where each particle finds its past poses.

@@ -1,6 +1,6 @@
 //! Steps in the dark that can be made again: [`Replay`] (contact mode).
 
-use stickslip_filter::{Checkpoint, ParticleFilter, StepReport, WeightUpdate};
+use stickslip_filter::{Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
 use crate::mode::Mode;
 use crate::particle::model::ContactModel;
@@ -13,7 +13,7 @@ use crate::particle::step_plan::StepPlan;
 /// went the way of the object, pusher and touch sensors go on contradicting all of them. Then the
 /// steps since the blackout are made again with other random numbers, and the two sets share the
 /// particles by their evidence.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
     /// Whether the object is hidden, and `checkpoint` is where that began.
@@ -21,8 +21,8 @@ pub(crate) struct Replay {
     /// The steps since, of which the first `made` count.
     steps: Vec<(StepPlan, Observation)>,
     made: usize,
-    /// ln of the evidence of these steps.
-    log_evidence: f64,
+    /// The sets of particles that made them, and the evidence of these steps.
+    pool: Pool,
     /// Evidence below which they are made again.
     limit: f64,
     /// How often that was done since the blackout, and ever.
@@ -38,6 +38,21 @@ const ATTEMPTS: u32 = 16;
 
 /// Fall of ln of the evidence at which they are: 1 in 3000.
 const WORSE: f64 = 8.0;
+
+impl Default for Replay {
+    fn default() -> Self {
+        Self {
+            checkpoint: None,
+            dark: false,
+            steps: Vec::new(),
+            made: 0,
+            pool: Pool::of_one(0.0),
+            limit: -WORSE,
+            attempts: 0,
+            tries: 0,
+        }
+    }
+}
 
 impl Replay {
     /// Before a step: remembers the particles where it is the first one in the dark, or where the
@@ -62,7 +77,7 @@ impl Replay {
         }
         self.dark = true;
         self.made = 0;
-        self.log_evidence = 0.0;
+        self.pool = Pool::of_one(0.0);
         self.limit = -WORSE;
     }
 
@@ -79,9 +94,9 @@ impl Replay {
         }
         self.remember(plan, observation);
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
-            self.log_evidence += log_evidence;
+            self.pool.log_evidence += log_evidence;
         }
-        if self.log_evidence >= self.limit || self.attempts == ATTEMPTS {
+        if self.pool.log_evidence >= self.limit || self.attempts == ATTEMPTS {
             return 0.0;
         }
         let Some(checkpoint) = &self.checkpoint else {
@@ -91,11 +106,11 @@ impl Replay {
         self.tries += 1;
         let steps = self.steps[..self.made].iter();
         let steps = steps.map(|(plan, observation)| (plan, Some(observation)));
-        let before = self.log_evidence;
+        let before = self.pool;
         let tried = filter.try_again(checkpoint, steps, before, u64::from(self.attempts));
-        self.log_evidence = tried.pooled;
-        self.limit = self.log_evidence - WORSE;
-        self.log_evidence - before
+        self.pool = tried.pool;
+        self.limit = self.pool.log_evidence - WORSE;
+        self.pool.log_evidence - before.log_evidence
     }
 
     /// Forgets the blackout: something else was learnt of it.

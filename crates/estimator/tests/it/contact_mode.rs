@@ -73,6 +73,32 @@ fn friction_that_nothing_was_felt_of_keeps_its_prior() {
 }
 
 #[test]
+fn after_one_pose_an_object_is_believed_where_a_camera_of_unknown_noise_shows_it() {
+    let setup = setup(&[]);
+    let options = RunOptions {
+        particles: 4000,
+        occlusion: Occlusion::Rows { from: 1, to: None },
+        ..RunOptions::default()
+    };
+    let log = log(3, |_| Some(Pose::default()), |_| None);
+    let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+    let spread = run.estimate.rows[2].spread.expect("a spread").pose;
+    // Student's t with ν degrees of freedom has variance ν/(ν − 2); ν by (41)
+    let level = setup.uncertainty.camera_noise;
+    let freedom = 1.0 + 0.5 / (level * level);
+    let wider = (freedom / (freedom - 2.0)).sqrt();
+    let camera = setup.camera.expect("a camera");
+    for (spread, told) in [
+        (spread.x, camera.position_std),
+        (spread.y, camera.position_std),
+        (spread.theta, camera.orientation_std),
+    ] {
+        let ratio = spread / (told * wider);
+        assert!((ratio - 1.0).abs() < 0.08, "{ratio}");
+    }
+}
+
+#[test]
 fn a_pose_that_is_wrong_now_and_then_moves_nothing() {
     let setup = setup(&[]);
     let mut log = pushed(0.0);

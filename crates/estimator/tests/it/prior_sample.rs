@@ -92,6 +92,41 @@ fn beliefs_of_where_an_object_waits_hold_what_they_say() {
 }
 
 #[test]
+fn a_truth_is_drawn_around_the_first_pose_which_stays() {
+    let setup = scene();
+    let camera = setup.camera.expect("a camera");
+    let level = setup.uncertainty.camera_noise;
+    let freedom = 1.0 + 0.5 / (level * level);
+    let samples = samples(&setup);
+    let first = Pose::default();
+    assert!(
+        samples
+            .iter()
+            .all(|sample| sample.log.object[0] == Some(first))
+    );
+    // as noisy as all poses of its camera: squares of distances from it, in units of those of the next
+    // poses, which rest at the same place, are F-distributed with 2 and 38 degrees of freedom
+    let ratios = samples.iter().map(|sample| {
+        let at = sample.truth[0].pose;
+        let square = |pose: &Pose| (pose.x - at.x).powi(2) + (pose.y - at.y).powi(2);
+        let later = sample.log.object[1..20].iter().flatten();
+        square(&first) / 2.0 / (later.map(square).sum::<f64>() / 38.0)
+    });
+    let ratios: Vec<f64> = ratios.collect();
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    // mean 38/36, standard deviation 1.13
+    assert!((mean - 38.0 / 36.0).abs() < 4.0 * 0.113, "{mean}");
+    // and that noise is unknown: variances of the position in told ones have mean ν/(ν − 2)
+    let squares = samples.iter().map(|sample| {
+        let at = sample.truth[0].pose;
+        (at.x * at.x + at.y * at.y) / 2.0 / (camera.position_std * camera.position_std)
+    });
+    let mean = squares.sum::<f64>() / SAMPLES as f64;
+    let expected = freedom / (freedom - 2.0);
+    assert!((mean - expected).abs() < 1.2, "{mean}, {expected}");
+}
+
+#[test]
 fn friction_drawn_has_its_prior_s_distribution_to_the_end() {
     let setup = scene();
     let drawn = samples(&setup).into_iter().map(|sample| {

@@ -1,6 +1,8 @@
 //! Steps made again with other random numbers, and what the two sets are worth together.
 
-use stickslip_filter::{Block, BlockMut, Draw, Model, ParticleFilter, Settings, WeightedSums};
+use stickslip_filter::{
+    Block, BlockMut, Draw, Model, ParticleFilter, Pool, Settings, WeightedSums,
+};
 
 /// A fork in the road: the first step leads a particle to 1 with probability [`RIGHT`], else to 0, for
 /// good; an observation o says that ln L is o at 0, and 0 at 1.
@@ -54,8 +56,8 @@ impl Model for Fork {
 
 const ROWS: [(bool, f64); 3] = [(true, -1.0), (false, -2.0), (false, -1.0)];
 
-/// ln of the evidence of [`ROWS`] by first and second try, and the mean place after both.
-fn twice(seed: u64, particles: usize) -> (f64, f64, f64) {
+/// The evidence of [`ROWS`] by three sets, and the mean place after all.
+fn thrice(seed: u64, particles: usize) -> ([f64; 3], f64) {
     let settings = Settings {
         particles,
         seed,
@@ -74,28 +76,43 @@ fn twice(seed: u64, particles: usize) -> (f64, f64, f64) {
         };
         log_evidence += of_row;
     }
-    let rows = ROWS
-        .iter()
-        .map(|(fork, observation)| (fork, Some(observation)));
-    let tried = filter.try_again(&checkpoint, rows, log_evidence, 1);
+    let mut pool = Pool::of_one(log_evidence);
+    let mut evidences = [libm::exp(log_evidence); 3];
+    for attempt in 1..3 {
+        let rows = ROWS
+            .iter()
+            .map(|(fork, observation)| (fork, Some(observation)));
+        let tried = filter.try_again(&checkpoint, rows, pool, attempt);
+        evidences[attempt as usize] = libm::exp(tried.log_evidence);
+        pool = tried.pool;
+    }
     assert_eq!(filter.steps(), ROWS.len() as u64);
-    (log_evidence, tried.log_evidence, filter.sums().0)
+    let mean = evidences.iter().sum::<f64>() / 3.0;
+    let pooled = libm::exp(pool.log_evidence);
+    assert!(
+        (pooled / mean - 1.0).abs() < 1e-12,
+        "{evidences:?}, {pooled}"
+    );
+    (evidences, filter.sums().0)
 }
 
 #[test]
-fn the_mean_of_both_evidences_is_the_likelihood_and_their_share_bayes_rule() {
+fn the_mean_of_all_evidences_is_the_likelihood_and_their_shares_bayes_rule() {
     let exact = RIGHT + (1.0 - RIGHT) * libm::exp(-4.0);
-    let runs: Vec<(f64, f64, f64)> = (0..400).map(|seed| twice(seed, 64)).collect();
+    let runs: Vec<([f64; 3], f64)> = (0..400).map(|seed| thrice(seed, 64)).collect();
     let mean =
-        |of: &dyn Fn(&(f64, f64, f64)) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
-    // the evidence of a particle filter has no bias, nor have both; tries are independent
-    let evidence = mean(&|run| 0.5 * (libm::exp(run.0) + libm::exp(run.1)));
+        |of: &dyn Fn(&([f64; 3], f64)) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
+    // the evidence of a particle filter has no bias, nor have all; tries are independent
+    let all = |run: &([f64; 3], f64)| run.0.iter().sum::<f64>() / 3.0;
+    let evidence = mean(&all);
     assert!((evidence / exact - 1.0).abs() < 0.08, "{evidence}, {exact}");
-    let (first, second) = (mean(&|run| libm::exp(run.0)), mean(&|run| libm::exp(run.1)));
-    let product = mean(&|run| (libm::exp(run.0) - first) * (libm::exp(run.1) - second));
-    assert!(product.abs() < 0.1 * exact * exact, "{product}");
+    for (j, k) in [(0, 1), (1, 2), (0, 2)] {
+        let means = [j, k].map(|set| mean(&|run| run.0[set]));
+        let product = mean(&|run| (run.0[j] - means[0]) * (run.0[k] - means[1]));
+        assert!(product.abs() < 0.1 * exact * exact, "{j}, {k}: {product}");
+    }
     // weighed by the evidence, as tries are, the place is the posterior's
-    let right = mean(&|run| 0.5 * (libm::exp(run.0) + libm::exp(run.1)) * run.2) / evidence;
+    let right = mean(&|run| all(run) * run.1) / evidence;
     let posterior = RIGHT / exact;
     assert!((right - posterior).abs() < 0.05, "{right}, {posterior}");
 }
@@ -111,13 +128,13 @@ fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
     let mut filter = ParticleFilter::new(Fork, settings).expect("settings");
     let checkpoint = filter.checkpoint();
     let _ = filter.step(&true, Some(&-40.0));
-    let mut log_evidence = if filter.sums().0 > 0.0 { -4.0 } else { -40.0 };
+    let mut pool = Pool::of_one(if filter.sums().0 > 0.0 { -4.0 } else { -40.0 });
     let mut attempt = 0;
     while filter.sums().0 < 0.5 && attempt < 20 {
         attempt += 1;
         let row = [(&true, Some(&-40.0))];
-        let tried = filter.try_again(&checkpoint, row.into_iter(), log_evidence, attempt);
-        log_evidence = tried.pooled;
+        let tried = filter.try_again(&checkpoint, row.into_iter(), pool, attempt);
+        pool = tried.pool;
     }
     assert!(
         filter.sums().0 > 0.999,
