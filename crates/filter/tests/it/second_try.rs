@@ -56,8 +56,20 @@ impl Model for Fork {
 
 const ROWS: [(bool, f64); 3] = [(true, -1.0), (false, -2.0), (false, -1.0)];
 
-/// The evidence of [`ROWS`] by three sets, and the mean place after all.
-fn thrice(seed: u64, particles: usize) -> ([f64; 3], f64) {
+/// [`ROWS`] by three sets of particles.
+struct Thrice {
+    evidences: [f64; 3],
+    /// The mean place after all.
+    place: f64,
+}
+
+impl Thrice {
+    fn mean_evidence(&self) -> f64 {
+        self.evidences.iter().sum::<f64>() / 3.0
+    }
+}
+
+fn thrice(seed: u64, particles: usize) -> Thrice {
     let settings = Settings {
         particles,
         seed,
@@ -87,32 +99,33 @@ fn thrice(seed: u64, particles: usize) -> ([f64; 3], f64) {
         pool = tried.pool;
     }
     assert_eq!(filter.steps(), ROWS.len() as u64);
-    let mean = evidences.iter().sum::<f64>() / 3.0;
-    let pooled = libm::exp(pool.log_evidence);
+    let thrice = Thrice {
+        evidences,
+        place: filter.sums().0,
+    };
+    let (mean, pooled) = (thrice.mean_evidence(), libm::exp(pool.log_evidence));
     assert!(
         (pooled / mean - 1.0).abs() < 1e-12,
         "{evidences:?}, {pooled}"
     );
-    (evidences, filter.sums().0)
+    thrice
 }
 
 #[test]
 fn the_mean_of_all_evidences_is_the_likelihood_and_their_shares_bayes_rule() {
     let exact = RIGHT + (1.0 - RIGHT) * libm::exp(-4.0);
-    let runs: Vec<([f64; 3], f64)> = (0..400).map(|seed| thrice(seed, 64)).collect();
-    let mean =
-        |of: &dyn Fn(&([f64; 3], f64)) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
+    let runs: Vec<Thrice> = (0..400).map(|seed| thrice(seed, 64)).collect();
+    let mean = |of: &dyn Fn(&Thrice) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
     // the evidence of a particle filter has no bias, nor have all; tries are independent
-    let all = |run: &([f64; 3], f64)| run.0.iter().sum::<f64>() / 3.0;
-    let evidence = mean(&all);
+    let evidence = mean(&Thrice::mean_evidence);
     assert!((evidence / exact - 1.0).abs() < 0.08, "{evidence}, {exact}");
     for (j, k) in [(0, 1), (1, 2), (0, 2)] {
-        let means = [j, k].map(|set| mean(&|run| run.0[set]));
-        let product = mean(&|run| (run.0[j] - means[0]) * (run.0[k] - means[1]));
+        let [first, second] = [j, k].map(|set| mean(&|run| run.evidences[set]));
+        let product = mean(&|run| (run.evidences[j] - first) * (run.evidences[k] - second));
         assert!(product.abs() < 0.1 * exact * exact, "{j}, {k}: {product}");
     }
     // weighed by the evidence, as tries are, the place is the posterior's
-    let right = mean(&|run| all(run) * run.1) / evidence;
+    let right = mean(&|run| run.mean_evidence() * run.place) / evidence;
     let posterior = RIGHT / exact;
     assert!((right - posterior).abs() < 0.05, "{right}, {posterior}");
 }
