@@ -154,7 +154,9 @@ impl<'o> ContactFilter<'o> {
             touched: false,
             moves: options.moves,
         };
-        this.plan.resting = this.where_it_rests();
+        // a first pose that says how noisy it is is drawn as it says
+        let told = start.covariance.is_some();
+        this.plan.resting = this.where_it_rests().filter(|_| !told);
         this.filter.recompute_sums(&this.plan);
         this.summarise();
         this.latest.visual = true;
