@@ -9,7 +9,7 @@ use stickslip_fit::{Fit, FitOptions, Parameter, Push, fit};
 
 /// Learns `names` from pushes in `truth`, told the scene of the tests.
 fn learnt(truth: &Setup, names: &[&str], change: impl Fn(&mut Push)) -> (Vec<Push>, Fit) {
-    let mut pushes = pushes_in(truth, Physics::Model, 5, 5);
+    let mut pushes = pushes_in(truth, Physics::Model, 3, 5);
     for push in &mut pushes {
         push.setup = setup();
         change(push);

@@ -32,7 +32,7 @@ fn deviation(fit: &Fit, name: &str, truth: f64) -> f64 {
 
 #[test]
 fn friction_of_the_model_is_found_within_its_spread() {
-    let pushes = pushes(TRUTH, Physics::Model, 6, 1);
+    let pushes = pushes(TRUTH, Physics::Model, 4, 1);
     let fit = fit(&pushes, &options(&["mu_p", "tripod_radius"])).unwrap();
     for (name, truth) in [("mu_p", TRUTH.mu_p), ("tripod_radius", TRUTH.d_tri)] {
         assert!(deviation(&fit, name, truth).abs() < 3.0, "{name} {fit:?}");
@@ -73,7 +73,7 @@ fn friction_of_another_physics_is_found_nearly() {
 /// near a fixel.
 #[test]
 fn what_pushes_do_not_show_keeps_its_prior() {
-    let pushes = pushes(TRUTH, Physics::Model, 4, 20);
+    let pushes = pushes(TRUTH, Physics::Model, 2, 20);
     let fit = fit(&pushes, &options(&["mu_f", "mu_p", "mu_s"])).unwrap();
     let [mu_s, mu_p, mu_f] = &fit.parameters[..] else {
         panic!("three parameters");
