@@ -28,8 +28,8 @@ use crate::setup::{Camera, Setup};
 /// wrong (prior predictive check). No camera pose is wrong, and `likelihood_scale` counts as 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorSample {
-    /// What was measured: times and pusher of the log given; object poses and readings where that has
-    /// some.
+    /// What was measured: times, pusher and first object pose of the log given; further poses and readings
+    /// where that has some.
     pub log: Log,
     /// What is true, by row from the first one with an object pose on.
     pub truth: Vec<SampledState>,

@@ -50,6 +50,13 @@ impl Pool {
     }
 }
 
+impl Default for Pool {
+    /// One set that has made no step yet.
+    fn default() -> Self {
+        Self::of_one(0.0)
+    }
+}
+
 /// What a second try was worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondTry {

@@ -11,9 +11,9 @@ use crate::particle::step_plan::StepPlan;
 ///
 /// In the dark particles go different ways at a bifurcation, and nothing brings them back: where none
 /// went the way of the object, pusher and touch sensors go on contradicting all of them. Then the
-/// steps since the blackout are made again with other random numbers, and the two sets share the
+/// steps since the blackout are made again with other random numbers, and all sets share the
 /// particles by their evidence.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
     /// Whether the object is hidden, and `checkpoint` is where that began.
@@ -39,21 +39,6 @@ const ATTEMPTS: u32 = 16;
 /// Fall of ln of the evidence at which they are: 1 in 3000.
 const WORSE: f64 = 8.0;
 
-impl Default for Replay {
-    fn default() -> Self {
-        Self {
-            checkpoint: None,
-            dark: false,
-            steps: Vec::new(),
-            made: 0,
-            pool: Pool::of_one(0.0),
-            limit: -WORSE,
-            attempts: 0,
-            tries: 0,
-        }
-    }
-}
-
 impl Replay {
     /// Before a step: remembers the particles where it is the first one in the dark, or where the
     /// memory is full.
@@ -77,7 +62,7 @@ impl Replay {
         }
         self.dark = true;
         self.made = 0;
-        self.pool = Pool::of_one(0.0);
+        self.pool = Pool::default();
         self.limit = -WORSE;
     }
 

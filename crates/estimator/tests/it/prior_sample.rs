@@ -97,33 +97,41 @@ fn a_truth_is_drawn_around_the_first_pose_which_stays() {
     let camera = setup.camera.expect("a camera");
     let level = setup.uncertainty.camera_noise;
     let freedom = 1.0 + 0.5 / (level * level);
-    let samples = samples(&setup);
+    // many short ones: nothing is near yet
+    let mut log = push();
+    log.truncate(20);
+    let draw = |seed| PriorSample::draw(&setup, &log, Mode::Contact, seed).expect("a sample");
+    let samples: Vec<PriorSample> = (0..400).map(draw).collect();
     let first = Pose::default();
     assert!(
         samples
             .iter()
             .all(|sample| sample.log.object[0] == Some(first))
     );
-    // as noisy as all poses of its camera: squares of distances from it, in units of those of the next
-    // poses, which rest at the same place, are F-distributed with 2 and 38 degrees of freedom
-    let ratios = samples.iter().map(|sample| {
+    // squares of distances from the truth: of the first pose, and the sum of the next ones, which rest there, too
+    let squares = samples.iter().map(|sample| {
         let at = sample.truth[0].pose;
         let square = |pose: &Pose| (pose.x - at.x).powi(2) + (pose.y - at.y).powi(2);
         let later = sample.log.object[1..20].iter().flatten();
-        square(&first) / 2.0 / (later.map(square).sum::<f64>() / 38.0)
+        [square(&first), later.map(square).sum()]
     });
-    let ratios: Vec<f64> = ratios.collect();
-    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-    // mean 38/36, standard deviation 1.13
-    assert!((mean - 38.0 / 36.0).abs() < 4.0 * 0.113, "{mean}");
-    // and that noise is unknown: variances of the position in told ones have mean ν/(ν − 2)
-    let squares = samples.iter().map(|sample| {
-        let at = sample.truth[0].pose;
-        (at.x * at.x + at.y * at.y) / 2.0 / (camera.position_std * camera.position_std)
-    });
-    let mean = squares.sum::<f64>() / SAMPLES as f64;
+    let squares: Vec<[f64; 2]> = squares.collect();
+    let mean = |of: &dyn Fn(&[f64; 2]) -> f64| squares.iter().map(of).sum::<f64>() / 400.0;
+    // as noisy as all poses of its camera: the ratio is F-distributed with 2 and 38 degrees of freedom, of
+    // mean 38/36 and standard deviation 1.13
+    let ratio = mean(&|[first, later]| first / 2.0 / (later / 38.0));
+    assert!((ratio - 38.0 / 36.0).abs() < 4.0 * 0.057, "{ratio}");
+    // a camera that is noisier is so in both: their logarithms, of variances 2.0 and 0.4, have the covariance
+    // 0.36, whose standard error is 0.05
+    let [a, b] = [0, 1].map(|k| mean(&|squares| libm::log(squares[k])));
+    let covariance = mean(&|[first, later]| (libm::log(*first) - a) * (libm::log(*later) - b));
+    assert!((covariance - 0.36).abs() < 0.2, "{covariance}");
+    // and that noise is unknown: variances of the position in told ones have mean ν/(ν − 2), with a standard
+    // error of 0.12
+    let told = 2.0 * camera.position_std * camera.position_std;
+    let mean = mean(&|[first, _]| first / told);
     let expected = freedom / (freedom - 2.0);
-    assert!((mean - expected).abs() < 1.2, "{mean}, {expected}");
+    assert!((mean - expected).abs() < 0.4, "{mean}, {expected}");
 }
 
 #[test]
