@@ -37,7 +37,7 @@ pub struct Uncertainty {
     pub camera_noise: f64,
     /// Mean time by which the camera lags more than the scene says (s).
     pub latency: f64,
-    /// Gap at which object and body may touch already, as far as shapes and poses are known (m).
+    /// Gap at which object and body may touch already, beside the errors of their poses and shapes (m).
     pub touch_gap: f64,
 }
 
@@ -62,7 +62,7 @@ impl Default for Uncertainty {
             roughness: 0.5,
             camera_noise: 0.3,
             latency: 0.03,
-            touch_gap: 5e-4,
+            touch_gap: 2.5e-4,
         }
     }
 }
