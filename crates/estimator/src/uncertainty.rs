@@ -62,7 +62,7 @@ impl Default for Uncertainty {
             roughness: 0.5,
             camera_noise: 0.3,
             latency: 0.03,
-            touch_gap: 2.5e-4,
+            touch_gap: 5e-4,
         }
     }
 }

@@ -99,6 +99,7 @@ fn good_experiments_raise_no_doubt() {
         assert_eq!(warnings(&result), Vec::<String>::new());
         let run = stickslip()
             .args(["filter", &case.log(), "--scene", &case.scene()])
+            .args(["--particles", "50"])
             .output();
         assert_eq!(String::from_utf8(run.unwrap().stderr).unwrap(), "");
     }

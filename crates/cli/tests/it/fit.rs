@@ -25,7 +25,7 @@ object = [0, 0, 0]
 pusher = [{x}, {y}, 0]
 direction = {direction}
 speed = 0.02
-duration = 1.5
+duration = 1.0
 "
     )
 }

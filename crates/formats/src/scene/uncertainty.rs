@@ -105,7 +105,7 @@ const LATENCY: Quantity = Quantity::new(
 );
 const TOUCH_GAP: Quantity = Quantity::new(
     "touch_gap",
-    "the gap at which bodies may touch already, as far as shapes and poses are known,",
+    "the gap at which bodies may touch already, beside the errors of their poses and shapes,",
     Unit::Metre,
     Rule::Positive,
 );
