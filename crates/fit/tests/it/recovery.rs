@@ -1,12 +1,14 @@
 //! Known friction is found again, from simulated pushes.
 
+use std::sync::OnceLock;
+
 use crate::common;
 use crate::common::{pushes, rig_tripod_radius};
 use stickslip_dynamics::Friction;
 use stickslip_evaluation::Physics;
 use stickslip_fit::{
-    CrossValidation, Fit, FitOptions, FittedParameter, HeldOut, Parameter, cross_validate, fit,
-    predict,
+    CrossValidation, Fit, FitOptions, FittedParameter, HeldOut, Parameter, Push, cross_validate,
+    fit, predict,
 };
 
 const TRUTH: Friction = Friction {
@@ -86,10 +88,19 @@ fn what_pushes_do_not_show_keeps_its_prior() {
     assert!((mu_f.std - 0.45 * 0.25).abs() < 1e-12 && mu_f.std_ratio > 0.7);
 }
 
+/// Four pushes, what is learnt from them, and how two halves of them predict each other.
+fn halves() -> (Vec<Push>, FitOptions, CrossValidation) {
+    static VALIDATION: OnceLock<CrossValidation> = OnceLock::new();
+    let pushes = pushes(TRUTH, Physics::Model, 4, 40);
+    let options = options(&["mu_p", "tripod_radius"]);
+    let validation = VALIDATION.get_or_init(|| cross_validate(&pushes, 2, &options).unwrap());
+    let validation = validation.clone();
+    (pushes, options, validation)
+}
+
 #[test]
 fn held_out_pushes_are_predicted_better() {
-    let pushes = pushes(TRUTH, Physics::Model, 4, 40);
-    let validation = cross_validate(&pushes, 2, &options(&["mu_p", "tripod_radius"])).unwrap();
+    let (_, _, validation) = halves();
     for [unfitted, fitted] in [validation.median_final_mm, validation.median_wmse_mm] {
         assert!(fitted < 0.6 * unfitted, "{validation:?}");
     }
@@ -107,8 +118,7 @@ fn held_out_pushes_are_predicted_better() {
 /// The fit of two pushes as one fold, and as a fit that predicts the other two.
 #[test]
 fn other_pushes_are_predicted_as_a_fold_is() {
-    let pushes = pushes(TRUTH, Physics::Model, 4, 40);
-    let options = options(&["mu_p"]);
+    let (pushes, options, folds) = halves();
     let (train, test): (Vec<_>, Vec<_>) = pushes
         .iter()
         .cloned()
@@ -118,7 +128,6 @@ fn other_pushes_are_predicted_as_a_fold_is() {
     let (train, test) = (of(train), of(test));
     let taught = fit(&train, &options).unwrap();
     let predicted = predict(&test, &taught, None, &options).unwrap();
-    let folds = cross_validate(&pushes, 2, &options).unwrap();
     let first_fold = folds.pushes.iter().filter(|push| push.fold == 0);
     for (push, of_fold) in predicted.pushes.iter().zip(first_fold) {
         assert_eq!(push.push, of_fold.push);
