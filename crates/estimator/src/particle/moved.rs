@@ -89,7 +89,6 @@ mod tests {
             for (i, particle) in block.particles() {
                 let [a, b] = Streams::new(1).normals::<2>(0, particle, 0);
                 block.column_mut(columns.latency())[i] = 0.03 * 0.5 * (a * a + b * b);
-                block.column_mut(Columns::FRICTION)[i] = 0.3;
             }
         });
         particles
