@@ -107,6 +107,26 @@ fn filter_whose_object_is_moved_by_hand_collapses_once_and_follows() {
     );
 }
 
+#[test]
+fn filter_same_seed_gives_the_same_bits_on_1_2_and_3_threads() {
+    let experiment = stop_experiment();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            experiment.run(&RunOptions {
+                particles: 200,
+                ..RunOptions::default()
+            })
+        })
+    };
+    let one = on(1);
+    assert_eq!(one, on(2));
+    assert_eq!(one, on(3));
+}
+
 /// What is logged after row 170, in the jam, changes nothing of what a causal run says up to there.
 #[test]
 fn filter_causal_estimate_does_not_depend_on_later_rows_in_any_bit() {
