@@ -115,45 +115,43 @@ impl<const W: usize> Assembly<W> {
         self.set_body(prepared, (context, pusher), (particles, &object), ncp);
         let scene = &prepared.scene;
 
-        // contacts with the pusher, which may stall
-        if let Some(pusher) = pusher {
-            let shape = &scene.pusher.shape;
-            let active = self.may_touch(scene, &object, shape, pusher.transform.origin);
-            let active = active & pusher.present;
-            if active.any() {
-                let pusher = Other {
-                    body: Body::Pusher,
-                    shape,
-                    transform: pusher.transform,
-                    mu: particles.friction.mu_p,
-                    motion: Some(&pusher.motion),
-                    active,
-                };
-                self.collide(scene, &object, &pusher, narrow, ncp);
-                self.let_pusher_yield(particles, ncp);
-            }
-        }
-
-        // contacts with the fixels
-        for (j, (Fixel { shape, .. }, transform)) in
-            scene.fixels.iter().zip(&prepared.fixels).enumerate()
-        {
-            let mut transform: Transform<Lanes<W>> = transform.splat();
-            if let Some([x, y]) = bodies.fixel_offsets.get(j) {
-                transform.origin[0] += *x;
-                transform.origin[1] += *y;
-            }
-            let active = self.may_touch(scene, &object, shape, transform.origin);
-            if active.any() {
-                let fixel = Other {
+        let pusher = pusher.map(|pusher| Other {
+            body: Body::Pusher,
+            shape: &scene.pusher.shape,
+            transform: pusher.transform,
+            mu: particles.friction.mu_p,
+            motion: Some(&pusher.motion),
+            active: pusher.present,
+        });
+        let fixels = scene.fixels.iter().zip(&prepared.fixels).enumerate().map(
+            #[inline(always)]
+            |(j, (Fixel { shape, .. }, transform))| {
+                let mut transform: Transform<Lanes<W>> = transform.splat();
+                if let Some([x, y]) = bodies.fixel_offsets.get(j) {
+                    transform.origin[0] += *x;
+                    transform.origin[1] += *y;
+                }
+                Other {
                     body: Body::Fixel(j),
                     shape,
                     transform,
                     mu: particles.friction.mu_f,
                     motion: None,
-                    active,
-                };
-                self.collide(scene, &object, &fixel, narrow, ncp);
+                    active: Mask::splat(true),
+                }
+            },
+        );
+        // one call for all bodies: what is inlined there is much code
+        for mut other in pusher.into_iter().chain(fixels) {
+            let near = self.may_touch(scene, &object, other.shape, other.transform.origin);
+            other.active = other.active & near;
+            if !other.active.any() {
+                continue;
+            }
+            self.collide(scene, &object, &other, narrow, ncp);
+            if other.body == Body::Pusher {
+                // which may stall
+                self.let_pusher_yield(particles, ncp);
             }
         }
     }

@@ -54,31 +54,36 @@ impl<const W: usize> NewtonBlock<W> {
         } else {
             BatchLimits::until_finished(&settings)
         };
-        for chunk in 0..ncps.len() {
-            // the chunk as a whole
-            source.load(chunk, &mut ncps[chunk]);
-            source.start(chunk, &ncps[chunk], &mut z[chunk]);
-            let progress = self
-                .chunk
-                .begin(&ncps[chunk], &mut z[chunk], settings, limits);
-            for lane in (!progress.running).lanes() {
-                finish(progress.iterated(LaneIndex { chunk, lane }, lane));
-            }
-            // its unfinished lanes, queued as soon as there is room
-            for lane in progress.running.lanes() {
-                while self.queue.busy.all() {
-                    self.iterate_queue(ncps, z, settings, finish);
+        // after the last chunk the queue empties
+        let chunks = ncps.len();
+        for chunk in 0..=chunks {
+            let progress = match chunk < chunks {
+                true => {
+                    source.load(chunk, &mut ncps[chunk]);
+                    source.start(chunk, &ncps[chunk], &mut z[chunk]);
+                    self.chunk
+                        .begin(&ncps[chunk], &mut z[chunk], settings, limits)
                 }
-                self.enqueue(
-                    LaneIndex { chunk, lane },
-                    &ncps[chunk],
-                    &z[chunk],
-                    &progress,
-                );
+                false => Progress::default(),
+            };
+            if chunk < chunks {
+                for lane in (!progress.running).lanes() {
+                    finish(progress.iterated(LaneIndex { chunk, lane }, lane));
+                }
             }
-        }
-        while self.queue.busy.any() {
-            self.iterate_queue(ncps, z, settings, finish);
+            // unfinished lanes are queued as soon as there is room
+            let mut waiting = progress.running.lanes().peekable();
+            while waiting.peek().is_some() || chunk == chunks && self.queue.busy.any() {
+                match waiting.next_if(|_| !self.queue.busy.all()) {
+                    Some(lane) => self.enqueue(
+                        LaneIndex { chunk, lane },
+                        &ncps[chunk],
+                        &z[chunk],
+                        &progress,
+                    ),
+                    None => self.iterate_queue(ncps, z, settings, finish),
+                }
+            }
         }
     }
 
