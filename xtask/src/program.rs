@@ -4,23 +4,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Builds the program; where it lies.
+/// Builds the program; where it lies. The one of profile `dev` is built as that of the tests: with the features of the whole
+/// workspace, so that after `cargo test --workspace` nothing is compiled again.
 ///
 /// # Errors
 /// It does not build.
 pub fn build(root: &Path, profile: &str) -> Result<PathBuf, String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let arguments = match profile {
+        "dev" => "test --quiet --workspace --no-run".to_owned(),
+        _ => format!("build --quiet --package stickslip-cli --bin stickslip --profile {profile}"),
+    };
     let status = Command::new(cargo)
         .current_dir(root)
-        .args([
-            "build",
-            "--quiet",
-            "--package",
-            "stickslip-cli",
-            "--bin",
-            "stickslip",
-        ])
-        .args(["--profile", profile])
+        .args(arguments.split(' '))
         .status()
         .map_err(|error| format!("cargo did not start: {error}"))?;
     if !status.success() {
