@@ -57,16 +57,14 @@ impl<const W: usize> NewtonBlock<W> {
         // after the last chunk the queue empties
         let chunks = ncps.len();
         for chunk in 0..=chunks {
-            let progress = match chunk < chunks {
-                true => {
-                    source.load(chunk, &mut ncps[chunk]);
-                    source.start(chunk, &ncps[chunk], &mut z[chunk]);
-                    self.chunk
-                        .begin(&ncps[chunk], &mut z[chunk], settings, limits)
-                }
-                false => Progress::default(),
-            };
+            let mut progress = Progress::default();
             if chunk < chunks {
+                // the chunk as a whole
+                source.load(chunk, &mut ncps[chunk]);
+                source.start(chunk, &ncps[chunk], &mut z[chunk]);
+                progress = self
+                    .chunk
+                    .begin(&ncps[chunk], &mut z[chunk], settings, limits);
                 for lane in (!progress.running).lanes() {
                     finish(progress.iterated(LaneIndex { chunk, lane }, lane));
                 }
