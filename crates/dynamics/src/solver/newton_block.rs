@@ -54,7 +54,7 @@ impl<const W: usize> NewtonBlock<W> {
         } else {
             BatchLimits::until_finished(&settings)
         };
-        // after the last chunk the queue empties
+        // after the last chunk the queue empties, in the same call of an iteration: what is inlined there is much code
         let chunks = ncps.len();
         for chunk in 0..=chunks {
             let mut progress = Progress::default();
