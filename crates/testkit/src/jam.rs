@@ -1,18 +1,19 @@
-//! When a step can fail to have a solution: [`gap_margin`] and [`may_jam`].
+//! When a step can fail to have a solution: [`gap_margin`], [`may_jam`] and [`is_solvable`].
 //!
-//! Two one-sided answers. Below zero margin the gap rows exclude each other, at any reasonable
+//! One-sided answers. Below zero margin the gap rows exclude each other, at any reasonable
 //! speed: no solution. Where the friction cones admit no impulses that cancel each other (their sum
 //! is a pointed cone) there is always a solution: impulses p that grow without bound along a
 //! homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent.
 //! Faces that close on an object at a slight angle meet both conditions: their solution squeezes it
-//! out at an absurd speed. So a step *must* be solved where `!may_jam(p) && gap_margin(p, cap) >
-//! 0`.
+//! out at an absurd speed, and none is sought there. So a step *must* be solved where its
+//! solutions are slow enough, too: [`is_solvable`].
 
 use stickslip_dynamics::StepProblem;
 
 use crate::conic_program::ConicProgram;
 use crate::hull::nearest_in_hull;
-use crate::scaled_problem::ScaledProblem;
+use crate::scaled_problem::{ScaledProblem, dot3};
+use crate::speed_limit::{LARGEST_IMPULSE, speed_limit};
 use crate::vector::left;
 
 /// Twists up to this many times the problem's fastest speed are considered.
@@ -73,6 +74,46 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
 #[must_use]
 pub fn may_jam(problem: &StepProblem) -> bool {
     !problem.contacts.is_empty() && least_wrench(problem) < CANCELLED
+}
+
+/// Whether a step certainly has a solution that is sought: impulses cannot cancel each other, and those that a
+/// solution needs give it no speed above [`speed_limit`].
+///
+/// Let the wrenches of impulses P in all, with the positive part of the push, come to δ P at least. Balance bounds
+/// P: δ P ≤ |v| + |free| + F + Q, with F what the feet can resist and Q the drive's impulse. Work bounds |v|: the feet
+/// and the slips take power, the drive takes y Q, a closed gap gives p_n times its offset and a slip p_t times its
+/// own, so that |v|² + y Q ≤ |v| |free| + P g, with g the largest such offset. All in mass-normalised units.
+#[must_use]
+pub fn is_solvable(problem: &StepProblem) -> bool {
+    if problem.contacts.is_empty() {
+        return true;
+    }
+    let least = least_wrench(problem);
+    if least < CANCELLED {
+        return false;
+    }
+    let scaled = ScaledProblem::new(problem);
+    let free = libm::sqrt(dot3(&scaled.free(), &scaled.free()));
+    let offset = |c| (-scaled.gap_offset(c)).max(0.0) + c.mu * scaled.slip_offset(c).abs();
+    let gain = problem.contacts.iter().map(offset).fold(0.0, f64::max);
+    let resists = |k: usize| {
+        let [x, y] = scaled.foot(k).map(|row| dot3(&row, &row));
+        scaled.bound(k) * libm::sqrt(x + y - 1.0)
+    };
+    let feet: f64 = (0..3).map(resists).sum();
+    let drive = scaled.stall_impulse().unwrap_or(0.0);
+    // |v|² ≤ |v| (free + g/δ) + (free + F + Q) g/δ
+    let half = 0.5 * (free + gain / least);
+    let rest = free + feet + drive;
+    let speed = half + libm::sqrt(half * half + rest * gain / least);
+    let impulses = (speed + rest) / least;
+    let pusher_yield = if drive > 0.0 {
+        (impulses * gain + 0.25 * free * free) / drive
+    } else {
+        0.0
+    };
+    speed.max(pusher_yield) * scaled.speed() <= speed_limit(problem)
+        && impulses * scaled.speed() <= LARGEST_IMPULSE
 }
 
 /// Less than which the sum of wrenches, with the push along the drive, cannot be for impulses whose

@@ -5,7 +5,8 @@
 //! - [`enumerate_modes`]: all solutions of a small step, by trying every contact mode.
 //! - [`cone_program_step`]: the solution where no contact has friction, by convex optimisation.
 //! - [`impulses_for_twist`]: whether a twist is a solution, and by which impulses.
-//! - [`gap_margin`], [`may_jam`]: whether a step certainly has no solution, or certainly has one.
+//! - [`gap_margin`], [`may_jam`], [`is_solvable`]: whether a step certainly has no solution, or certainly has one.
+//! - [`speed_limit`], [`is_sought`]: how fast a solution may be that is sought.
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.
@@ -36,6 +37,7 @@ mod residual;
 mod rng;
 mod scaled_problem;
 mod scenes;
+mod speed_limit;
 mod survey;
 mod vector;
 
@@ -50,9 +52,10 @@ pub use data::data_root;
 pub use hard_steps::{HardStep, hard_steps};
 pub use harvest::{Harvest, HarvestOptions, HarvestedStep, MOST_PARTICLES, harvest, survey_steps};
 pub use impulses::impulses_for_twist;
-pub use jam::{gap_margin, may_jam};
+pub use jam::{gap_margin, is_solvable, may_jam};
 pub use modes::enumerate_modes;
 pub use recorded_case::{RecordedCase, RecordedError, recorded_cases};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
 pub use scenes::{disc, fixels, pushed_scene, square};
+pub use speed_limit::{is_sought, speed_limit};
 pub use survey::{Tally, survey};

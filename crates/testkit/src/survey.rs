@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use stickslip_dynamics::{Outcome, Report, Route, StepProblem, StepSolution, solve};
 
 use crate::corpus::{Corpus, Family};
-use crate::jam::{gap_margin, may_jam};
+use crate::jam::is_solvable;
+use crate::speed_limit::is_sought;
 
 /// How the problems of one family ended.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -109,7 +110,8 @@ pub(crate) fn judge(index: u64, problem: &StepProblem, witness: Option<&StepSolu
     let (_, report) = solve(problem);
     let mut tally = Tally::of_report(index, &report);
     if report.outcome == Outcome::Infeasible {
-        let exists = witness.is_some() || !may_jam(problem) && gap_margin(problem, 1.0) > 0.0;
+        let known = witness.is_some_and(|witness| is_sought(problem, witness));
+        let exists = known || is_solvable(problem);
         tally.contradicted.extend(exists.then_some(index));
     }
     tally

@@ -7,9 +7,11 @@ pub const TOLERANCE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Outcome {
-    /// The residual is at most [`TOLERANCE`].
+    /// The residual is at most [`TOLERANCE`], and no speed is more than 30 times the fastest one that the problem
+    /// asks for.
     Solved,
-    /// It is proven that no solution exists; the velocity is that of the compliant problem.
+    /// It is proven that there is no such solution with impulses of at most 1e6 m/s times the mass; the velocity is
+    /// that of the compliant problem.
     Infeasible,
     /// Neither a solution nor a proof was found within the limit on work; the velocity is that of the compliant problem.
     Failed,
@@ -18,7 +20,7 @@ pub enum Outcome {
 /// The solver that the answer came from, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Route {
-    /// Semismooth Newton iteration from the warm start.
+    /// Semismooth Newton iteration from the warm start or, after the path, from the free motion.
     Newton,
     /// Path of smoothed solutions from the warm start.
     SmoothedPath,

@@ -5,9 +5,20 @@
 //! every number is a speed (m/s) and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n,
 //! r × n / ρ), W_t = (t, r × t / ρ).
 
-use stickslip_lanes::Lanes;
+use stickslip_lanes::{Lanes, Mask};
 
 use crate::ncp::problem::{ContactPoint, StepProblem};
+use crate::ncp::report::TOLERANCE;
+use crate::ncp::unknowns::Unknowns;
+
+/// Largest speed of a solution, in terms of the fastest one that its problem asks for. A face that closes on an
+/// object at an angle of two degrees squeezes it out that much faster; of 18 million solved steps of random scenes
+/// three were faster by 32 and ten by eight. What is faster still are solutions of wedges that friction all but
+/// locks: impulses of 1e6 m/s throw an object out at some 100 m/s where all else moves at 0.1.
+const SPEED_LIMIT: f64 = 30.0;
+
+/// No problem's is less (m/s).
+pub const LEAST_SPEED_LIMIT: f64 = 1.0;
 
 /// A vector of the scaled velocity space (x, y, ρ θ).
 pub type Triple<const W: usize> = [Lanes<W>; 3];
@@ -263,6 +274,29 @@ impl<const W: usize> Ncp<W> {
         for row in &mut to.contacts[packed..] {
             ContactRow::<1>::OPEN.copy_lane(0, row, slot);
         }
+    }
+
+    /// Where `z` with this residual counts as a solution.
+    #[inline(always)]
+    pub fn certifies(&self, z: &Unknowns<W>, residual: Lanes<W>) -> Mask<W> {
+        !residual.gt(Lanes::splat(TOLERANCE)) & !z.fastest().gt(self.speed_limit())
+    }
+
+    /// Largest speed of a solution (m/s): [`SPEED_LIMIT`] times the fastest one that the problem asks for.
+    #[inline(always)]
+    pub fn speed_limit(&self) -> Lanes<W> {
+        let mut fastest = self
+            .feet
+            .iter()
+            .fold(Lanes::ZERO, |fastest, foot| fastest.max(foot.bound));
+        for x in &self.free {
+            fastest = fastest.max(x.abs());
+        }
+        for row in &self.contacts {
+            // open gaps ask for none; rows that pad a lane are wide open
+            fastest = fastest.max(-row.gap_offset).max(row.slip_offset.abs());
+        }
+        (fastest * Lanes::splat(SPEED_LIMIT)).max(Lanes::splat(LEAST_SPEED_LIMIT))
     }
 
     /// The largest speed that appears in a problem (m/s); its natural scale.

@@ -96,6 +96,16 @@ impl<const W: usize> Unknowns<W> {
         largest
     }
 
+    /// The largest speed: of v⁺ and of the pusher's yield (m/s).
+    #[inline(always)]
+    pub fn fastest(&self) -> Lanes<W> {
+        let mut fastest = self.pusher_yield.abs();
+        for v in &self.v {
+            fastest = fastest.max(v.abs());
+        }
+        fastest
+    }
+
     /// Copies all lanes; memory is reused.
     pub fn copy_from(&mut self, from: &Self) {
         self.v = from.v;

@@ -10,7 +10,7 @@ use stickslip_lanes::Lanes;
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
-use crate::ncp::rows::Ncp;
+use crate::ncp::rows::{LEAST_SPEED_LIMIT, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::solver::fallback::{Fallback, WorkLimit};
 use crate::solver::lane_queue::LaneIndex;
@@ -32,7 +32,7 @@ const NEWTON: NewtonSettings = NewtonSettings {
 /// scenes two fail with this limit and with 10,000, four with 3000, 24 with 2000: jams at the edge of
 /// having a solution, whose contacts close together, take most.
 pub(crate) const STEP_LIMIT: WorkLimit = WorkLimit {
-    search: 4_000,
+    search: 5_000,
     compliant: 300,
 };
 
@@ -168,6 +168,7 @@ impl<const W: usize> Solver<W> {
                 unsolved.push(end.index);
             }
         });
+        self.reject_fast(ncps, z, reports);
         // what it leaves over
         if !self.unsolved.is_empty() {
             self.solve_unsolved(source, ncps, z, reports);
@@ -189,6 +190,28 @@ impl<const W: usize> Solver<W> {
         for indices in [&mut self.unsolved, &mut self.still_unsolved] {
             indices.clear();
             indices.reserve(W * chunks);
+        }
+    }
+
+    /// Takes back solutions that are faster than any is sought.
+    #[inline(always)]
+    fn reject_fast(&mut self, ncps: &[Ncp<W>], z: &[Unknowns<W>], reports: &[[Report; W]]) {
+        for (chunk, ((ncp, z), reports)) in ncps.iter().zip(z).zip(reports).enumerate() {
+            // the limit is looked up for few
+            let fastest = z.fastest();
+            let mut fast = fastest.gt(Lanes::splat(LEAST_SPEED_LIMIT));
+            if !fast.any() {
+                continue;
+            }
+            fast = fast & fastest.gt(ncp.speed_limit());
+            for lane in fast.lanes() {
+                let Report {
+                    outcome, residual, ..
+                } = reports[lane];
+                if outcome == Outcome::Solved && residual <= TOLERANCE {
+                    self.unsolved.push(LaneIndex { chunk, lane });
+                }
+            }
         }
     }
 
@@ -217,7 +240,8 @@ impl<const W: usize> Solver<W> {
                 report.route = Route::SmoothedPath;
                 report.systems += end.steps;
                 report.residual = end.residual;
-                if end.residual <= TOLERANCE {
+                let limit = ncps[chunk].speed_limit().0[lane];
+                if end.residual <= TOLERANCE && end.z.fastest().0[end.slot] <= limit {
                     z[chunk].unpack_lane(&ncps[chunk], lane, end.z, end.slot);
                 } else {
                     still_unsolved.push(end.index);

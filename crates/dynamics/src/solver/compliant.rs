@@ -109,14 +109,14 @@ impl CompliantNewton {
             || newton.solve(ncp, trial, SETTINGS),
         );
         *systems += end.iterations.0[0] as u32;
-        if is_solved(end.residual.0[0], trial) {
+        if is_solved(ncp, end.residual.0[0], trial) {
             return true;
         }
         for (start, schedule) in [(&self.z, &BOLD), (&self.cold, &CAREFUL)] {
             let path = &mut self.path;
             let (residual, steps) = path.solve_one(self.level, ncp, start, schedule, trial);
             *systems += steps;
-            if is_solved(residual, trial) {
+            if is_solved(ncp, residual, trial) {
                 return true;
             }
         }
@@ -124,8 +124,8 @@ impl CompliantNewton {
     }
 }
 
-/// Whether a residual is no more than the tolerance and what rounding leaves.
-fn is_solved(residual: f64, z: &Unknowns<1>) -> bool {
-    let largest = z.normal.iter().fold(0.0, |most, p| f64::max(most, p.0[0]));
-    residual <= TOLERANCE + ROUNDING * largest
+/// Whether a residual is no more than the tolerance and what rounding leaves, at a speed that a solution may have.
+fn is_solved(ncp: &Ncp<1>, residual: f64, z: &Unknowns<1>) -> bool {
+    let largest = z.largest_normal().0[0];
+    residual <= TOLERANCE + ROUNDING * largest && z.fastest().0[0] <= ncp.speed_limit().0[0]
 }

@@ -16,8 +16,8 @@ const SLACK: f64 = 1e-9;
 /// Slip below which a foot stands (m/s): far below the tolerance of a solution.
 const STANDS: f64 = 1e-10;
 
-/// No impulse is so large (m/s).
-const LARGEST: f64 = 1e6;
+/// Solutions with larger impulses are not sought (m/s): their rounding exceeds the certificate's tolerance.
+pub const LARGEST: f64 = 1e6;
 
 /// Speeds above this leave a balance too few digits (m/s).
 const FASTEST: f64 = 1e3;
@@ -37,7 +37,7 @@ pub struct ModeConditions {
     pub problem: ScalarNcp,
     /// Violations below this do not exclude a mode (m/s).
     pub slack: f64,
-    /// What holds at every solution: gaps are open, y ≥ 0.
+    /// What holds at every solution: gaps are open, y ≥ 0, no speed exceeds the limit.
     open: Vec<Inequality>,
 }
 
@@ -52,9 +52,20 @@ impl ModeConditions {
             row: [0.0, 0.0, 0.0, 1.0],
             offset: 0.0,
         };
+        // no speed exceeds the limit
+        let slow = (0..4).flat_map(|k| {
+            [1.0, -1.0].map(|sign| {
+                let mut row = [0.0; 4];
+                row[k] = sign;
+                Inequality {
+                    row,
+                    offset: problem.speed_limit,
+                }
+            })
+        });
         Self {
             slack: SLACK * problem.speed_scale.max(1.0),
-            open: gaps.chain([pusher_yield]).collect(),
+            open: gaps.chain([pusher_yield]).chain(slow).collect(),
             problem,
         }
     }
@@ -81,6 +92,11 @@ impl ModeConditions {
                 value: -offset,
             }
         })
+    }
+
+    /// Whether an impulse of this range may be that of a solution.
+    pub fn allows(&self, impulse: &Interval) -> bool {
+        impulse.high >= -self.slack && impulse.low <= LARGEST
     }
 
     /// What holds at a solution in this mode: gaps are open, slips oppose the friction, y ≥ 0.

@@ -3,7 +3,7 @@
 use crate::solver::enclosure::{Between, Enclosure, Slide};
 use crate::solver::generator::Generator;
 use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::ModeConditions;
+use crate::solver::mode_conditions::{LARGEST, ModeConditions};
 use crate::solver::piece_search::{ModePath, Sample};
 use crate::solver::scalar_ncp::Candidate;
 use crate::solver::subspace::Equation;
@@ -87,7 +87,7 @@ impl<'a> ModeCurve<'a> {
         })
     }
 
-    /// The λ for which both impulses are positive and the feet's friction can balance the load.
+    /// The λ for which both impulses are positive and not too large, and the feet's friction can balance the load.
     pub fn interval(&self) -> Interval {
         let conditions = self.conditions;
         let mut interval = Interval {
@@ -95,6 +95,7 @@ impl<'a> ModeCurve<'a> {
             high: f64::INFINITY,
         };
         interval.clip(self.ratio, self.constant + conditions.slack);
+        interval.clip(-self.ratio, LARGEST - self.constant);
         for (row, offset) in &self.limits {
             let most = offset + conditions.friction_bound(row) + conditions.slack;
             interval.clip(dot(row, &self.load), dot(row, &self.load_0) + most);

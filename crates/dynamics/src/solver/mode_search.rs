@@ -15,7 +15,7 @@
 use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
 use crate::solver::generator::Generator;
-use crate::solver::mode_conditions::ModeConditions;
+use crate::solver::mode_conditions::{LARGEST, ModeConditions};
 use crate::solver::mode_curve::ModeCurve;
 use crate::solver::mode_line::{Line, ModeLine};
 use crate::solver::open_planes::OpenPlanes;
@@ -284,7 +284,7 @@ impl ModeSearch {
         } else {
             problem.stall / generator.g[3]
         };
-        if alpha < 0.0 || !alpha.is_finite() {
+        if !(0.0..=LARGEST).contains(&alpha) {
             return Finding::Excluded;
         }
         // the velocity that follows
@@ -330,7 +330,7 @@ impl ModeSearch {
             return search_path(path.interval(), &mut path, thoroughness, certifier);
         };
         let ranges = dual.map(|w| conditions.range_along(&w, &v, &v));
-        if ranges.iter().any(|range| range.high < -conditions.slack) {
+        if !ranges.iter().all(|range| conditions.allows(range)) {
             return Finding::Excluded;
         }
         if thoroughness.separates && conditions.separates(chosen, &[v], certifier) {

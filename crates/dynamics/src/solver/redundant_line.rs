@@ -75,8 +75,7 @@ impl ModePath for RedundantLine<'_> {
 
     fn excludes(&self, a: &Sample, b: &Sample) -> bool {
         let range = |w: &Vector<4>| self.conditions.range_along(w, &a.v, &b.v);
-        let slack = self.conditions.slack;
-        self.dual.iter().any(|w| range(w).high < -slack)
+        !self.dual.iter().all(|w| self.conditions.allows(&range(w)))
     }
 
     fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {

@@ -1,6 +1,6 @@
 //! From a point near a solution to a certified one, one particle at a time: [`Refiner`].
 
-use stickslip_lanes::{Level, Mask, on_widest};
+use stickslip_lanes::{Lanes, Level, Mask, on_widest};
 
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::report::TOLERANCE;
@@ -55,7 +55,7 @@ impl Refiner {
             self.z.copy_from(guess);
             let (residual, steps) = self.fixed_modes(ncp, sliding);
             systems += steps;
-            if residual <= TOLERANCE {
+            if ncp.certifies(&self.z, Lanes([residual])).all() {
                 return Refined {
                     certified: true,
                     systems,
@@ -69,7 +69,7 @@ impl Refiner {
             || self.newton.solve(ncp, &mut self.z, SETTINGS),
         );
         Refined {
-            certified: end.residual.0[0] <= TOLERANCE,
+            certified: ncp.certifies(&self.z, end.residual).all(),
             systems: systems + end.iterations.0[0] as u32,
         }
     }

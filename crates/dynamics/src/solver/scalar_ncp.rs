@@ -96,6 +96,8 @@ pub struct ScalarNcp {
     pub stall: f64,
     /// The largest speed that appears in the problem (m/s).
     pub speed_scale: f64,
+    /// The largest speed of a solution (m/s).
+    pub speed_limit: f64,
 }
 
 impl ScalarNcp {
@@ -105,6 +107,7 @@ impl ScalarNcp {
         self.feet = ncp.feet.each_ref().map(ScalarFoot::new);
         self.stall = ncp.stall.0[0];
         self.speed_scale = ncp.speed_scale().0[0];
+        self.speed_limit = ncp.speed_limit().0[0];
         self.contacts.clear();
         self.contacts
             .extend(ncp.contacts.iter().map(ScalarContact::new));

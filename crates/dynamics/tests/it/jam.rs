@@ -4,9 +4,11 @@
 use crate::common::{FRICTION, at, disc, fixel, pushing, square_scene, step};
 use stickslip_dynamics::{
     ContactPoint, Dynamics, Foot, Friction, Outcome, Particle, Pose, Report, Scene, StepProblem,
-    StepSolution, StepWork, TOLERANCE, Twist, solve_from,
+    StepSolution, StepWork, TOLERANCE, Twist, solve, solve_from,
 };
-use stickslip_testkit::{enumerate_modes, gap_margin, may_jam, residual_si};
+use stickslip_testkit::{
+    enumerate_modes, gap_margin, is_sought, may_jam, residual_si, speed_limit,
+};
 
 const H: f64 = 0.01;
 const SPEED: f64 = 0.02;
@@ -379,4 +381,49 @@ fn impulses_that_cancel_each_other_are_not_kept() {
             solution.normal
         );
     }
+}
+
+/// An object between a fixel's face and that of a pusher that closes at `u`, the two at an angle, without
+/// friction: it leaves at u/tan(angle).
+fn squeezed(u: f64, angle: f64) -> (StepProblem, f64) {
+    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+    let contact = |normal: [f64; 2], surface_velocity, on_pusher| ContactPoint {
+        normal,
+        // through the centre of mass: no torque
+        arm: normal.map(|n| -0.02 * n),
+        gap: 0.0,
+        mu: 0.0,
+        surface_velocity,
+        on_pusher,
+    };
+    let problem = StepProblem {
+        mass: 1.0,
+        inertia: 1e-4,
+        h: H,
+        contacts: vec![
+            contact([1.0, 0.0], [0.0; 2], false),
+            contact([-cos, sin], [-u, 0.0], true),
+        ],
+        ..StepProblem::default()
+    };
+    (problem, u * cos / sin)
+}
+
+#[test]
+fn object_is_squeezed_out_thirty_times_as_fast_as_the_faces_close_and_no_faster() {
+    let u = 0.1;
+    let (problem, speed) = squeezed(u, 2.2_f64.to_radians());
+    let (solution, report) = solve(&problem);
+    assert_eq!(report.outcome, Outcome::Solved);
+    assert!(
+        (solution.twist.vy / speed - 1.0).abs() < 1e-7,
+        "{solution:?}"
+    );
+    assert!(is_sought(&problem, &solution));
+
+    let (problem, speed) = squeezed(u, 1.6_f64.to_radians());
+    assert!(speed > speed_limit(&problem));
+    let (solution, report) = solve(&problem);
+    assert_eq!(report.outcome, Outcome::Infeasible);
+    assert!(is_sought(&problem, &solution), "{solution:?}");
 }

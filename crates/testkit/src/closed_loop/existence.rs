@@ -2,9 +2,10 @@
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 
-use crate::jam::{gap_margin, may_jam};
+use crate::jam::{gap_margin, is_solvable};
 use crate::modes::enumerate_modes;
 use crate::residual::residual_si;
+use crate::speed_limit::is_sought;
 
 /// Largest residual of a solution (m/s).
 const TOLERANCE: f64 = 1e-9;
@@ -15,8 +16,8 @@ const ENUMERATED: usize = 3;
 /// What is known of a step's solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existence {
-    /// There is one: no impulses within the friction cones cancel each other and the gaps can all
-    /// open, or one was found by enumeration.
+    /// There is one of a speed that is sought: no impulses within the friction cones cancel each other, and work
+    /// bounds the speed, or one was found by enumeration.
     Certain,
     /// The gap rows exclude each other at every reasonable speed.
     Excluded,
@@ -33,10 +34,10 @@ impl Existence {
     pub fn of(problem: &StepProblem) -> Self {
         if gap_margin(problem, 1.0) < 0.0 {
             Self::Excluded
-        } else if may_jam(problem) {
-            Self::Unknown
-        } else {
+        } else if is_solvable(problem) {
             Self::Certain
+        } else {
+            Self::Unknown
         }
     }
 
@@ -64,9 +65,10 @@ fn has_solution(problem: &StepProblem) -> bool {
         contacts: nearest.iter().map(|i| problem.contacts[*i]).collect(),
         ..problem.clone()
     };
-    enumerate_modes(&part)
-        .iter()
-        .any(|found| residual_si(problem, &with_open(problem, &nearest, found)) <= TOLERANCE)
+    enumerate_modes(&part).iter().any(|found| {
+        let whole = with_open(problem, &nearest, found);
+        is_sought(problem, &whole) && residual_si(problem, &whole) <= TOLERANCE
+    })
 }
 
 /// A solution of the contacts `closed`, with no impulse at the others.
