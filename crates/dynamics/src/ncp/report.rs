@@ -20,7 +20,7 @@ pub enum Outcome {
 /// The solver that the answer came from, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Route {
-    /// Semismooth Newton iteration from the warm start or, after the path, from the free motion.
+    /// Semismooth Newton iteration from the warm start or, where all else fails, from the free motion.
     Newton,
     /// Path of smoothed solutions from the warm start.
     SmoothedPath,

@@ -22,7 +22,7 @@ use crate::solver::stick_predictor::SLIP_WEIGHT_NEAR;
 
 /// Of the first solver. It aims below [`TOLERANCE`], which decides in the end, for the sake of the
 /// impulses of feet that slip slowly.
-const NEWTON: NewtonSettings = NewtonSettings {
+pub(crate) const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
     iterations: 32,
     slip_weight: SLIP_WEIGHT_NEAR,

@@ -6,22 +6,14 @@ use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::solver::certifier::Certifier;
+use crate::solver::chain::NEWTON;
 use crate::solver::compliant::CompliantNewton;
 use crate::solver::mode_search::{Verdict, search};
-use crate::solver::newton::{Newton, NewtonSettings};
+use crate::solver::newton::Newton;
 use crate::solver::refiner::Refiner;
 use crate::solver::relief::relieve;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::smoothed_path::{CAREFUL, SmoothedPath};
-use crate::solver::stick_predictor::SLIP_WEIGHT_NEAR;
-
-/// Of the Newton iteration from the free motion: it solves a third of what else is searched for, in ten
-/// iterations in the mean.
-const FROM_AFAR: NewtonSettings = NewtonSettings {
-    tolerance: 0.1 * TOLERANCE,
-    iterations: 16,
-    slip_weight: SLIP_WEIGHT_NEAR,
-};
 
 /// Most work spent on one problem, in linear systems.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,12 +69,10 @@ impl Fallback {
         self.ncp.clear();
         ncp.pack_lane(lane, &mut self.ncp, 0);
         self.scalar.assign(&self.ncp);
-        if !self.iterate_from_afar(report) {
-            report.route = Route::ModeSearch;
-            self.search_modes(limit.search, report);
-        }
+        report.route = Route::ModeSearch;
+        self.search_modes(limit.search, report);
         if report.outcome == Outcome::Failed {
-            self.follow_path(report);
+            self.start_afresh(report);
         }
         let solution = match report.outcome {
             Outcome::Solved => &self.solution,
@@ -135,24 +125,6 @@ impl Fallback {
         (smaller && residual <= TOLERANCE).then_some((&self.solution, residual))
     }
 
-    /// The Newton iteration from the free motion, where a warm start may have led it astray; whether it solved
-    /// the problem.
-    fn iterate_from_afar(&mut self, report: &mut Report) -> bool {
-        self.solution.cold_start(&self.ncp);
-        let (ncp, z, newton) = (&self.ncp, &mut self.solution, &mut self.newton);
-        let end = on_widest(
-            self.level,
-            #[inline(always)]
-            || newton.solve(ncp, z, FROM_AFAR),
-        );
-        report.systems += end.iterations.0[0] as u32;
-        let solved = ncp.certifies(z, end.residual).all();
-        if solved {
-            (report.outcome, report.route) = (Outcome::Solved, Route::Newton);
-        }
-        solved
-    }
-
     /// Leaves in `self.solution` what the search finds.
     fn search_modes(&mut self, limit: u32, report: &mut Report) {
         let (ncp, refiner, guess) = (&self.ncp, &mut self.refiner, &mut self.guess);
@@ -171,15 +143,27 @@ impl Fallback {
         self.solution.copy_from(&self.refiner.z);
     }
 
-    /// What the search leaves open, along the path from the free motion.
-    fn follow_path(&mut self, report: &mut Report) {
-        self.guess.cold_start(&self.ncp);
-        let (ncp, start, end) = (&self.ncp, &self.guess, &mut self.solution);
+    /// What the search leaves open, from the free motion: the last step's impulses may have led the first solvers
+    /// astray. By the Newton iteration, else along the path.
+    fn start_afresh(&mut self, report: &mut Report) {
+        let (ncp, z, newton) = (&self.ncp, &mut self.solution, &mut self.newton);
+        z.cold_start(ncp);
+        let end = on_widest(
+            self.level,
+            #[inline(always)]
+            || newton.solve(ncp, z, NEWTON),
+        );
+        report.systems += end.iterations.0[0] as u32;
+        if ncp.certifies(z, end.residual).all() {
+            (report.outcome, report.route) = (Outcome::Solved, Route::Newton);
+            return;
+        }
+        self.guess.cold_start(ncp);
+        let (start, end) = (&self.guess, &mut self.solution);
         let (residual, steps) = self.path.solve_one(self.level, ncp, start, &CAREFUL, end);
         report.systems += steps;
         if ncp.certifies(end, Lanes([residual])).all() {
-            report.outcome = Outcome::Solved;
-            report.route = Route::SmoothedPath;
+            (report.outcome, report.route) = (Outcome::Solved, Route::SmoothedPath);
         }
     }
 }
