@@ -9,8 +9,8 @@ use stickslip::{Mode, Observer, RunError, RunOptions, SolvedStep, run_observed};
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution};
 
 use crate::recorded_case::RecordedCase;
-use crate::residual::residual_si;
 use crate::rng::{SplitMix64, mix};
+use crate::speed_limit::judged_residual;
 use crate::survey::{Tally, judge};
 
 /// Most particles of a harvest: one block, whose steps come in a fixed order, so that the same ones
@@ -35,7 +35,7 @@ pub struct HarvestedStep {
 /// The steps of one run.
 #[derive(Clone, Debug, Default)]
 pub struct Harvest {
-    /// How they ended; residuals are the larger of the solver's own and [`residual_si`].
+    /// How they ended; residuals are the larger of the solver's own and [`judged_residual`].
     pub tally: Tally,
     /// Some of those with contacts.
     pub kept: Vec<HarvestedStep>,
@@ -104,7 +104,7 @@ impl Observer for StepCollector {
         if solved {
             tally.worst_residual = tally
                 .worst_residual
-                .max(residual_si(step.problem, step.solution));
+                .max(judged_residual(step.problem, step.solution));
         }
         if step.report.outcome == Outcome::Failed || tally.worst_residual > TOLERANCE {
             harvest.refuted.push(step.problem.clone());

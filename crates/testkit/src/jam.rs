@@ -1,7 +1,7 @@
 //! When a step can fail to have a solution: [`gap_margin`], [`may_jam`] and [`is_solvable`].
 //!
-//! One-sided answers. Below zero margin the gap rows exclude each other, at any reasonable
-//! speed: no solution. Where the friction cones admit no impulses that cancel each other (their sum
+//! One-sided answers. Below zero margin the gap rows exclude each other, at any speed that is
+//! sought: no solution. Where the friction cones admit no impulses that cancel each other (their sum
 //! is a pointed cone) there is always a solution: impulses p that grow without bound along a
 //! homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent.
 //! Faces that close on an object at a slight angle meet both conditions: their solution squeezes it
@@ -16,13 +16,10 @@ use crate::scaled_problem::{ScaledProblem, dot3};
 use crate::speed_limit::{LARGEST_IMPULSE, speed_limit};
 use crate::vector::left;
 
-/// Twists up to this many times the problem's fastest speed are considered.
-const FASTEST_TWIST: f64 = 100.0;
 /// Wrenches of unit impulses that sum to less than this may cancel each other.
 const CANCELLED: f64 = 1e-5;
 
-/// How fast all gaps can open at once (m/s), at most `cap`, with twists up to 100 times the fastest
-/// speed in the problem.
+/// How fast all gaps can open at once (m/s), at most `cap`, at speeds up to [`speed_limit`].
 ///
 /// Negative where the gap rows exclude each other: then there is no solution of such a speed,
 /// whatever the friction.
@@ -32,23 +29,23 @@ const CANCELLED: f64 = 1e-5;
 #[must_use]
 pub fn gap_margin(problem: &StepProblem, cap: f64) -> f64 {
     let scaled = ScaledProblem::new(problem);
-    let cap = cap / scaled.speed();
+    let (cap, fastest) = (cap / scaled.speed(), speed_limit(problem) / scaled.speed());
     // unknowns: z, y and the margin
     let mut conic = ConicProgram::new(5);
     conic.cost[4] = -1.0;
     for contact in &problem.contacts {
         let [x, y, turn] = scaled.normal(contact);
         // gaps wider than any twist can close never bind; large numbers would cost accuracy
-        let offset = scaled.gap_offset(contact).min(cap + 10.0 * FASTEST_TWIST);
+        let offset = scaled.gap_offset(contact).min(cap + 10.0 * fastest);
         conic.at_least((
             vec![x, y, turn, scaled.yielding(contact, contact.normal), -1.0],
             offset,
         ));
     }
     let limits = if problem.stall.is_some() {
-        [FASTEST_TWIST; 4]
+        [fastest; 4]
     } else {
-        [FASTEST_TWIST, FASTEST_TWIST, FASTEST_TWIST, 0.0]
+        [fastest, fastest, fastest, 0.0]
     };
     for (j, limit) in limits.into_iter().enumerate() {
         conic.at_least((unit(j, -1.0), limit));
@@ -68,9 +65,8 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
 /// Whether impulses within the friction cones can cancel each other while a drive with a force
 /// limit does not push.
 ///
-/// Where they cannot, a solution exists; one of reasonable speed where [`gap_margin`] is positive
-/// too, and a solver that then reports none is at fault. Impulses that cancel to 1e-5 of their size
-/// count as cancelling, open contacts as closed.
+/// Where they cannot, a solution exists, though perhaps none as slow as is sought: [`is_solvable`]. Impulses that
+/// cancel to 1e-5 of their size count as cancelling, open contacts as closed.
 #[must_use]
 pub fn may_jam(problem: &StepProblem) -> bool {
     !problem.contacts.is_empty() && least_wrench(problem) < CANCELLED
@@ -101,17 +97,13 @@ pub fn is_solvable(problem: &StepProblem) -> bool {
         scaled.bound(k) * libm::sqrt(x + y - 1.0)
     };
     let feet: f64 = (0..3).map(resists).sum();
-    let drive = scaled.stall_impulse().unwrap_or(0.0);
+    let drive = scaled.stall_impulse();
     // |v|² ≤ |v| (free + g/δ) + (free + F + Q) g/δ
     let half = 0.5 * (free + gain / least);
-    let rest = free + feet + drive;
+    let rest = free + feet + drive.unwrap_or(0.0);
     let speed = half + libm::sqrt(half * half + rest * gain / least);
     let impulses = (speed + rest) / least;
-    let pusher_yield = if drive > 0.0 {
-        (impulses * gain + 0.25 * free * free) / drive
-    } else {
-        0.0
-    };
+    let pusher_yield = drive.map_or(0.0, |drive| (impulses * gain + 0.25 * free * free) / drive);
     speed.max(pusher_yield) * scaled.speed() <= speed_limit(problem)
         && impulses * scaled.speed() <= LARGEST_IMPULSE
 }

@@ -6,7 +6,7 @@
 //! - [`cone_program_step`]: the solution where no contact has friction, by convex optimisation.
 //! - [`impulses_for_twist`]: whether a twist is a solution, and by which impulses.
 //! - [`gap_margin`], [`may_jam`], [`is_solvable`]: whether a step certainly has no solution, or certainly has one.
-//! - [`speed_limit`], [`is_sought`]: how fast a solution may be that is sought.
+//! - [`speed_limit`], [`is_sought`]: how fast a solution may be that is sought; [`judged_residual`]: both at once.
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.
@@ -57,5 +57,5 @@ pub use modes::enumerate_modes;
 pub use recorded_case::{RecordedCase, RecordedError, recorded_cases};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
 pub use scenes::{disc, fixels, pushed_scene, square};
-pub use speed_limit::{is_sought, speed_limit};
+pub use speed_limit::{is_sought, judged_residual, speed_limit};
 pub use survey::{Tally, survey};

@@ -1,7 +1,8 @@
-//! How fast a solution may be that the solver seeks: [`speed_limit`], [`is_sought`].
+//! How fast a solution may be that the solver seeks: [`speed_limit`], [`is_sought`], [`judged_residual`].
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 
+use crate::residual::residual_si;
 use crate::scaled_problem::ScaledProblem;
 
 /// Largest speed, in terms of the fastest one that the problem asks for (docs/method.md, "The certificate").
@@ -30,4 +31,14 @@ pub fn is_sought(problem: &StepProblem, solution: &StepSolution) -> bool {
     let twist = scaled.scale_twist(solution.twist);
     let fastest = twist.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
     (fastest * scaled.speed()).max(solution.pusher_yield) <= speed_limit(problem)
+}
+
+/// [`residual_si`] (m/s) of a solution, infinite where it is faster than any is sought.
+#[must_use]
+pub fn judged_residual(problem: &StepProblem, solution: &StepSolution) -> f64 {
+    if is_sought(problem, solution) {
+        residual_si(problem, solution)
+    } else {
+        f64::INFINITY
+    }
 }

@@ -107,8 +107,11 @@ pub fn survey(corpus: &Corpus, range: Range<u64>) -> BTreeMap<Family, Tally> {
 /// Solves problem `index` of a set from a cold start; `witness` is a solution of it, where one is
 /// known.
 pub(crate) fn judge(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
-    let (_, report) = solve(problem);
+    let (solution, report) = solve(problem);
     let mut tally = Tally::of_report(index, &report);
+    if report.outcome == Outcome::Solved && !is_sought(problem, &solution) {
+        tally.worst_residual = f64::INFINITY;
+    }
     if report.outcome == Outcome::Infeasible {
         let known = witness.is_some_and(|witness| is_sought(problem, witness));
         let exists = known || is_solvable(problem);

@@ -6,9 +6,10 @@
 //! is min((F_stall h − F)/m, y). The largest row is the residual of docs/method.md, "The
 //! certificate".
 
-use stickslip_lanes::Lanes;
+use stickslip_lanes::{Lanes, Mask};
 
 use crate::ncp::max_abs::MaxAbs;
+use crate::ncp::report::TOLERANCE;
 use crate::ncp::rows::{ContactRow, Ncp, ROOM, Triple, add_scaled, square};
 use crate::ncp::unknowns::Unknowns;
 
@@ -156,8 +157,13 @@ fn friction_violation<const W: usize>(
 }
 
 impl<const W: usize> Ncp<W> {
-    /// The natural-map residual (m/s): the largest violation of any row of docs/method.md (16), the
-    /// certificate of a solution.
+    /// Where `z` with this residual counts as a solution: the certificate.
+    #[inline(always)]
+    pub fn certifies(&self, z: &Unknowns<W>, residual: Lanes<W>) -> Mask<W> {
+        !residual.gt(Lanes::splat(TOLERANCE)) & !z.fastest().gt(self.speed_limit())
+    }
+
+    /// The natural-map residual (m/s): the largest violation of any row of docs/method.md (16).
     pub fn residual(&self, z: &Unknowns<W>) -> Lanes<W> {
         NaturalMap::default().evaluate(self, z)
     }

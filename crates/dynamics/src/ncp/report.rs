@@ -10,7 +10,7 @@ pub enum Outcome {
     /// The residual is at most [`TOLERANCE`], and no speed is more than 30 times the fastest one that the problem
     /// asks for.
     Solved,
-    /// It is proven that there is no such solution with impulses of at most 1e6 m/s times the mass; the velocity is
+    /// It is proven that there is no such solution with impulses that come to at most 1e6 m/s times the mass; the velocity is
     /// that of the compliant problem.
     Infeasible,
     /// Neither a solution nor a proof was found within the limit on work; the velocity is that of the compliant problem.
@@ -20,11 +20,12 @@ pub enum Outcome {
 /// The solver that the answer came from, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Route {
-    /// Semismooth Newton iteration from the warm start or, where all else fails, from the free motion.
+    /// Semismooth Newton iteration from the warm start.
     Newton,
     /// Path of smoothed solutions from the warm start.
     SmoothedPath,
-    /// Exhaustive search over contact modes.
+    /// Exhaustive search over contact modes; where that finds neither a solution nor a proof, the first two from
+    /// the free motion.
     ModeSearch,
 }
 

@@ -5,11 +5,9 @@
 //! every number is a speed (m/s) and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n,
 //! r × n / ρ), W_t = (t, r × t / ρ).
 
-use stickslip_lanes::{Lanes, Mask};
+use stickslip_lanes::Lanes;
 
 use crate::ncp::problem::{ContactPoint, StepProblem};
-use crate::ncp::report::TOLERANCE;
-use crate::ncp::unknowns::Unknowns;
 
 /// Largest speed of a solution, in terms of the fastest one that its problem asks for. A face that closes on an
 /// object at an angle of two degrees squeezes it out that much faster; of 18 million solved steps of random scenes
@@ -274,12 +272,6 @@ impl<const W: usize> Ncp<W> {
         for row in &mut to.contacts[packed..] {
             ContactRow::<1>::OPEN.copy_lane(0, row, slot);
         }
-    }
-
-    /// Where `z` with this residual counts as a solution.
-    #[inline(always)]
-    pub fn certifies(&self, z: &Unknowns<W>, residual: Lanes<W>) -> Mask<W> {
-        !residual.gt(Lanes::splat(TOLERANCE)) & !z.fastest().gt(self.speed_limit())
     }
 
     /// Largest speed of a solution (m/s): [`SPEED_LIMIT`] times the fastest one that the problem asks for.

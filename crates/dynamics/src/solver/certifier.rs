@@ -9,7 +9,7 @@ const SAME: f64 = 1e-8;
 /// A candidate's refinement.
 #[derive(Clone, Copy, Debug)]
 pub struct Refined {
-    /// Whether its residual is small enough.
+    /// Whether it is a solution.
     pub certified: bool,
     /// Linear systems that it took.
     pub systems: u32,

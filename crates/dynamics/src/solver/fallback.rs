@@ -1,15 +1,14 @@
 //! What the solvers in lanes leave over, one particle at a time: [`Fallback`].
 
-use stickslip_lanes::{Lanes, Level, on_widest};
+use stickslip_lanes::{Lanes, Level};
 
 use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::certifier::Certifier;
+use crate::solver::certifier::{Certifier, Refined};
 use crate::solver::chain::NEWTON;
 use crate::solver::compliant::CompliantNewton;
 use crate::solver::mode_search::{Verdict, search};
-use crate::solver::newton::Newton;
 use crate::solver::refiner::Refiner;
 use crate::solver::relief::relieve;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
@@ -33,7 +32,6 @@ pub struct Fallback {
     guess: Unknowns<1>,
     solution: Unknowns<1>,
     refiner: Refiner,
-    newton: Newton<1>,
     path: SmoothedPath<1>,
     compliant: CompliantNewton,
     level: Level,
@@ -47,7 +45,6 @@ impl Default for Fallback {
             guess: Unknowns::default(),
             solution: Unknowns::default(),
             refiner: Refiner::default(),
-            newton: Newton::default(),
             path: SmoothedPath::default(),
             compliant: CompliantNewton::default(),
             level: Level::new(),
@@ -146,24 +143,19 @@ impl Fallback {
     /// What the search leaves open, from the free motion: the last step's impulses may have led the first solvers
     /// astray. By the Newton iteration, else along the path.
     fn start_afresh(&mut self, report: &mut Report) {
-        let (ncp, z, newton) = (&self.ncp, &mut self.solution, &mut self.newton);
-        z.cold_start(ncp);
-        let end = on_widest(
-            self.level,
-            #[inline(always)]
-            || newton.solve(ncp, z, NEWTON),
-        );
-        report.systems += end.iterations.0[0] as u32;
-        if ncp.certifies(z, end.residual).all() {
-            (report.outcome, report.route) = (Outcome::Solved, Route::Newton);
+        self.guess.cold_start(&self.ncp);
+        let (ncp, start, end) = (&self.ncp, &self.guess, &mut self.solution);
+        let Refined { certified, systems } = self.refiner.iterate(ncp, start, NEWTON);
+        report.systems += systems;
+        if certified {
+            report.outcome = Outcome::Solved;
+            end.copy_from(&self.refiner.z);
             return;
         }
-        self.guess.cold_start(ncp);
-        let (start, end) = (&self.guess, &mut self.solution);
         let (residual, steps) = self.path.solve_one(self.level, ncp, start, &CAREFUL, end);
         report.systems += steps;
         if ncp.certifies(end, Lanes([residual])).all() {
-            (report.outcome, report.route) = (Outcome::Solved, Route::SmoothedPath);
+            report.outcome = Outcome::Solved;
         }
     }
 }

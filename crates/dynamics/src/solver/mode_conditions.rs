@@ -16,7 +16,8 @@ const SLACK: f64 = 1e-9;
 /// Slip below which a foot stands (m/s): far below the tolerance of a solution.
 const STANDS: f64 = 1e-10;
 
-/// Solutions with larger impulses are not sought (m/s): their rounding exceeds the certificate's tolerance.
+/// Solutions with larger impulses, of the drive or of all contacts together, are not sought (m/s): their rounding
+/// exceeds the certificate's tolerance.
 pub const LARGEST: f64 = 1e6;
 
 /// Speeds above this leave a balance too few digits (m/s).
@@ -52,7 +53,6 @@ impl ModeConditions {
             row: [0.0, 0.0, 0.0, 1.0],
             offset: 0.0,
         };
-        // no speed exceeds the limit
         let slow = (0..4).flat_map(|k| {
             [1.0, -1.0].map(|sign| {
                 let mut row = [0.0; 4];
@@ -94,12 +94,13 @@ impl ModeConditions {
         })
     }
 
-    /// Whether an impulse of this range may be that of a solution.
-    pub fn allows(&self, impulse: &Interval) -> bool {
-        impulse.high >= -self.slack && impulse.low <= LARGEST
+    /// Whether impulses of these ranges may be those of a solution.
+    pub fn allows(&self, impulses: &[Interval]) -> bool {
+        let possible = |it: &Interval| it.high >= -self.slack && it.low <= LARGEST;
+        impulses.iter().all(possible)
     }
 
-    /// What holds at a solution in this mode: gaps are open, slips oppose the friction, y ≥ 0.
+    /// What holds at a solution in this mode: the same, and slips oppose the friction.
     pub fn inequalities<'a>(
         &'a self,
         chosen: &'a [Generator],
@@ -119,7 +120,7 @@ impl ModeConditions {
         })
     }
 
-    /// What the open gaps and y ≥ 0 leave of the plane of two generators; `None` where their equations
+    /// What the open gaps, y ≥ 0 and the limit on speed leave of the plane of two generators; `None` where their equations
     /// leave none.
     pub fn open_plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
         let mut region = PlaneRegion::new(&self.equations(chosen))?;

@@ -120,7 +120,7 @@ impl ModePath for ModeLine<'_> {
             .dual
             .map(|w| self.conditions.range_along(&w, &a.v, &b.v));
         let balances = along_m.low <= slack && along_m.high >= -slack;
-        !balances || ![i, j, k].iter().all(|range| self.conditions.allows(range))
+        !balances || !self.conditions.allows(&[i, j, k])
     }
 
     fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {

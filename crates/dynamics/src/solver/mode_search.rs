@@ -8,7 +8,7 @@
 //! pair), so a subset of four leaves a point, of three a line, of two a curve v(λ) = T⁻¹(…), of one
 //! again a point. Parallel walls, and points of one face, ask the same of V twice: four generators
 //! then leave a line, three a plane. Most subsets are discarded by V alone: the half-spaces of open
-//! gaps, opposed slips and y ≥ 0 leave nothing of the plane, line or point. The others are searched
+//! gaps, opposed slips, y ≥ 0 and the limit on speed leave nothing of the plane, line or point. The others are searched
 //! by halving, with bounds that hold rigorously on every piece: pieces without a solution are
 //! discarded, what remains is refined. Where nothing remains, there is no solution.
 
@@ -132,7 +132,8 @@ struct ModeSearch {
 
 impl ModeSearch {
     fn new(problem: &ScalarNcp) -> Self {
-        let rigid = !problem.stall.is_finite();
+        // no impulses that are sought make a stronger drive yield
+        let rigid = problem.stall > LARGEST;
         let mut problem = problem.clone();
         if rigid {
             // the yield then has no effect and the fourth balance reads 0 = 0
@@ -330,7 +331,7 @@ impl ModeSearch {
             return search_path(path.interval(), &mut path, thoroughness, certifier);
         };
         let ranges = dual.map(|w| conditions.range_along(&w, &v, &v));
-        if !ranges.iter().all(|range| conditions.allows(range)) {
+        if !conditions.allows(&ranges) {
             return Finding::Excluded;
         }
         if thoroughness.separates && conditions.separates(chosen, &[v], certifier) {

@@ -74,8 +74,8 @@ impl ModePath for RedundantLine<'_> {
     }
 
     fn excludes(&self, a: &Sample, b: &Sample) -> bool {
-        let range = |w: &Vector<4>| self.conditions.range_along(w, &a.v, &b.v);
-        !self.dual.iter().all(|w| self.conditions.allows(&range(w)))
+        let range = |w: Vector<4>| self.conditions.range_along(&w, &a.v, &b.v);
+        !self.conditions.allows(&self.dual.map(range))
     }
 
     fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {

@@ -103,7 +103,7 @@ impl<'a> RedundantPlane<'a> {
         let [a, b, c, along_m] = self.dual.map(|w| self.conditions.range_over(&w, &corners));
         let balances = along_m.low <= slack && along_m.high >= -slack;
         !balances
-            || ![a, b, c].iter().all(|range| self.conditions.allows(range))
+            || !self.conditions.allows(&[a, b, c])
             || thoroughness.separates && self.conditions.separates(self.chosen, &corners, certifier)
     }
 }

@@ -62,15 +62,29 @@ impl Refiner {
                 };
             }
         }
-        self.z.copy_from(guess);
+        let end = self.iterate(ncp, guess, SETTINGS);
+        Refined {
+            systems: systems + end.systems,
+            ..end
+        }
+    }
+
+    /// [`Newton`] from `start` into `self.z`.
+    pub fn iterate(
+        &mut self,
+        ncp: &Ncp<1>,
+        start: &Unknowns<1>,
+        settings: NewtonSettings,
+    ) -> Refined {
+        self.z.copy_from(start);
         let end = on_widest(
             self.level,
             #[inline(always)]
-            || self.newton.solve(ncp, &mut self.z, SETTINGS),
+            || self.newton.solve(ncp, &mut self.z, settings),
         );
         Refined {
             certified: ncp.certifies(&self.z, end.residual).all(),
-            systems: systems + end.iterations.0[0] as u32,
+            systems: end.iterations.0[0] as u32,
         }
     }
 

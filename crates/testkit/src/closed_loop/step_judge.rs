@@ -13,7 +13,7 @@ use stickslip_dynamics::{
 use super::block_timer::{BlockTimer, LANES};
 use super::existence::Existence;
 use super::loop_tally::{LoopTally, StepAddress, remember};
-use crate::residual::residual_si;
+use crate::speed_limit::judged_residual;
 use crate::survey::Tally;
 
 /// Of the steps that the Newton iteration solved, one in so many is checked.
@@ -181,7 +181,7 @@ impl State {
             Outcome::Solved => {
                 let easy = report.route == Route::Newton;
                 if !easy || tally.steps.problems.is_multiple_of(CHECK_ONE_IN) {
-                    one.worst_residual = one.worst_residual.max(residual_si(problem, solution));
+                    one.worst_residual = one.worst_residual.max(judged_residual(problem, solution));
                     tally.checked += 1;
                 }
             }
