@@ -274,7 +274,8 @@ impl<const W: usize> Ncp<W> {
         }
     }
 
-    /// Largest speed of a solution (m/s): [`SPEED_LIMIT`] times the fastest one that the problem asks for.
+    /// Largest speed of a solution (m/s): 30 times the fastest one that the problem asks for, or
+    /// 1 m/s, where that is more.
     #[inline(always)]
     pub fn speed_limit(&self) -> Lanes<W> {
         let mut fastest = self
