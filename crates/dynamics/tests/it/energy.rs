@@ -10,7 +10,7 @@ use stickslip_dynamics::{
     Dynamics, Feet, Friction, Object, Outcome, Part, Particle, Pose, Pusher, Scene, Shape,
     StepInput, StepWork, TOLERANCE, Twist,
 };
-use stickslip_testkit::is_solvable;
+use stickslip_testkit::{gap_margin, may_jam};
 
 const RUNS: u32 = 60;
 const STEPS: u32 = 300;
@@ -99,7 +99,11 @@ fn check_step(
     if report.outcome != Outcome::Solved {
         // Between fixels that it overlaps, it is held from two sides.
         assert_eq!(report.outcome, Outcome::Infeasible);
-        assert!(!is_solvable(&work.problem(0)), "{:?}", work.problem(0));
+        assert!(
+            may_jam(&work.problem(0)) || gap_margin(&work.problem(0), 1.0) < 0.0,
+            "{:?}",
+            work.problem(0)
+        );
         count.infeasible += 1;
         return;
     }
