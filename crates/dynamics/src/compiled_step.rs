@@ -1,6 +1,6 @@
 //! Where the step is compiled: [`CompiledStep`].
 
-use stickslip_lanes::on_vectors;
+use stickslip_lanes::{on_fused, on_vectors};
 
 use crate::particles::Particles;
 use crate::prepared_scene::Pushers;
@@ -22,7 +22,7 @@ pub trait CompiledStep<const W: usize> {
     );
 }
 
-/// One particle, the scalar reference: wider instructions do not pay.
+/// One particle, the scalar reference.
 impl CompiledStep<1> for StepWork<1> {
     fn step(
         &mut self,
@@ -31,7 +31,11 @@ impl CompiledStep<1> for StepWork<1> {
         pushers: &Pushers<'_, 1>,
         particles: &mut [Particles<1>],
     ) {
-        dynamics.step_lanes(h, pushers, particles, self);
+        on_fused(
+            dynamics.level,
+            #[inline(always)]
+            || dynamics.step_lanes(h, pushers, particles, self),
+        );
     }
 }
 

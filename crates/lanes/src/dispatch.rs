@@ -39,3 +39,15 @@ pub fn on_vectors<R>(level: Level, work: impl FnOnce() -> R) -> Option<R> {
     #[cfg(not(target_arch = "x86_64"))]
     Some(on_widest(level, work))
 }
+
+/// [`on_widest`] for a single particle: of wide instructions it needs the fused operation, a call without them, and
+/// no vectors. So it is compiled for AVX2 and for the baseline only.
+#[inline(always)]
+pub fn on_fused<R>(level: Level, work: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx2) = level.as_avx2() {
+        return avx2.vectorize(work);
+    }
+    let _ = level;
+    work()
+}

@@ -5,7 +5,7 @@
 //! by one to a search over contact modes. Whatever route an answer came by, it counts as solved only
 //! where [`Ncp::certifies`] says so.
 
-use stickslip_lanes::Lanes;
+use stickslip_lanes::{Lanes, Level, on_fused};
 
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::problem::{StepProblem, StepSolution};
@@ -77,7 +77,11 @@ fn solve_alone(alone: &mut Alone<'_>) -> (StepSolution, Report) {
         [[Report::UNSOLVED]],
     );
     let mut solver = Solver::with_limit(NO_HURRY);
-    solver.solve(alone, &mut ncps, &mut z, &mut reports);
+    on_fused(
+        Level::new(),
+        #[inline(always)]
+        || solver.solve(alone, &mut ncps, &mut z, &mut reports),
+    );
     let ([z], [[report]]) = (z, reports);
     (z.to_solution(0, alone.problem), report)
 }
