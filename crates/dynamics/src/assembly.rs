@@ -31,6 +31,13 @@ const STILL: f64 = 1e-9;
 /// motion that presses.
 const PRESSING: f64 = 0.5;
 
+/// Share of the feet's friction with which a contact that creeps counts as pressed at least: what a new contact
+/// will carry is not known.
+const LEAST_LOAD: f64 = 0.1;
+
+/// Least friction that a contact which creeps comes to (m/s).
+const LEAST_BOUND: f64 = 1e-9;
+
 /// Which contact each row of a chunk's problems stands for.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly<const W: usize> {
@@ -77,6 +84,8 @@ struct Other<'a, const W: usize> {
     shape: &'a Shape,
     transform: Transform<Lanes<W>>,
     mu: Lanes<W>,
+    /// The slip at which friction comes to its bound (m/s); `None` where no contact creeps.
+    creep: Option<Lanes<W>>,
     motion: Option<&'a PusherMotion<Lanes<W>>>,
     /// The lanes in which it may touch the object.
     active: Mask<W>,
@@ -114,12 +123,17 @@ impl<const W: usize> Assembly<W> {
         } = bodies;
         self.set_body(prepared, (context, pusher), (particles, &object), ncp);
         let scene = &prepared.scene;
+        let creep = bodies.creep.map(|shares| {
+            let speed = speed(&particles.twist, prepared.rho);
+            shares.map(|share| share * speed)
+        });
 
         let pusher = pusher.map(|pusher| Other {
             body: Body::Pusher,
             shape: &scene.pusher.shape,
             transform: pusher.transform,
             mu: particles.friction.mu_p,
+            creep: creep.map(|[of_pusher, _]| of_pusher),
             motion: Some(&pusher.motion),
             active: pusher.present,
         });
@@ -136,6 +150,7 @@ impl<const W: usize> Assembly<W> {
                     shape,
                     transform,
                     mu: particles.friction.mu_f,
+                    creep: creep.map(|[_, of_fixels]| of_fixels),
                     motion: None,
                     active: Mask::splat(true),
                 }
@@ -148,7 +163,7 @@ impl<const W: usize> Assembly<W> {
             if !other.active.any() {
                 continue;
             }
-            self.collide(scene, &object, &other, narrow, ncp);
+            self.collide(scene, (&object, particles), &other, narrow, ncp);
             if other.body == Body::Pusher {
                 // which may stall
                 self.let_pusher_yield(particles, ncp);
@@ -266,7 +281,7 @@ impl<const W: usize> Assembly<W> {
     fn collide(
         &mut self,
         scene: &Scene,
-        object: &Transform<Lanes<W>>,
+        (object, particles): (&Transform<Lanes<W>>, &Particles<W>),
         other: &Other<'_, W>,
         narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,
@@ -291,8 +306,17 @@ impl<const W: usize> Assembly<W> {
                 present: contact.present,
                 gap,
             });
-            ncp.contacts
-                .push(row(&self.scaling, object, other, contact, gap));
+            let mut row = row(&self.scaling, object, other, contact, gap);
+            if let Some(slip) = other.creep {
+                let least = ncp
+                    .feet
+                    .iter()
+                    .fold(Lanes::ZERO, |sum, foot| sum + foot.bound);
+                let pressed = pressed_before(particles, key).max(least * LEAST_LOAD);
+                let bound = (row.mu * pressed).max(Lanes::splat(LEAST_BOUND));
+                row.creep = contact.present.zero_unless(slip / bound);
+            }
+            ncp.contacts.push(row);
         }
     }
 
@@ -396,5 +420,24 @@ fn row<const W: usize>(
         nd: Lanes::ZERO,
         td: Lanes::ZERO,
         mu: keep(other.mu),
+        creep: Lanes::ZERO,
     }
+}
+
+/// Speed of an object, mass-normalised (m/s).
+#[inline(always)]
+fn speed<const W: usize>(Twist { vx, vy, omega }: &Twist<Lanes<W>>, rho: f64) -> Lanes<W> {
+    let turn = *omega * rho;
+    (*vx * *vx + *vy * *vy + turn * turn).sqrt()
+}
+
+/// Normal impulse over m of the contact `key` in the step before; 0 where it did not press.
+#[inline(always)]
+fn pressed_before<const W: usize>(particles: &Particles<W>, key: f64) -> Lanes<W> {
+    let mut pressed = Lanes::ZERO;
+    for slot in &particles.warm.contacts {
+        let same = !(slot.key - key).abs().gt(Lanes::ZERO);
+        pressed = same.select(slot.normal, pressed);
+    }
+    pressed
 }

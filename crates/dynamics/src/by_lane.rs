@@ -75,10 +75,12 @@ impl<const W: usize> Pushers<'_, W> {
                 fixels,
             } => {
                 let beside: Vec<_> = self.fixel_offsets(chunk).iter().map(alone).collect();
+                let creep: Vec<_> = self.creep(chunk).into_iter().map(alone).collect();
                 let offsets = Offsets {
                     pusher: &[alone(&offsets.pusher[chunk])],
                     fixels: &beside,
                     growth: &[Lanes([offsets.growth[chunk].0[lane]])],
+                    creep: &creep,
                 };
                 then(&Pushers::Offset {
                     pusher: *pusher,

@@ -29,8 +29,8 @@ impl PusherMotion {
     }
 }
 
-/// Where pusher and fixels stand beside the poses that the input and the scene give, and how much
-/// larger the object is than its shape, particle by particle.
+/// Where pusher and fixels stand beside the poses that the input and the scene give, how much larger the
+/// object is than its shape, and how contacts creep, particle by particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
     /// Offset of the pusher (m), chunk by chunk.
@@ -40,6 +40,9 @@ pub struct Offsets<'a, const W: usize> {
     /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
     /// smaller by that.
     pub growth: &'a [Lanes<W>],
+    /// At which share of the object's speed contacts with pusher and fixels slip where friction comes to its
+    /// bound (docs/method.md (50)), chunk by chunk; empty where none creeps.
+    pub creep: &'a [[Lanes<W>; 2]],
 }
 
 /// What drives one step.

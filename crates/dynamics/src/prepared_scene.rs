@@ -83,6 +83,8 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
     /// By how much the object is larger than its shape (m).
     pub growth: Lanes<W>,
+    /// How contacts with pusher and fixels creep; `None` where they do not.
+    pub creep: Option<&'a [Lanes<W>; 2]>,
 }
 
 /// The pusher of every chunk of particles in one step, and where the fixels stand.
@@ -168,6 +170,15 @@ impl<const W: usize> Pushers<'_, W> {
                 offsets, fixels, ..
             } => &offsets.fixels[chunk * fixels..][..*fixels],
             _ => &[],
+        }
+    }
+
+    /// How contacts of one chunk creep, with the pusher and with fixels; `None` where they do not.
+    #[inline(always)]
+    pub fn creep(&self, chunk: usize) -> Option<&[Lanes<W>; 2]> {
+        match self {
+            Self::Offset { offsets, .. } => offsets.creep.get(chunk),
+            _ => None,
         }
     }
 

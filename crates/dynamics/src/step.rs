@@ -121,12 +121,12 @@ impl Dynamics {
         work.pushers = contexts;
     }
 
-    /// The same for particles whose pusher and fixels stand beside the given poses, and whose object
-    /// is larger than its shape, each by its own `offsets`.
+    /// The same for particles whose pusher and fixels stand beside the given poses, whose object is larger
+    /// than its shape, and whose contacts creep, each by its own `offsets`.
     ///
     /// # Panics
-    /// If there is not one offset of the pusher and one growth for each chunk of particles, and one
-    /// offset of each fixel.
+    /// If there is not one offset of the pusher, one growth and one creep, or none at all, for each chunk of
+    /// particles, and one offset of each fixel.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -140,6 +140,8 @@ impl Dynamics {
         assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
         assert_eq!(offsets.growth.len(), chunks, "a growth for each chunk");
+        let creep = offsets.creep.len();
+        assert!(creep == chunks || creep == 0, "a creep for each chunk");
         let pushers = Pushers::Offset {
             pusher: SharedPusher::new(&self.scene, input.pusher.as_ref()),
             offsets,

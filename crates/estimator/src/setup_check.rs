@@ -279,5 +279,6 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     numbers.push(("uncertainty.latency", unknown.latency, Share, Unit::Second));
     let spread = unknown.force_spread;
     numbers.push(("uncertainty.force_spread", spread, Share, Unit::None));
+    numbers.push(("uncertainty.creep", unknown.creep, Share, Unit::None));
     numbers
 }

@@ -37,6 +37,9 @@ pub struct Uncertainty {
     pub camera_noise: f64,
     /// Mean time by which the camera lags more than the scene says (s).
     pub latency: f64,
+    /// Share of the object's speed at which a contact slips where friction comes to its bound, the median of a
+    /// log-normal prior (docs/method.md (50)); 0 is Coulomb's law.
+    pub creep: f64,
     /// Gap at which object and body may touch already, beside the errors of their poses and shapes (m).
     pub touch_gap: f64,
 }
@@ -62,6 +65,7 @@ impl Default for Uncertainty {
             roughness: 0.5,
             camera_noise: 0.3,
             latency: 0.03,
+            creep: 0.0,
             touch_gap: 5e-4,
         }
     }

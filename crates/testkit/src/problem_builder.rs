@@ -213,6 +213,7 @@ impl ProblemBuilder {
             arm,
             gap,
             mu,
+            creep: 0.0,
             surface_velocity,
             on_pusher: other == Other::Pusher,
         }

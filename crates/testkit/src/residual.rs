@@ -8,7 +8,7 @@
 //! ```text
 //! twist   m v⁺ − m v − Σ impulses − p_app,  (J ω⁺ − J ω − Σ torques − τ_app)/ρ
 //! gap     min(p_n, m (n·(v_p − u + y d) + ψ/h))      v_p = v⁺ + ω⁺ ẑ × r, y d on pusher contacts only
-//! slip    p_t − clamp(p_t − m t·(v_p − u + y d), ±μ max(p_n, 0))
+//! slip    p_t − clamp(p_t − m (t·(v_p − u + y d) + c p_t), ±μ max(p_n, 0))
 //! foot    |p_k − proj_{b_k}(p_k − m s_k)|
 //! stall   min(F_stall h − F, m y); without a stall limit m y
 //! ```
@@ -156,7 +156,8 @@ fn contact_rows(
     let (normal, tangential) = (solution.normal[i], solution.tangential[i]);
     let relative = relative_velocity(problem, solution, contact);
     let gap_speed = dot(contact.normal, relative) + contact.gap / problem.h;
-    let slip = dot(left(contact.normal), relative);
+    // a contact that creeps slips at c p_t less than its friction resists
+    let slip = dot(left(contact.normal), relative) + contact.creep * tangential;
     let limit = contact.mu * normal.max(0.0);
     let gap_row = normal.min(problem.mass * gap_speed);
     let slip_row = tangential - (tangential - problem.mass * slip).min(limit).max(-limit);
@@ -219,6 +220,7 @@ fn numbers(problem: &StepProblem, solution: &StepSolution) -> Vec<f64> {
             c.arm[1],
             c.gap,
             c.mu,
+            c.creep,
             c.surface_velocity[0],
             c.surface_velocity[1],
         ]);

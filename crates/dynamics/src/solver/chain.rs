@@ -224,7 +224,7 @@ impl<const W: usize> Solver<W> {
     fn solve_unsolved(
         &mut self,
         source: &impl Source<W>,
-        ncps: &[Ncp<W>],
+        ncps: &mut [Ncp<W>],
         z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
@@ -251,8 +251,9 @@ impl<const W: usize> Solver<W> {
                     still_unsolved.push(end.index);
                 }
             });
-        // search over modes, compliant problem
+        // search over modes, compliant problem, of contacts that do not creep
         for &LaneIndex { chunk, lane } in &self.still_unsolved {
+            ncps[chunk].stop_creep(lane);
             let (ncp, report) = (&ncps[chunk], &mut reports[chunk][lane]);
             let solution = self.fallback.solve(ncp, lane, self.limit, report);
             z[chunk].unpack_lane(ncp, lane, solution, 0);

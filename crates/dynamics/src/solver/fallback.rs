@@ -53,8 +53,8 @@ impl Default for Fallback {
 }
 
 impl Fallback {
-    /// Solves one lane of `ncp` with at most so much work; the result is on the lane's own contacts,
-    /// without padding rows.
+    /// Solves one lane of `ncp`, none of whose contacts creeps, with at most so much work; the result is on the
+    /// lane's own contacts, without padding rows.
     #[inline(never)]
     pub fn solve<const W: usize>(
         &mut self,

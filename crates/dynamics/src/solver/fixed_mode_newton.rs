@@ -87,9 +87,10 @@ impl<const W: usize> FixedModeNewton<W> {
         for (i, (row, (mode, (p_n, p_t)))) in ncp.contacts.iter().zip(points).enumerate() {
             let velocity = ContactVelocity {
                 gap: row.gap_velocity(&z.v, z.pusher_yield) + ncp.compliance * *p_n,
-                slip: row.slip_velocity(&z.v, z.pusher_yield),
+                slip: row.resisted_slip(&z.v, z.pusher_yield, *p_t),
             };
-            let step = ContactStep::in_mode([*p_n, *p_t], &velocity, *mode, &penalty);
+            let step =
+                ContactStep::in_mode([*p_n, *p_t], &velocity, *mode, &penalty).creeping(row.creep);
             self.linearised.contacts.push((i, step));
         }
         for k in 0..3 {

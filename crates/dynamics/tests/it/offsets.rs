@@ -99,6 +99,7 @@ fn lanes_step_as_alone(level: Level) {
             pusher: &pushers,
             fixels: &places,
             growth: &[Lanes::ZERO],
+            creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -155,6 +156,7 @@ fn an_object_that_has_grown_meets_larger_discs() {
             pusher: &[[Lanes::ZERO; 2]],
             fixels: &[[Lanes::ZERO; 2]; 2],
             growth: &grown,
+            creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -172,4 +174,67 @@ fn an_object_that_has_grown_meets_larger_discs() {
     }
     let moved: Vec<f64> = alone.iter().map(|particle| particle.pose.x).collect();
     assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
+}
+
+/// c = share · ‖v‖ / (μ p_n) of the step before (docs/method.md (50)); eight lanes of shares of their own do as each
+/// alone.
+#[test]
+fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
+    const LANES: usize = 8;
+    let share = |i: usize| 0.1 * i as f64;
+    let dynamics = Dynamics::new(scene([[0.0; 2]; 2]));
+    let mut chunk = [Particles::<LANES>::default()];
+    (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
+    let shares = [[0, 1].map(|_| Lanes(std::array::from_fn(share)))];
+    let mut work = StepWork::<LANES>::default();
+    let mut one = Particles::<1>::default();
+    one.set(0, &Particle::default(), &FRICTION);
+    let mut alone = vec![[one]; LANES];
+    let mut own_work = StepWork::<1>::default();
+    let rho: f64 = (2.1e-4_f64 / 0.5).sqrt();
+    let mut checked = 0;
+    for step in 0..30 {
+        let before: Vec<(f64, f64)> = (0..LANES)
+            .map(|i| {
+                let Twist { vx, vy, omega } = chunk[0].get(i).twist;
+                let speed = (vx * vx + vy * vy + omega * omega * rho * rho).sqrt();
+                let pressed = match step {
+                    0 => 0.0,
+                    _ => work.normal_impulse(i, Body::Pusher),
+                };
+                (speed, pressed)
+            })
+            .collect();
+        let offsets = Offsets {
+            pusher: &[[Lanes::ZERO; 2]],
+            fixels: &[[Lanes::ZERO; 2]; 2],
+            growth: &[Lanes::ZERO],
+            creep: &shares,
+        };
+        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
+        for (i, particle) in alone.iter_mut().enumerate() {
+            let offsets = Offsets {
+                pusher: &[[Lanes::ZERO; 2]],
+                fixels: &[[Lanes::ZERO; 2]; 2],
+                growth: &[Lanes::ZERO],
+                creep: &[[Lanes([share(i)]); 2]],
+            };
+            dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, particle, &mut own_work);
+            assert_eq!(chunk[0].get(i), particle[0].get(0), "lane {i}, step {step}");
+            // where one contact with the pusher carried more than the least load
+            let problem = work.problem(i);
+            let contacts: Vec<_> = problem.contacts.iter().filter(|c| c.on_pusher).collect();
+            let (speed, pressed) = before[i];
+            if let ([contact], true) = (&contacts[..], pressed > 0.02) {
+                let expected = share(i) * speed / (FRICTION.mu_p * pressed);
+                assert!(
+                    (contact.creep - expected).abs() <= 1e-12 * expected,
+                    "lane {i}, step {step}: {} instead of {expected}",
+                    contact.creep
+                );
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 100, "{checked}");
 }

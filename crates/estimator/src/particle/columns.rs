@@ -16,7 +16,7 @@ const SINGLE: usize = 11;
 const FLAGS_PER_FIXEL: usize = 5;
 
 /// Columns of contact mode that do not belong to a fixel.
-const UNKNOWNS: usize = 14;
+const UNKNOWNS: usize = 16;
 
 /// Columns of contact mode for each fixel.
 const PER_FIXEL: usize = SensorBelief::LEN + 2;
@@ -180,6 +180,12 @@ impl Columns {
     /// Logarithm by which the random force is larger than told (contact mode).
     pub fn force(&self) -> usize {
         self.unknowns() + 13
+    }
+
+    /// Logarithms, in spreads, by which contacts creep more than told: with the pusher, with fixels (contact
+    /// mode).
+    pub fn creep(&self) -> usize {
+        self.unknowns() + 14
     }
 
     /// log-likelihood of what is known of the latest row without the camera: the pusher's place and

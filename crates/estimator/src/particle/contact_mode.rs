@@ -22,6 +22,8 @@ const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
 const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
 const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
 const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
+/// Behind those of all fixels.
+const CREEP_PAIR: u32 = 1 << 21;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -79,6 +81,10 @@ impl Propagation {
         self.normals_of(draw, LATENCY_PAIR, block);
         self.draw_latency(transition, plan, block);
         self.draw_force_factor(transition, block);
+        if transition.setup.uncertainty.creep > 0.0 {
+            self.normals_of(draw, CREEP_PAIR, block);
+            self.draw_creep(transition, plan, block);
+        }
         if let Some(velocity) = plan.steady {
             self.normals_of(draw, EXCHANGE_PAIR, block);
             self.exchange_latency(transition, plan, velocity, block);
@@ -219,6 +225,7 @@ impl Propagation {
             pusher: &self.pusher_offsets,
             fixels: &self.fixel_offsets,
             growth: &self.growth,
+            creep: &self.creep,
         };
         let particles = &mut self.particles[..chunks];
         let dynamics = &transition.dynamics;

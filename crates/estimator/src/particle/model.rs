@@ -24,6 +24,9 @@ use crate::setup::{Camera, Setup};
 /// reinitialised around it (docs/method.md (27)).
 const COLLAPSED: f64 = -6.0;
 
+/// Number of a particle's first draw for how contacts creep: behind those for all fixels.
+const CREEP_NUMBER: u32 = 1 << 20;
+
 /// The model of one setup, started at one pose.
 ///
 /// A new sensor is one more field of [`Observation`] and one more term of
@@ -140,6 +143,8 @@ impl<'o> ContactModel<'o> {
         block.column_mut(columns.roughness())[i] = prior.roughness * normals[10];
         block.column_mut(columns.growth())[i] = normals[11];
         block.column_mut(columns.force())[i] = prior.force_spread * draw.normal(particle, 3);
+        let creep = draw.normals::<2>(particle, CREEP_NUMBER);
+        write(block, columns.creep(), i, creep.each_ref());
         let [a, b] = [normals[12], normals[13]];
         block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
         for k in 0..3 {

@@ -30,6 +30,8 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
         columns.growth(),
         columns.roughness(),
         columns.force(),
+        columns.creep(),
+        columns.creep() + 1,
     ];
     let fixels = (0..columns.fixels()).map(move |j| columns.fixel_offset(j));
     let linear = poses

@@ -54,6 +54,8 @@ pub struct Propagation {
     pub(super) fixel_offsets: Vec<[Column; 2]>,
     /// How much larger than its shape each particle's object is (contact mode).
     pub(super) growth: Vec<Column>,
+    /// How contacts with pusher and fixels creep; empty where none does (contact mode).
+    pub(super) creep: Vec<[Column; 2]>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
     /// Particles that nothing has come near yet: no force disturbs them (contact mode).
@@ -106,6 +108,7 @@ impl Default for Propagation {
             pusher_offsets: Vec::new(),
             fixel_offsets: Vec::new(),
             growth: Vec::new(),
+            creep: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             untouched: [Mask::splat(false); CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],

@@ -15,6 +15,15 @@ use crate::particle::step_plan::StepPlan;
 /// as told: copies of a particle are to differ.
 const OFFSET_STEP: f64 = 0.1;
 
+/// Share of its spread by which creep wanders.
+const CREEP_STEP: f64 = 0.1;
+
+/// Standard deviation of the logarithm by which contacts creep more than told.
+const CREEP_SPREAD: f64 = 0.7;
+
+/// Spreads within which that logarithm lies: what moves it knows no bounds.
+const MOST_CREEP: f64 = 3.0;
+
 /// Share of its mean by which the camera's latency wanders.
 const LATENCY_STEP: f64 = 0.1;
 
@@ -85,6 +94,29 @@ impl Propagation {
         for (i, _) in block.particles() {
             if !is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i) {
                 block.column_mut(columns.force())[i] = spread * self.normals[3][i];
+            }
+        }
+    }
+
+    /// How contacts creep, with the pusher and with fixels: drawn anew until these come near.
+    pub(super) fn draw_creep(
+        &self,
+        Transition { columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        for (i, _) in block.particles() {
+            let seen = &block.as_block();
+            let fixel = (0..columns.fixels()).any(|j| is_set(seen, columns.fixel_was_near(j), i));
+            let pusher = is_set(seen, Columns::PUSHER_WAS_NEAR, i);
+            for (k, near) in [pusher, fixel].into_iter().enumerate() {
+                let step = match (near, plan.unknowns_wander()) {
+                    (false, _) => 1.0,
+                    (true, true) => CREEP_STEP,
+                    (true, false) => continue,
+                };
+                let creep = &mut block.column_mut(columns.creep() + k)[i];
+                *creep = wandered(*creep, step, self.normals[k][i]);
             }
         }
     }
@@ -191,7 +223,8 @@ impl Propagation {
         }
     }
 
-    /// Where each particle's pusher and fixels stand beside their poses, in all substeps.
+    /// Where each particle's pusher and fixels stand beside their poses, and how contacts creep, in all
+    /// substeps.
     pub(super) fn load_offsets(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -206,6 +239,7 @@ impl Propagation {
         self.pusher_offsets.clear();
         self.fixel_offsets.clear();
         self.growth.clear();
+        self.creep.clear();
         for chunk in 0..block.len().div_ceil(LANES) {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
@@ -220,6 +254,16 @@ impl Propagation {
             let mut growth = Lanes::ZERO;
             load_columns(block, columns.growth(), chunk, [&mut growth]);
             self.growth.push(growth * (rougher * unsure.outline));
+            if unsure.creep > 0.0 {
+                let most = Lanes::splat(MOST_CREEP);
+                let mut creep = [Lanes::ZERO; 2];
+                load_columns(block, columns.creep(), chunk, creep.each_mut());
+                let share = |spreads: Column| {
+                    let spreads = spreads.max(-most).min(most);
+                    (spreads * CREEP_SPREAD).exp() * unsure.creep
+                };
+                self.creep.push(creep.map(share));
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 mod belief;
 mod common;
 mod contact_mode;
+mod creep;
 mod extended_kalman;
 mod fast_pusher;
 mod friction_parameters;

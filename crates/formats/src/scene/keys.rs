@@ -73,6 +73,7 @@ pub(super) const TABLES: [(&str, &[&str]); 11] = [
             "variation_length",
             "force_std",
             "force_spread",
+            "creep",
             "pusher_offset",
             "pusher_lag",
             "fixel_position",

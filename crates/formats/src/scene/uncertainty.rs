@@ -61,6 +61,12 @@ const FORCE_SPREAD: Quantity = Quantity::new(
     Unit::None,
     Rule::Share,
 );
+const CREEP: Quantity = Quantity::new(
+    "creep",
+    "the share of the object's speed at which a contact slips where friction comes to its bound",
+    Unit::None,
+    Rule::Share,
+);
 const PUSHER_OFFSET: Quantity = Quantity::new(
     "pusher_offset",
     "the standard deviation of the offset between the pusher's frame and the camera's",
@@ -126,6 +132,7 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
         variation_length: number(&VARIATION_LENGTH, default.variation_length)?,
         force_std: number(&FORCE_STD, default.force_std)?,
         force_spread: number(&FORCE_SPREAD, default.force_spread)?,
+        creep: number(&CREEP, default.creep)?,
         pusher_offset: number(&PUSHER_OFFSET, default.pusher_offset)?,
         pusher_lag: number(&PUSHER_LAG, default.pusher_lag)?,
         fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,

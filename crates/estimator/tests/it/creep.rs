@@ -1,0 +1,86 @@
+//! Contacts that creep in contact mode, as particles meet them before anything is learned of it.
+
+use std::sync::Mutex;
+
+use crate::common::{log, setup};
+use stickslip::dynamics::{Pose, StepProblem, StepSolution, Twist};
+use stickslip::{Observer, RunOptions, SolvedStep, run_observed};
+
+/// Particles of a block.
+const BLOCK: usize = 64;
+
+/// Median of κ.
+const TOLD: f64 = 0.2;
+
+/// Every step, particle after particle.
+#[derive(Debug, Default)]
+struct Steps(Mutex<Vec<(StepProblem, StepSolution)>>);
+
+impl Observer for Steps {
+    fn on_step(&self, step: &SolvedStep<'_>) {
+        let mut steps = self.0.lock().expect("no test panicked here");
+        steps.push((step.problem.clone(), step.solution.clone()));
+    }
+}
+
+/// κ of (50), from what a particle's step states and how its step before ended; `None` where it did not press
+/// with one contact in both, or slower than 1 mm/s.
+fn share(
+    rho: f64,
+    (_, before): &(StepProblem, StepSolution),
+    (now, _): &(StepProblem, StepSolution),
+) -> Option<f64> {
+    let ([contact], [pressed]) = (&now.contacts[..], &before.normal[..]) else {
+        return None;
+    };
+    let Twist { vx, vy, omega } = before.twist;
+    let speed = (vx * vx + vy * vy + rho * rho * omega * omega).sqrt();
+    let carried: f64 = 0.1 * now.feet.iter().map(|foot| foot.bound).sum::<f64>();
+    (*pressed > carried && speed > 1e-3).then(|| contact.creep * contact.mu * pressed / speed)
+}
+
+/// ln κ of particles that a pusher moves in the dark, over many seeds.
+fn logarithms(creep: f64) -> Vec<f64> {
+    let mut setup = setup(&[]);
+    setup.uncertainty.creep = creep;
+    let rho = setup.scene.object.gyration_radius();
+    let object = Pose::new(0.0, 0.0, 0.0);
+    let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
+    let log = log(60, |time| (time < 0.5).then_some(object), pusher);
+    let mut all = Vec::new();
+    for seed in 0..20 {
+        let options = RunOptions {
+            particles: BLOCK,
+            seed,
+            ..RunOptions::default()
+        };
+        let steps = Steps::default();
+        run_observed(&setup, &log, &options, &steps, &mut |_| ()).expect("a run");
+        let steps = steps.0.into_inner().expect("no test panicked here");
+        // one step of each particle: the first that tells
+        let rows: Vec<_> = steps.chunks(BLOCK).collect();
+        let told = |i: usize| {
+            rows.windows(2)
+                .find_map(|rows| share(rho, &rows[0][i], &rows[1][i]))
+        };
+        all.extend((0..BLOCK).filter_map(told));
+    }
+    all.into_iter().map(libm::log).collect()
+}
+
+#[test]
+fn share_at_which_contacts_creep_is_log_normal() {
+    let mut found = logarithms(TOLD);
+    let n = found.len();
+    assert!(n > 600, "{n} particles");
+    found.sort_by(f64::total_cmp);
+    let [low, median, high] = [0.1587, 0.5, 0.8413].map(|q| found[(q * n as f64) as usize]);
+    // standard errors: 1.25 and 1.1 times 0.7/√n
+    assert!((median - libm::log(TOLD)).abs() < 0.12, "{median}");
+    assert!((0.5 * (high - low) - 0.7).abs() < 0.1, "{low} {high}");
+}
+
+#[test]
+fn no_contact_creeps_by_default() {
+    assert!(logarithms(0.0).iter().all(|x| *x == f64::NEG_INFINITY));
+}
