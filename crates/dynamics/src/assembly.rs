@@ -312,7 +312,8 @@ impl<const W: usize> Assembly<W> {
                     .feet
                     .iter()
                     .fold(Lanes::ZERO, |sum, foot| sum + foot.bound);
-                let pressed = pressed_before(particles, key).max(least * LEAST_LOAD);
+                let [p_n, _] = remembered(particles, key);
+                let pressed = p_n.max(least * LEAST_LOAD);
                 let bound = (row.mu * pressed).max(Lanes::splat(LEAST_BOUND));
                 row.creep = contact.present.zero_unless(slip / bound);
             }
@@ -331,14 +332,9 @@ impl<const W: usize> Assembly<W> {
         p.normal.clear();
         p.tangential.clear();
         for row in &self.rows {
-            let (mut p_n, mut p_t) = (Lanes::ZERO, Lanes::ZERO);
-            for slot in &warm.contacts {
-                let same = row.present & !(slot.key - row.key).abs().gt(Lanes::ZERO);
-                p_n = same.select(slot.normal, p_n);
-                p_t = same.select(slot.tangential, p_t);
-            }
-            p.normal.push(p_n);
-            p.tangential.push(p_t);
+            let [p_n, p_t] = remembered(particles, row.key);
+            p.normal.push(row.present.zero_unless(p_n));
+            p.tangential.push(row.present.zero_unless(p_t));
         }
     }
 
@@ -431,13 +427,14 @@ fn speed<const W: usize>(Twist { vx, vy, omega }: &Twist<Lanes<W>>, rho: f64) ->
     (*vx * *vx + *vy * *vy + turn * turn).sqrt()
 }
 
-/// Normal impulse over m of the contact `key` in the step before; 0 where it did not press.
+/// Normal and tangential impulse over m of the contact `key` in the step before; 0 where it did not press.
 #[inline(always)]
-fn pressed_before<const W: usize>(particles: &Particles<W>, key: f64) -> Lanes<W> {
-    let mut pressed = Lanes::ZERO;
+fn remembered<const W: usize>(particles: &Particles<W>, key: f64) -> [Lanes<W>; 2] {
+    let (mut p_n, mut p_t) = (Lanes::ZERO, Lanes::ZERO);
     for slot in &particles.warm.contacts {
         let same = !(slot.key - key).abs().gt(Lanes::ZERO);
-        pressed = same.select(slot.normal, pressed);
+        p_n = same.select(slot.normal, p_n);
+        p_t = same.select(slot.tangential, p_t);
     }
-    pressed
+    [p_n, p_t]
 }

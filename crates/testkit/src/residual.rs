@@ -156,7 +156,7 @@ fn contact_rows(
     let (normal, tangential) = (solution.normal[i], solution.tangential[i]);
     let relative = relative_velocity(problem, solution, contact);
     let gap_speed = dot(contact.normal, relative) + contact.gap / problem.h;
-    // a contact that creeps slips at c p_t less than its friction resists
+    // what friction resists: the slip, and c p_t where the contact creeps
     let slip = dot(left(contact.normal), relative) + contact.creep * tangential;
     let limit = contact.mu * normal.max(0.0);
     let gap_row = normal.min(problem.mass * gap_speed);

@@ -2,12 +2,9 @@
 
 use std::sync::Mutex;
 
-use crate::common::{log, setup};
-use stickslip::dynamics::{Pose, StepProblem, StepSolution, Twist};
-use stickslip::{Observer, RunOptions, SolvedStep, run_observed};
-
-/// Particles of a block.
-const BLOCK: usize = 64;
+use crate::common::{BLOCK, run_into_the_dark, setup};
+use stickslip::dynamics::{StepProblem, StepSolution, Twist};
+use stickslip::{Observer, SolvedStep};
 
 /// Median of κ.
 const TOLD: f64 = 0.2;
@@ -44,18 +41,10 @@ fn logarithms(creep: f64) -> Vec<f64> {
     let mut setup = setup(&[]);
     setup.uncertainty.creep = creep;
     let rho = setup.scene.object.gyration_radius();
-    let object = Pose::new(0.0, 0.0, 0.0);
-    let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
-    let log = log(60, |time| (time < 0.5).then_some(object), pusher);
     let mut all = Vec::new();
     for seed in 0..20 {
-        let options = RunOptions {
-            particles: BLOCK,
-            seed,
-            ..RunOptions::default()
-        };
         let steps = Steps::default();
-        run_observed(&setup, &log, &options, &steps, &mut |_| ()).expect("a run");
+        run_into_the_dark(&setup, seed, &steps);
         let steps = steps.0.into_inner().expect("no test panicked here");
         // one step of each particle: the first that tells
         let rows: Vec<_> = steps.chunks(BLOCK).collect();

@@ -2,12 +2,9 @@
 
 use std::sync::Mutex;
 
-use crate::common::{RATE, log, setup};
-use stickslip::dynamics::{Particles, Pose, StepInput};
-use stickslip::{Observer, RunOptions, SolvedStep, run_observed};
-
-/// Particles of a block, which are shown in one piece.
-const BLOCK: usize = 64;
+use crate::common::{BLOCK, run_into_the_dark, setup};
+use stickslip::dynamics::{Particles, StepInput};
+use stickslip::{Observer, SolvedStep};
 
 /// Of the first step in which a force acts on a particle: the impulse along x, as a share of its μ_s m g h.
 #[derive(Debug)]
@@ -34,20 +31,10 @@ impl Observer for FirstForce {
 fn mean_square(force_spread: f64) -> f64 {
     let mut setup = setup(&[]);
     setup.uncertainty.force_spread = force_spread;
-    let object = Pose::new(0.0, 0.0, 0.0);
-    let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
-    // what is seen would tell of the force
-    let log = log(60, |time| (time < 0.5).then_some(object), pusher);
-    assert_eq!(log.time[1], 1.0 / RATE, "one draw of the force a row");
     let mut squares = Vec::new();
     for seed in 0..100 {
-        let options = RunOptions {
-            particles: BLOCK,
-            seed,
-            ..RunOptions::default()
-        };
         let force = FirstForce(Mutex::new([0.0; BLOCK]));
-        run_observed(&setup, &log, &options, &force, &mut |_| ()).expect("a run");
+        run_into_the_dark(&setup, seed, &force);
         let shares = force.0.into_inner().expect("no test panicked here");
         squares.extend(shares.iter().filter(|x| **x != 0.0).map(|x| x * x));
     }

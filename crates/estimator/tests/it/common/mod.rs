@@ -1,6 +1,8 @@
 //! Scenes of discs that the tests of this crate share.
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
-use stickslip::{Camera, FilterSettings, Log, Setup, Tactile, Uncertainty};
+use stickslip::{
+    Camera, FilterSettings, Log, Observer, RunOptions, Setup, Tactile, Uncertainty, run_observed,
+};
 
 /// Frames per second (Hz).
 pub const RATE: f64 = 30.0;
@@ -69,4 +71,22 @@ pub fn log(
         time,
         ..Log::default()
     }
+}
+
+/// Particles of a block, which are shown in one piece.
+pub const BLOCK: usize = 64;
+
+/// One block of particles whose object at the origin a pusher comes to move after the camera went dark: what is
+/// seen would tell of what they do not know.
+pub fn run_into_the_dark(setup: &Setup, seed: u64, observer: &impl Observer) {
+    let object = Pose::new(0.0, 0.0, 0.0);
+    let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
+    let log = log(60, |time| (time < 0.5).then_some(object), pusher);
+    assert_eq!(log.time[1], 1.0 / RATE, "one draw of the force a row");
+    let options = RunOptions {
+        particles: BLOCK,
+        seed,
+        ..RunOptions::default()
+    };
+    run_observed(setup, &log, &options, observer, &mut |_| ()).expect("a run");
 }
