@@ -363,6 +363,9 @@ impl<const W: usize> Assembly<W> {
         let mut filled = Lanes::ZERO;
         for ((row, p_n), p_t) in self.rows.iter().zip(&p.normal).zip(&p.tangential) {
             let pressed = kept & p_n.gt(Lanes::ZERO);
+            if !pressed.any() {
+                continue;
+            }
             for (k, slot) in warm.contacts.iter_mut().enumerate() {
                 let here: Mask<W> = pressed & !(filled - k as f64).abs().gt(Lanes::ZERO);
                 slot.key = here.select(Lanes::splat(row.key), slot.key);

@@ -58,9 +58,9 @@ impl Edge {
 
     /// [`spans`](Self::spans), lane by lane.
     #[inline(always)]
-    pub fn spans_each<const W: usize>(&self, s: Lanes<W>, slack: Lanes<W>) -> Mask<W> {
+    pub fn spans_each<const W: usize>(&self, s: Lanes<W>, slack: f64) -> Mask<W> {
         let [before, after] = self.buried;
-        !s.lt(-slack - before) & !s.gt(slack + (self.length + after))
+        !s.lt(Lanes::splat(-slack - before)) & !s.gt(Lanes::splat(slack + (self.length + after)))
     }
 }
 

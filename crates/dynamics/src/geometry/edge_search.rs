@@ -30,7 +30,7 @@ pub(crate) struct EdgeSearch<'a, const W: usize> {
     /// Height below which an edge counts (m).
     pub limit: Lanes<W>,
     /// Width of the borders between features (m).
-    pub slack: Lanes<W>,
+    pub slack: f64,
 }
 
 /// What a scan over some edges tells.
@@ -76,7 +76,7 @@ impl<const W: usize> EdgeSearch<'_, W> {
         let radius = self.shape.bounding_radius();
         self.active
             & dot(self.centre, self.centre).lt(Lanes::splat(radius * radius))
-            & !scan.highest.gt(self.slack)
+            & !scan.highest.gt(Lanes::splat(self.slack))
     }
 
     /// Projects the centre onto the edges of the clusters that it may touch, or of all.
@@ -126,9 +126,17 @@ impl<const W: usize> EdgeSearch<'_, W> {
     /// edge of least penetration and those in a reflex corner with it.
     #[inline(always)]
     fn keep_way_out(&self, scan: &Scan<W>, projections: &mut [EdgeProjection<W>]) {
-        let edges = &self.shape.outline().edges;
+        // of what is before a face, the face opposite is behind
+        let inside = scan.behind & self.is_inside(scan);
+        if !inside.any() {
+            for at in projections {
+                at.present = at.present & !at.height.lt(Lanes::ZERO);
+            }
+            return;
+        }
 
         // the edge of least penetration, and whether the centre lies on another one
+        let edges = &self.shape.outline().edges;
         let mut depth = Lanes::splat(f64::NEG_INFINITY);
         let mut way = Lanes::splat(-1.0);
         let mut beside = Mask::splat(false);
@@ -145,14 +153,7 @@ impl<const W: usize> EdgeSearch<'_, W> {
 
         // a corner flush with one face may lie behind the next; what rests on a face that it faces
         // is outside
-        let asked = scan.behind & !beside;
-        let inside = asked
-            & if self.shape.parts().len() == 1 {
-                !scan.highest.gt(self.slack)
-            } else {
-                self.shape.contains(self.centre)
-            };
-
+        let inside = inside & !beside;
         for k in 0..projections.len() {
             let edge = projections[k].edge;
             let mut out = is(way, edge);
@@ -164,6 +165,16 @@ impl<const W: usize> EdgeSearch<'_, W> {
             }
             let at = &mut projections[k];
             at.present = at.present & (!at.height.lt(Lanes::ZERO) | inside & out);
+        }
+    }
+
+    /// Where the centre is inside the shape, as the scanned edges or its parts tell.
+    #[inline(always)]
+    fn is_inside(&self, scan: &Scan<W>) -> Mask<W> {
+        if self.shape.parts().len() == 1 {
+            !scan.highest.gt(Lanes::splat(self.slack))
+        } else {
+            self.shape.contains(self.centre)
         }
     }
 }

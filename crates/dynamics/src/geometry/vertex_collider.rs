@@ -79,7 +79,7 @@ impl<const W: usize> VertexCollider<'_, W> {
             centre,
             active: self.active & near,
             limit: self.pair.search_distance + radius,
-            slack: Lanes::splat(self.pair.slack),
+            slack: self.pair.slack,
         }
     }
 

@@ -139,6 +139,10 @@ fn foot_violation<const W: usize>(
     let trial = [p[0] - slip[0], p[1] - slip[1]];
     let size = square(&trial);
     let slides = size.gt(bound * bound);
+    // a root only where some foot slides
+    if !slides.any() {
+        return [-slip[0], -slip[1]];
+    }
     let shrink = bound * size.inverse_sqrt();
     [
         slides.select((-p[0]).add_mul(shrink, trial[0]), -slip[0]),

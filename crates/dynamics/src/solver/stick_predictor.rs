@@ -60,6 +60,13 @@ impl<const W: usize> FootStep<W> {
         stiffness: Lanes<W>,
     ) -> Self {
         let stick = [-slip[0] * stiffness, -slip[1] * stiffness];
+        // a root and a division only where some foot slides
+        if !slides.any() {
+            return Self {
+                r: stick,
+                k: [[stiffness, Lanes::ZERO], [Lanes::ZERO, stiffness]],
+            };
+        }
         let StickPredictor {
             z,
             square: z_squared,
