@@ -19,7 +19,7 @@ const OFFSET_STEP: f64 = 0.1;
 const CREEP_STEP: f64 = 0.1;
 
 /// Standard deviation of the logarithm by which contacts creep more than told.
-const CREEP_SPREAD: f64 = 0.7;
+const CREEP_SPREAD: f64 = 1.2;
 
 /// Spreads within which that logarithm lies: what moves it knows no bounds.
 const MOST_CREEP: f64 = 3.0;

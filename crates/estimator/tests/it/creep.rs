@@ -6,8 +6,9 @@ use crate::common::{BLOCK, run_into_the_dark, setup};
 use stickslip::dynamics::{StepProblem, StepSolution, Twist};
 use stickslip::{Observer, SolvedStep};
 
-/// Median of κ.
+/// Median of κ, and the spread of its logarithm.
 const TOLD: f64 = 0.2;
+const SPREAD: f64 = 1.2;
 
 /// Every step, particle after particle.
 #[derive(Debug, Default)]
@@ -64,12 +65,12 @@ fn share_at_which_contacts_creep_is_log_normal() {
     assert!(n > 600, "{n} particles");
     found.sort_by(f64::total_cmp);
     let [low, median, high] = [0.1587, 0.5, 0.8413].map(|q| found[(q * n as f64) as usize]);
-    // standard errors: 1.25 and 1.1 times 0.7/√n
-    assert!((median - libm::log(TOLD)).abs() < 0.12, "{median}");
-    assert!((0.5 * (high - low) - 0.7).abs() < 0.1, "{low} {high}");
+    // standard errors: 1.25 and 1.1 times the spread over √n
+    assert!((median - libm::log(TOLD)).abs() < 0.2, "{median}");
+    assert!((0.5 * (high - low) - SPREAD).abs() < 0.17, "{low} {high}");
 }
 
 #[test]
-fn no_contact_creeps_by_default() {
+fn no_contact_creeps_where_none_is_told_to() {
     assert!(logarithms(0.0).iter().all(|x| *x == f64::NEG_INFINITY));
 }
