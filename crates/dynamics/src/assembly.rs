@@ -2,6 +2,7 @@
 
 use stickslip_lanes::{Lanes, Mask};
 
+use crate::creep::{creep, speed};
 use crate::friction::Friction;
 use crate::geometry::contact::Contact;
 use crate::geometry::narrow_phase::NarrowPhase;
@@ -30,13 +31,6 @@ const STILL: f64 = 1e-9;
 /// Cosine of the angle between the pusher's motion and a contact normal below which it is not the
 /// motion that presses.
 const PRESSING: f64 = 0.5;
-
-/// Share of the feet's friction with which a contact that creeps counts as pressed at least: what a new contact
-/// will carry is not known.
-const LEAST_LOAD: f64 = 0.1;
-
-/// Least friction that a contact which creeps comes to (m/s).
-const LEAST_BOUND: f64 = 1e-9;
 
 /// Which contact each row of a chunk's problems stands for.
 #[derive(Clone, Debug, Default)]
@@ -308,14 +302,10 @@ impl<const W: usize> Assembly<W> {
             });
             let mut row = row(&self.scaling, object, other, contact, gap);
             if let Some(slip) = other.creep {
-                let least = ncp
-                    .feet
-                    .iter()
-                    .fold(Lanes::ZERO, |sum, foot| sum + foot.bound);
                 let [p_n, _] = remembered(particles, key);
-                let pressed = p_n.max(least * LEAST_LOAD);
-                let bound = (row.mu * pressed).max(Lanes::splat(LEAST_BOUND));
-                row.creep = contact.present.zero_unless(slip / bound);
+                row.creep = contact
+                    .present
+                    .zero_unless(creep(slip, row.mu, p_n, &ncp.feet));
             }
             ncp.contacts.push(row);
         }
@@ -421,13 +411,6 @@ fn row<const W: usize>(
         mu: keep(other.mu),
         creep: Lanes::ZERO,
     }
-}
-
-/// Speed of an object, mass-normalised (m/s).
-#[inline(always)]
-fn speed<const W: usize>(Twist { vx, vy, omega }: &Twist<Lanes<W>>, rho: f64) -> Lanes<W> {
-    let turn = *omega * rho;
-    (*vx * *vx + *vy * *vy + turn * turn).sqrt()
 }
 
 /// Normal and tangential impulse over m of the contact `key` in the step before; 0 where it did not press.

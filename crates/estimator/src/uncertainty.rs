@@ -56,7 +56,7 @@ impl Default for Uncertainty {
             drift: 0.05,
             variation: 0.3,
             variation_length: 0.04,
-            force_std: 0.2,
+            force_std: 0.25,
             force_spread: 0.0,
             pusher_offset: 3e-4,
             pusher_lag: 3e-4,
@@ -65,7 +65,7 @@ impl Default for Uncertainty {
             roughness: 0.5,
             camera_noise: 0.3,
             latency: 0.03,
-            creep: 0.2,
+            creep: 0.0,
             touch_gap: 5e-4,
         }
     }

@@ -10,8 +10,6 @@ pub enum Ingredient {
     FrictionPriors,
     /// Friction that differs from place to place.
     Variation,
-    /// Contacts that creep.
-    Creep,
     /// Four fifths of the random force: without any, particles would have one future.
     Force,
     /// An offset between the camera's frame and the pusher's.
@@ -42,10 +40,9 @@ pub enum Ingredient {
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 15] = [
         Self::FrictionPriors,
         Self::Variation,
-        Self::Creep,
         Self::Force,
         Self::PusherOffset,
         Self::PusherAsSensor,
@@ -67,7 +64,6 @@ impl Ingredient {
         match self {
             Self::FrictionPriors => "friction as told, no drift",
             Self::Variation => "no variation from place to place",
-            Self::Creep => "contacts that do not creep",
             Self::Force => "a fifth of the force",
             Self::PusherOffset => "pusher where logged",
             Self::PusherAsSensor => "pusher no sensor",
@@ -93,7 +89,6 @@ impl Ingredient {
                 unknown.drift = 0.0;
             }
             Self::Variation => unknown.variation = 0.0,
-            Self::Creep => unknown.creep = 0.0,
             Self::Force => unknown.force_std *= 0.2,
             Self::PusherOffset => unknown.pusher_offset = 0.0,
             Self::PusherAsSensor => unknown.pusher_lag = FAR,

@@ -38,10 +38,9 @@ impl Propagation {
     ) {
         for (i, _) in block.particles() {
             let near = is_set(&block.as_block(), columns.fixel_was_near(j), i);
-            let step = match (near, plan.unknowns_wander()) {
-                (false, _) => 1.0,
-                (true, true) => offset_step(block.column(columns.roughness())[i]),
-                (true, false) => continue,
+            let wander = || offset_step(block.column(columns.roughness())[i]);
+            let Some(step) = plan.step_of_unknown(near, wander) else {
+                continue;
             };
             for axis in 0..2 {
                 let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
@@ -64,13 +63,11 @@ impl Propagation {
             let [x, y, grown, rough] = self.normals.each_ref().map(|column| column[i]);
             let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
             let roughness = &mut block.column_mut(columns.roughness())[i];
-            let step = match (near, plan.unknowns_wander()) {
-                (false, _) => {
-                    *roughness = unsure.roughness * rough;
-                    1.0
-                }
-                (true, true) => offset_step(*roughness),
-                (true, false) => continue,
+            if !near {
+                *roughness = unsure.roughness * rough;
+            }
+            let Some(step) = plan.step_of_unknown(near, || offset_step(*roughness)) else {
+                continue;
             };
             let offsets = [
                 (columns.pusher_offset(), x),
@@ -110,13 +107,10 @@ impl Propagation {
             let fixel = (0..columns.fixels()).any(|j| is_set(seen, columns.fixel_was_near(j), i));
             let pusher = is_set(seen, Columns::PUSHER_WAS_NEAR, i);
             for (k, near) in [pusher, fixel].into_iter().enumerate() {
-                let step = match (near, plan.unknowns_wander()) {
-                    (false, _) => 1.0,
-                    (true, true) => CREEP_STEP,
-                    (true, false) => continue,
-                };
-                let creep = &mut block.column_mut(columns.creep() + k)[i];
-                *creep = wandered(*creep, step, self.normals[k][i]);
+                if let Some(step) = plan.step_of_unknown(near, || CREEP_STEP) {
+                    let creep = &mut block.column_mut(columns.creep() + k)[i];
+                    *creep = wandered(*creep, step, self.normals[k][i]);
+                }
             }
         }
     }

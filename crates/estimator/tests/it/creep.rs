@@ -33,8 +33,9 @@ fn share(
     };
     let Twist { vx, vy, omega } = before.twist;
     let speed = (vx * vx + vy * vy + rho * rho * omega * omega).sqrt();
-    let carried: f64 = 0.1 * now.feet.iter().map(|foot| foot.bound).sum::<f64>();
-    (*pressed > carried && speed > 1e-3).then(|| contact.creep * contact.mu * pressed / speed)
+    let feet: f64 = now.feet.iter().map(|foot| foot.bound).sum();
+    let slip = contact.creep * contact.mu * pressed;
+    (*pressed > 0.1 * feet && speed > 1e-3).then(|| slip / speed * (pressed / feet).max(1.0))
 }
 
 /// ln κ of particles that a pusher moves in the dark, over many seeds.
