@@ -87,11 +87,11 @@ impl<const W: usize> NaturalMap<W> {
     /// Copies one lane of `ncp` into lane `slot` of `to`, a map of `contacts` contacts, without the
     /// rows that pad it.
     #[inline(always)]
-    pub fn pack_lane(
+    pub fn pack_lane<const V: usize>(
         &self,
         ncp: &Ncp<W>,
         lane: usize,
-        to: &mut Self,
+        to: &mut NaturalMap<V>,
         contacts: usize,
         slot: usize,
     ) {

@@ -47,14 +47,20 @@ impl<const W: usize> LaneQueue<W> {
         self.busy = Mask::splat(false);
     }
 
-    /// Copies the problem `index` from its chunk's problems and points into a free lane, whose
-    /// number it returns; `None` where none is free.
+    /// Copies the problem `index` from one `lane` of problems and points side by side into a free lane,
+    /// whose number it returns; `None` where none is free.
     #[inline(always)]
-    pub fn load(&mut self, index: LaneIndex, ncp: &Ncp<W>, z: &Unknowns<W>) -> Option<usize> {
+    pub fn load<const V: usize>(
+        &mut self,
+        index: LaneIndex,
+        ncp: &Ncp<V>,
+        lane: usize,
+        z: &Unknowns<V>,
+    ) -> Option<usize> {
         let slot = (0..W).find(|slot| !self.busy.lane(*slot))?;
-        ncp.pack_lane(index.lane, &mut self.ncp, slot);
+        ncp.pack_lane(lane, &mut self.ncp, slot);
         self.z.resize(self.ncp.contacts.len());
-        z.pack_lane(ncp, index.lane, &mut self.z, slot);
+        z.pack_lane(ncp, lane, &mut self.z, slot);
         self.busy.set(slot, true);
         self.indices[slot] = index;
         Some(slot)

@@ -21,6 +21,7 @@ mod mode_line;
 mod mode_search;
 mod newton;
 mod newton_block;
+mod newton_queue;
 #[cfg(test)]
 mod numbers;
 mod open_planes;

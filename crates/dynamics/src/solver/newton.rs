@@ -88,7 +88,7 @@ impl<const W: usize> Default for Progress<W> {
 impl<const W: usize> Progress<W> {
     /// Copies one lane into lane `slot` of `to`.
     #[inline(always)]
-    pub fn pack_lane(&self, lane: usize, to: &mut Self, slot: usize) {
+    pub fn pack_lane<const V: usize>(&self, lane: usize, to: &mut Progress<V>, slot: usize) {
         to.residual.0[slot] = self.residual.0[lane];
         to.iterations.0[slot] = self.iterations.0[lane];
         to.running.set(slot, self.running.lane(lane));
@@ -167,18 +167,18 @@ impl<const W: usize> Newton<W> {
             & iterations.lt(Lanes::splat(f64::from(settings.iterations)));
     }
 
-    /// Copies the map of one lane of `ncp` into lane `slot` of `to`, whose problems are `packed`.
+    /// Copies the map of one lane of `ncp` into lane `slot` of `to`, whose problems have `contacts`
+    /// contacts.
     #[inline(always)]
-    pub fn pack_lane(
+    pub fn pack_lane<const V: usize>(
         &self,
         ncp: &Ncp<W>,
         lane: usize,
-        to: &mut Self,
-        packed: &Ncp<W>,
+        to: &mut Newton<V>,
+        contacts: usize,
         slot: usize,
     ) {
-        self.map
-            .pack_lane(ncp, lane, &mut to.map, packed.contacts.len(), slot);
+        self.map.pack_lane(ncp, lane, &mut to.map, contacts, slot);
     }
 }
 

@@ -1,12 +1,14 @@
 //! The semismooth Newton iteration on a block of chunks: [`NewtonBlock`].
 //!
 //! Most lanes of a chunk need few iterations. The others are packed into a queue of lanes and go on
-//! there; a lane that finishes takes the next problem, so that no chunk iterates for one lane.
+//! there; a lane that finishes takes the next problem, so that no chunk iterates for one lane. The
+//! last few of a block go on in a narrower queue.
 
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::lane_queue::{LaneIndex, LaneQueue};
+use crate::solver::lane_queue::LaneIndex;
 use crate::solver::newton::{BatchLimits, Newton, NewtonSettings, Progress};
+use crate::solver::newton_queue::{Ended, NewtonQueue, Underway};
 use crate::solver::source::Source;
 
 /// How long a chunk iterates as a whole where its last lanes can be queued with those of others.
@@ -26,13 +28,15 @@ pub struct Iterated {
     pub iterations: u32,
 }
 
+/// Lanes that the last problems of a block go on in: where a vector holds four numbers, half the work.
+const LAST: usize = 4;
+
 /// [`Newton`] on a block, with its working memory.
 #[derive(Clone, Debug, Default)]
 pub struct NewtonBlock<const W: usize> {
     chunk: Newton<W>,
-    queued: Newton<W>,
-    queue: LaneQueue<W>,
-    progress: Progress<W>,
+    queue: NewtonQueue<W>,
+    last: NewtonQueue<LAST>,
 }
 
 impl<const W: usize> NewtonBlock<W> {
@@ -56,6 +60,7 @@ impl<const W: usize> NewtonBlock<W> {
         };
         // after the last chunk the queue empties, in the same call of an iteration: what is inlined there is much code
         let chunks = ncps.len();
+        let few = if W > LAST { LAST } else { 0 };
         for chunk in 0..=chunks {
             let mut progress = Progress::default();
             if chunk < chunks {
@@ -71,51 +76,53 @@ impl<const W: usize> NewtonBlock<W> {
             }
             // unfinished lanes are queued as soon as there is room
             let mut waiting = progress.running.lanes().peekable();
-            while waiting.peek().is_some() || chunk == chunks && self.queue.busy.any() {
-                match waiting.next_if(|_| !self.queue.busy.all()) {
-                    Some(lane) => self.enqueue(
-                        LaneIndex { chunk, lane },
-                        &ncps[chunk],
-                        &z[chunk],
-                        &progress,
+            while waiting.peek().is_some()
+                || chunk == chunks && self.queue.busy().count() as usize > few
+            {
+                match waiting.next_if(|_| !self.queue.busy().all()) {
+                    Some(lane) => {
+                        let from = Underway {
+                            newton: &self.chunk,
+                            progress: &progress,
+                            ncp: &ncps[chunk],
+                            z: &z[chunk],
+                        };
+                        self.queue.load(LaneIndex { chunk, lane }, &from, lane);
+                    }
+                    None => self.queue.iterate(
+                        settings,
+                        #[inline(always)]
+                        |ended| give_back(&ended, ncps, z, finish),
                     ),
-                    None => self.iterate_queue(ncps, z, settings, finish),
                 }
             }
         }
-    }
-
-    /// Copies a lane of the chunk that was begun last into the queue.
-    #[inline(always)]
-    fn enqueue(&mut self, index: LaneIndex, ncp: &Ncp<W>, z: &Unknowns<W>, progress: &Progress<W>) {
-        if let Some(slot) = self.queue.load(index, ncp, z) {
-            self.chunk
-                .pack_lane(ncp, index.lane, &mut self.queued, &self.queue.ncp, slot);
-            progress.pack_lane(index.lane, &mut self.progress, slot);
+        // the last few
+        if few > 0 && self.queue.busy().any() {
+            self.last.clear();
+            self.queue.move_to(&mut self.last);
+            while self.last.busy().any() {
+                self.last.iterate(
+                    settings,
+                    #[inline(always)]
+                    |ended| give_back(&ended, ncps, z, finish),
+                );
+            }
         }
     }
+}
 
-    /// One iteration of the queued lanes; results of those that finish go back to their chunks.
-    #[inline(always)]
-    fn iterate_queue(
-        &mut self,
-        ncps: &[Ncp<W>],
-        z: &mut [Unknowns<W>],
-        settings: NewtonSettings,
-        finish: &mut impl FnMut(Iterated),
-    ) {
-        let queue = &mut self.queue;
-        self.queued
-            .iterate(&queue.ncp, &mut queue.z, settings, &mut self.progress);
-        let finished = queue.busy & !self.progress.running;
-        for slot in finished.lanes() {
-            let index = queue.indices[slot];
-            let LaneIndex { chunk, lane } = index;
-            z[chunk].unpack_lane(&ncps[chunk], lane, &queue.z, slot);
-            finish(self.progress.iterated(index, slot));
-        }
-        queue.busy = queue.busy & !finished;
-    }
+/// Copies the point of a problem that a queue has finished back to its chunk, and reports it.
+#[inline(always)]
+fn give_back<const W: usize, const V: usize>(
+    ended: &Ended<'_, V>,
+    ncps: &[Ncp<W>],
+    z: &mut [Unknowns<W>],
+    finish: &mut impl FnMut(Iterated),
+) {
+    let LaneIndex { chunk, lane } = ended.index;
+    z[chunk].unpack_lane(&ncps[chunk], lane, ended.z, ended.slot);
+    finish(ended.progress.iterated(ended.index, ended.slot));
 }
 
 impl<const W: usize> Progress<W> {

@@ -172,7 +172,7 @@ impl<const W: usize> SmoothedPath<W> {
         schedule: &SmoothingSchedule,
     ) {
         let ncp = &ncps[index.chunk];
-        let Some(slot) = self.queue.load(index, ncp, &warm[index.chunk]) else {
+        let Some(slot) = self.queue.load(index, ncp, index.lane, &warm[index.chunk]) else {
             return;
         };
         let scale = ncp.speed_scale().0[index.lane];

@@ -1,0 +1,99 @@
+//! The semismooth Newton iteration on single lanes of many chunks, side by side: [`NewtonQueue`].
+
+use stickslip_lanes::Mask;
+
+use crate::ncp::rows::Ncp;
+use crate::ncp::unknowns::Unknowns;
+use crate::solver::lane_queue::{LaneIndex, LaneQueue};
+use crate::solver::newton::{Newton, NewtonSettings, Progress};
+
+/// Problems under way: [`Newton`] at the point of a [`LaneQueue`].
+#[derive(Clone, Debug, Default)]
+pub struct NewtonQueue<const W: usize> {
+    newton: Newton<W>,
+    queue: LaneQueue<W>,
+    progress: Progress<W>,
+}
+
+/// Where an iteration stands that goes on in a queue.
+#[derive(Clone, Copy, Debug)]
+pub struct Underway<'a, const W: usize> {
+    /// Its memory.
+    pub newton: &'a Newton<W>,
+    /// How far it is.
+    pub progress: &'a Progress<W>,
+    /// The problems.
+    pub ncp: &'a Ncp<W>,
+    /// The point that it has reached.
+    pub z: &'a Unknowns<W>,
+}
+
+/// A problem whose iteration has ended in a queue.
+#[derive(Clone, Copy, Debug)]
+pub struct Ended<'a, const W: usize> {
+    /// Which problem.
+    pub index: LaneIndex,
+    /// Its lane of the queue.
+    pub slot: usize,
+    /// How all lanes went.
+    pub progress: &'a Progress<W>,
+    /// The points of all lanes.
+    pub z: &'a Unknowns<W>,
+}
+
+impl<const W: usize> NewtonQueue<W> {
+    /// Removes all problems.
+    pub fn clear(&mut self) {
+        self.queue.clear();
+    }
+
+    /// Lanes with a problem.
+    #[inline(always)]
+    pub fn busy(&self) -> Mask<W> {
+        self.queue.busy
+    }
+
+    /// Takes the problem `index`, which is in one `lane` of `from`, if a lane is free.
+    #[inline(always)]
+    pub fn load<const V: usize>(&mut self, index: LaneIndex, from: &Underway<'_, V>, lane: usize) {
+        if let Some(slot) = self.queue.load(index, from.ncp, lane, from.z) {
+            let contacts = self.queue.ncp.contacts.len();
+            from.newton
+                .pack_lane(from.ncp, lane, &mut self.newton, contacts, slot);
+            from.progress.pack_lane(lane, &mut self.progress, slot);
+        }
+    }
+
+    /// One iteration of all problems; `finish` hears of each that ends by it.
+    #[inline(always)]
+    pub fn iterate(&mut self, settings: NewtonSettings, mut finish: impl FnMut(Ended<'_, W>)) {
+        let queue = &mut self.queue;
+        self.newton
+            .iterate(&queue.ncp, &mut queue.z, settings, &mut self.progress);
+        let finished = queue.busy & !self.progress.running;
+        for slot in finished.lanes() {
+            finish(Ended {
+                index: queue.indices[slot],
+                slot,
+                progress: &self.progress,
+                z: &queue.z,
+            });
+        }
+        queue.busy = queue.busy & !finished;
+    }
+
+    /// Hands all problems to a queue that has room for them.
+    #[inline(always)]
+    pub fn move_to<const V: usize>(&mut self, other: &mut NewtonQueue<V>) {
+        let from = Underway {
+            newton: &self.newton,
+            progress: &self.progress,
+            ncp: &self.queue.ncp,
+            z: &self.queue.z,
+        };
+        for slot in self.queue.busy.lanes() {
+            other.load(self.queue.indices[slot], &from, slot);
+        }
+        self.queue.busy = Mask::splat(false);
+    }
+}
