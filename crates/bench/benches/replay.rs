@@ -2,7 +2,7 @@
 //! `slide-*` log, captured, then solved again.
 //!
 //! `... -- NAME` takes the logs with NAME in their names. 500 particles, camera hidden where the
-//! log's `truth.json` says so. Only the solver's step is timed, one block of 64 particles at a
+//! log's `truth.json` says so. Only the solver's step is timed, one block of the filter at a
 //! time, on one thread; every step starts from what the filter had, noise and warm start included.
 //!
 //! A block hides what one particle costs, so each particle's step is also timed alone, as a chunk of
@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use stickslip::{Mode, Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
-use stickslip_bench::{BlockOf64, LANES, Results, StepStatistics, instruction_sets};
+use stickslip_bench::{FilterBlock, LANES, Results, StepStatistics, instruction_sets};
 use stickslip_dynamics::{Dynamics, Particles, StepInput, StepWork};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
@@ -29,7 +29,7 @@ const ALONE_ROUNDS: usize = 3;
 struct Captured {
     input: StepInput,
     chunks: usize,
-    particles: BlockOf64,
+    particles: FilterBlock,
 }
 
 /// Keeps what every step starts from.
@@ -43,7 +43,7 @@ impl Observer for Capture {
         let mut kept = Captured {
             input: *input,
             chunks: particles.len(),
-            particles: BlockOf64::default(),
+            particles: FilterBlock::default(),
         };
         kept.particles[..particles.len()].copy_from_slice(particles);
         self.0

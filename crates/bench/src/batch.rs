@@ -11,12 +11,12 @@ use crate::scenes::scattered;
 pub const LANES: usize = 8;
 
 /// One block of particles, the unit of work of a thread.
-pub type BlockOf64 = [Particles<LANES>; BLOCK / LANES];
+pub type FilterBlock = [Particles<LANES>; BLOCK / LANES];
 
 /// A whole number of blocks, each with its working memory.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    blocks: Vec<(BlockOf64, StepWork<LANES>)>,
+    blocks: Vec<(FilterBlock, StepWork<LANES>)>,
 }
 
 impl Batch {
@@ -24,7 +24,7 @@ impl Batch {
     #[must_use]
     pub fn scattered(dynamics: &Dynamics, blocks: u32) -> Self {
         let block = |b: u32| {
-            let mut chunks = BlockOf64::default();
+            let mut chunks = FilterBlock::default();
             for i in 0..BLOCK {
                 chunks[i / LANES].set(
                     i % LANES,

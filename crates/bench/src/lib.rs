@@ -12,7 +12,7 @@ mod scene_timing;
 mod scenes;
 mod step_statistics;
 
-pub use batch::{Batch, BlockOf64, LANES};
+pub use batch::{Batch, FilterBlock, LANES};
 pub use instruction_sets::instruction_sets;
 pub use machine::{date, processor};
 pub use results::Results;

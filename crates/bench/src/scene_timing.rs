@@ -10,8 +10,8 @@ use crate::batch::Batch;
 use crate::results::Results;
 use crate::step_statistics::StepStatistics;
 
-/// Blocks of 64 particles in a measured batch.
-const BLOCKS: u32 = 8;
+/// Blocks of particles in a measured batch.
+const BLOCKS: u32 = 4;
 
 /// A scene with its inputs.
 #[derive(Clone, Debug)]

@@ -15,9 +15,8 @@ const PER_PROCESSOR: usize = 4;
 /// How many threads to work on.
 #[derive(Debug, Args)]
 pub struct ThreadArgs {
-    /// Threads [default: one per processor, but for a single filter no more than one per 128
-    /// particles]; results do not depend on it. No more are started than can help: four per
-    /// processor, and for a single filter one per 64 particles
+    /// Threads [default: one per processor]; results do not depend on it. No more are started than
+    /// can help: four per processor, and for a single filter one per 128 particles
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 }
@@ -55,19 +54,17 @@ impl FromStr for Rows {
 impl ThreadArgs {
     /// Threads for many runs, frames or files.
     pub fn pool(&self) -> anyhow::Result<ThreadPool> {
-        start(self.count(processors(), usize::MAX))
+        start(self.count(usize::MAX))
     }
 
-    /// Threads for one particle filter. By default half as many as can help: with one block of
-    /// particles each, all wait for the slowest.
+    /// Threads for one particle filter.
     pub fn filter_pool(&self, particles: usize) -> anyhow::Result<ThreadPool> {
-        let useful = useful_threads(particles);
-        start(self.count(processors().min(useful.div_ceil(2)), useful))
+        start(self.count(useful_threads(particles)))
     }
 
-    /// As many as asked for or else `default`, of which `useful` can do something.
-    fn count(&self, default: usize, useful: usize) -> usize {
-        let asked = self.threads.map_or(default, usize::from);
+    /// As many as asked for or else one per processor, of which `useful` can do something.
+    fn count(&self, useful: usize) -> usize {
+        let asked = self.threads.map_or_else(processors, usize::from);
         asked.min(useful).min(PER_PROCESSOR * processors()).max(1)
     }
 }
@@ -105,10 +102,10 @@ mod tests {
     #[test]
     fn count_is_what_was_asked_for_up_to_what_can_help() {
         let of = |threads| ThreadArgs { threads };
-        assert_eq!(of(Some(3)).count(1, 8), 3);
-        assert_eq!(of(Some(1000)).count(1, 3), 3);
-        assert!(of(Some(1000)).count(1, usize::MAX) <= PER_PROCESSOR * processors());
-        assert_eq!(of(None).count(0, 1), 1);
+        assert_eq!(of(Some(3)).count(8), 3);
+        assert_eq!(of(Some(1000)).count(3), 3);
+        assert!(of(Some(1000)).count(usize::MAX) <= PER_PROCESSOR * processors());
+        assert_eq!(of(None).count(1), 1);
     }
 
     #[test]

@@ -32,9 +32,15 @@ impl EnsembleShape {
 
 /// Groups of particles, each of which goes by what the others say: a particle that had a part in its own
 /// gain would go too near to the measurement, and all of them would end too close together (Houtekamer &
-/// Mitchell 1998). Descendants of one particle lie side by side, mostly in one group. Of fewer blocks there
+/// Mitchell 1998). Descendants of one particle lie side by side, mostly in one group. Of fewer parts there
 /// are as many groups; one group goes by itself.
 const GROUPS: usize = 8;
+
+/// Particles of one part of a block; a group is some parts.
+const PART: usize = 64;
+
+/// Parts of a block.
+const PARTS: usize = BLOCK / PART;
 
 /// Effective number of other particles below which a group goes by all.
 const FEWEST: f64 = 10.0;
@@ -76,7 +82,7 @@ struct Sums {
 impl Ensemble {
     /// For so many blocks of particles.
     pub fn new(shape: EnsembleShape, blocks: usize) -> Self {
-        let groups = blocks.min(GROUPS);
+        let groups = (blocks * PARTS).min(GROUPS);
         Self {
             shape,
             values: vec![0.0; shape.columns() * blocks * BLOCK],
@@ -128,8 +134,8 @@ impl Ensemble {
     fn noise_variance(&self, error: usize, weights: &[f64]) -> f64 {
         let column = self.shape.moved() + error;
         let mut variance = 0.0;
-        for (_, block, weights) in weighted(&self.values, self.stride(), weights) {
-            let std = &block[column];
+        for (_, part, weights) in weighted(&self.values, self.stride(), weights) {
+            let std = part.column(column);
             variance += sum(|i| weights[i] * std[i] * std[i]);
         }
         variance
@@ -140,11 +146,11 @@ impl Ensemble {
     fn weigh(&mut self, weights: &[f64]) {
         self.means.fill(0.0);
         self.weights.fill(Weight::default());
-        for (group, block, weights) in weighted(&self.values, self.stride(), weights) {
+        for (group, part, weights) in weighted(&self.values, self.stride(), weights) {
             let of = &mut self.weights[group];
             of.w += sum(|i| weights[i]);
             of.ww += sum(|i| weights[i] * weights[i]);
-            for (mean, column) in self.means.iter_mut().zip(block) {
+            for (mean, column) in self.means.iter_mut().zip(part.columns()) {
                 *mean += sum(|i| weights[i] * column[i]);
             }
         }
@@ -156,11 +162,11 @@ impl Ensemble {
         let (stride, columns) = (self.stride(), self.shape.moved());
         let error = self.shape.quantities + error;
         self.sums.fill(Sums::default());
-        for (group, block, weights) in weighted(&self.values, stride, weights) {
-            let mean = self.means[error];
-            let e: [f64; BLOCK] = std::array::from_fn(|i| block[error][i] - mean);
+        for (group, part, weights) in weighted(&self.values, stride, weights) {
+            let (errors, mean) = (part.column(error), self.means[error]);
+            let e: [f64; PART] = std::array::from_fn(|i| errors[i] - mean);
             let sums = &mut self.sums[group * columns..][..columns];
-            for ((of, column), mean) in sums.iter_mut().zip(block).zip(&self.means) {
+            for ((of, column), mean) in sums.iter_mut().zip(part.columns()).zip(&self.means) {
                 of.x += sum(|i| weights[i] * (column[i] - mean));
                 of.xx += sum(|i| weights[i] * (column[i] - mean) * (column[i] - mean));
                 of.xe += sum(|i| weights[i] * (column[i] - mean) * e[i]);
@@ -204,15 +210,18 @@ impl Ensemble {
         let scale = 1.0 / share.sqrt();
         let count = self.values.len() / stride;
         for (index, block) in self.values.chunks_mut(stride).enumerate() {
-            let gains = &self.gains[group(index, count) * columns..][..columns];
-            let block = block.as_chunks_mut::<BLOCK>().0;
-            let first = (index * BLOCK) as u32;
-            let way: [f64; BLOCK] = std::array::from_fn(|i| {
-                scale * block[std][i] * normal(first + i as u32) - block[error][i]
-            });
-            for (gain, column) in gains.iter().zip(block) {
-                for (x, way) in column.iter_mut().zip(&way) {
-                    *x += gain * way;
+            let block = block.as_chunks_mut::<PART>().0;
+            for part in 0..PARTS {
+                let number = index * PARTS + part;
+                let gains = &self.gains[group(number, count * PARTS) * columns..][..columns];
+                let first = (number * PART) as u32;
+                let [stds, errors] = [std, error].map(|column| &block[column * PARTS + part]);
+                let way: [f64; PART] =
+                    std::array::from_fn(|i| scale * stds[i] * normal(first + i as u32) - errors[i]);
+                for (gain, column) in gains.iter().zip(block[part..].iter_mut().step_by(PARTS)) {
+                    for (x, way) in column.iter_mut().zip(&way) {
+                        *x += gain * way;
+                    }
                 }
             }
         }
@@ -246,10 +255,31 @@ impl Sums {
     }
 }
 
-/// The group of a block.
+/// Columns of one part of a block.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    /// `[column][part]`.
+    block: &'a [[f64; PART]],
+    /// Which part.
+    part: usize,
+}
+
+impl<'a> Part<'a> {
+    #[inline(always)]
+    fn columns(self) -> impl Iterator<Item = &'a [f64; PART]> {
+        self.block[self.part..].iter().step_by(PARTS)
+    }
+
+    #[inline(always)]
+    fn column(self, column: usize) -> &'a [f64; PART] {
+        &self.block[column * PARTS + self.part]
+    }
+}
+
+/// The group of a part.
 #[inline(always)]
-fn group(block: usize, blocks: usize) -> usize {
-    block * blocks.min(GROUPS) / blocks
+fn group(part: usize, parts: usize) -> usize {
+    part * parts.min(GROUPS) / parts
 }
 
 /// By how much a column moves where an error does by one that is observed under noise; a covariance that
@@ -280,34 +310,39 @@ fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
     (1.0 - chance / square).max(0.0)
 }
 
-/// Of every block of so many numbers: its group, its columns and the weights of its particles.
+/// Every part of blocks of so many numbers: its group, its columns and the weights of its particles.
 #[inline(always)]
 fn weighted<'a>(
     values: &'a [f64],
     stride: usize,
     weights: &'a [f64],
-) -> impl Iterator<Item = (usize, &'a [[f64; BLOCK]], [f64; BLOCK])> {
-    let count = values.len() / stride;
-    let blocks = values.chunks(stride).zip(weights.chunks(BLOCK));
-    blocks.enumerate().map(move |(index, (block, weights))| {
-        let columns = block.as_chunks::<BLOCK>().0;
-        (group(index, count), columns, padded(weights))
+) -> impl Iterator<Item = (usize, Part<'a>, [f64; PART])> {
+    let parts = values.len() / stride * PARTS;
+    (0..parts).map(move |number| {
+        let block = &values[number / PARTS * stride..][..stride];
+        let part = Part {
+            block: block.as_chunks().0,
+            part: number % PARTS,
+        };
+        (group(number, parts), part, padded(weights, number * PART))
     })
 }
 
-/// The weights of one block; particles past the last one have none.
+/// The weights of the part that begins with particle `first`; particles past the last one have none.
 #[inline(always)]
-fn padded(weights: &[f64]) -> [f64; BLOCK] {
-    let mut padded = [0.0; BLOCK];
-    padded[..weights.len()].copy_from_slice(weights);
+fn padded(weights: &[f64], first: usize) -> [f64; PART] {
+    let weights = &weights[first.min(weights.len())..];
+    let mut padded = [0.0; PART];
+    let count = weights.len().min(PART);
+    padded[..count].copy_from_slice(&weights[..count]);
     padded
 }
 
-/// Σ f(i) over a block.
+/// Σ f(i) over a part.
 #[inline(always)]
 fn sum(f: impl Fn(usize) -> f64) -> f64 {
     let mut partial = [0.0; PARTIAL];
-    for i in (0..BLOCK).step_by(PARTIAL) {
+    for i in (0..PART).step_by(PARTIAL) {
         for (k, partial) in partial.iter_mut().enumerate() {
             *partial += f(i + k);
         }

@@ -10,7 +10,7 @@ use std::cell::Cell;
 
 /// Pieces of loops after which a thread asks again at the latest. As many blocks of particles take
 /// about as long as a time slice of the system, 5 to 10 ms. A longer loop always asks.
-const LONGEST_REST: usize = 512;
+const LONGEST_REST: usize = 256;
 
 /// What the other threads brought to a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +88,7 @@ mod tests {
             alone.push(loops_alone(&mut pace, 8));
             pace.learn(8, Help::None);
         }
-        assert_eq!(alone, [0, 1, 2, 4, 8, 16, 32, 64, 64]);
+        assert_eq!(alone, [0, 1, 2, 4, 8, 16, 32, 32, 32]);
         let _ = loops_alone(&mut pace, 8);
         pace.learn(8, Help::Useful);
         assert!(pace.asks_for_help(8));

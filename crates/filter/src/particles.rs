@@ -7,12 +7,12 @@
 use crate::parallel;
 
 /// Particles in a block. Part of the determinism contract: never the number of threads.
-pub const BLOCK: usize = 64;
+pub const BLOCK: usize = 128;
 
 /// Threads that can do something for a filter of so many particles: one for every block.
 ///
 /// ```
-/// assert_eq!(stickslip_filter::useful_threads(500), 8);
+/// assert_eq!(stickslip_filter::useful_threads(500), 4);
 /// ```
 pub fn useful_threads(particles: usize) -> usize {
     particles.div_ceil(BLOCK)

@@ -10,7 +10,7 @@ use crate::error::refused;
 use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
-use crate::threads::{on_threads, processors};
+use crate::threads::on_threads;
 
 /// The columns of estimate.csv for a log's columns.
 #[pyfunction]
@@ -42,8 +42,6 @@ pub fn run_log(
             None => run(&scene.setup, log, &options, &mut |_| ()),
         })
     };
-    // half as many threads as can help: with one block of particles each, all wait for the slowest
-    let default = processors().min(useful.div_ceil(2));
-    let run = py.detach(|| on_threads(arguments.threads, default, useful, track))?;
+    let run = py.detach(|| on_threads(arguments.threads, useful, track))?;
     run.map_err(refused)
 }

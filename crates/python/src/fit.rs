@@ -50,8 +50,7 @@ pub fn fit<'py>(
         let validate = || cross_validate(&pushes, folds, &fit_options);
         Ok((fit, (folds > 0).then(validate).transpose()?))
     };
-    let processors = processors();
-    let learnt = py.detach(|| on_threads(options.threads, processors, processors, learn))?;
+    let learnt = py.detach(|| on_threads(options.threads, processors(), learn))?;
     let (fit, validation) = learnt.map_err(|error: stickslip_fit::FitError| refused(error))?;
 
     let columns = fit.draws().into_iter();

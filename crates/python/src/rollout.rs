@@ -14,7 +14,7 @@ use stickslip_dynamics::{
 
 use crate::error::refused;
 use crate::scene::Scene;
-use crate::threads::{on_threads, processors};
+use crate::threads::on_threads;
 
 /// Numbers of a pose or twist, as arrays hold them.
 type Numbers = [f64; 3];
@@ -82,7 +82,7 @@ pub fn rollout<'py>(
             .collect::<Vec<_>>()
     };
     let useful = states.len().div_ceil(ROLLOUT_BLOCK);
-    let results = py.detach(|| on_threads(threads, processors(), useful, work))?;
+    let results = py.detach(|| on_threads(threads, useful, work))?;
     let ends: Vec<_> = results
         .into_iter()
         .collect::<Result<_, _>>()

@@ -20,10 +20,9 @@ struct Kept {
 
 static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
 
-/// Runs `work` on as many threads as are asked for or else on `default`, at most `useful`.
+/// Runs `work` on as many threads as are asked for or else on one per processor, at most `useful`.
 pub fn on_threads<T: Send>(
     asked: Option<usize>,
-    default: usize,
     useful: usize,
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
@@ -32,7 +31,7 @@ pub fn on_threads<T: Send>(
             "0 threads are asked for; it must be 1 or more, or None for as many as help",
         ));
     }
-    let threads = asked.unwrap_or(default).min(useful).max(1);
+    let threads = asked.unwrap_or_else(processors).min(useful).max(1);
     Ok(pool(threads)?.install(work))
 }
 

@@ -8,8 +8,8 @@ use std::io::Write;
 use stickslip_bench::{Batch, FRAME, FRAMES, timing_input, timing_scene};
 use stickslip_dynamics::{Dynamics, Level, Particle, Scene, StepInput, StepWork, Wrench};
 
-/// Blocks of 64 particles.
-const BLOCKS: u32 = 8;
+/// Blocks of particles.
+const BLOCKS: u32 = 4;
 
 /// Frames of the creep test: 5 s.
 const CREEP_FRAMES: u32 = 150;

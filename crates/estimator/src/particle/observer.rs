@@ -24,13 +24,13 @@ pub struct SolvedStep<'a> {
 /// Is shown the time steps of a run, substeps included: those that count, with all contacts that
 /// could act.
 ///
-/// The steps of 64 particles that follow each other come in order from one thread; those of a
+/// The steps of a block of 128 particles come in order from one thread; those of a
 /// larger set come from several threads at once, in no fixed order.
 pub trait Observer: Debug + Sync {
     /// One step.
     fn on_step(&self, step: &SolvedStep<'_>);
 
-    /// What the coming step of up to 64 particles starts from, noise included; lanes past the last
+    /// What the coming step of up to 128 particles starts from, noise included; lanes past the last
     /// particle repeat it.
     fn before_step(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let _ = (input, particles);

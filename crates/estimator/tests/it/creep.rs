@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use crate::common::{BLOCK, run_into_the_dark, setup};
+use crate::common::{PARTICLES, run_into_the_dark, setup};
 use stickslip::dynamics::{StepProblem, StepSolution, Twist};
 use stickslip::{Observer, SolvedStep};
 
@@ -49,12 +49,12 @@ fn logarithms(creep: f64) -> Vec<f64> {
         run_into_the_dark(&setup, seed, &steps);
         let steps = steps.0.into_inner().expect("no test panicked here");
         // one step of each particle: the first that tells
-        let rows: Vec<_> = steps.chunks(BLOCK).collect();
+        let rows: Vec<_> = steps.chunks(PARTICLES).collect();
         let told = |i: usize| {
             rows.windows(2)
                 .find_map(|rows| share(rho, &rows[0][i], &rows[1][i]))
         };
-        all.extend((0..BLOCK).filter_map(told));
+        all.extend((0..PARTICLES).filter_map(told));
     }
     all.into_iter().map(libm::log).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use crate::common::{BLOCK, run_into_the_dark, setup};
+use crate::common::{PARTICLES, run_into_the_dark, setup};
 use stickslip::dynamics::{Particles, StepInput};
 use stickslip::{Observer, SolvedStep};
 
@@ -11,7 +11,7 @@ const TOLD: f64 = 0.25;
 
 /// Of the first step in which a force acts on a particle: the impulse along x, as a share of its μ_s m g h.
 #[derive(Debug)]
-struct FirstForce(Mutex<[f64; BLOCK]>);
+struct FirstForce(Mutex<[f64; PARTICLES]>);
 
 impl Observer for FirstForce {
     fn on_step(&self, _: &SolvedStep<'_>) {}
@@ -36,7 +36,7 @@ fn mean_square(force_spread: f64) -> f64 {
     (setup.uncertainty.force_std, setup.uncertainty.force_spread) = (TOLD, force_spread);
     let mut squares = Vec::new();
     for seed in 0..100 {
-        let force = FirstForce(Mutex::new([0.0; BLOCK]));
+        let force = FirstForce(Mutex::new([0.0; PARTICLES]));
         run_into_the_dark(&setup, seed, &force);
         let shares = force.0.into_inner().expect("no test panicked here");
         squares.extend(shares.iter().filter(|x| **x != 0.0).map(|x| x * x));

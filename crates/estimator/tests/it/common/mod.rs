@@ -73,10 +73,10 @@ pub fn log(
     }
 }
 
-/// Particles of a block, which are shown in one piece.
-pub const BLOCK: usize = 64;
+/// Particles of [`run_into_the_dark`]: not more than a block, so that they are shown in one piece.
+pub const PARTICLES: usize = 64;
 
-/// One block of particles whose object at the origin a pusher comes to move after the camera went dark: what is
+/// Some particles whose object at the origin a pusher comes to move after the camera went dark: what is
 /// seen would tell of what they do not know.
 pub fn run_into_the_dark(setup: &Setup, seed: u64, observer: &impl Observer) {
     let object = Pose::new(0.0, 0.0, 0.0);
@@ -84,7 +84,7 @@ pub fn run_into_the_dark(setup: &Setup, seed: u64, observer: &impl Observer) {
     let log = log(60, |time| (time < 0.5).then_some(object), pusher);
     assert_eq!(log.time[1], 1.0 / RATE, "one draw of the force a row");
     let options = RunOptions {
-        particles: BLOCK,
+        particles: PARTICLES,
         seed,
         ..RunOptions::default()
     };
