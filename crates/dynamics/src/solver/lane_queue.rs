@@ -48,7 +48,7 @@ impl<const W: usize> LaneQueue<W> {
     }
 
     /// Copies the problem `index` from one `lane` of problems and points side by side into a free lane,
-    /// whose number it returns; `None` where none is free.
+    /// whose number it returns; there must be one.
     #[inline(always)]
     pub fn load<const V: usize>(
         &mut self,
@@ -56,13 +56,15 @@ impl<const W: usize> LaneQueue<W> {
         ncp: &Ncp<V>,
         lane: usize,
         z: &Unknowns<V>,
-    ) -> Option<usize> {
-        let slot = (0..W).find(|slot| !self.busy.lane(*slot))?;
+    ) -> usize {
+        let free = (0..W).find(|slot| !self.busy.lane(*slot));
+        let slot = free.unwrap_or(W);
+        assert!(slot < W, "none of {W} lanes is free for {index:?}");
         ncp.pack_lane(lane, &mut self.ncp, slot);
         self.z.resize(self.ncp.contacts.len());
         z.pack_lane(ncp, lane, &mut self.z, slot);
         self.busy.set(slot, true);
         self.indices[slot] = index;
-        Some(slot)
+        slot
     }
 }

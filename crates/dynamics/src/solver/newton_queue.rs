@@ -53,15 +53,14 @@ impl<const W: usize> NewtonQueue<W> {
         self.queue.busy
     }
 
-    /// Takes the problem `index`, which is in one `lane` of `from`, if a lane is free.
+    /// Takes the problem `index`, which is in one `lane` of `from`; a lane must be free.
     #[inline(always)]
     pub fn load<const V: usize>(&mut self, index: LaneIndex, from: &Underway<'_, V>, lane: usize) {
-        if let Some(slot) = self.queue.load(index, from.ncp, lane, from.z) {
-            let contacts = self.queue.ncp.contacts.len();
-            from.newton
-                .pack_lane(from.ncp, lane, &mut self.newton, contacts, slot);
-            from.progress.pack_lane(lane, &mut self.progress, slot);
-        }
+        let slot = self.queue.load(index, from.ncp, lane, from.z);
+        let contacts = self.queue.ncp.contacts.len();
+        from.newton
+            .pack_lane(from.ncp, lane, &mut self.newton, contacts, slot);
+        from.progress.pack_lane(lane, &mut self.progress, slot);
     }
 
     /// One iteration of all problems; `finish` hears of each that ends by it.

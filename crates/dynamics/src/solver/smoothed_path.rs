@@ -163,7 +163,7 @@ impl<const W: usize> SmoothedPath<W> {
         }
     }
 
-    /// Puts a problem into a free lane.
+    /// Puts a problem into a free lane; there must be one.
     #[inline(always)]
     fn load(
         &mut self,
@@ -172,9 +172,7 @@ impl<const W: usize> SmoothedPath<W> {
         schedule: &SmoothingSchedule,
     ) {
         let ncp = &ncps[index.chunk];
-        let Some(slot) = self.queue.load(index, ncp, index.lane, &warm[index.chunk]) else {
-            return;
-        };
+        let slot = self.queue.load(index, ncp, index.lane, &warm[index.chunk]);
         let scale = ncp.speed_scale().0[index.lane];
         let progress = &mut self.progress;
         progress.epsilon.0[slot] = scale * schedule.start;
