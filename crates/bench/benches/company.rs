@@ -1,4 +1,4 @@
-//! `cargo bench -p stickslip-bench --bench company`: the paper's job, 500 particles over a recorded
+//! `cargo bench -p stickslip-bench --bench company`: contact mode's 500 particles over a recorded
 //! log of 600 frames, alone and beside as many busy processes as there are processors, on one
 //! thread and on two in turn: wall time and the latency of a frame. `... -- N` takes N particles.
 

@@ -1,11 +1,11 @@
 //! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log
-//! of 600 frames, camera and touch sensors weighing throughout: wall time and the latency of a
-//! frame, on one thread and on two. `... -- NAME` runs that log only.
+//! of 600 frames, camera and touch sensors weighing throughout, in both modes: wall time and the
+//! latency of a frame, on one thread and on two. `... -- NAME` runs that log only.
 
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Occlusion, RunOptions, keep_threads_awake, quantile, run};
+use stickslip::{Mode, Occlusion, RunOptions, keep_threads_awake, quantile, run};
 use stickslip_bench::Results;
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
@@ -33,20 +33,31 @@ fn main() -> Result<(), Box<dyn Error>> {
             .iter()
             .find(|case| case.occlusion == Occlusion::None)
             .ok_or("no case without an occlusion")?;
-        write(log, case, &mut results)?;
+        for (mode, rules) in [(Mode::Paper, "paper"), (Mode::Contact, "contact")] {
+            let options = RunOptions {
+                mode,
+                ..RunOptions::default()
+            };
+            write(&format!("{rules} / {log}"), case, &options, &mut results)?;
+        }
     }
     Ok(())
 }
 
 /// Both numbers of threads in turn, one round of each that is not counted.
-fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Box<dyn Error>> {
+fn write(
+    name: &str,
+    case: &RecordedCase,
+    options: &RunOptions,
+    results: &mut Results,
+) -> Result<(), Box<dyn Error>> {
     let pools = [1, 2].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
     let mut walls = [const { Vec::new() }; 2];
     let mut latencies = [const { Vec::new() }; 2];
     for round in 0..=ROUNDS {
         for (k, pool) in pools.iter().enumerate() {
             let pool = pool.as_ref().map_err(ToString::to_string)?;
-            let (wall, frames) = pool.install(|| keep_threads_awake(|| timed(case)))?;
+            let (wall, frames) = pool.install(|| keep_threads_awake(|| timed(case, options)))?;
             if round > 0 {
                 walls[k].push(wall);
                 latencies[k].extend(frames);
@@ -54,7 +65,7 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
         }
     }
     for (k, threads) in ["1 thread", "2 threads"].into_iter().enumerate() {
-        let name = format!("job / {log} / {threads}");
+        let name = format!("job / {name} / {threads}");
         results.write(&format!("{name} / wall"), quantile(&walls[k], 0.5), "ms")?;
         results.write(
             &format!("{name} / frame; median"),
@@ -74,7 +85,7 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
     }
     let [one, two] = walls.each_ref().map(|wall| quantile(wall, 0.5));
     results.write(
-        &format!("job / {log} / 1 thread over 2"),
+        &format!("job / {name} / 1 thread over 2"),
         one.zip(two).map(|(one, two)| one / two),
         "1",
     )?;
@@ -82,10 +93,13 @@ fn write(log: &str, case: &RecordedCase, results: &mut Results) -> Result<(), Bo
 }
 
 /// One run: wall time (ms), and the time from row to row (ms).
-fn timed(case: &RecordedCase) -> Result<(f64, Vec<f64>), stickslip::RunError> {
+fn timed(
+    case: &RecordedCase,
+    options: &RunOptions,
+) -> Result<(f64, Vec<f64>), stickslip::RunError> {
     let start = Instant::now();
     let mut rows = Vec::with_capacity(case.log.len());
-    let run = run(&case.setup, &case.log, &RunOptions::default(), &mut |_| {
+    let run = run(&case.setup, &case.log, options, &mut |_| {
         rows.push(start.elapsed())
     });
     let wall = start.elapsed();
