@@ -34,10 +34,15 @@ pub(crate) struct Replay {
 const LONGEST: usize = 120;
 
 /// Times that the steps of a blackout are made again at most.
-const ATTEMPTS: u32 = 16;
+const ATTEMPTS: u32 = 48;
 
-/// Fall of ln of the evidence at which they are: 1 in 3000.
+/// Fall of ln of the evidence at which they are, the first [`EARLY`] times: 1 in 3000.
 const WORSE: f64 = 8.0;
+const EARLY: u32 = 16;
+
+/// And the other times. What a scene tells wrong, no try explains, and the evidence falls a little at every
+/// touch; at a fork that all particles took the wrong way it falls at every row, by hundreds in the end.
+const MUCH_WORSE: f64 = 32.0;
 
 impl Replay {
     /// Before a step: remembers the particles where it is the first one in the dark, or where the
@@ -63,7 +68,7 @@ impl Replay {
         self.dark = true;
         self.made = 0;
         self.pool = Pool::default();
-        self.limit = -WORSE;
+        self.limit = -self.fall();
     }
 
     /// After it. Where the particles explain what was measured in the dark too badly, makes all its
@@ -94,8 +99,17 @@ impl Replay {
         let before = self.pool;
         let tried = filter.try_again(checkpoint, steps, before, u64::from(self.attempts));
         self.pool = tried.pool;
-        self.limit = self.pool.log_evidence - WORSE;
+        self.limit = self.pool.log_evidence - self.fall();
         self.pool.log_evidence - before.log_evidence
+    }
+
+    /// By how much ln of the evidence has to fall for the next attempt.
+    fn fall(&self) -> f64 {
+        if self.attempts < EARLY {
+            WORSE
+        } else {
+            MUCH_WORSE
+        }
     }
 
     /// Forgets the blackout: something else was learnt of it.
