@@ -3,7 +3,7 @@
 
 use crate::common::{RATE, log, setup};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Log, Method, Mode, Occlusion, Run, RunOptions, Setup, run};
+use stickslip::{Estimate, Log, Method, Mode, Moves, Occlusion, Run, RunOptions, Setup, run};
 
 /// Speed of the pusher (m/s), and where it meets the disc (s).
 const SPEED: f64 = 0.02;
@@ -185,6 +185,37 @@ fn a_pusher_that_goes_on_says_that_nothing_jams() {
     };
     let [deaf, hears] = [1e3, 3e-4].map(error);
     assert!(hears < 0.5 * deaf, "{hears} m, without the pusher {deaf} m");
+}
+
+#[test]
+fn a_fork_that_few_particles_take_is_found_by_second_tries() {
+    let (slippery, log) = slippery();
+    let last = log.object[109].expect("a pose");
+    let mut sticky = slippery.clone();
+    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.8, 0.8);
+    let found = |second_tries: bool| {
+        let ends_near = |seed: &u64| {
+            let options = RunOptions {
+                occlusion: Occlusion::Rows { from: 5, to: None },
+                particles: 20,
+                seed: *seed,
+                moves: Moves {
+                    second_tries,
+                    ..Moves::default()
+                },
+                ..RunOptions::default()
+            };
+            let run = run(&sticky, &log, &options, &mut |_| ()).expect("a run");
+            let believed = run.estimate.rows[109].pose.expect("a pose");
+            (believed.x - last.x).hypot(believed.y - last.y) < 5e-3
+        };
+        (0..20).filter(ends_near).count()
+    };
+    let [once, again] = [false, true].map(found);
+    assert!(
+        once < 12 && again > 15,
+        "of 20 runs {again}, without second tries {once}"
+    );
 }
 
 #[test]
