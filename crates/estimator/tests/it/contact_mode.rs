@@ -160,28 +160,45 @@ fn slippery() -> (Setup, Log) {
     (slippery, log)
 }
 
+/// The same, told another friction with pusher and fixel: most particles believe that it jams.
+fn sticky(slippery: &Setup, friction: f64) -> Setup {
+    let mut sticky = slippery.clone();
+    let nominal = &mut sticky.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (friction, friction);
+    sticky
+}
+
 /// A run in the dark.
 fn blind(setup: &Setup, log: &Log) -> Run {
     let options = RunOptions {
-        occlusion: Occlusion::Rows { from: 5, to: None },
         particles: 400,
         ..RunOptions::default()
     };
+    blind_with(setup, log, options)
+}
+
+fn blind_with(setup: &Setup, log: &Log, options: RunOptions) -> Run {
+    let options = RunOptions {
+        occlusion: Occlusion::Rows { from: 5, to: None },
+        ..options
+    };
     run(setup, log, &options, &mut |_| ()).expect("a run")
+}
+
+/// How far from the log's last pose a run ends, in m.
+fn final_error(run: &Run, log: &Log) -> f64 {
+    let believed = run.estimate.rows[109].pose.expect("a pose");
+    let last = log.object[109].expect("a pose");
+    (believed.x - last.x).hypot(believed.y - last.y)
 }
 
 #[test]
 fn a_pusher_that_goes_on_says_that_nothing_jams() {
     let (slippery, log) = slippery();
-    let last = log.object[109].expect("a pose");
-    // most particles believe that it jams
-    let mut sticky = slippery.clone();
-    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    let mut sticky = sticky(&slippery, 0.45);
     let error = |pusher_lag| {
         sticky.uncertainty.pusher_lag = pusher_lag;
-        let run = blind(&sticky, &log);
-        let believed = run.estimate.rows[109].pose.expect("a pose");
-        (believed.x - last.x).hypot(believed.y - last.y)
+        final_error(&blind(&sticky, &log), &log)
     };
     let [deaf, hears] = [1e3, 3e-4].map(error);
     assert!(hears < 0.5 * deaf, "{hears} m, without the pusher {deaf} m");
@@ -190,13 +207,10 @@ fn a_pusher_that_goes_on_says_that_nothing_jams() {
 #[test]
 fn a_fork_that_few_particles_take_is_found_by_second_tries() {
     let (slippery, log) = slippery();
-    let last = log.object[109].expect("a pose");
-    let mut sticky = slippery.clone();
-    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.8, 0.8);
+    let sticky = sticky(&slippery, 0.8);
     let found = |second_tries: bool| {
         let ends_near = |seed: &u64| {
             let options = RunOptions {
-                occlusion: Occlusion::Rows { from: 5, to: None },
                 particles: 20,
                 seed: *seed,
                 moves: Moves {
@@ -205,9 +219,7 @@ fn a_fork_that_few_particles_take_is_found_by_second_tries() {
                 },
                 ..RunOptions::default()
             };
-            let run = run(&sticky, &log, &options, &mut |_| ()).expect("a run");
-            let believed = run.estimate.rows[109].pose.expect("a pose");
-            (believed.x - last.x).hypot(believed.y - last.y) < 5e-3
+            final_error(&blind_with(&sticky, &log, options), &log) < 5e-3
         };
         (0..20).filter(ends_near).count()
     };
@@ -221,8 +233,7 @@ fn a_fork_that_few_particles_take_is_found_by_second_tries() {
 #[test]
 fn the_evidence_is_for_the_friction_that_was() {
     let (slippery, log) = slippery();
-    let mut sticky = slippery.clone();
-    (sticky.scene.nominal.mu_p, sticky.scene.nominal.mu_f) = (0.45, 0.45);
+    let sticky = sticky(&slippery, 0.45);
     let [right, wrong] = [&slippery, &sticky].map(|setup| blind(setup, &log).log_evidence);
     assert!(right > wrong, "{right:?}, {wrong:?}");
     let other = RunOptions {
