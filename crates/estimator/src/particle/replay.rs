@@ -38,6 +38,8 @@ const ATTEMPTS: u32 = 48;
 
 /// Fall of ln of the evidence at which they are, the first [`EARLY`] times: 1 in 3000.
 const WORSE: f64 = 8.0;
+
+/// The first times: what can be found is mostly found by them.
 const EARLY: u32 = 16;
 
 /// And the other times. What a scene tells wrong, no try explains, and the evidence falls a little at every
