@@ -280,5 +280,7 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     let spread = unknown.force_spread;
     numbers.push(("uncertainty.force_spread", spread, Share, Unit::None));
     numbers.push(("uncertainty.creep", unknown.creep, Share, Unit::None));
+    let factor = unknown.well_measured;
+    numbers.push(("uncertainty.well_measured", factor, Share, Unit::None));
     numbers
 }

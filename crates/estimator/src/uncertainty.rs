@@ -1,7 +1,7 @@
 //! What a scene file does not know, and how badly: [`Uncertainty`], which contact mode allows for
 //! (docs/method.md, "Contact mode").
 
-use stickslip_dynamics::Friction;
+use stickslip_dynamics::{Friction, Lanes};
 
 /// `[uncertainty]` of a scene file: what its other numbers leave open. Paper mode takes them as they
 /// are.
@@ -33,6 +33,9 @@ pub struct Uncertainty {
     pub outline: f64,
     /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs differ.
     pub roughness: f64,
+    /// Factor of `fixel_position` and `latency` on the smoother half of rigs: below 1 where some rigs are
+    /// measured much better than others.
+    pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from what is told.
     pub camera_noise: f64,
     /// Mean time by which the camera lags more than the scene says (s).
@@ -63,6 +66,7 @@ impl Default for Uncertainty {
             fixel_position: 3e-4,
             outline: 1.5e-4,
             roughness: 0.5,
+            well_measured: 0.1,
             camera_noise: 0.3,
             latency: 0.03,
             creep: 0.0,
@@ -71,10 +75,25 @@ impl Default for Uncertainty {
     }
 }
 
+/// How steeply the factor of well measured rigs changes between the halves, per unit of ln of roughness.
+const BETWEEN_HALVES: f64 = 10.0;
+
 /// Multiples of its mean that the unknown part of the camera's latency may reach.
 const LATEST: f64 = 10.0;
 
 impl Uncertainty {
+    /// b of docs/method.md (36): the factor of `fixel_position` and `latency` on a rig of logarithm `roughness`,
+    /// beside its own; `well_measured` on the smoother half of rigs, 1 on the others.
+    #[inline(always)]
+    pub(crate) fn well_measured_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
+        let one = Lanes::splat(1.0);
+        if self.roughness == 0.0 {
+            return one;
+        }
+        let smooth = one / (one + (roughness * BETWEEN_HALVES).exp());
+        one - smooth * (1.0 - self.well_measured)
+    }
+
     /// Longest time by which the camera may lag more than the scene says (s).
     pub(crate) fn most_latency(&self) -> f64 {
         LATEST * self.latency

@@ -10,6 +10,7 @@ use crate::particle::chunk::{Column, load_chunk, load_pose};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
 use crate::setup::{Camera, Setup};
+use crate::uncertainty::Uncertainty;
 
 /// Likelihood of a camera pose: normal, with the row's own covariance or the camera's, the standard
 /// deviations widened by `likelihood_scale`; in contact mode with a noise that is learned, and a floor.
@@ -52,7 +53,7 @@ impl CameraLikelihood {
             columns,
             latency: Latency {
                 told: camera.latency,
-                most: setup.uncertainty.most_latency(),
+                uncertainty: setup.uncertainty,
             },
             noise: noise.filter(|_| contact),
             wrong: contact.then_some(WRONG),
@@ -246,8 +247,8 @@ impl CameraLikelihood {
 struct Latency {
     /// What the scene says (s).
     told: f64,
-    /// Upper limit of the rest (s).
-    most: f64,
+    /// The rest.
+    uncertainty: Uncertainty,
 }
 
 impl Latency {
@@ -255,7 +256,8 @@ impl Latency {
     #[inline(always)]
     fn of(&self, columns: Columns, block: &Block<'_>, chunk: usize) -> Column {
         let rest = load_chunk(block.column(columns.latency()), chunk, 0.0);
-        let rougher = load_chunk(block.column(columns.roughness()), chunk, 0.0).exp();
-        (rest * rougher).min(Lanes::splat(self.most)) + Lanes::splat(self.told)
+        let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
+        let scale = roughness.exp() * self.uncertainty.well_measured_at(roughness);
+        (rest * scale).min(Lanes::splat(self.uncertainty.most_latency())) + Lanes::splat(self.told)
     }
 }

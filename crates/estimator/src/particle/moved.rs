@@ -28,7 +28,6 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
         offset,
         offset + 1,
         columns.growth(),
-        columns.roughness(),
         columns.force(),
         columns.creep(),
         columns.creep() + 1,

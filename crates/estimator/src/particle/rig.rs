@@ -10,6 +10,7 @@ use crate::particle::contact_mode::wandered;
 use crate::particle::noise_clock::sharing;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
+use crate::uncertainty::Uncertainty;
 
 /// Share of their spread by which offsets wander from one draw of the noise to the next where the rig is
 /// as told: copies of a particle are to differ.
@@ -31,14 +32,15 @@ impl Propagation {
     /// Where fixel j stands: drawn anew until the object comes near.
     pub(super) fn draw_fixel_offset(
         &self,
-        Transition { columns, .. }: &Transition<'_>,
+        Transition { setup, columns, .. }: &Transition<'_>,
         plan: &StepPlan,
         j: usize,
         block: &mut BlockMut<'_>,
     ) {
         for (i, _) in block.particles() {
             let near = is_set(&block.as_block(), columns.fixel_was_near(j), i);
-            let wander = || offset_step(block.column(columns.roughness())[i]);
+            let roughness = block.column(columns.roughness())[i];
+            let wander = || offset_step(measured(&setup.uncertainty, roughness));
             let Some(step) = plan.step_of_unknown(near, wander) else {
                 continue;
             };
@@ -66,7 +68,8 @@ impl Propagation {
             if !near {
                 *roughness = unsure.roughness * rough;
             }
-            let Some(step) = plan.step_of_unknown(near, || offset_step(*roughness)) else {
+            let Some(step) = plan.step_of_unknown(near, || offset_step(libm::exp(*roughness)))
+            else {
                 continue;
             };
             let offsets = [
@@ -161,17 +164,18 @@ impl Propagation {
                 continue;
             }
             let [step, a, b, _] = self.normals.each_ref().map(|column| column[i]);
-            let rougher = libm::exp(block.column(columns.roughness())[i]);
-            let scale = unsure.pusher_offset * rougher;
+            let roughness = block.column(columns.roughness())[i];
+            let later = measured(unsure, roughness);
+            let scale = unsure.pusher_offset * libm::exp(roughness);
             let early = step * scale / speed;
             let offset = [0, 1].map(|axis| block.column(columns.pusher_offset() + axis)[i]);
             let moved = [0, 1].map(|axis| offset[axis] + velocity[axis] * early / scale);
-            let latency = block.column(columns.latency())[i] + early / rougher;
+            let latency = block.column(columns.latency())[i] + early / later;
             let squares = |[x, y]: [f64; 2]| x * x + y * y;
-            let loss = 0.5 * (squares(moved) - squares(offset)) + early / rougher / unsure.latency;
+            let loss = 0.5 * (squares(moved) - squares(offset)) + early / later / unsure.latency;
             // half the sum of squares of two normal numbers is exponential, as −ln of a uniform one
             let accepted = latency >= 0.0
-                && latency * rougher < unsure.most_latency()
+                && latency * later < unsure.most_latency()
                 && loss < 0.5 * (a * a + b * b);
             if accepted {
                 block.column_mut(columns.latency())[i] = latency;
@@ -241,7 +245,7 @@ impl Propagation {
             let scale = rougher * unsure.pusher_offset;
             let pusher = offset(columns.pusher_offset(), chunk, scale);
             self.pusher_offsets.push(pusher);
-            let scale = rougher * unsure.fixel_position;
+            let scale = rougher * unsure.well_measured_at(roughness) * unsure.fixel_position;
             let fixels = 0..columns.fixels();
             let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
             self.fixel_offsets.extend(fixels);
@@ -268,8 +272,13 @@ fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
     !fixel && is_set(block, Columns::CONTACT_PUSHER, i) && !is_set(block, Columns::IDLE, i)
 }
 
-/// Share of their spread by which a particle's offsets wander at a time: by the same way (m), however
-/// rough its rig is.
-fn offset_step(roughness: f64) -> f64 {
-    (OFFSET_STEP * libm::exp(-roughness)).min(1.0)
+/// Factor of fixels' offsets and latency on a rig so rough.
+fn measured(unsure: &Uncertainty, roughness: f64) -> f64 {
+    libm::exp(roughness) * unsure.well_measured_at(Lanes([roughness])).0[0]
+}
+
+/// Share of their spread by which offsets wander at a time that are `scale` times as large as told: by the
+/// same way (m), however large they are.
+fn offset_step(scale: f64) -> f64 {
+    (OFFSET_STEP / scale).min(1.0)
 }

@@ -79,6 +79,7 @@ pub(super) const TABLES: [(&str, &[&str]); 11] = [
             "fixel_position",
             "outline",
             "roughness",
+            "well_measured",
             "camera_noise",
             "latency",
             "touch_gap",

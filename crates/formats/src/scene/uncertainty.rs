@@ -103,6 +103,12 @@ const ROUGHNESS: Quantity = Quantity::new(
     Unit::None,
     Rule::NotNegative,
 );
+const WELL_MEASURED: Quantity = Quantity::new(
+    "well_measured",
+    "the factor of fixel_position and latency on the smoother half of rigs",
+    Unit::None,
+    Rule::Share,
+);
 const LATENCY: Quantity = Quantity::new(
     "latency",
     "the mean time, up to 1 s, by which the camera lags more than told",
@@ -138,6 +144,7 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
         fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,
         outline: number(&OUTLINE, default.outline)?,
         roughness: number(&ROUGHNESS, default.roughness)?,
+        well_measured: number(&WELL_MEASURED, default.well_measured)?,
         camera_noise: number(&CAMERA_NOISE, default.camera_noise)?,
         latency: number(&LATENCY, default.latency)?,
         touch_gap: number(&TOUCH_GAP, default.touch_gap)?,
