@@ -22,6 +22,8 @@ pub enum Ingredient {
     Outline,
     /// Rigs that differ in how rough they are.
     Roughness,
+    /// Rigs that are measured much better than others.
+    WellMeasured,
     /// A camera of unknown noise.
     CameraNoise,
     /// A camera of unknown latency.
@@ -40,7 +42,7 @@ pub enum Ingredient {
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::FrictionPriors,
         Self::Variation,
         Self::Force,
@@ -49,6 +51,7 @@ impl Ingredient {
         Self::FixelPositions,
         Self::Outline,
         Self::Roughness,
+        Self::WellMeasured,
         Self::CameraNoise,
         Self::Latency,
         Self::Touch,
@@ -70,6 +73,7 @@ impl Ingredient {
             Self::FixelPositions => "fixels where told",
             Self::Outline => "outline as told",
             Self::Roughness => "all rigs alike",
+            Self::WellMeasured => "no rig measured better",
             Self::CameraNoise => "camera as noisy as told",
             Self::Latency => "camera as late as told",
             Self::Touch => "no touch",
@@ -95,6 +99,7 @@ impl Ingredient {
             Self::FixelPositions => unknown.fixel_position = 0.0,
             Self::Outline => unknown.outline = 0.0,
             Self::Roughness => unknown.roughness = 0.0,
+            Self::WellMeasured => unknown.well_measured = 1.0,
             Self::CameraNoise => unknown.camera_noise = 0.0,
             Self::Latency => unknown.latency = 0.0,
             Self::Touch => options.tactile = TactileUse::Ignored,

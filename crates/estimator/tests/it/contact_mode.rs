@@ -244,6 +244,26 @@ fn the_evidence_is_for_the_friction_that_was() {
     assert_eq!(kalman.log_evidence, None);
 }
 
+/// Mean error (m) along the push, and mean spread, of what is believed of an object pushed steadily for 1.8 s under a
+/// camera that lags by `latency` (s).
+fn pushed_steadily(setup: &Setup, latency: f64) -> [f64; 2] {
+    const SEEDS: u64 = 12;
+    let log = pushed(latency);
+    let (mut error, mut spread) = (0.0, 0.0);
+    for seed in 0..SEEDS {
+        let options = RunOptions {
+            particles: 1000,
+            seed,
+            ..RunOptions::default()
+        };
+        let run = run(setup, &log, &options, &mut |_| ()).expect("a run");
+        let (time, at) = (run.estimate.time[85], &run.estimate.rows[85]);
+        error += at.pose.expect("a pose").x - truth(time).x;
+        spread += at.spread.expect("a spread").pose.x;
+    }
+    [error, spread].map(|sum| sum / SEEDS as f64)
+}
+
 /// Under a steady push, what the camera shows fixes o − v L, the pusher's offset less the way in the
 /// latency. On that line the priors N(0, σ²) of o and exponential of L leave a normal distribution of
 /// mean −σ²/(v L̄), cut off where L = 0, for where the object is.
@@ -253,23 +273,50 @@ fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
     setup.uncertainty.roughness = 0.0;
     setup.uncertainty.outline = 0.0;
     let (std, late) = (setup.uncertainty.pusher_offset, setup.uncertainty.latency);
-    let log = pushed(0.05);
-    let row = 85; // after 1.8 s of pushing
-    let (mut error, mut spread) = (0.0, 0.0);
-    const SEEDS: u64 = 12;
-    for seed in 0..SEEDS {
-        let options = RunOptions {
-            particles: 1000,
-            seed,
-            ..RunOptions::default()
-        };
-        let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
-        let at = &run.estimate.rows[row];
-        let pose = at.pose.expect("a pose");
-        error += (pose.x - truth(run.estimate.time[row]).x) / SEEDS as f64;
-        spread += at.spread.expect("a spread").pose.x / SEEDS as f64;
-    }
+    let [error, spread] = pushed_steadily(&setup, 0.05);
     let expected = -std * std / (SPEED * late);
     assert!((spread / std - 1.0).abs() < 0.25, "{spread}, {std}");
     assert!((error - expected).abs() < 0.4 * std, "{error}, {expected}");
+}
+
+/// Where rigs differ, the same line leaves a mixture: that of all roughnesses η, each by how likely it makes what the
+/// camera shows. The sums are over η and over the latency.
+#[test]
+fn a_steady_push_tells_rigs_that_are_measured_well_from_others() {
+    let mut setup = setup(&[]);
+    setup.uncertainty.outline = 0.0;
+    let unsure = setup.uncertainty;
+    let expected = |true_latency: f64| {
+        let (mut weight, mut mean, mut square) = (0.0, 0.0, 0.0);
+        for k in -300..300 {
+            let eta = unsure.roughness * 0.01 * (f64::from(k) + 0.5);
+            let well = unsure.well_measured;
+            let better = well + (1.0 - well) / (1.0 + libm::exp(-10.0 * eta));
+            let std = libm::exp(eta) * unsure.pusher_offset;
+            let late = better * libm::exp(eta) * unsure.latency;
+            for step in 0..4000 {
+                let latency = 1e-4 * (f64::from(step) + 0.5);
+                let offset = SPEED * (latency - true_latency);
+                let normal = libm::pow(eta / unsure.roughness, 2.0) + libm::pow(offset / std, 2.0);
+                let density = libm::exp(-0.5 * normal - latency / late) / (std * late);
+                weight += density;
+                mean += density * offset;
+                square += density * offset * offset;
+            }
+        }
+        let mean = mean / weight;
+        [mean, (square / weight - mean * mean).sqrt()]
+    };
+    for latency in [0.0, 0.05] {
+        let [error, spread] = pushed_steadily(&setup, latency);
+        let [mean, std] = expected(latency);
+        assert!(
+            (spread / std - 1.0).abs() < 0.3,
+            "{latency} s: {spread}, {std}"
+        );
+        assert!(
+            (error - mean).abs() < 0.4 * std,
+            "{latency} s: {error}, {mean}"
+        );
+    }
 }
