@@ -6,7 +6,8 @@ use crate::belief_mode::BeliefMode;
 use crate::contact_slip::ContactSlip;
 use crate::covariance::PoseCovariance;
 
-/// Standard deviations of an estimate row, and how the errors of its pose go together.
+/// How far from an estimate row the object may be: standard deviations, and how the errors of its pose go
+/// together. Of the particle filter they are root mean square deviations from the row's pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Standard deviations of the pose (m, m, rad).
@@ -47,12 +48,26 @@ impl Spread {
             y_theta,
         }
     }
+
+    /// From deviations about a mean to those about a pose that is `way` from it.
+    pub(crate) fn move_centre(&mut self, way: Pose) {
+        let Pose { x, y, theta } = way;
+        self.pose.x = self.pose.x.hypot(x);
+        self.pose.y = self.pose.y.hypot(y);
+        self.pose.theta = self.pose.theta.hypot(theta);
+        if let Some(cross) = &mut self.cross {
+            cross.x_y += x * y;
+            cross.x_theta += x * theta;
+            cross.y_theta += y * theta;
+        }
+    }
 }
 
 /// A method's estimate at one log row. `None` is an empty cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EstimateRow {
-    /// Pose; theta is unwrapped from the row before.
+    /// Pose; theta is unwrapped from the row before. Of particles that of the least mean distance to them,
+    /// docs/method.md (51); in paper mode their mean.
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,

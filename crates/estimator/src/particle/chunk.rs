@@ -42,6 +42,12 @@ pub(crate) fn load_pose(block: &Block<'_>, first_column: usize, chunk: usize) ->
     }
 }
 
+/// Sum over the lanes.
+#[inline(always)]
+pub(crate) fn total(lanes: Column) -> f64 {
+    lanes.0.iter().sum()
+}
+
 /// Where a flag is set in chunk `chunk`.
 #[inline(always)]
 pub(crate) fn flag(block: &Block<'_>, which: Flag, chunk: usize) -> Mask<LANES> {

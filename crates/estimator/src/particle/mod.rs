@@ -8,6 +8,7 @@ mod columns;
 pub(crate) mod contact_filter;
 mod contact_flags;
 mod contact_mode;
+mod geometric_median;
 mod group;
 mod history;
 mod mode_finder;

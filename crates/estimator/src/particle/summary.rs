@@ -1,5 +1,5 @@
-//! What a particle set amounts to: weighted means and standard deviations of its columns:
-//! [`summarise`].
+//! What a particle set amounts to: weighted means and standard deviations of its columns, about the
+//! pose that is published: [`summarise`].
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,14 +7,17 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;
 
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
+use crate::particle::geometric_median::GeometricMedian;
 use crate::particle::model::ContactModel;
 use crate::particle::sums::{ANGLE, Reference};
 
 /// Writes weighted means and standard deviations, from sums about `reference`, to `row`; θ is the
-/// angle nearest to that of the reference.
+/// angle nearest to that of the reference. The pose is the mean, or what `median` finds, and its spread
+/// is about that.
 pub(crate) fn summarise(
     filter: &ParticleFilter<ContactModel<'_>>,
     reference: &Reference,
+    median: Option<&mut GeometricMedian>,
     row: &mut EstimateRow,
 ) {
     let sums = filter.sums();
@@ -43,14 +46,25 @@ pub(crate) fn summarise(
     };
 
     let pose = |[x, y]: [f64; 2], theta: f64| Pose { x, y, theta };
-    row.pose = Some(pose(means.position, theta));
-    row.twist = Some(sums.twist);
-    row.friction = Some(means.friction);
-    row.spread = Some(Spread {
+    let mut spread = Spread {
         pose: pose(stds.position, theta_std),
         cross: Some(cross),
         friction: Some(stds.friction),
-    });
+    };
+    let mut published = pose(means.position, theta);
+    if let Some(median) = median {
+        let way = median.from_mean(filter, published);
+        published = Pose::new(
+            published.x + way.x,
+            published.y + way.y,
+            published.theta + way.theta,
+        );
+        spread.move_centre(way);
+    }
+    row.pose = Some(published);
+    row.twist = Some(sums.twist);
+    row.friction = Some(means.friction);
+    row.spread = Some(spread);
     row.contact_pusher = Some(sums.contact_pusher);
     row.contact_fixels
         .get_or_insert_default()

@@ -6,7 +6,7 @@ use stickslip_filter::{Block, WeightedSums};
 use crate::angle::nearest_zero;
 use crate::contact_slip::ContactSlip;
 use crate::estimate::EstimateRow;
-use crate::particle::chunk::{Column, LANES, flag, load_chunk};
+use crate::particle::chunk::{Column, LANES, flag, load_chunk, total};
 use crate::particle::columns::{Columns, Flag, SlipFlags};
 
 /// θ.
@@ -276,11 +276,6 @@ fn slips(
     }
     let [stick, left, right] = sums.map(total);
     ContactSlip { stick, left, right }
-}
-
-#[inline(always)]
-fn total(lanes: Column) -> f64 {
-    lanes.0.iter().sum()
 }
 
 impl WeightedSums for Sums {
