@@ -43,7 +43,7 @@ impl GeometricMedian {
     }
 
     /// The way from `mean`, a pose near the particles, to that of the least mean distance to them.
-    pub fn from_mean(&mut self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) -> Pose {
+    pub fn way_from(&mut self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) -> Pose {
         on_widest(
             Level::new(),
             #[inline(always)]

@@ -53,7 +53,7 @@ pub(crate) fn summarise(
     };
     let mut published = pose(means.position, theta);
     if let Some(median) = median {
-        let way = median.from_mean(filter, published);
+        let way = median.way_from(filter, published);
         published = Pose::new(
             published.x + way.x,
             published.y + way.y,
