@@ -12,7 +12,6 @@ use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::moves::Moves;
 use crate::particle::camera_clock::CameraClock;
-use crate::particle::geometric_median::GeometricMedian;
 use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
@@ -60,8 +59,6 @@ pub(crate) struct ContactFilter<'o> {
     plan: StepPlan,
     observation: Observation,
     latest: EstimateRow,
-    /// What finds the pose to publish (contact mode); without it the mean is.
-    median: Option<GeometricMedian>,
     modes: ModeFinder,
     collapses: u32,
     /// Whether the latest row drew the particles anew.
@@ -136,7 +133,6 @@ impl<'o> ContactFilter<'o> {
         let model = ContactModel::new(options.mode, setup, camera, start, history.slots());
         let model = model.observed(options.observer);
         let reference = Reference::new(pose, setup.scene.nominal);
-        let rho = setup.scene.object.gyration_radius();
         let mut this = Self {
             filter: ParticleFilter::new(model, options.settings(setup))?,
             history,
@@ -146,8 +142,7 @@ impl<'o> ContactFilter<'o> {
             plan: StepPlan::none(reference),
             observation: Observation::default(),
             latest: EstimateRow::default(),
-            median: (options.mode == Mode::Contact).then(|| GeometricMedian::new(rho)),
-            modes: ModeFinder::new(rho, camera.position_std),
+            modes: ModeFinder::new(setup.scene.object.gyration_radius(), camera.position_std),
             collapses: 0,
             collapsed: false,
             log_evidence: 0.0,
@@ -347,8 +342,7 @@ impl<'o> ContactFilter<'o> {
     /// Writes what the particles amount to.
     fn summarise(&mut self) {
         let row = &mut self.latest;
-        let median = self.median.as_mut();
-        summarise(&self.filter, &self.plan.reference, median, row);
+        summarise(&self.filter, &self.plan.reference, row);
         if let Some((pose, spread)) = row.pose.zip(row.spread) {
             let belief = (pose, spread.pose);
             self.modes.find(&self.filter, belief, &mut row.modes);

@@ -1,7 +1,7 @@
-//! The pose that is nearest to the particles, in the mean: [`GeometricMedian`], docs/method.md (51).
+//! The pose that is nearest to the particles, in the mean: [`way_to_median`], docs/method.md (51).
 
 use stickslip_dynamics::{Lanes, Level, Pose, on_widest};
-use stickslip_filter::ParticleFilter;
+use stickslip_filter::{Block, ParticleFilter};
 
 use crate::angle::nearest_zero;
 use crate::particle::chunk::{Column, LANES, load_chunk, load_pose, total};
@@ -18,87 +18,78 @@ const LEAST_STEP: f64 = 1e-7;
 /// Steps at most; sets that part in halves take most.
 const MOST_STEPS: usize = 64;
 
-/// Finds the pose of the least mean distance to a particle set; memory is kept from row to row.
-#[derive(Clone, Debug)]
-pub(crate) struct GeometricMedian {
-    /// The object's radius of gyration ρ (m).
-    rho: f64,
-    particles: Vec<Weighed>,
+/// The way from `mean`, a pose near the particles, to that of the least mean distance to them.
+pub(crate) fn way_to_median(filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) -> Pose {
+    let rho = filter.model().gyration_radius();
+    let weights = filter.weights().weights();
+    let [x, y, turn] = nearest_point(|point| {
+        let at = Pose::new(
+            mean.x + point[0],
+            mean.y + point[1],
+            mean.theta + point[2] / rho,
+        );
+        filter.particles().reduce(
+            |block| Pull::of(block, &weights[block.range()], &at, rho),
+            Pull::plus,
+        )
+    });
+    Pose::new(x, y, turn / rho)
 }
 
-/// Particles side by side: weights, and poses as points about the mean (m).
-#[derive(Clone, Copy, Debug)]
-struct Weighed {
-    weight: Column,
-    at: [Column; 3],
+/// How particles pull at a point: each with its weight, however far it is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pull {
+    /// Σ w d/|d|, d the way to the particle.
+    force: Point,
+    /// Σ w/|d| (1/m).
+    stiffness: f64,
 }
 
-impl GeometricMedian {
-    /// For an object of radius of gyration `rho` (m).
-    pub fn new(rho: f64) -> Self {
-        Self {
-            rho,
-            particles: Vec::new(),
-        }
-    }
-
-    /// The way from `mean`, a pose near the particles, to that of the least mean distance to them.
-    pub fn way_from(&mut self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) -> Pose {
+impl Pull {
+    /// Of a block, at a pose of an object of radius of gyration `rho`.
+    fn of(block: &Block<'_>, weights: &[f64], at: &Pose, rho: f64) -> Self {
+        let (mut force, mut stiffness) = ([Column::ZERO; 3], Column::ZERO);
         on_widest(
             Level::new(),
             #[inline(always)]
             || {
-                self.read(filter, mean);
-                let [x, y, turn] = nearest_point(&self.particles);
-                Pose::new(x, y, turn / self.rho)
+                for chunk in 0..block.len().div_ceil(LANES) {
+                    let pose = load_pose(block, Columns::POSE, chunk);
+                    let turn = nearest_zero(pose.theta - at.theta) * rho;
+                    let way = [pose.x - at.x, pose.y - at.y, turn];
+                    let mut square = Lanes::splat(SOFTENED * SOFTENED);
+                    for d in way {
+                        square = square.add_mul(d, d);
+                    }
+                    let share = load_chunk(weights, chunk, 0.0) * square.inverse_sqrt();
+                    for (force, d) in force.iter_mut().zip(way) {
+                        *force = force.add_mul(share, d);
+                    }
+                    stiffness += share;
+                }
             },
-        )
+        );
+        Self {
+            force: force.map(total),
+            stiffness: total(stiffness),
+        }
     }
 
-    #[inline(always)]
-    fn read(&mut self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) {
-        self.particles.clear();
-        let weights = filter.weights().weights();
-        for block in filter.particles().blocks() {
-            let weights = &weights[block.range()];
-            for chunk in 0..block.len().div_ceil(LANES) {
-                let pose = load_pose(&block, Columns::POSE, chunk);
-                let turn = nearest_zero(pose.theta - mean.theta);
-                self.particles.push(Weighed {
-                    weight: load_chunk(weights, chunk, 0.0),
-                    at: [pose.x - mean.x, pose.y - mean.y, turn * self.rho],
-                });
-            }
+    fn plus(self, other: Self) -> Self {
+        Self {
+            force: [0, 1, 2].map(|k| self.force[k] + other.force[k]),
+            stiffness: self.stiffness + other.stiffness,
         }
     }
 }
 
-/// The point of the least mean distance to the particles, from the origin (Weiszfeld 1937).
-#[inline(always)]
-fn nearest_point(particles: &[Weighed]) -> Point {
+/// The point of the least mean distance, from the origin, given how the particles pull at a point
+/// (Weiszfeld 1937).
+fn nearest_point(pull_at: impl Fn(Point) -> Pull) -> Point {
     let mut point = [0.0; 3];
     for _ in 0..MOST_STEPS {
-        // each particle pulls with its weight, however far it is
-        let mut pull = [Column::ZERO; 3];
-        let mut stiffness = Column::ZERO;
-        for Weighed { weight, at } in particles {
-            let mut way = *at;
-            let mut square = Lanes::splat(SOFTENED * SOFTENED);
-            for (way, from) in way.iter_mut().zip(point) {
-                *way = *way - from;
-                square = square.add_mul(*way, *way);
-            }
-            let share = *weight * square.inverse_sqrt();
-            for (pull, way) in pull.iter_mut().zip(way) {
-                *pull = pull.add_mul(share, way);
-            }
-            stiffness += share;
-        }
-        let stiffness = total(stiffness);
-        let step = pull.map(
-            #[inline(always)]
-            |pull| total(pull) / stiffness,
-        );
+        let Pull { force, stiffness } = pull_at(point);
+        let step = force.map(|force| force / stiffness);
         for (point, step) in point.iter_mut().zip(step) {
             *point += step;
         }
@@ -114,16 +105,17 @@ mod tests {
     use super::*;
 
     fn median(particles: &[(f64, Point)]) -> Point {
-        let lanes = particles.chunks(LANES).map(|some| {
-            let lane = |number: &dyn Fn(&(f64, Point)) -> f64| {
-                Lanes(std::array::from_fn(|i| some.get(i).map_or(0.0, number)))
-            };
-            Weighed {
-                weight: lane(&|(weight, _)| *weight),
-                at: [0, 1, 2].map(|axis| lane(&|(_, at)| at[axis])),
-            }
-        });
-        nearest_point(&lanes.collect::<Vec<_>>())
+        nearest_point(|point| {
+            let pulls = particles.iter().map(|(weight, at)| {
+                let way = [0, 1, 2].map(|k| at[k] - point[k]);
+                let share = weight / squared(way).sqrt().hypot(SOFTENED);
+                Pull {
+                    force: way.map(|d| share * d),
+                    stiffness: share,
+                }
+            });
+            pulls.fold(Pull::default(), Pull::plus)
+        })
     }
 
     fn assert_near(found: Point, expected: Point) {

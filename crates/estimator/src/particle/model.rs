@@ -80,6 +80,11 @@ impl<'o> ContactModel<'o> {
         self.transition.columns = columns;
     }
 
+    /// The object's radius of gyration (m).
+    pub fn gyration_radius(&self) -> f64 {
+        self.transition.setup.scene.object.gyration_radius()
+    }
+
     /// From now on, poses that no particle explains draw them all anew, or count as wrong (contact
     /// mode).
     pub fn trust_camera(&mut self, trusted: bool) {

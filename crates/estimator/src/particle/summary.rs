@@ -7,17 +7,17 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;
 
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
-use crate::particle::geometric_median::GeometricMedian;
+use crate::mode::Mode;
+use crate::particle::geometric_median::way_to_median;
 use crate::particle::model::ContactModel;
 use crate::particle::sums::{ANGLE, Reference};
 
 /// Writes weighted means and standard deviations, from sums about `reference`, to `row`; θ is the
-/// angle nearest to that of the reference. The pose is the mean, or what `median` finds, and its spread
-/// is about that.
+/// angle nearest to that of the reference. In contact mode the pose is the one at the least mean
+/// distance from the particles, and its spread is about that.
 pub(crate) fn summarise(
     filter: &ParticleFilter<ContactModel<'_>>,
     reference: &Reference,
-    median: Option<&mut GeometricMedian>,
     row: &mut EstimateRow,
 ) {
     let sums = filter.sums();
@@ -52,8 +52,8 @@ pub(crate) fn summarise(
         friction: Some(stds.friction),
     };
     let mut published = pose(means.position, theta);
-    if let Some(median) = median {
-        let way = median.way_from(filter, published);
+    if filter.model().columns().mode() == Mode::Contact {
+        let way = way_to_median(filter, published);
         published = Pose::new(
             published.x + way.x,
             published.y + way.y,
