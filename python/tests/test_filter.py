@@ -128,16 +128,27 @@ def test_scenes_are_refused_with_their_place(tmp_path):
         stickslip.load_scene(tmp_path / "none.toml")
 
 
-def test_particles_have_the_mean_of_the_estimate(demo, scene):
-    options = {"particles": 200, "occlude": 200}
+@pytest.mark.parametrize(
+    ("mode", "means"),
+    [
+        ("paper", ("x", "y", "mu_s", "mu_p", "mu_f", "d_tri")),
+        # whose pose is no mean, but the one that is nearest to the particles
+        ("contact", ("mu_s", "mu_p", "mu_f", "d_tri")),
+    ],
+)
+def test_particles_have_the_means_of_the_estimate(demo, scene, mode, means):
+    options = {"particles": 200, "occlude": 200, "mode": mode}
     estimate = stickslip.filter(demo / "log.csv", scene, **options)
     cloud = stickslip.particles(demo / "log.csv", scene, rows=[250, 10], **options)
     np.testing.assert_array_equal(cloud["row"], [10, 250])
     assert cloud["x"].shape == (2, 200)
     np.testing.assert_allclose(cloud["weight"].sum(axis=1), 1)
-    for name in ("x", "y", "mu_s", "mu_p", "mu_f", "d_tri"):
+    for name in means:
         mean = (cloud["weight"] * cloud[name]).sum(axis=1)
         np.testing.assert_allclose(mean, estimate[name][[10, 250]], rtol=1e-9, atol=1e-12, err_msg=name)
+    for name in ("x", "y"):
+        square = (cloud["weight"] * (cloud[name] - estimate[name][[10, 250], None]) ** 2).sum(axis=1)
+        np.testing.assert_allclose(np.sqrt(square), estimate[f"std_{name}"][[10, 250]], rtol=1e-5, err_msg=name)
 
 
 def test_samples_have_equal_weight_and_the_posterior_s_moments(demo, scene):
@@ -147,7 +158,8 @@ def test_samples_have_equal_weight_and_the_posterior_s_moments(demo, scene):
     for chain, seed in enumerate((0, 1)):
         estimate = stickslip.filter(demo / "log.csv", scene, seed=seed, **options)
         for draw, row in enumerate((250, 100)):
-            values = posterior["x"][chain, :, draw]
             # systematic resampling: each particle's share is off by less than 1 / draws
-            assert abs(values.mean() - estimate["x"][row]) < 0.05 * estimate["std_x"][row]
-            assert values.std() == pytest.approx(estimate["std_x"][row], rel=0.05)
+            values = posterior["mu_p"][chain, :, draw]
+            assert abs(values.mean() - estimate["mu_p"][row]) < 0.05 * estimate["std_mu_p"][row]
+            off = posterior["x"][chain, :, draw] - estimate["x"][row]
+            assert np.sqrt((off**2).mean()) == pytest.approx(estimate["std_x"][row], rel=0.05)
