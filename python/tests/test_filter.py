@@ -157,9 +157,15 @@ def test_samples_have_equal_weight_and_the_posterior_s_moments(demo, scene):
     assert posterior["mu_p"].shape == (2, 40000, 2)
     for chain, seed in enumerate((0, 1)):
         estimate = stickslip.filter(demo / "log.csv", scene, seed=seed, **options)
+        cloud = stickslip.particles(demo / "log.csv", scene, rows=[100, 250], seed=seed, **options)
         for draw, row in enumerate((250, 100)):
             # systematic resampling: each particle's share is off by less than 1 / draws
+            values, weight, x = posterior["x"][chain, :, draw], cloud["weight"][1 - draw], cloud["x"][1 - draw]
+            mean = (weight * x).sum()
+            std = np.sqrt((weight * (x - mean) ** 2).sum())
+            assert abs(values.mean() - mean) < 0.05 * std
+            assert values.std() == pytest.approx(std, rel=0.05)
+            off = values - estimate["x"][row]
+            assert np.sqrt((off**2).mean()) == pytest.approx(estimate["std_x"][row], rel=0.05)
             values = posterior["mu_p"][chain, :, draw]
             assert abs(values.mean() - estimate["mu_p"][row]) < 0.05 * estimate["std_mu_p"][row]
-            off = posterior["x"][chain, :, draw] - estimate["x"][row]
-            assert np.sqrt((off**2).mean()) == pytest.approx(estimate["std_x"][row], rel=0.05)

@@ -44,12 +44,12 @@ impl ModeFinder {
         }
     }
 
-    /// Writes the modes of the particles, the heaviest first, one at least; `mean` and `std` are those
-    /// of all particles.
+    /// Writes the modes of the particles, the heaviest first, one at least; `centre` and `std` are pose and
+    /// spread of the row.
     pub fn find(
         &mut self,
         filter: &ParticleFilter<ContactModel<'_>>,
-        (mean, std): (Pose, Pose),
+        (centre, std): (Pose, Pose),
         modes: &mut Vec<BeliefMode>,
     ) {
         modes.clear();
@@ -57,7 +57,7 @@ impl ModeFinder {
         let size = (std.x * std.x + std.y * std.y + turn * turn).sqrt();
         if size < self.least * (LEAST_WEIGHT * (1.0 - LEAST_WEIGHT)).sqrt() {
             // two modes of the least weight at the least distance would be wider
-            let pose = self.nearest(filter, mean);
+            let pose = self.nearest(filter, centre);
             modes.push(BeliefMode {
                 weight: 1.0,
                 pose,
@@ -66,14 +66,14 @@ impl ModeFinder {
             return;
         }
         let weights = filter.weights().weights();
-        self.read(filter, mean);
+        self.read(filter, centre);
         let count = self.divide(weights);
         modes.extend((0..count).map(|mode| self.describe(filter, weights, mode)));
         modes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     }
 
-    /// Pose of the particle nearest to `mean`.
-    fn nearest(&self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) -> Pose {
+    /// Pose of the particle nearest to `centre`.
+    fn nearest(&self, filter: &ParticleFilter<ContactModel<'_>>, centre: Pose) -> Pose {
         let weights = filter.weights().weights();
         let (_, particle) = filter.particles().reduce(
             |block| {
@@ -81,7 +81,7 @@ impl ModeFinder {
                 let weighed = weighed.filter(|(_, particle)| weights[*particle] > 0.0);
                 let distances = weighed.map(|(i, particle)| {
                     let [x, y, theta] = [0, 1, 2].map(|k| block.column(Columns::POSE + k)[i]);
-                    let point = self.point(Pose::new(x, y, theta), mean);
+                    let point = self.point(Pose::new(x, y, theta), centre);
                     (squared(point), particle)
                 });
                 distances.fold((f64::INFINITY, 0), nearer)
@@ -97,12 +97,12 @@ impl ModeFinder {
     }
 
     /// Takes all particles for one group.
-    fn read(&mut self, filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) {
+    fn read(&mut self, filter: &ParticleFilter<ContactModel<'_>>, centre: Pose) {
         self.points.clear();
         for block in filter.particles().blocks() {
             let [x, y, theta] = [0, 1, 2].map(|k| block.column(Columns::POSE + k));
             for i in 0..block.len() {
-                let point = self.point(Pose::new(x[i], y[i], theta[i]), mean);
+                let point = self.point(Pose::new(x[i], y[i], theta[i]), centre);
                 self.points.push(point);
             }
         }
