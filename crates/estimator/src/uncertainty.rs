@@ -33,8 +33,9 @@ pub struct Uncertainty {
     pub outline: f64,
     /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs differ.
     pub roughness: f64,
-    /// Factor of `fixel_position` and `latency` on the smoother half of rigs: below 1 where some rigs are
-    /// measured much better than others.
+    /// Factor of `fixel_position` and `latency` on the smoother half of rigs, and its root that of
+    /// `pusher_offset`, `outline` and, in the dark, `force_std`: below 1 where some rigs are measured much better
+    /// than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from what is told.
     pub camera_noise: f64,
@@ -92,6 +93,12 @@ impl Uncertainty {
         }
         let smooth = one / (one + (roughness * BETWEEN_HALVES).exp());
         one - smooth * (1.0 - self.well_measured)
+    }
+
+    /// √b of (36): the factor of `pusher_offset`, `outline` and, in the dark, of `force_std`.
+    #[inline(always)]
+    pub(crate) fn well_made_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
+        self.well_measured_at(roughness).sqrt()
     }
 
     /// Longest time by which the camera may lag more than the scene says (s).

@@ -26,9 +26,6 @@ pub(crate) const MOVING: f64 = 1e-9;
 /// are used.
 const FORCE_PAIR: u32 = 2;
 
-/// Spreads of its logarithm within which the factor of the random force lies: what moves it knows no bounds.
-const MOST_SPREADS: f64 = 3.0;
-
 /// Γ' of one setup: what moves the particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Transition<'o> {
@@ -143,7 +140,7 @@ impl Propagation {
             on_widest(
                 level,
                 #[inline(always)]
-                || self.apply_force(transition, input.h, of_force, pair, block),
+                || self.apply_force(transition, plan, input.h, of_force, pair, block),
             );
             if let Some(observer) = transition.observer {
                 observer.before_step(input, &self.particles[..chunks]);
@@ -252,6 +249,7 @@ impl Propagation {
     fn apply_force(
         &mut self,
         transition: &Transition<'_>,
+        plan: &StepPlan,
         h: f64,
         draw: Draw,
         pair: u32,
@@ -260,14 +258,10 @@ impl Propagation {
         self.draw_normals(draw, pair, block);
         let Transition { setup, columns, .. } = transition;
         let scene = &setup.scene;
-        let (per_step, factor) = match columns.mode() {
-            Mode::Contact => {
-                let factor = (setup.uncertainty.force_spread > 0.0).then(|| columns.force());
-                (setup.uncertainty.force_std, factor)
-            }
-            Mode::Paper => (setup.filter.force_std, None),
+        let per_step = match columns.mode() {
+            Mode::Contact => setup.uncertainty.force_std,
+            Mode::Paper => setup.filter.force_std,
         };
-        let most = Lanes::splat(MOST_SPREADS * setup.uncertainty.force_spread);
         let sharing = f64::from(sharing(h));
         let lasts = h * sharing;
         let share =
@@ -281,10 +275,10 @@ impl Propagation {
             .take(block.len().div_ceil(LANES))
         {
             let disturbed = !self.untouched[chunk];
-            let factor = factor.map_or(Lanes::splat(1.0), |column| {
-                let logarithm = load_chunk(block.column(column), chunk, 0.0);
-                logarithm.max(-most).min(most).exp()
-            });
+            let factor = match columns.mode() {
+                Mode::Contact => Self::force_factor(transition, plan, block, chunk),
+                Mode::Paper => Lanes::splat(1.0),
+            };
             let std = disturbed.zero_unless(particles.friction.mu_s * share * factor);
             for (k, (impulse, arm)) in particles
                 .applied

@@ -4,7 +4,7 @@
 use stickslip_dynamics::{Lanes, Particles};
 use stickslip_filter::{Block, BlockMut};
 
-use crate::particle::chunk::{Column, LANES, is_set};
+use crate::particle::chunk::{Column, LANES, is_set, load_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::contact_mode::wandered;
 use crate::particle::noise_clock::sharing;
@@ -24,6 +24,9 @@ const CREEP_SPREAD: f64 = 1.2;
 
 /// Spreads within which that logarithm lies: what moves it knows no bounds.
 const MOST_CREEP: f64 = 3.0;
+
+/// Spreads of its logarithm within which the factor of the random force lies: what moves it knows no bounds.
+const MOST_SPREADS: f64 = 3.0;
 
 /// Share of its mean by which the camera's latency wanders.
 const LATENCY_STEP: f64 = 0.1;
@@ -68,7 +71,7 @@ impl Propagation {
             if !near {
                 *roughness = unsure.roughness * rough;
             }
-            let Some(step) = plan.step_of_unknown(near, || offset_step(libm::exp(*roughness)))
+            let Some(step) = plan.step_of_unknown(near, || offset_step(made(unsure, *roughness)))
             else {
                 continue;
             };
@@ -96,6 +99,29 @@ impl Propagation {
                 block.column_mut(columns.force())[i] = spread * self.normals[3][i];
             }
         }
+    }
+
+    /// Factor of each particle's random force: that of its push, and in the dark that of its rig. While the camera
+    /// looks, what the force does not allow for would pass for friction.
+    #[inline(always)]
+    pub(super) fn force_factor(
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &BlockMut<'_>,
+        chunk: usize,
+    ) -> Column {
+        let unsure = &setup.uncertainty;
+        let mut factor = Lanes::splat(1.0);
+        if unsure.force_spread > 0.0 {
+            let most = Lanes::splat(MOST_SPREADS * unsure.force_spread);
+            let logarithm = load_chunk(block.column(columns.force()), chunk, 0.0);
+            factor = logarithm.max(-most).min(most).exp();
+        }
+        if plan.is_dark() {
+            let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
+            factor = factor * unsure.well_made_at(roughness);
+        }
+        factor
     }
 
     /// How contacts creep, with the pusher and with fixels: drawn anew until these come near.
@@ -166,7 +192,7 @@ impl Propagation {
             let [step, a, b, _] = self.normals.each_ref().map(|column| column[i]);
             let roughness = block.column(columns.roughness())[i];
             let later = measured(unsure, roughness);
-            let scale = unsure.pusher_offset * libm::exp(roughness);
+            let scale = unsure.pusher_offset * made(unsure, roughness);
             let early = step * scale / speed;
             let offset = [0, 1].map(|axis| block.column(columns.pusher_offset() + axis)[i]);
             let moved = [0, 1].map(|axis| offset[axis] + velocity[axis] * early / scale);
@@ -242,8 +268,8 @@ impl Propagation {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
             let rougher = Lanes(roughness.0.map(libm::exp));
-            let scale = rougher * unsure.pusher_offset;
-            let pusher = offset(columns.pusher_offset(), chunk, scale);
+            let made = rougher * unsure.well_made_at(roughness);
+            let pusher = offset(columns.pusher_offset(), chunk, made * unsure.pusher_offset);
             self.pusher_offsets.push(pusher);
             let scale = rougher * unsure.well_measured_at(roughness) * unsure.fixel_position;
             let fixels = 0..columns.fixels();
@@ -251,7 +277,7 @@ impl Propagation {
             self.fixel_offsets.extend(fixels);
             let mut growth = Lanes::ZERO;
             load_columns(block, columns.growth(), chunk, [&mut growth]);
-            self.growth.push(growth * (rougher * unsure.outline));
+            self.growth.push(growth * (made * unsure.outline));
             if unsure.creep > 0.0 {
                 let most = Lanes::splat(MOST_CREEP);
                 let mut creep = [Lanes::ZERO; 2];
@@ -275,6 +301,11 @@ fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
 /// Factor of fixels' offsets and latency on a rig so rough.
 fn measured(unsure: &Uncertainty, roughness: f64) -> f64 {
     libm::exp(roughness) * unsure.well_measured_at(Lanes([roughness])).0[0]
+}
+
+/// Factor of the pusher's offset and of the outline on a rig so rough.
+fn made(unsure: &Uncertainty, roughness: f64) -> f64 {
+    libm::exp(roughness) * unsure.well_made_at(Lanes([roughness])).0[0]
 }
 
 /// Share of their spread by which offsets wander at a time that are `scale` times as large as told: by the

@@ -63,11 +63,17 @@ impl StepPlan {
         self.substeps.iter().map(|step| step.h).sum()
     }
 
+    /// Whether the camera shows nothing.
+    #[inline(always)]
+    pub(crate) fn is_dark(&self) -> bool {
+        self.parameter_noise == ParameterNoise::Frozen
+    }
+
     /// Whether what a particle takes as known changes a little, so that copies differ: while the
     /// camera looks, and in the dark while the pusher moves (contact mode). At rest nothing would tell
     /// them apart.
     pub(crate) fn unknowns_wander(&self) -> bool {
-        self.driven || self.parameter_noise == ParameterNoise::Drawn
+        self.driven || !self.is_dark()
     }
 
     /// Step of one such number, in spreads of its prior: 1, which draws it anew, until what tells of it
