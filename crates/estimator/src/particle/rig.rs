@@ -29,7 +29,7 @@ const MOST_CREEP: f64 = 3.0;
 const MOST_SPREADS: f64 = 3.0;
 
 /// Share of its mean by which the camera's latency wanders.
-const LATENCY_STEP: f64 = 0.1;
+const LATENCY_STEP: f64 = 0.02;
 
 impl Propagation {
     /// Where fixel j stands: drawn anew until the object comes near.

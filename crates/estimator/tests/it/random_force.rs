@@ -2,9 +2,9 @@
 
 use std::sync::Mutex;
 
-use crate::common::{PARTICLES, run_into_the_dark, setup};
+use crate::common::{PARTICLES, run_from_rest, setup};
 use stickslip::dynamics::{Particles, StepInput};
-use stickslip::{Observer, SolvedStep};
+use stickslip::{Observer, SolvedStep, Uncertainty};
 
 /// `force_std` of all runs here.
 const TOLD: f64 = 0.25;
@@ -30,14 +30,18 @@ impl Observer for FirstForce {
     }
 }
 
-/// Mean square of what acts on particles that a pusher comes near, in the dark, over many seeds.
-fn mean_square(force_spread: f64) -> f64 {
+/// Mean square of what acts on particles that a pusher comes near, over many seeds, with the camera `seeing` them or
+/// not.
+fn mean_square(uncertainty: Uncertainty, seeing: bool) -> f64 {
     let mut setup = setup(&[]);
-    (setup.uncertainty.force_std, setup.uncertainty.force_spread) = (TOLD, force_spread);
+    setup.uncertainty = Uncertainty {
+        force_std: TOLD,
+        ..uncertainty
+    };
     let mut squares = Vec::new();
     for seed in 0..100 {
         let force = FirstForce(Mutex::new([0.0; PARTICLES]));
-        run_into_the_dark(&setup, seed, &force);
+        run_from_rest(&setup, seed, seeing, &force);
         let shares = force.0.into_inner().expect("no test panicked here");
         squares.extend(shares.iter().filter(|x| **x != 0.0).map(|x| x * x));
     }
@@ -45,10 +49,18 @@ fn mean_square(force_spread: f64) -> f64 {
     squares.iter().sum::<f64>() / squares.len() as f64
 }
 
+/// All rigs are alike.
+fn alike() -> Uncertainty {
+    Uncertainty {
+        well_measured: 1.0,
+        ..Uncertainty::default()
+    }
+}
+
 #[test]
 fn random_force_is_as_large_as_told() {
     let told = TOLD * TOLD;
-    let ratio = mean_square(0.0) / told;
+    let ratio = mean_square(alike(), false) / told;
     assert!((ratio - 1.0).abs() < 0.08, "{ratio}");
 }
 
@@ -57,6 +69,24 @@ fn factor_of_the_force_is_log_normal() {
     // of a normal number times e^f, f ~ N(0, s²), the mean square is e^(2 s²)
     let spread = 0.5_f64;
     let told = TOLD * TOLD * libm::exp(2.0 * spread * spread);
-    let ratio = mean_square(spread) / told;
+    let uncertainty = Uncertainty {
+        force_spread: spread,
+        ..alike()
+    };
+    let ratio = mean_square(uncertainty, false) / told;
     assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
+}
+
+#[test]
+fn random_force_is_smaller_on_rigs_that_are_measured_well_in_the_dark_alone() {
+    // all rigs lie between the two kinds, where b of (36) is (1 + w)/2
+    let uncertainty = Uncertainty {
+        roughness: 1e-6,
+        ..Uncertainty::default()
+    };
+    let between = 0.5 * (1.0 + uncertainty.well_measured);
+    for (seeing, expected) in [(true, 1.0), (false, between)] {
+        let ratio = mean_square(uncertainty, seeing) / (TOLD * TOLD);
+        assert!((ratio / expected - 1.0).abs() < 0.08, "{ratio}, {expected}");
+    }
 }

@@ -79,9 +79,19 @@ pub const PARTICLES: usize = 64;
 /// Some particles whose object at the origin a pusher comes to move after the camera went dark: what is
 /// seen would tell of what they do not know.
 pub fn run_into_the_dark(setup: &Setup, seed: u64, observer: &impl Observer) {
-    let object = Pose::new(0.0, 0.0, 0.0);
+    run_from_rest(setup, seed, false, observer);
+}
+
+/// The same, with the camera `seeing` the object to the end, at rest, or not.
+pub fn run_from_rest(setup: &Setup, seed: u64, seeing: bool, observer: &impl Observer) {
+    // no frame is the one before once more
+    let object = |time| Pose::new(1e-9 * time, 0.0, 0.0);
     let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
-    let log = log(60, |time| (time < 0.5).then_some(object), pusher);
+    let log = log(
+        60,
+        |time| (seeing || time < 0.5).then(|| object(time)),
+        pusher,
+    );
     assert_eq!(log.time[1], 1.0 / RATE, "one draw of the force a row");
     let options = RunOptions {
         particles: PARTICLES,
