@@ -132,6 +132,7 @@ impl Replay {
             }
             None => self.steps.push((plan.clone(), observation.clone())),
         }
+        self.steps[self.made].0.second_try = true;
         self.made += 1;
     }
 }

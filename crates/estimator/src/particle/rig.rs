@@ -117,7 +117,7 @@ impl Propagation {
             let logarithm = load_chunk(block.column(columns.force()), chunk, 0.0);
             factor = logarithm.max(-most).min(most).exp();
         }
-        if plan.is_dark() {
+        if plan.is_dark() && !plan.second_try {
             let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
             factor = factor * unsure.well_made_at(roughness);
         }

@@ -41,6 +41,8 @@ pub struct StepPlan {
     pub tactile: Vec<Option<bool>>,
     /// Values near the estimate, about which sums are taken.
     pub reference: Reference,
+    /// Whether the step is made again, (42).
+    pub second_try: bool,
 }
 
 impl StepPlan {
@@ -56,6 +58,7 @@ impl StepPlan {
         self.resting = other.resting;
         self.tactile.clone_from(&other.tactile);
         self.reference = other.reference;
+        self.second_try = other.second_try;
     }
 
     /// Length of the step (s).
@@ -99,6 +102,7 @@ impl StepPlan {
             resting: None,
             tactile: Vec::new(),
             reference,
+            second_try: false,
         }
     }
 }
