@@ -33,9 +33,8 @@ pub struct Uncertainty {
     pub outline: f64,
     /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs differ.
     pub roughness: f64,
-    /// Factor of `fixel_position` and `latency` on the smoother half of rigs, and its root that of
-    /// `pusher_offset`, `outline` and, in the dark, `force_std`: below 1 where some rigs are measured much better
-    /// than others.
+    /// Factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on the smoother half of rigs,
+    /// and its fourth root that of `pusher_offset`: below 1 where some rigs are measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from what is told.
     pub camera_noise: f64,
@@ -83,8 +82,8 @@ const BETWEEN_HALVES: f64 = 10.0;
 const LATEST: f64 = 10.0;
 
 impl Uncertainty {
-    /// b of docs/method.md (36): the factor of `fixel_position` and `latency` on a rig of logarithm `roughness`,
-    /// beside its own; `well_measured` on the smoother half of rigs, 1 on the others.
+    /// b of docs/method.md (36): the factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on a
+    /// rig of logarithm `roughness`, beside its own; `well_measured` on the smoother half of rigs, 1 on the others.
     #[inline(always)]
     pub(crate) fn well_measured_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         let one = Lanes::splat(1.0);
@@ -95,10 +94,10 @@ impl Uncertainty {
         one - smooth * (1.0 - self.well_measured)
     }
 
-    /// √b of (36): the factor of `pusher_offset`, `outline` and, in the dark, of `force_std`.
+    /// b^¼: the factor of `pusher_offset`.
     #[inline(always)]
-    pub(crate) fn well_made_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
-        self.well_measured_at(roughness).sqrt()
+    pub(crate) fn well_registered_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
+        self.well_measured_at(roughness).sqrt().sqrt()
     }
 
     /// Longest time by which the camera may lag more than the scene says (s).

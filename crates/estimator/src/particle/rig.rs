@@ -71,16 +71,18 @@ impl Propagation {
             if !near {
                 *roughness = unsure.roughness * rough;
             }
-            let Some(step) = plan.step_of_unknown(near, || offset_step(made(unsure, *roughness)))
+            let scales = [registered(unsure, *roughness), measured(unsure, *roughness)];
+            let [Some(of_pusher), Some(of_outline)] =
+                scales.map(|scale| plan.step_of_unknown(near, || offset_step(scale)))
             else {
                 continue;
             };
             let offsets = [
-                (columns.pusher_offset(), x),
-                (columns.pusher_offset() + 1, y),
-                (columns.growth(), grown),
+                (columns.pusher_offset(), of_pusher, x),
+                (columns.pusher_offset() + 1, of_pusher, y),
+                (columns.growth(), of_outline, grown),
             ];
-            for (column, normal) in offsets {
+            for (column, step, normal) in offsets {
                 let offset = &mut block.column_mut(column)[i];
                 *offset = wandered(*offset, step, normal);
             }
@@ -102,7 +104,8 @@ impl Propagation {
     }
 
     /// Factor of each particle's random force: that of its push, and in the dark that of its rig. While the camera
-    /// looks, what the force does not allow for would pass for friction.
+    /// looks, what the force does not allow for would pass for friction; where a step is made again, the rig may not
+    /// be what it looked like.
     #[inline(always)]
     pub(super) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -119,7 +122,7 @@ impl Propagation {
         }
         if plan.is_dark() && !plan.second_try {
             let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
-            factor = factor * unsure.well_made_at(roughness);
+            factor = factor * unsure.well_measured_at(roughness);
         }
         factor
     }
@@ -192,7 +195,7 @@ impl Propagation {
             let [step, a, b, _] = self.normals.each_ref().map(|column| column[i]);
             let roughness = block.column(columns.roughness())[i];
             let later = measured(unsure, roughness);
-            let scale = unsure.pusher_offset * made(unsure, roughness);
+            let scale = unsure.pusher_offset * registered(unsure, roughness);
             let early = step * scale / speed;
             let offset = [0, 1].map(|axis| block.column(columns.pusher_offset() + axis)[i]);
             let moved = [0, 1].map(|axis| offset[axis] + velocity[axis] * early / scale);
@@ -268,16 +271,17 @@ impl Propagation {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
             let rougher = Lanes(roughness.0.map(libm::exp));
-            let made = rougher * unsure.well_made_at(roughness);
-            let pusher = offset(columns.pusher_offset(), chunk, made * unsure.pusher_offset);
+            let scale = rougher * unsure.well_registered_at(roughness) * unsure.pusher_offset;
+            let pusher = offset(columns.pusher_offset(), chunk, scale);
             self.pusher_offsets.push(pusher);
-            let scale = rougher * unsure.well_measured_at(roughness) * unsure.fixel_position;
+            let measured = rougher * unsure.well_measured_at(roughness);
+            let scale = measured * unsure.fixel_position;
             let fixels = 0..columns.fixels();
             let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
             self.fixel_offsets.extend(fixels);
             let mut growth = Lanes::ZERO;
             load_columns(block, columns.growth(), chunk, [&mut growth]);
-            self.growth.push(growth * (made * unsure.outline));
+            self.growth.push(growth * (measured * unsure.outline));
             if unsure.creep > 0.0 {
                 let most = Lanes::splat(MOST_CREEP);
                 let mut creep = [Lanes::ZERO; 2];
@@ -298,14 +302,14 @@ fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
     !fixel && is_set(block, Columns::CONTACT_PUSHER, i) && !is_set(block, Columns::IDLE, i)
 }
 
-/// Factor of fixels' offsets and latency on a rig so rough.
+/// Factor of fixels' offsets, outline and latency on a rig so rough.
 fn measured(unsure: &Uncertainty, roughness: f64) -> f64 {
     libm::exp(roughness) * unsure.well_measured_at(Lanes([roughness])).0[0]
 }
 
-/// Factor of the pusher's offset and of the outline on a rig so rough.
-fn made(unsure: &Uncertainty, roughness: f64) -> f64 {
-    libm::exp(roughness) * unsure.well_made_at(Lanes([roughness])).0[0]
+/// Factor of the pusher's offset on a rig so rough.
+fn registered(unsure: &Uncertainty, roughness: f64) -> f64 {
+    libm::exp(roughness) * unsure.well_registered_at(Lanes([roughness])).0[0]
 }
 
 /// Share of their spread by which offsets wander at a time that are `scale` times as large as told: by the

@@ -13,22 +13,30 @@ const FINGER: f64 = 0.005;
 /// A slippery disc that is pushed straight at a fixel, hidden from 0.5 s on: it leaves to the one side
 /// or to the other, alike.
 fn head_on(mode: Mode) -> (Setup, Estimate) {
+    head_on_with(mode, 0)
+}
+
+/// The same with another seed.
+fn head_on_with(mode: Mode, seed: u64) -> (Setup, Estimate) {
     let mut setup = setup(&[[0.06, 0.0]]);
     let nominal = &mut setup.scene.nominal;
     (nominal.mu_p, nominal.mu_f) = (0.05, 0.05);
+    // on a rig that is measured well hardly anything would bring the disc off its balance
+    setup.uncertainty.well_measured = 1.0;
     let stopped = |time: f64| time.min(3.5);
     let pusher = |time: f64| Some(Pose::new(-0.036 + SPEED * stopped(time), 0.0, 0.0));
     let log = log(140, |_| Some(Pose::default()), pusher);
     let hidden = Occlusion::Rows { from: 15, to: None };
-    let estimate = estimate(&setup, &log, mode, hidden);
+    let estimate = estimate(&setup, &log, (mode, seed), hidden);
     (setup, estimate)
 }
 
-fn estimate(setup: &Setup, log: &Log, mode: Mode, occlusion: Occlusion) -> Estimate {
+fn estimate(setup: &Setup, log: &Log, (mode, seed): (Mode, u64), occlusion: Occlusion) -> Estimate {
     let options = RunOptions {
         mode,
         occlusion,
         particles: 400,
+        seed,
         ..RunOptions::default()
     };
     let run = run(setup, log, &options, &mut |_| ());
@@ -49,23 +57,47 @@ fn a_belief_that_falls_apart_has_a_mode_on_each_side() {
         assert_eq!(before.len(), 1, "{before:?}");
         assert!((before[0].weight - 1.0).abs() < 1e-12);
 
-        // then one on each side, the weights of a mirror image: of 400 particles that go either way
-        // half ± 0.1, four standard errors
-        let row = last(&estimate);
-        let [a, b] = row.modes[..] else {
-            panic!("{mode:?}: {:?}", row.modes)
-        };
-        assert!((a.weight + b.weight - 1.0).abs() < 1e-12);
-        assert!((a.weight - 0.5).abs() < 0.1, "{mode:?}: {}", a.weight);
-        assert!(a.pose.y * b.pose.y < 0.0, "{a:?}, {b:?}");
-
-        // the mean lies between them, the pose of the least mean distance at the heavier one
-        let pose = row.pose.expect("a pose");
-        match mode {
-            Mode::Paper => assert!(pose.y.abs() < 0.5 * a.pose.y.abs(), "{pose:?}, {a:?}"),
-            Mode::Contact => assert!(pose.y / a.pose.y > 0.5, "{pose:?}, {a:?}"),
-        }
+        // then one on each side, the weights of a mirror image. In paper mode 400 particles go either way: half
+        // ± 0.1, four standard errors. In contact mode they descend from some fifty when they do
+        let weights = (0..SEEDS).map(|seed| weight_to_the_left(&head_on_with(mode, seed).1));
+        let mean = weights.sum::<f64>() / SEEDS as f64;
+        assert!((mean - 0.5).abs() < 0.1, "{mode:?}: {mean}");
     }
+}
+
+/// Seeds of runs whose mean is taken.
+const SEEDS: u64 = 8;
+
+/// Weight of the mode at y > 0 in the end, one of two.
+fn weight_to_the_left(estimate: &Estimate) -> f64 {
+    let [a, b] = last(estimate).modes[..] else {
+        panic!("{:?}", last(estimate).modes)
+    };
+    assert!((a.weight + b.weight - 1.0).abs() < 1e-12);
+    assert!(a.pose.y * b.pose.y < 0.0, "{a:?}, {b:?}");
+    if a.pose.y > 0.0 { a.weight } else { b.weight }
+}
+
+/// The mean lies between the modes; the pose of the least mean distance at the heavier one, where it is by a half.
+#[test]
+fn in_contact_mode_the_pose_is_at_the_heavier_mode() {
+    let mut clear = 0;
+    for seed in 0..SEEDS {
+        let (_, estimate) = head_on_with(Mode::Contact, seed);
+        let left = weight_to_the_left(&estimate);
+        if left.max(1.0 - left) < 0.6 {
+            continue;
+        }
+        clear += 1;
+        let row = last(&estimate);
+        let share = row.pose.expect("a pose").y / row.modes[0].pose.y;
+        assert!(share > 0.8, "seed {seed}: {share} of the way, {left}");
+    }
+    assert!(clear > 0, "no mode is clearly heavier");
+    let (_, estimate) = head_on(Mode::Paper);
+    let row = last(&estimate);
+    let share = row.pose.expect("a pose").y / row.modes[0].pose.y;
+    assert!(share < 0.5, "the mean: {share}");
 }
 
 #[test]
@@ -100,7 +132,7 @@ fn slip_beside(sideways: f64) -> [f64; 3] {
         object: (0..40).map(|row| (row < 30).then(Pose::default)).collect(),
         ..log
     };
-    let estimate = estimate(&setup, &log, Mode::Paper, Occlusion::None);
+    let estimate = estimate(&setup, &log, (Mode::Paper, 0), Occlusion::None);
     let slip = last(&estimate).slip.as_ref().expect("bodies")[0];
     [slip.stick, slip.left, slip.right]
 }

@@ -292,7 +292,7 @@ fn a_steady_push_tells_rigs_that_are_measured_well_from_others() {
             let eta = unsure.roughness * 0.01 * (f64::from(k) + 0.5);
             let well = unsure.well_measured;
             let better = well + (1.0 - well) / (1.0 + libm::exp(-10.0 * eta));
-            let std = better.sqrt() * libm::exp(eta) * unsure.pusher_offset;
+            let std = better.sqrt().sqrt() * libm::exp(eta) * unsure.pusher_offset;
             let late = better * libm::exp(eta) * unsure.latency;
             for step in 0..4000 {
                 let latency = 1e-4 * (f64::from(step) + 0.5);

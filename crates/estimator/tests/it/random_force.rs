@@ -84,7 +84,7 @@ fn random_force_is_smaller_on_rigs_that_are_measured_well_in_the_dark_alone() {
         roughness: 1e-6,
         ..Uncertainty::default()
     };
-    let between = 0.5 * (1.0 + uncertainty.well_measured);
+    let between = libm::pow(0.5 * (1.0 + uncertainty.well_measured), 2.0);
     for (seeing, expected) in [(true, 1.0), (false, between)] {
         let ratio = mean_square(uncertainty, seeing) / (TOLD * TOLD);
         assert!((ratio / expected - 1.0).abs() < 0.08, "{ratio}, {expected}");
