@@ -140,7 +140,7 @@ impl Propagation {
             on_widest(
                 level,
                 #[inline(always)]
-                || self.apply_force(transition, plan, input.h, of_force, pair, block),
+                || self.apply_force(transition, plan, input.h, (of_force, pair), block),
             );
             if let Some(observer) = transition.observer {
                 observer.before_step(input, &self.particles[..chunks]);
@@ -251,8 +251,7 @@ impl Propagation {
         transition: &Transition<'_>,
         plan: &StepPlan,
         h: f64,
-        draw: Draw,
-        pair: u32,
+        (draw, pair): (Draw, u32),
         block: &BlockMut<'_>,
     ) {
         self.draw_normals(draw, pair, block);
