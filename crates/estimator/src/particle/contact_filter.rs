@@ -198,8 +198,11 @@ impl<'o> ContactFilter<'o> {
         &self.latest
     }
 
-    /// Goes on with another number of particles.
+    /// Goes on with another number of particles; where it is the same, nothing changes.
     pub fn resize(&mut self, particles: NonZero<u32>) {
+        if particles == self.count() {
+            return;
+        }
         self.replay.forget();
         let resized = self.filter.resize(particles.get() as usize);
         resized.expect("a u32 from 1 up is a number of particles");

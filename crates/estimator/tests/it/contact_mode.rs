@@ -3,7 +3,9 @@
 
 use crate::common::{RATE, log, setup};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Log, Method, Mode, Moves, Occlusion, Run, RunOptions, Setup, run};
+use stickslip::{
+    Estimate, Log, Method, Mode, Moves, Occlusion, Run, RunOptions, Setup, Tracking, run,
+};
 
 /// Speed of the pusher (m/s), and where it meets the disc (s).
 const SPEED: f64 = 0.02;
@@ -208,11 +210,12 @@ fn a_pusher_that_goes_on_says_that_nothing_jams() {
 fn a_fork_that_few_particles_take_is_found_by_second_tries() {
     let (slippery, log) = slippery();
     let sticky = sticky(&slippery, 0.8);
-    let found = |second_tries: bool| {
+    let found = |second_tries: bool, tracking: Tracking| {
         let ends_near = |seed: &u64| {
             let options = RunOptions {
                 particles: 20,
                 seed: *seed,
+                tracking,
                 moves: Moves {
                     second_tries,
                     ..Moves::default()
@@ -223,11 +226,13 @@ fn a_fork_that_few_particles_take_is_found_by_second_tries() {
         };
         (0..20).filter(ends_near).count()
     };
-    let [once, again] = [false, true].map(found);
-    assert!(
-        once < 12 && again > 15,
-        "of 20 runs {again}, without second tries {once}"
-    );
+    for tracking in [Tracking::Smoothed, Tracking::Causal] {
+        let [once, again] = [false, true].map(|second_tries| found(second_tries, tracking));
+        assert!(
+            once < 12 && again > 15,
+            "{tracking:?}: of 20 runs {again}, without second tries {once}"
+        );
+    }
 }
 
 #[test]
