@@ -71,10 +71,10 @@ impl Propagation {
             if !near {
                 *roughness = unsure.roughness * rough;
             }
-            let scales = [registered(unsure, *roughness), measured(unsure, *roughness)];
-            let [Some(of_pusher), Some(of_outline)] =
-                scales.map(|scale| plan.step_of_unknown(near, || offset_step(scale)))
-            else {
+            let step = |scale: fn(&Uncertainty, f64) -> f64| {
+                plan.step_of_unknown(near, || offset_step(scale(unsure, *roughness)))
+            };
+            let [Some(of_pusher), Some(of_outline)] = [step(registered), step(measured)] else {
                 continue;
             };
             let offsets = [

@@ -98,11 +98,7 @@ fn after_warm_up_a_row_allocates_nothing_on_one_thread() {
         .build()
         .expect("a pool");
     pool.install(|| {
-        let options = TrackerOptions {
-            seed: 1,
-            ..TrackerOptions::default()
-        };
-        let mut tracker = Tracker::new(&setup, &options).expect("a tracker");
+        let mut tracker = Tracker::new(&setup, &TrackerOptions::default()).expect("a tracker");
         rows[..60].iter().for_each(|row| {
             tracker.push(row).expect("an estimate");
         });
