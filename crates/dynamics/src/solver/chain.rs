@@ -1,11 +1,11 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
 //! The semismooth Newton iteration answers almost always. What it leaves over of a whole block of
-//! particles goes along a path of smoothed solutions, packed together, still side by side; then one
-//! by one to a search over contact modes. Whatever route an answer came by, it counts as solved only
-//! where [`Ncp::certifies`] says so.
+//! particles goes along a path of smoothed solutions, from its warm start, then from its free motion,
+//! packed together, still side by side; then one by one to a search over contact modes. Whatever route
+//! an answer came by, it counts as solved only where [`Ncp::certifies`] says so.
 
-use stickslip_lanes::{Lanes, Level, on_fused};
+use stickslip_lanes::{Lanes, Level, on_fused, on_widest};
 
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::problem::{StepProblem, StepSolution};
@@ -16,7 +16,7 @@ use crate::solver::fallback::{Fallback, WorkLimit};
 use crate::solver::lane_queue::LaneIndex;
 use crate::solver::newton::NewtonSettings;
 use crate::solver::newton_block::NewtonBlock;
-use crate::solver::smoothed_path::{BOLD, SmoothedPath, WarmBlock};
+use crate::solver::smoothed_path::{BOLD, CAREFUL, SmoothedPath, StartedBlock};
 use crate::solver::source::Source;
 use crate::solver::stick_predictor::SLIP_WEIGHT_NEAR;
 
@@ -113,9 +113,10 @@ pub struct Solver<const W: usize> {
     fallback: Fallback,
     limit: WorkLimit,
     map: NaturalMap<W>,
-    warm: Vec<Unknowns<W>>,
+    start: Vec<Unknowns<W>>,
     unsolved: Vec<LaneIndex>,
     still_unsolved: Vec<LaneIndex>,
+    level: Level,
 }
 
 impl<const W: usize> Default for Solver<W> {
@@ -133,9 +134,10 @@ impl<const W: usize> Solver<W> {
             fallback: Fallback::default(),
             limit,
             map: NaturalMap::default(),
-            warm: Vec::new(),
+            start: Vec::new(),
             unsolved: Vec::new(),
             still_unsolved: Vec::new(),
+            level: Level::new(),
         }
     }
 
@@ -189,8 +191,8 @@ impl<const W: usize> Solver<W> {
     /// step, and no step after the first may allocate.
     #[inline(always)]
     fn reserve(&mut self, chunks: usize) {
-        self.warm
-            .resize_with(chunks.max(self.warm.len()), Unknowns::default);
+        self.start
+            .resize_with(chunks.max(self.start.len()), Unknowns::default);
         for indices in [&mut self.unsolved, &mut self.still_unsolved] {
             indices.clear();
             indices.reserve(W * chunks);
@@ -219,8 +221,10 @@ impl<const W: usize> Solver<W> {
         }
     }
 
-    /// The unsolved problems from their warm starts: packed together, then one by one.
-    #[inline(always)]
+    /// The unsolved problems: along the path, then one by one.
+    ///
+    /// Compiled apart from the Newton iteration: of more code in one piece the compiler calls what it should inline.
+    #[inline(never)]
     fn solve_unsolved(
         &mut self,
         source: &impl Source<W>,
@@ -228,35 +232,59 @@ impl<const W: usize> Solver<W> {
         z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
-        for &LaneIndex { chunk, .. } in &self.unsolved {
-            source.start(chunk, &ncps[chunk], &mut self.warm[chunk]);
-        }
-        // the path of smoothed solutions
-        let block = WarmBlock {
-            ncps,
-            warm: &self.warm,
-        };
-        let still_unsolved = &mut self.still_unsolved;
-        self.path
-            .solve(block, &self.unsolved, &BOLD, TOLERANCE, &mut |end| {
-                let LaneIndex { chunk, lane } = end.index;
-                let report = &mut reports[chunk][lane];
-                report.route = Route::SmoothedPath;
-                report.systems += end.steps;
-                report.residual = end.residual;
-                let limit = ncps[chunk].speed_limit().0[lane];
-                if end.residual <= TOLERANCE && end.z.fastest().0[end.slot] <= limit {
-                    z[chunk].unpack_lane(&ncps[chunk], lane, end.z, end.slot);
-                } else {
-                    still_unsolved.push(end.index);
-                }
-            });
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.follow_paths(source, ncps, z, reports),
+        );
         // search over modes, compliant problem, of contacts that do not creep
-        for &LaneIndex { chunk, lane } in &self.still_unsolved {
+        for &LaneIndex { chunk, lane } in &self.unsolved {
             ncps[chunk].stop_creep(lane);
             let (ncp, report) = (&ncps[chunk], &mut reports[chunk][lane]);
             let solution = self.fallback.solve(ncp, lane, self.limit, report);
             z[chunk].unpack_lane(ncp, lane, solution, 0);
+        }
+    }
+
+    /// The unsolved problems, packed together, from their warm starts; then what is left from the free
+    /// motion, since the last step's impulses may have led astray.
+    #[inline(always)]
+    fn follow_paths(
+        &mut self,
+        source: &impl Source<W>,
+        ncps: &[Ncp<W>],
+        z: &mut [Unknowns<W>],
+        reports: &mut [[Report; W]],
+    ) {
+        for &LaneIndex { chunk, .. } in &self.unsolved {
+            source.start(chunk, &ncps[chunk], &mut self.start[chunk]);
+        }
+        // in a loop, so that the path is compiled once
+        for schedule in [&BOLD, &CAREFUL] {
+            let block = StartedBlock {
+                ncps,
+                start: &self.start,
+            };
+            let still_unsolved = &mut self.still_unsolved;
+            self.path
+                .solve(block, &self.unsolved, schedule, TOLERANCE, &mut |end| {
+                    let LaneIndex { chunk, lane } = end.index;
+                    let report = &mut reports[chunk][lane];
+                    report.route = Route::SmoothedPath;
+                    report.systems += end.steps;
+                    report.residual = end.residual;
+                    let limit = ncps[chunk].speed_limit().0[lane];
+                    if end.residual <= TOLERANCE && end.z.fastest().0[end.slot] <= limit {
+                        z[chunk].unpack_lane(&ncps[chunk], lane, end.z, end.slot);
+                    } else {
+                        still_unsolved.push(end.index);
+                    }
+                });
+            std::mem::swap(&mut self.unsolved, &mut self.still_unsolved);
+            self.still_unsolved.clear();
+            for &LaneIndex { chunk, .. } in &self.unsolved {
+                self.start[chunk].cold_start(&ncps[chunk]);
+            }
         }
     }
 }

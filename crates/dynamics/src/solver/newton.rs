@@ -70,7 +70,7 @@ pub struct Progress<const W: usize> {
     pub residual: Lanes<W>,
     /// Iterations taken.
     pub iterations: Lanes<W>,
-    /// Lanes that have neither converged nor taken all iterations.
+    /// Lanes that have neither converged nor taken all iterations, nor been given up.
     pub running: Mask<W>,
 }
 

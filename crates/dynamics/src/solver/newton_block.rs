@@ -11,7 +11,7 @@ use crate::solver::newton::{BatchLimits, Newton, NewtonSettings, Progress};
 use crate::solver::newton_queue::{Ended, NewtonQueue, Underway};
 use crate::solver::source::Source;
 
-/// How long a chunk iterates as a whole where its last lanes can be queued with those of others.
+/// How long a chunk iterates as a whole, before its last lanes are queued with those of others.
 const BATCH: BatchLimits = BatchLimits {
     iterations: 4,
     lanes: 4,
@@ -52,12 +52,6 @@ impl<const W: usize> NewtonBlock<W> {
         finish: &mut impl FnMut(Iterated),
     ) {
         self.queue.clear();
-        // a single chunk's lanes have nobody to share a queue with
-        let limits = if ncps.len() > 1 {
-            BATCH
-        } else {
-            BatchLimits::until_finished(&settings)
-        };
         // after the last chunk the queue empties, in the same call of an iteration: what is inlined there is much code
         let chunks = ncps.len();
         let few = if W > LAST { LAST } else { 0 };
@@ -69,7 +63,7 @@ impl<const W: usize> NewtonBlock<W> {
                 source.start(chunk, &ncps[chunk], &mut z[chunk]);
                 progress = self
                     .chunk
-                    .begin(&ncps[chunk], &mut z[chunk], settings, limits);
+                    .begin(&ncps[chunk], &mut z[chunk], settings, BATCH);
                 for lane in (!progress.running).lanes() {
                     finish(progress.iterated(LaneIndex { chunk, lane }, lane));
                 }

@@ -1,11 +1,19 @@
 //! The semismooth Newton iteration on single lanes of many chunks, side by side: [`NewtonQueue`].
 
-use stickslip_lanes::Mask;
+use stickslip_lanes::{Lanes, Mask};
 
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::solver::lane_queue::{LaneIndex, LaneQueue};
 use crate::solver::newton::{Newton, NewtonSettings, Progress};
+
+/// Residual (m/s) above which an iterate is far from any solution: impulses have come near the penalty.
+const FAR: f64 = 10.0;
+
+/// Iterations after which what is far off is given up, no fewer than a chunk takes as a whole. Where active rows
+/// contradict each other, as in an object wedged between pusher and fixels, modes return in a cycle, and impulses
+/// with them.
+const PATIENCE: f64 = 8.0;
 
 /// Problems under way: [`Newton`] at the point of a [`LaneQueue`].
 #[derive(Clone, Debug, Default)]
@@ -69,6 +77,7 @@ impl<const W: usize> NewtonQueue<W> {
         let queue = &mut self.queue;
         self.newton
             .iterate(&queue.ncp, &mut queue.z, settings, &mut self.progress);
+        self.progress.give_up_far();
         let finished = queue.busy & !self.progress.running;
         for slot in finished.lanes() {
             finish(Ended {
@@ -94,5 +103,14 @@ impl<const W: usize> NewtonQueue<W> {
             other.load(self.queue.indices[slot], &from, slot);
         }
         self.queue.busy = Mask::splat(false);
+    }
+}
+
+impl<const W: usize> Progress<W> {
+    /// Ends lanes that are far off after [`PATIENCE`] iterations.
+    #[inline(always)]
+    fn give_up_far(&mut self) {
+        let patient = self.iterations.lt(Lanes::splat(PATIENCE));
+        self.running = self.running & (patient | !self.residual.gt(Lanes::splat(FAR)));
     }
 }

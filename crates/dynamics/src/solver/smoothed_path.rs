@@ -63,11 +63,11 @@ pub struct SmoothingSchedule {
 
 /// The problems of a block, `W` to a chunk, and the points they start from.
 #[derive(Clone, Copy, Debug)]
-pub struct WarmBlock<'a, const W: usize> {
+pub struct StartedBlock<'a, const W: usize> {
     /// The problems.
     pub ncps: &'a [Ncp<W>],
     /// The points.
-    pub warm: &'a [Unknowns<W>],
+    pub start: &'a [Unknowns<W>],
 }
 
 /// How one problem ended.
@@ -126,13 +126,13 @@ impl<const W: usize> Default for Progress<W> {
 }
 
 impl<const W: usize> SmoothedPath<W> {
-    /// Follows `schedule` from the warm starts of the given particles; tells `finish` how each
+    /// Follows `schedule` from the starts of the given particles; tells `finish` how each
     /// ended, solved where its residual is at most `tolerance`. A particle's result does not depend
     /// on the others.
     #[inline(always)]
     pub fn solve(
         &mut self,
-        block: WarmBlock<'_, W>,
+        block: StartedBlock<'_, W>,
         particles: &[LaneIndex],
         schedule: &SmoothingSchedule,
         tolerance: f64,
@@ -167,12 +167,12 @@ impl<const W: usize> SmoothedPath<W> {
     #[inline(always)]
     fn load(
         &mut self,
-        WarmBlock { ncps, warm }: WarmBlock<'_, W>,
+        StartedBlock { ncps, start }: StartedBlock<'_, W>,
         index: LaneIndex,
         schedule: &SmoothingSchedule,
     ) {
         let ncp = &ncps[index.chunk];
-        let slot = self.queue.load(index, ncp, index.lane, &warm[index.chunk]);
+        let slot = self.queue.load(index, ncp, index.lane, &start[index.chunk]);
         let scale = ncp.speed_scale().0[index.lane];
         let progress = &mut self.progress;
         progress.epsilon.0[slot] = scale * schedule.start;
@@ -284,9 +284,9 @@ impl SmoothedPath<1> {
         schedule: &SmoothingSchedule,
         z: &mut Unknowns<1>,
     ) -> (f64, u32) {
-        let block = WarmBlock {
+        let block = StartedBlock {
             ncps: from_ref(ncp),
-            warm: from_ref(start),
+            start: from_ref(start),
         };
         let mut end = (f64::INFINITY, 0);
         z.resize(ncp.contacts.len());
