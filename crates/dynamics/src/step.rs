@@ -222,6 +222,7 @@ impl Dynamics {
             narrow,
         };
         solver.solve(
+            self.level,
             &mut problems,
             &mut ncps[asked.clone()],
             &mut unknowns[asked.clone()],

@@ -77,10 +77,11 @@ fn solve_alone(alone: &mut Alone<'_>) -> (StepSolution, Report) {
         [[Report::UNSOLVED]],
     );
     let mut solver = Solver::with_limit(NO_HURRY);
+    let level = Level::new();
     on_fused(
-        Level::new(),
+        level,
         #[inline(always)]
-        || solver.solve(alone, &mut ncps, &mut z, &mut reports),
+        || solver.solve(level, alone, &mut ncps, &mut z, &mut reports),
     );
     let ([z], [[report]]) = (z, reports);
     (z.to_solution(0, alone.problem), report)
@@ -116,7 +117,6 @@ pub struct Solver<const W: usize> {
     start: Vec<Unknowns<W>>,
     unsolved: Vec<LaneIndex>,
     still_unsolved: Vec<LaneIndex>,
-    level: Level,
 }
 
 impl<const W: usize> Default for Solver<W> {
@@ -137,15 +137,15 @@ impl<const W: usize> Solver<W> {
             start: Vec::new(),
             unsolved: Vec::new(),
             still_unsolved: Vec::new(),
-            level: Level::new(),
         }
     }
 
     /// Solves the block of problems that comes from `source`, `W` to a chunk; leaves the problems
-    /// in `ncps`, their solutions in `z`.
+    /// in `ncps`, their solutions in `z`. `level` is that of the caller's instructions.
     #[inline(always)]
     pub fn solve(
         &mut self,
+        level: Level,
         source: &mut impl Source<W>,
         ncps: &mut [Ncp<W>],
         z: &mut [Unknowns<W>],
@@ -177,7 +177,7 @@ impl<const W: usize> Solver<W> {
         self.reject_fast(ncps, z, reports);
         // what it leaves over
         if !self.unsolved.is_empty() {
-            self.solve_unsolved(source, ncps, z, reports);
+            self.solve_unsolved(level, source, ncps, z, reports);
         }
         for ((ncp, z), reports) in ncps.iter().zip(z).zip(reports) {
             rest_exactly(ncp, z, &mut self.map, reports);
@@ -227,13 +227,14 @@ impl<const W: usize> Solver<W> {
     #[inline(never)]
     fn solve_unsolved(
         &mut self,
+        level: Level,
         source: &impl Source<W>,
         ncps: &mut [Ncp<W>],
         z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
         on_widest(
-            self.level,
+            level,
             #[inline(always)]
             || self.follow_paths(source, ncps, z, reports),
         );
@@ -256,11 +257,17 @@ impl<const W: usize> Solver<W> {
         z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
-        for &LaneIndex { chunk, .. } in &self.unsolved {
-            source.start(chunk, &ncps[chunk], &mut self.start[chunk]);
-        }
         // in a loop, so that the path is compiled once
-        for schedule in [&BOLD, &CAREFUL] {
+        for (schedule, warm) in [(&BOLD, true), (&CAREFUL, false)] {
+            for &LaneIndex { chunk, .. } in &self.unsolved {
+                let (ncp, start) = (&ncps[chunk], &mut self.start[chunk]);
+                if warm {
+                    source.start(chunk, ncp, start);
+                } else {
+                    start.cold_start(ncp);
+                }
+            }
+            self.still_unsolved.clear();
             let block = StartedBlock {
                 ncps,
                 start: &self.start,
@@ -281,10 +288,6 @@ impl<const W: usize> Solver<W> {
                     }
                 });
             std::mem::swap(&mut self.unsolved, &mut self.still_unsolved);
-            self.still_unsolved.clear();
-            for &LaneIndex { chunk, .. } in &self.unsolved {
-                self.start[chunk].cold_start(&ncps[chunk]);
-            }
         }
     }
 }
