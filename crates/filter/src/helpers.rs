@@ -3,14 +3,14 @@
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How often the calling thread looks whether the others are done before it sleeps: some 30 µs, about
-/// as long as the last piece of a loop takes.
-const LOOKS: u32 = 1 << 9;
+/// How long the calling thread waits awake for the others: longer than the last piece of a loop mostly
+/// takes, and than it takes to wake a thread.
+const AWAKE: Duration = Duration::from_micros(200);
 
 /// How often it waits on after the last has left the loop: the thread still has to report to the
 /// pool, and what waits there gives its processor away.
@@ -56,7 +56,8 @@ impl Helpers {
 
     /// The calling thread, once no piece is left, waits until those in hand are done.
     pub fn wait_until_gone(&self) {
-        for _ in 0..LOOKS {
+        let start = Instant::now();
+        while start.elapsed() < AWAKE {
             if self.inside.load(Ordering::Acquire) == 0 {
                 return (0..FAREWELL).for_each(|_| spin_loop());
             }

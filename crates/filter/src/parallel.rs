@@ -2,11 +2,13 @@
 //!
 //! A loop is done by the thread that calls it; others help where they have time. Whoever is free
 //! takes the next piece, so that a thread which the system does not run delays the loop by the piece
-//! in its hands and by nothing else. The calling thread waits awake for some microseconds only, then
-//! it sleeps. When it asks for help at all is [`pace`]'s affair.
+//! in its hands and by nothing else. The calling thread waits awake for about as long as a piece takes,
+//! then it sleeps. When it asks for help at all is [`pace`]'s affair.
 
 use std::ops::Range;
+use std::panic::Location;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Instant;
 
 use crate::awake;
 use crate::helpers::Helpers;
@@ -47,13 +49,18 @@ fn own_slot(slots: usize) -> usize {
 /// Runs `body` on all items. The threads take them one by one, the calling thread from the front
 /// and the others from the back, so that in the next loop a thread mostly gets the items that are
 /// still in its cache.
+#[track_caller]
 pub(crate) fn for_each<I>(
     items: impl ExactSizeIterator<Item = I> + DoubleEndedIterator + Send,
     body: impl Fn(I) + Sync,
 ) {
     let count = items.len();
     let helping_threads = count.min(rayon::current_num_threads()).saturating_sub(1);
-    if helping_threads == 0 || !pace::asks_for_help(count) {
+    if helping_threads == 0 {
+        return items.for_each(body);
+    }
+    let (place, start) = (Location::caller(), Instant::now());
+    if !pace::asks_for_help(place, start) {
         return items.for_each(body);
     }
     let (items, helpers) = (Mutex::new(items), Helpers::default());
@@ -82,7 +89,7 @@ pub(crate) fn for_each<I>(
     with_help(helping_threads, &own_work, &help);
     let brought = helpers.brought();
     awake::learn(brought);
-    pace::learn(count, brought);
+    pace::learn(place, [start, Instant::now()], brought);
 }
 
 /// Calls `own_work`, and `help` so many times beside it, each on another thread if one is free.

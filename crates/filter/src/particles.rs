@@ -163,6 +163,7 @@ impl ParticleSet {
     }
 
     /// Runs `body` on every block, in parallel if the pool has threads.
+    #[track_caller]
     pub fn for_each_block(&mut self, body: impl Fn(&mut BlockMut<'_>) + Sync) {
         self.advance(None, 0..self.block_count(), |block, _| body(block));
     }
@@ -171,6 +172,7 @@ impl ParticleSet {
     ///
     /// With `ancestors`, particle i first becomes a copy of particle `ancestors[i]`; each block is
     /// copied just before `body` runs on it, while it is in the cache.
+    #[track_caller]
     pub fn advance<T>(
         &mut self,
         ancestors: Option<&[u32]>,
@@ -197,6 +199,7 @@ impl ParticleSet {
     }
 
     /// Runs `body(block, its item of with)` on every block, in parallel if the pool has threads.
+    #[track_caller]
     pub fn visit<T>(
         &self,
         with: impl ExactSizeIterator<Item = T> + DoubleEndedIterator + Send,
