@@ -19,8 +19,9 @@ const TURNING: f64 = 0.03;
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
 
-/// Share of the prior's spread below which a parameter was observed.
-const NARROWER: f64 = 0.5;
+/// Share of the prior's spread below which a parameter was observed. Pushes smoother than the filter's model
+/// of them teach a μ_p that is too high, down to nearly this share (docs/decisions/007-contact-mode.md).
+const NARROWER: f64 = 0.4;
 
 /// One friction parameter at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
