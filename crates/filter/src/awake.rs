@@ -4,14 +4,14 @@ use std::cell::RefCell;
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How long a thread looks for work before it sleeps: longer than a filter mostly takes between two
-/// parallel loops, and than it takes to wake a thread.
-const AWAKE: Duration = Duration::from_micros(200);
+/// How often a thread looks for work before it sleeps: some 100 to 250 µs, longer than a filter mostly
+/// takes between two parallel loops, and than it takes to wake a thread.
+const LOOKS: u32 = 1 << 12;
 
 /// After so long a sleeping thread looks for work once, so that nothing that called nobody waits for
 /// ever.
@@ -21,7 +21,7 @@ const NAP: Duration = Duration::from_millis(20);
 /// filter.
 ///
 /// Waking a sleeping thread takes as long as a filter step of some hundred particles. So the threads
-/// stay awake for some 200 µs after a loop that they were a help with, then they sleep until the next.
+/// stay awake for 0.1 to 0.3 ms after a loop that they were a help with, then they sleep until the next.
 /// No result depends on this. Other work than a filter's loops finds them only while they are awake
 /// or after some 20 ms, so `body` should have the pool to itself and be little else than a filter.
 ///
@@ -105,8 +105,7 @@ impl Crew {
 
     /// Looks for a job, once or for a short time, and runs it.
     fn found_work(&self) -> bool {
-        let start = Instant::now();
-        while start.elapsed() < AWAKE {
+        for _ in 0..LOOKS {
             if rayon::yield_now() == Some(rayon::Yield::Executed) {
                 return true;
             }

@@ -3,14 +3,14 @@
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How long the calling thread waits awake for the others: longer than the last piece of a loop mostly
-/// takes, and than it takes to wake a thread.
-const AWAKE: Duration = Duration::from_micros(200);
+/// How often the calling thread looks whether the others are done before it sleeps: some 100 to 250 µs,
+/// longer than the last piece of a loop mostly takes, and than it takes to wake a thread.
+const LOOKS: u32 = 1 << 12;
 
 /// How often it waits on after the last has left the loop: the thread still has to report to the
 /// pool, and what waits there gives its processor away.
@@ -56,8 +56,7 @@ impl Helpers {
 
     /// The calling thread, once no piece is left, waits until those in hand are done.
     pub fn wait_until_gone(&self) {
-        let start = Instant::now();
-        while start.elapsed() < AWAKE {
+        for _ in 0..LOOKS {
             if self.inside.load(Ordering::Acquire) == 0 {
                 return (0..FAREWELL).for_each(|_| spin_loop());
             }

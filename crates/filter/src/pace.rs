@@ -9,11 +9,10 @@
 
 use std::cell::RefCell;
 use std::panic::Location;
-use std::time::{Duration, Instant};
 
-/// Time after which a thread asks again at the latest, about a time slice of the system. A longer loop
-/// always asks.
-const LONGEST_REST: Duration = Duration::from_millis(8);
+/// Pieces of loops after which a thread asks again at the latest. As many blocks of particles take one to two
+/// milliseconds, up to 10 where they jam: about a time slice of the system. A longer loop always asks.
+const LONGEST_REST: usize = 64;
 
 /// What the other threads brought to a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,10 +28,10 @@ pub(crate) enum Help {
 /// How one thread goes about the loops of one place.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pace {
-    /// How long the thread goes on alone; doubles while there is no help.
-    rest: Duration,
-    /// When it asks again; at once if never set.
-    asks_again: Option<Instant>,
+    /// Pieces that the thread still does alone.
+    rest: usize,
+    /// The rest before the last loop that asked (pieces); doubles while there is no help.
+    last_rest: usize,
 }
 
 type Place = &'static Location<'static>;
@@ -41,14 +40,14 @@ thread_local! {
     static PACES: RefCell<Vec<(Place, Pace)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Whether the calling thread should ask for help with a loop that begins `now` at `place`.
-pub(crate) fn asks_for_help(place: Place, now: Instant) -> bool {
-    with_pace(place, |pace| pace.asks_for_help(now))
+/// Whether the calling thread should ask for help with a loop at `place` of so many `pieces`.
+pub(crate) fn asks_for_help(place: Place, pieces: usize) -> bool {
+    with_pace(place, |pace| pace.asks_for_help(pieces))
 }
 
-/// Takes into account what asking brought to a loop that has lasted from `start` until `now`.
-pub(crate) fn learn(place: Place, [start, now]: [Instant; 2], help: Help) {
-    with_pace(place, |pace| pace.learn([start, now], help));
+/// Takes into account what asking brought to a loop at `place` of so many `pieces`.
+pub(crate) fn learn(place: Place, pieces: usize, help: Help) {
+    with_pace(place, |pace| pace.learn(pieces, help));
 }
 
 fn with_pace<T>(place: Place, body: impl FnOnce(&mut Pace) -> T) -> T {
@@ -63,19 +62,19 @@ fn with_pace<T>(place: Place, body: impl FnOnce(&mut Pace) -> T) -> T {
 }
 
 impl Pace {
-    fn asks_for_help(&self, now: Instant) -> bool {
-        self.asks_again.is_none_or(|time| now >= time)
+    fn asks_for_help(&mut self, pieces: usize) -> bool {
+        let asks = self.rest < pieces;
+        self.rest = self.rest.saturating_sub(pieces);
+        asks
     }
 
-    fn learn(&mut self, [start, now]: [Instant; 2], help: Help) {
-        let lasted = now - start;
+    fn learn(&mut self, pieces: usize, help: Help) {
         self.rest = match help {
-            _ if lasted >= LONGEST_REST => Duration::ZERO,
-            Help::Useful => Duration::ZERO,
-            Help::None => (2 * self.rest).clamp(lasted, LONGEST_REST),
+            Help::Useful => 0,
+            Help::None => (2 * self.last_rest).clamp(pieces.min(LONGEST_REST), LONGEST_REST),
             Help::Late => LONGEST_REST,
         };
-        self.asks_again = Some(now + self.rest);
+        self.last_rest = self.rest;
     }
 }
 
@@ -83,53 +82,39 @@ impl Pace {
 mod tests {
     use super::*;
 
-    const LOOP: Duration = Duration::from_micros(250);
-
-    /// Loops of 250 µs that a thread does alone before it asks again.
-    fn loops_alone(pace: &Pace, now: &mut Instant) -> usize {
-        let mut loops = 0;
-        while !pace.asks_for_help(*now) {
-            *now += LOOP;
-            loops += 1;
-        }
-        loops
-    }
-
-    fn ask(pace: &mut Pace, now: &mut Instant, lasts: Duration, help: Help) {
-        let start = *now;
-        *now += lasts;
-        pace.learn([start, *now], help);
+    /// Loops of `pieces` that a thread does alone before it asks again.
+    fn loops_alone(pace: &mut Pace, pieces: usize) -> usize {
+        (0..).take_while(|_| !pace.asks_for_help(pieces)).count()
     }
 
     #[test]
     fn asks_rarely_where_there_is_no_help_and_always_where_there_is() {
-        let (mut pace, mut now) = (Pace::default(), Instant::now());
+        let mut pace = Pace::default();
         let mut alone = Vec::new();
         for _ in 0..9 {
-            alone.push(loops_alone(&pace, &mut now));
-            ask(&mut pace, &mut now, LOOP, Help::None);
+            alone.push(loops_alone(&mut pace, 8));
+            pace.learn(8, Help::None);
         }
-        assert_eq!(alone, [0, 1, 2, 4, 8, 16, 32, 32, 32]);
-        loops_alone(&pace, &mut now);
-        ask(&mut pace, &mut now, LOOP, Help::Useful);
-        assert!(pace.asks_for_help(now));
+        assert_eq!(alone, [0, 1, 2, 4, 8, 8, 8, 8, 8]);
+        let _ = loops_alone(&mut pace, 8);
+        pace.learn(8, Help::Useful);
+        assert!(pace.asks_for_help(8));
     }
 
     #[test]
     fn late_help_is_not_asked_for_again_at_once_except_by_a_long_loop() {
-        let (mut pace, mut now) = (Pace::default(), Instant::now());
-        ask(&mut pace, &mut now, LOOP, Help::Late);
-        assert_eq!(loops_alone(&pace, &mut now), 32);
-        ask(&mut pace, &mut now, LONGEST_REST, Help::Late);
-        assert!(pace.asks_for_help(now));
+        let mut pace = Pace::default();
+        pace.learn(8, Help::Late);
+        assert_eq!(loops_alone(&mut pace, 8), LONGEST_REST / 8);
+        pace.learn(8, Help::Late);
+        assert!(pace.asks_for_help(LONGEST_REST + 1));
     }
 
     #[test]
     fn every_place_has_a_pace_of_its_own() {
-        let [here, there] = [Location::caller(), other_place()];
-        let now = Instant::now();
-        learn(here, [now, now + LOOP], Help::Late);
-        assert!(!asks_for_help(here, now + 2 * LOOP) && asks_for_help(there, now + 2 * LOOP));
+        let places = [Location::caller(), other_place()];
+        learn(places[0], 8, Help::Late);
+        assert_eq!(places.map(|place| asks_for_help(place, 8)), [false, true]);
     }
 
     fn other_place() -> Place {

@@ -8,7 +8,6 @@
 use std::ops::Range;
 use std::panic::Location;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
-use std::time::Instant;
 
 use crate::awake;
 use crate::helpers::Helpers;
@@ -56,11 +55,8 @@ pub(crate) fn for_each<I>(
 ) {
     let count = items.len();
     let helping_threads = count.min(rayon::current_num_threads()).saturating_sub(1);
-    if helping_threads == 0 {
-        return items.for_each(body);
-    }
-    let (place, start) = (Location::caller(), Instant::now());
-    if !pace::asks_for_help(place, start) {
+    let place = Location::caller();
+    if helping_threads == 0 || !pace::asks_for_help(place, count) {
         return items.for_each(body);
     }
     let (items, helpers) = (Mutex::new(items), Helpers::default());
@@ -89,7 +85,7 @@ pub(crate) fn for_each<I>(
     with_help(helping_threads, &own_work, &help);
     let brought = helpers.brought();
     awake::learn(brought);
-    pace::learn(place, [start, Instant::now()], brought);
+    pace::learn(place, count, brought);
 }
 
 /// Calls `own_work`, and `help` so many times beside it, each on another thread if one is free.
