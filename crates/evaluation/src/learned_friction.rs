@@ -5,7 +5,7 @@
 //! dark the set is resampled without them, until all its particles are copies of a few: its spread
 //! then shrinks though nothing has been learnt. So the
 //! last row that informs about a parameter has its estimate, and where there is none it was not
-//! observed. Where particles begin with a prior (contact mode), a parameter whose spread is hardly
+//! observed. Where particles begin with a prior (contact mode), a parameter whose spread is not much
 //! narrower than that was not observed, either.
 
 use serde::Serialize;

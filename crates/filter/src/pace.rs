@@ -34,6 +34,7 @@ struct Pace {
     last_rest: usize,
 }
 
+/// Where in the program a loop is called.
 type Place = &'static Location<'static>;
 
 thread_local! {
