@@ -6,6 +6,15 @@ use crate::solver::vector::{Vector, add_scaled, norm};
 /// Distance up to which V is the same (m/s).
 const SAME: f64 = 1e-8;
 
+/// How a candidate is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// By its residual.
+    AsItIs,
+    /// By that of the point to which it refines.
+    Refine,
+}
+
 /// A candidate's refinement.
 #[derive(Clone, Copy, Debug)]
 pub struct Refined {
@@ -20,7 +29,7 @@ pub struct Refined {
 /// Work is counted in linear systems, each a fraction of a microsecond, not in seconds: so the
 /// result of a search that runs out of it does not depend on the machine.
 pub struct Certifier<'a> {
-    refine: &'a mut dyn FnMut(&Candidate) -> Refined,
+    judge: &'a mut dyn FnMut(&Candidate, Effort) -> Refined,
     left: u32,
     /// Where candidates failed in this round, and how many.
     failed: Vec<(Vector<4>, u32)>,
@@ -29,9 +38,9 @@ pub struct Certifier<'a> {
 
 impl<'a> Certifier<'a> {
     /// With at most `limit` linear systems.
-    pub fn new(refine: &'a mut dyn FnMut(&Candidate) -> Refined, limit: u32) -> Self {
+    pub fn new(judge: &'a mut dyn FnMut(&Candidate, Effort) -> Refined, limit: u32) -> Self {
         Self {
-            refine,
+            judge,
             left: limit,
             failed: Vec::new(),
             patience: u32::MAX,
@@ -46,11 +55,18 @@ impl<'a> Certifier<'a> {
         if failures.as_ref().is_some_and(|(_, n)| *n >= self.patience) {
             return false;
         }
-        let Refined { certified, systems } = (self.refine)(candidate);
+        let Refined { certified, systems } = (self.judge)(candidate, Effort::Refine);
         match failures {
             Some((_, n)) => *n += 1,
             None => self.failed.push((candidate.v, 1)),
         }
+        self.spend(systems);
+        certified
+    }
+
+    /// Whether the candidate is certified as it is.
+    pub fn accepts(&mut self, candidate: &Candidate) -> bool {
+        let Refined { certified, systems } = (self.judge)(candidate, Effort::AsItIs);
         self.spend(systems);
         certified
     }

@@ -5,7 +5,7 @@ use stickslip_lanes::{Lanes, Level};
 use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::certifier::{Certifier, Refined};
+use crate::solver::certifier::{Certifier, Effort, Refined};
 use crate::solver::chain::NEWTON;
 use crate::solver::compliant::CompliantNewton;
 use crate::solver::mode_search::{Verdict, search};
@@ -126,11 +126,14 @@ impl Fallback {
     fn search_modes(&mut self, limit: u32, report: &mut Report) {
         let (ncp, refiner, guess) = (&self.ncp, &mut self.refiner, &mut self.guess);
         guess.clear(ncp.contacts.len());
-        let mut refine = |candidate: &Candidate| {
+        let mut judge = |candidate: &Candidate, effort| {
             candidate.store(guess);
-            refiner.refine(ncp, guess)
+            match effort {
+                Effort::AsItIs => refiner.accept(ncp, guess),
+                Effort::Refine => refiner.refine(ncp, guess),
+            }
         };
-        let mut certifier = Certifier::new(&mut refine, limit);
+        let mut certifier = Certifier::new(&mut judge, limit);
         report.outcome = match search(&self.scalar, &mut certifier) {
             Verdict::Solved => Outcome::Solved,
             Verdict::Infeasible => Outcome::Infeasible,

@@ -69,6 +69,16 @@ impl Refiner {
         }
     }
 
+    /// Copies `guess` into `self.z`, and judges it as it is.
+    pub fn accept(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> Refined {
+        self.z.copy_from(guess);
+        let residual = ncp.residual(&self.z);
+        Refined {
+            certified: ncp.certifies(&self.z, residual).all(),
+            systems: 1,
+        }
+    }
+
     /// [`Newton`] from `start` into `self.z`.
     pub fn iterate(
         &mut self,
