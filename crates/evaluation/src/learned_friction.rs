@@ -37,6 +37,9 @@ pub struct LearnedParameter {
     pub observed: bool,
     /// The row of mean and standard deviation: the last one that informed.
     pub row: Option<usize>,
+    /// The last row that informed, if too little for it to be observed, too.
+    #[serde(skip)]
+    pub informed: Option<usize>,
 }
 
 /// A parameter's name, its value, and the rows that inform about it.
@@ -95,8 +98,8 @@ impl LearnedParameter {
         let informing = |row: &EstimateRow| {
             row.visual && (source.informs)(row) && spread(row).is_some_and(|std| std > 0.0)
         };
-        let row = estimate.rows.iter().rposition(informing);
-        let row = row.filter(|row| spread(&estimate.rows[*row]).is_some_and(narrower));
+        let informed = estimate.rows.iter().rposition(informing);
+        let row = informed.filter(|row| spread(&estimate.rows[*row]).is_some_and(narrower));
         let at_row = row.map(|row| &estimate.rows[row]);
         Some(Self {
             name: source.name,
@@ -104,6 +107,7 @@ impl LearnedParameter {
             std: at_row.and_then(spread).unwrap_or(0.0),
             observed: row.is_some(),
             row,
+            informed,
         })
     }
 
@@ -220,6 +224,22 @@ mod tests {
             ..estimate
         };
         assert_eq!(LearnedParameter::all(&known_feet).len(), 3);
+    }
+
+    #[test]
+    fn spread_that_stays_near_the_priors_was_not_observed() {
+        let pushed = |std: f64| row(0.3, std, 0.02, [1.0, 0.0], true);
+        for (std, observed) in [(0.05, false), (0.03, true)] {
+            let estimate = Estimate {
+                rows: vec![pushed(0.1), pushed(std), row(0.3, std, 0.0, [0.0; 2], true)],
+                ..Estimate::default()
+            };
+            let [_, mu_p, _] = LearnedParameter::all(&estimate)[..] else {
+                panic!("three parameters");
+            };
+            assert_eq!(mu_p.row, observed.then_some(1));
+            assert_eq!(mu_p.informed, Some(1));
+        }
     }
 
     #[test]

@@ -74,8 +74,8 @@ impl ReportedExperiment<'_> {
                 "friction",
                 figure.drawing(),
                 "Estimated friction, mean and one standard deviation; its nominal value; the truth, where it is known. Dotted from \
-                 the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it; not observed: there is no such row, or the spread in it is \
-                 more than 40 % of what it was at first.",
+                 the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it. Not observed: there is no such row, or the standard \
+                 deviation in it is more than 40 % of what it was at first.",
             )
         });
         let cloud = self.clouds().map(|drawing| {
@@ -147,7 +147,7 @@ impl ReportedExperiment<'_> {
         let learned = LearnedParameter::all(estimate);
         let informed = |parameter: &FrictionParameter| {
             let found = learned.iter().find(|found| found.name == parameter.name);
-            found.and_then(|found| found.row)
+            found.and_then(|found| found.informed)
         };
         let mut panels = friction_panels(
             &FRICTION_PARAMETERS[..learned.len()],
