@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::{Body, Lanes, Mask};
 
+use crate::mode::Mode;
 use crate::particle::chunk::{FlagsMut, LANES};
 use crate::particle::columns::{Columns, SlipFlags};
 use crate::particle::propagation::{Propagation, Transition, moving};
@@ -24,16 +25,26 @@ impl Propagation {
         let Transition { setup, columns, .. } = transition;
         let presses = |body| self.work.normal_impulses(chunk, body);
         let rho = setup.scene.object.gyration_radius();
+        let moves = moving(&self.particles[chunk].twist, rho);
+
+        // what touches while nothing moves goes on touching: the pusher's track is noisy
+        let waits = !flags.get(Columns::PUSHER_WAS_NEAR);
+        let in_paper = Mask::splat(columns.mode() == Mode::Paper);
+        let rests = !(moves | Mask::splat(plan.driven) | waits | in_paper);
+        let touching = |flags: &mut FlagsMut<'_, '_>, which, pressed: Mask<LANES>, body| {
+            let goes_on = rests & flags.get(which) & self.near(chunk, body);
+            pressed | self.close(transition, chunk, body) | goes_on
+        };
 
         // the pusher
         let pusher = presses(Body::Pusher).gt(Lanes::ZERO);
-        let touches = pusher | self.close(transition, chunk, Body::Pusher);
+        let touches = touching(flags, Columns::CONTACT_PUSHER, pusher, Body::Pusher);
         flags.set(Columns::CONTACT_PUSHER, touches);
         self.store_slip(flags, Columns::SLIP_PUSHER, touches, (chunk, Body::Pusher));
         let before = flags.get(Columns::PUSHER_WAS_NEAR);
         let near = before | self.near(chunk, Body::Pusher);
         flags.set(Columns::PUSHER_WAS_NEAR, near);
-        let pressed = moving(&self.particles[chunk].twist, rho) | pusher;
+        let pressed = moves | pusher;
         flags.set(Columns::IDLE, !(pressed & Mask::splat(plan.driven)));
 
         // the fixels
@@ -42,7 +53,7 @@ impl Propagation {
         for j in 0..setup.scene.fixels.len() {
             let body = Body::Fixel(j);
             let felt = presses(body).gt(touch_impulse);
-            let touches = felt | self.close(transition, chunk, body);
+            let touches = touching(flags, columns.contact_fixel(j), felt, body);
             flags.set(columns.contact_fixel(j), touches);
             self.store_slip(flags, columns.slip_fixel(j), touches, (chunk, body));
             let near = columns.fixel_was_near(j);

@@ -167,6 +167,30 @@ fn slips_and_contact_agree() {
     assert!(slip.left + slip.right < 0.02, "{slip:?}");
 }
 
+/// A pusher that a noisy tracker sees brings a disc to a fixel, stands there and, at last, goes back.
+#[test]
+fn what_touches_while_nothing_moves_goes_on_touching() {
+    let setup = setup(&[[0.06, 0.0]]);
+    let (stops, leaves) = (45, 120);
+    let way = |time: f64| {
+        let back = (time - leaves as f64 / 30.0).max(0.0);
+        SPEED * (time.min(stops as f64 / 30.0) - back)
+    };
+    let noise = |time: f64| 1.5e-4 * libm::sin(1e3 * time * time);
+    let pusher = |time: f64| Some(Pose::new(-0.036 + way(time) + noise(time), 0.0, 0.0));
+    let log = log(150, |_| Some(Pose::default()), pusher);
+    let hidden = Occlusion::Rows { from: 2, to: None };
+    let estimate = estimate(&setup, &log, (Mode::Contact, 0), hidden);
+    let touches = |row: &EstimateRow| row.contact_pusher.expect("a share");
+
+    let standing: Vec<f64> = estimate.rows[stops + 5..leaves - 5]
+        .iter()
+        .map(touches)
+        .collect();
+    assert!(standing.iter().all(|share| *share > 0.9), "{standing:?}");
+    assert!(touches(last(&estimate)) < 0.01);
+}
+
 #[test]
 fn ancestors_are_lost_in_the_dark_and_counted_anew_in_the_light() {
     let (_, estimate) = head_on(Mode::Contact);
