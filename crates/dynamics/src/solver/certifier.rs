@@ -15,21 +15,21 @@ pub enum Effort {
     Refine,
 }
 
-/// A candidate's refinement.
+/// What became of a candidate.
 #[derive(Clone, Copy, Debug)]
-pub struct Refined {
-    /// Whether it is a solution.
+pub struct Judged {
+    /// Whether it, or what it refines to, is a solution.
     pub certified: bool,
     /// Linear systems that it took.
     pub systems: u32,
 }
 
-/// Refines candidates, and keeps account of the work that a search may still take.
+/// Judges candidates, and keeps account of the work that a search may still take.
 ///
 /// Work is counted in linear systems, each a fraction of a microsecond, not in seconds: so the
 /// result of a search that runs out of it does not depend on the machine.
 pub struct Certifier<'a> {
-    judge: &'a mut dyn FnMut(&Candidate, Effort) -> Refined,
+    judge: &'a mut dyn FnMut(&Candidate, Effort) -> Judged,
     left: u32,
     /// Where candidates failed in this round, and how many.
     failed: Vec<(Vector<4>, u32)>,
@@ -38,7 +38,7 @@ pub struct Certifier<'a> {
 
 impl<'a> Certifier<'a> {
     /// With at most `limit` linear systems.
-    pub fn new(judge: &'a mut dyn FnMut(&Candidate, Effort) -> Refined, limit: u32) -> Self {
+    pub fn new(judge: &'a mut dyn FnMut(&Candidate, Effort) -> Judged, limit: u32) -> Self {
         Self {
             judge,
             left: limit,
@@ -55,7 +55,7 @@ impl<'a> Certifier<'a> {
         if failures.as_ref().is_some_and(|(_, n)| *n >= self.patience) {
             return false;
         }
-        let Refined { certified, systems } = (self.judge)(candidate, Effort::Refine);
+        let Judged { certified, systems } = (self.judge)(candidate, Effort::Refine);
         match failures {
             Some((_, n)) => *n += 1,
             None => self.failed.push((candidate.v, 1)),
@@ -66,7 +66,7 @@ impl<'a> Certifier<'a> {
 
     /// Whether the candidate is certified as it is.
     pub fn accepts(&mut self, candidate: &Candidate) -> bool {
-        let Refined { certified, systems } = (self.judge)(candidate, Effort::AsItIs);
+        let Judged { certified, systems } = (self.judge)(candidate, Effort::AsItIs);
         self.spend(systems);
         certified
     }

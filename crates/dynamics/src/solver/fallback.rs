@@ -5,7 +5,7 @@ use stickslip_lanes::{Lanes, Level};
 use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::certifier::{Certifier, Effort, Refined};
+use crate::solver::certifier::{Certifier, Effort, Judged};
 use crate::solver::chain::NEWTON;
 use crate::solver::compliant::CompliantNewton;
 use crate::solver::mode_search::{Verdict, search};
@@ -148,7 +148,7 @@ impl Fallback {
     fn start_afresh(&mut self, report: &mut Report) {
         self.guess.cold_start(&self.ncp);
         let (ncp, start, end) = (&self.ncp, &self.guess, &mut self.solution);
-        let Refined { certified, systems } = self.refiner.iterate(ncp, start, NEWTON);
+        let Judged { certified, systems } = self.refiner.iterate(ncp, start, NEWTON);
         report.systems += systems;
         if certified {
             report.outcome = Outcome::Solved;

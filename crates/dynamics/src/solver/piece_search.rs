@@ -284,7 +284,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
-    use crate::solver::certifier::{Effort, Refined};
+    use crate::solver::certifier::{Effort, Judged};
 
     /// The line V = (x, 0, 0, 0), 0 ≤ x ≤ 6, with the condition sin(x) = level.
     struct Wave {
@@ -345,7 +345,7 @@ mod tests {
                     (x - (PI - libm::asin(level))).abs() < 1e-9
                 }
             };
-            Refined {
+            Judged {
                 certified,
                 systems: 1,
             }

@@ -6,7 +6,7 @@ use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::report::TOLERANCE;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::certifier::Refined;
+use crate::solver::certifier::Judged;
 use crate::solver::fixed_mode_newton::FixedModeNewton;
 use crate::solver::newton::{Newton, NewtonSettings};
 
@@ -49,31 +49,31 @@ impl Default for Refiner {
 impl Refiner {
     /// Refines `guess` into `self.z`, in the modes that the guess shows, else by [`Newton`] from
     /// the guess as it is.
-    pub fn refine(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> Refined {
+    pub fn refine(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> Judged {
         let mut systems = 0;
         for sliding in SLIDING {
             self.z.copy_from(guess);
             let (residual, steps) = self.fixed_modes(ncp, sliding);
             systems += steps;
             if ncp.certifies(&self.z, Lanes([residual])).all() {
-                return Refined {
+                return Judged {
                     certified: true,
                     systems,
                 };
             }
         }
         let end = self.iterate(ncp, guess, SETTINGS);
-        Refined {
+        Judged {
             systems: systems + end.systems,
             ..end
         }
     }
 
     /// Copies `guess` into `self.z`, and judges it as it is.
-    pub fn accept(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> Refined {
+    pub fn accept(&mut self, ncp: &Ncp<1>, guess: &Unknowns<1>) -> Judged {
         self.z.copy_from(guess);
         let residual = ncp.residual(&self.z);
-        Refined {
+        Judged {
             certified: ncp.certifies(&self.z, residual).all(),
             systems: 1,
         }
@@ -85,14 +85,14 @@ impl Refiner {
         ncp: &Ncp<1>,
         start: &Unknowns<1>,
         settings: NewtonSettings,
-    ) -> Refined {
+    ) -> Judged {
         self.z.copy_from(start);
         let end = on_widest(
             self.level,
             #[inline(always)]
             || self.newton.solve(ncp, &mut self.z, settings),
         );
-        Refined {
+        Judged {
             certified: ncp.certifies(&self.z, end.residual).all(),
             systems: end.iterations.0[0] as u32,
         }
