@@ -70,7 +70,7 @@ impl Default for Uncertainty {
             camera_noise: 0.3,
             latency: 0.03,
             creep: 0.0,
-            touch_gap: 5e-4,
+            touch_gap: 2.5e-4,
         }
     }
 }
