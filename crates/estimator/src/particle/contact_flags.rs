@@ -28,22 +28,20 @@ impl Propagation {
         let moves = moving(&self.particles[chunk].twist, rho);
 
         // what touches while nothing moves goes on touching: the pusher's track is noisy
-        let waits = !flags.get(Columns::PUSHER_WAS_NEAR);
-        let in_paper = Mask::splat(columns.mode() == Mode::Paper);
-        let rests = !(moves | Mask::splat(plan.driven) | waits | in_paper);
-        let touching = |flags: &mut FlagsMut<'_, '_>, which, pressed: Mask<LANES>, body| {
-            let goes_on = rests & flags.get(which) & self.near(chunk, body);
-            pressed | self.close(transition, chunk, body) | goes_on
+        let pusher_was_near = flags.get(Columns::PUSHER_WAS_NEAR);
+        let rests = match columns.mode() {
+            Mode::Contact => pusher_was_near & !(moves | Mask::splat(plan.driven)),
+            Mode::Paper => Mask::splat(false),
         };
 
         // the pusher
         let pusher = presses(Body::Pusher).gt(Lanes::ZERO);
-        let touches = touching(flags, Columns::CONTACT_PUSHER, pusher, Body::Pusher);
+        let near = self.near(chunk, Body::Pusher);
+        let goes_on = rests & near & flags.get(Columns::CONTACT_PUSHER);
+        let touches = pusher | self.close(transition, chunk, Body::Pusher) | goes_on;
         flags.set(Columns::CONTACT_PUSHER, touches);
         self.store_slip(flags, Columns::SLIP_PUSHER, touches, (chunk, Body::Pusher));
-        let before = flags.get(Columns::PUSHER_WAS_NEAR);
-        let near = before | self.near(chunk, Body::Pusher);
-        flags.set(Columns::PUSHER_WAS_NEAR, near);
+        flags.set(Columns::PUSHER_WAS_NEAR, pusher_was_near | near);
         let pressed = moves | pusher;
         flags.set(Columns::IDLE, !(pressed & Mask::splat(plan.driven)));
 
@@ -53,12 +51,13 @@ impl Propagation {
         for j in 0..setup.scene.fixels.len() {
             let body = Body::Fixel(j);
             let felt = presses(body).gt(touch_impulse);
-            let touches = touching(flags, columns.contact_fixel(j), felt, body);
+            let near = self.near(chunk, body);
+            let goes_on = rests & near & flags.get(columns.contact_fixel(j));
+            let touches = felt | self.close(transition, chunk, body) | goes_on;
             flags.set(columns.contact_fixel(j), touches);
             self.store_slip(flags, columns.slip_fixel(j), touches, (chunk, body));
-            let near = columns.fixel_was_near(j);
-            let before = flags.get(near);
-            flags.set(near, before | self.near(chunk, body));
+            let before = flags.get(columns.fixel_was_near(j));
+            flags.set(columns.fixel_was_near(j), before | near);
             let against = columns.driven_contact_fixel(j);
             let before = flags.get(against);
             flags.set(against, pressed & felt | !pressed & before);
