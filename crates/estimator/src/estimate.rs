@@ -71,8 +71,8 @@ pub struct EstimateRow {
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,
-    /// Friction parameters; `d_tri` is NaN-free: it is ignored where the feet are known (see
-    /// [`Estimate::has_tripod`]).
+    /// Friction parameters, in contact mode as known when the camera last saw the object, docs/method.md (52);
+    /// `d_tri` is NaN-free: it is ignored where the feet are known (see [`Estimate::has_tripod`]).
     pub friction: Option<Friction>,
     /// Posterior probability of contact with the pusher.
     pub contact_pusher: Option<f64>,
@@ -96,7 +96,7 @@ pub struct EstimateRow {
     pub modes: Vec<BeliefMode>,
     /// Whether a camera pose was used.
     pub visual: bool,
-    /// Number of particles whose step has no certified solution.
+    /// Number of particles whose step has no certified solution, those that learn friction among them.
     pub unsolved: Option<u32>,
     /// Of those, the ones whose solver gave up; for the others it proved that there is no solution.
     pub failed: Option<u32>,

@@ -21,7 +21,9 @@ pub(crate) struct PreparedLog<'a> {
     pub hidden: Vec<bool>,
     /// First row with a visible object pose: row 0 of the estimate.
     pub first: usize,
-    /// The pose there.
+    /// The last one.
+    pub last_seen: usize,
+    /// The pose in the first one.
     pub start: Pose,
     /// The pusher's track.
     pub track: PusherTrack,
@@ -37,17 +39,20 @@ impl<'a> PreparedLog<'a> {
         TrackerOptions::of(options).check()?;
         log.check(setup.scene.fixels.len())?;
         let hidden = options.occlusion.hidden(log);
-        let seen = (0..log.len()).find_map(|row| {
+        let mut seen = (0..log.len()).filter_map(|row| {
             log.object[row]
                 .filter(|_| !hidden[row])
                 .map(|pose| (row, pose))
         });
-        let (first, start) = seen.ok_or(RunError::NoObjectPose { rows: log.len() })?;
+        let first = seen.next();
+        let last_seen = seen.next_back();
+        let (first, start) = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
         let track = PusherTrack::new(log, setup.camera.as_ref(), options.tracking)?;
         Ok(Self {
             log,
             hidden,
             first,
+            last_seen: last_seen.map_or(first, |(row, _)| row),
             start,
             schedule: Schedule::new(&log.time, &track, options.substeps),
             track,

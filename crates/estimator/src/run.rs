@@ -5,9 +5,11 @@ use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
 use crate::options::{Method, RunOptions, TactileUse};
-use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::contact_filter::{Drive, FilterOptions, Measured};
+use crate::particle::learning_filter::LearningFilter;
 use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
+use crate::particle::view::ParticleView;
 use crate::prepared_log::PreparedLog;
 use crate::pusher::track::Tracking;
 use crate::row::Row;
@@ -175,11 +177,15 @@ fn track_smoothed(
         pose: *start,
         covariance: prepared.covariance(*first),
     };
-    let mut filter = ContactFilter::new(setup, camera, start, &filter_options)?;
+    let mut filter = LearningFilter::new(setup, camera, start, &filter_options)?;
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[*first].clone_from(filter.latest());
-    if let Some(observer) = observer {
-        observer.on_row(*first, &filter.particles());
+    let show = |row: usize, filter: &LearningFilter<'_>| {
+        prepared.show(row, Some(filter.particles()), filter.learners());
+    };
+    show(*first, &filter);
+    if *first == prepared.last_seen {
+        filter.learn_no_more();
     }
     let mut row_at = Row::default();
     for row in first + 1..log.len() {
@@ -195,8 +201,9 @@ fn track_smoothed(
             moves: schedule.driven(row - 1),
         };
         estimate.rows[row].clone_from(filter.step(measured, drive));
-        if let Some(observer) = observer {
-            observer.on_row(row, &filter.particles());
+        show(row, &filter);
+        if row == prepared.last_seen {
+            filter.learn_no_more();
         }
         progress(row);
     }
@@ -222,8 +229,9 @@ fn track_causal(
     for row in 0..prepared.log.len() {
         prepared.read(row, options.tactile, &mut row_at);
         estimate.rows[row].clone_from(tracker.push(&row_at)?);
-        if let Some((observer, particles)) = prepared.observer.zip(tracker.particles()) {
-            observer.on_row(row, &particles);
+        prepared.show(row, tracker.particles(), tracker.learners());
+        if row == prepared.last_seen {
+            tracker.learn_no_more();
         }
         if row > prepared.first {
             progress(row);
@@ -238,6 +246,19 @@ fn track_causal(
 }
 
 impl PreparedLog<'_> {
+    /// Shows the observer the particles after a row: those that say where the object is, and those that learn.
+    fn show(&self, row: usize, poses: Option<ParticleView<'_>>, learn: Option<ParticleView<'_>>) {
+        let Some(observer) = self.observer else {
+            return;
+        };
+        if let Some(particles) = poses {
+            observer.on_row(row, &particles);
+        }
+        if let Some(particles) = learn {
+            observer.on_friction(row, &particles);
+        }
+    }
+
     /// Writes what was measured at `row` and is not hidden; memory is reused.
     fn read(&self, row: usize, tactile: TactileUse, to: &mut Row) {
         to.time = self.log.time[row];

@@ -9,7 +9,8 @@ use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::moves::Moves;
 use crate::options::{RunOptions, TactileUse};
-use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::contact_filter::{Drive, FilterOptions, Measured};
+use crate::particle::learning_filter::LearningFilter;
 use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
 use crate::particle::view::ParticleView;
@@ -25,10 +26,11 @@ const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
 /// Most substeps from row to row.
 const MOST_SUBSTEPS: u32 = 10_000;
 
-/// Memory that a particle takes (bytes), as measured with four bodies to touch; past poses are not counted.
+/// Memory that a particle takes (bytes), with that of those that learn friction beside it, as measured with four
+/// bodies to touch; past poses are not counted.
 fn particle_bytes(mode: Mode) -> usize {
     match mode {
-        Mode::Contact => 2600,
+        Mode::Contact => 5200,
         Mode::Paper => 600,
     }
 }
@@ -38,7 +40,7 @@ fn particle_bytes(mode: Mode) -> usize {
 pub struct TrackerOptions {
     /// Rules of the particle filter.
     pub mode: Mode,
-    /// Number of particles.
+    /// Number of particles that say where the object is; in contact mode as many learn its friction.
     pub particles: usize,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -143,7 +145,7 @@ pub struct Tracker<'o> {
     /// Time of the latest row (s).
     time: Option<f64>,
     /// From the first object pose on.
-    filter: Option<ContactFilter<'o>>,
+    filter: Option<LearningFilter<'o>>,
     /// The row before there is a pose.
     nothing: EstimateRow,
 }
@@ -275,7 +277,7 @@ impl<'o> Tracker<'o> {
                     pose,
                     covariance: row.object_covariance,
                 };
-                let filter = ContactFilter::new(&self.setup, self.camera, start, &options);
+                let filter = LearningFilter::new(&self.setup, self.camera, start, &options);
                 self.filter = Some(filter.expect("the settings were checked"));
             }
             (None, None) => {}
@@ -319,12 +321,25 @@ impl<'o> Tracker<'o> {
     pub fn estimate(&self) -> &EstimateRow {
         self.filter
             .as_ref()
-            .map_or(&self.nothing, ContactFilter::latest)
+            .map_or(&self.nothing, LearningFilter::latest)
     }
 
-    /// The particles after the latest row; `None` before the first object pose.
+    /// The particles that say where the object is, after the latest row; `None` before the first object pose. The
+    /// friction of the estimate is learned by others, docs/method.md (52).
     pub fn particles(&self) -> Option<ParticleView<'_>> {
-        self.filter.as_ref().map(ContactFilter::particles)
+        self.filter.as_ref().map(LearningFilter::particles)
+    }
+
+    /// Those that learn its friction.
+    pub(crate) fn learners(&self) -> Option<ParticleView<'_>> {
+        self.filter.as_ref().and_then(LearningFilter::learners)
+    }
+
+    /// The camera will show no more: nothing is learned from here on.
+    pub(crate) fn learn_no_more(&mut self) {
+        if let Some(filter) = &mut self.filter {
+            filter.learn_no_more();
+        }
     }
 
     /// Time of the latest row (s).
@@ -334,13 +349,13 @@ impl<'o> Tracker<'o> {
 
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
     pub fn collapses(&self) -> u32 {
-        self.filter.as_ref().map_or(0, ContactFilter::collapses)
+        self.filter.as_ref().map_or(0, LearningFilter::collapses)
     }
 
     /// How often the steps since a blackout were made again, see
     /// [`Run::second_tries`](crate::Run::second_tries).
     pub fn second_tries(&self) -> u32 {
-        self.filter.as_ref().map_or(0, ContactFilter::second_tries)
+        self.filter.as_ref().map_or(0, LearningFilter::second_tries)
     }
 
     /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence); 0
@@ -348,6 +363,6 @@ impl<'o> Tracker<'o> {
     pub fn log_evidence(&self) -> f64 {
         self.filter
             .as_ref()
-            .map_or(0.0, ContactFilter::log_evidence)
+            .map_or(0.0, LearningFilter::log_evidence)
     }
 }

@@ -78,6 +78,10 @@ impl Default for Uncertainty {
 /// How steeply the factor of well measured rigs changes between the halves, per unit of ln of roughness.
 const BETWEEN_HALVES: f64 = 10.0;
 
+/// At least what particles that learn friction have of `force_spread` and `creep`.
+const FORCE_SPREAD_OF_LEARNERS: f64 = 1.0;
+const CREEP_OF_LEARNERS: f64 = 0.1;
+
 /// Multiples of its mean that the unknown part of the camera's latency may reach.
 const LATEST: f64 = 10.0;
 
@@ -98,6 +102,16 @@ impl Uncertainty {
     #[inline(always)]
     pub(crate) fn well_registered_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         self.well_measured_at(roughness).sqrt().sqrt()
+    }
+
+    /// What particles that learn friction do not know, docs/method.md (52): pushes may be smoother than others, and
+    /// contacts may creep.
+    pub(crate) fn of_learners(&self) -> Self {
+        Self {
+            force_spread: self.force_spread.max(FORCE_SPREAD_OF_LEARNERS),
+            creep: self.creep.max(CREEP_OF_LEARNERS),
+            ..*self
+        }
     }
 
     /// Longest time by which the camera may lag more than the scene says (s).

@@ -20,6 +20,9 @@ use crate::variant::Variant;
 /// Quantities of a run: the pose at its end, the four friction parameters.
 pub const QUANTITIES: [&str; 7] = ["x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];
 
+/// How many of them are of the pose.
+const POSE: usize = 3;
+
 /// Where the truth lies in a belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
@@ -60,15 +63,16 @@ pub struct CalibrationOptions {
     pub mode: Mode,
     /// What scenes leave open, of truths and in contact mode.
     pub uncertainty: Uncertainty,
-    /// Whether it feels and not only sees.
-    pub touch: bool,
+    /// Whether it feels and not only sees, and whether the camera stays on where it else goes dark before the
+    /// first contact with a fixel.
+    pub variant: Variant,
     /// Number of particles.
     pub particles: usize,
 }
 
 impl CalibrationRun {
-    /// Simulates `paper` with friction drawn from its scene's prior, and tracks it through the
-    /// blackout before the first contact with a fixel; where the filter's own model moves the object, that
+    /// Simulates `paper` with friction drawn from its scene's prior, and tracks it, through a
+    /// blackout that begins before the first contact with a fixel; where the filter's own model moves the object, that
     /// is the contact of the simulation whose pusher it has, so that no blackout tells of the truth. `None`
     /// where no fixel is met, or the drawn rig cannot be simulated.
     ///
@@ -96,14 +100,16 @@ impl CalibrationRun {
             occlusion: experiment.facts.occlusion(),
             seed,
         };
-        let variant = match options.touch {
-            true => Variant::Particle,
-            false => Variant::ParticleNoTouch,
-        };
         let ranks = Ranks::of(&known.truth);
-        let run = ScoredRun::new(variant, experiment, &conditions, Some(&ranks));
+        let run = ScoredRun::new(options.variant, experiment, &conditions, Some(&ranks));
         let run = run.expect("the embedded scene can be run");
-        let last_seen = experiment.facts.occlude_from?.checked_sub(1)?;
+        let dark = experiment.facts.occlude_from?;
+        let end = if options.variant.camera_on() {
+            known.truth.len()
+        } else {
+            dark
+        };
+        let last_seen = end.checked_sub(1)?;
         Some(Self {
             placed: placed(&known, &run, &ranks)?,
             seen: ranks.at(last_seen)?,
@@ -200,6 +206,21 @@ impl Observer for Ranks<'_> {
     fn on_step(&self, _: &SolvedStep<'_>) {}
 
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
+        let ranks = self.among(row, particles);
+        self.ranks.lock().expect("no thread panicked")[row] = ranks;
+    }
+
+    fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
+        let ranks = self.among(row, particles);
+        let friction = POSE..QUANTITIES.len();
+        self.ranks.lock().expect("no thread panicked")[row][friction.clone()]
+            .copy_from_slice(&ranks[friction]);
+    }
+}
+
+impl Ranks<'_> {
+    /// Of the truth at a row, among some particles.
+    fn among(&self, row: usize, particles: &ParticleView<'_>) -> [f64; 7] {
         let truth = self.truth[row];
         let mut ranks = [0.0; 7];
         for (i, weight) in particles.weights().iter().enumerate() {
@@ -214,7 +235,7 @@ impl Observer for Ranks<'_> {
                 *rank += 0.5 * weight * below;
             }
         }
-        self.ranks.lock().expect("no thread panicked")[row] = ranks;
+        ranks
     }
 }
 

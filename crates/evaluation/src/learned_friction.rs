@@ -1,8 +1,8 @@
 //! What a run knows of friction when it ends: [`LearnedParameter`].
 //!
 //! In paper mode particles get new friction values only where the camera sees the object and Φ keeps
-//! them (docs/method.md (20), (21)), in contact mode while the pusher moves, too (34). At rest in the
-//! dark the set is resampled without them, until all its particles are copies of a few: its spread
+//! them (docs/method.md (20), (21)); contact mode keeps in the dark what was known before it (52). At rest
+//! the set is resampled without new values, until all its particles are copies of a few: its spread
 //! then shrinks though nothing has been learnt. So the
 //! last row that informs about a parameter has its estimate, and where there is none it was not
 //! observed. Where particles begin with a prior (contact mode), a parameter whose spread is not much
@@ -19,9 +19,9 @@ const TURNING: f64 = 0.03;
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
 
-/// Share of the prior's spread below which a parameter was observed. Pushes smoother than the filter's model
-/// of them teach a μ_p that is too high, down to nearly this share (docs/decisions/007-contact-mode.md).
-const NARROWER: f64 = 0.4;
+/// Share of the prior's spread below which a parameter was observed: what is known of it then is nearer the
+/// truth than the prior's mean by half (docs/decisions/007-contact-mode.md, "Friction that is learned beside").
+const NARROWER: f64 = 0.5;
 
 /// One friction parameter at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -3,7 +3,7 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::{Pose, StepInput};
+use stickslip_dynamics::{Friction, Pose, StepInput};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
 
 use crate::covariance::PoseCovariance;
@@ -59,6 +59,8 @@ pub(crate) struct ContactFilter<'o> {
     plan: StepPlan,
     observation: Observation,
     latest: EstimateRow,
+    /// What the next row's sums are about: the means of the latest one.
+    reference: Reference,
     modes: ModeFinder,
     collapses: u32,
     /// Whether the latest row drew the particles anew.
@@ -140,6 +142,7 @@ impl<'o> ContactFilter<'o> {
             camera: CameraClock::new(time),
             noise: NoiseClock::default(),
             plan: StepPlan::none(reference),
+            reference,
             observation: Observation::default(),
             latest: EstimateRow::default(),
             modes: ModeFinder::new(setup.scene.object.gyration_radius(), camera.position_std),
@@ -299,9 +302,7 @@ impl<'o> ContactFilter<'o> {
             true => ParameterNoise::Frozen,
         };
         plan.noise_age = self.noise.age(plan.duration());
-        if let Some(reference) = Reference::of(&self.latest) {
-            plan.reference = reference;
-        }
+        plan.reference = self.reference;
         plan.steady = self.steadiness.velocity(measured.time, drive.substeps);
         plan.steady = plan.steady.filter(|_| self.moves.steady_push);
         plan.slot = self.history.push(measured.time);
@@ -350,9 +351,30 @@ impl<'o> ContactFilter<'o> {
             let belief = (pose, spread.pose);
             self.modes.find(&self.filter, belief, &mut row.modes);
         }
+        if let Some(reference) = Reference::of(row) {
+            self.reference = reference;
+        }
         let lineage = self.filter.lineage();
         row.distinct = Some(lineage.parents() as u32);
         row.ancestors = Some(lineage.ancestors() as u32);
+    }
+
+    /// Writes what another filter knows of friction into the latest row, in place of what the particles have.
+    pub fn tell_friction(&mut self, mean: Friction, std: Friction) {
+        self.latest.friction = Some(mean);
+        if let Some(spread) = &mut self.latest.spread {
+            spread.friction = Some(std);
+        }
+    }
+
+    /// Adds the steps of another filter's row that have no certified solution.
+    pub fn count_steps_of(&mut self, other: &EstimateRow) {
+        let EstimateRow {
+            unsolved, failed, ..
+        } = &mut self.latest;
+        for (count, more) in [(unsolved, other.unsolved), (failed, other.failed)] {
+            *count = count.zip(more).map(|(count, more)| count + more);
+        }
     }
 
     /// The estimate at the latest row.

@@ -11,6 +11,7 @@ mod contact_mode;
 mod geometric_median;
 mod group;
 mod history;
+pub(crate) mod learning_filter;
 mod mode_finder;
 mod model;
 mod moved;

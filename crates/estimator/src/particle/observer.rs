@@ -22,7 +22,7 @@ pub struct SolvedStep<'a> {
 }
 
 /// Is shown the time steps of a run, substeps included: those that count, with all contacts that
-/// could act.
+/// could act. Steps of the particles that learn friction are not shown.
 ///
 /// The steps of a block of 128 particles come in order from one thread; those of a
 /// larger set come from several threads at once, in no fixed order.
@@ -40,6 +40,12 @@ pub trait Observer: Debug + Sync {
     /// where the estimate begins. Rows come in order, from one thread. Only the particle filter has
     /// any.
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
+        let _ = (row, particles);
+    }
+
+    /// The particles that learn friction (contact mode, docs/method.md (52)), after those of the row, up to the last
+    /// one in which the camera sees the object.
+    fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
         let _ = (row, particles);
     }
 }

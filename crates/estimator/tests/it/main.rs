@@ -8,6 +8,7 @@ mod extended_kalman;
 mod fast_pusher;
 mod friction_parameters;
 mod jam;
+mod known_friction;
 mod particle_view;
 mod pose_covariance;
 mod prior_sample;

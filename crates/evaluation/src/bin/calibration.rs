@@ -1,7 +1,7 @@
 //! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...`: where
 //! the truth lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by
-//! the filter's own noisy dynamics, by these without noise and by the testbed, with touch and without, in
-//! both modes. "last seen" is the coverage when the camera goes dark, in all runs. Keys are those of a
+//! the filter's own noisy dynamics, by these without noise and by the testbed, with touch, without, and with the
+//! camera on throughout, in both modes. "last seen" is the coverage when the camera goes dark, in all runs. Keys are those of a
 //! scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is what they cost. With keys
 //! only contact mode, which knows them, is run.
 
@@ -10,9 +10,16 @@ use std::error::Error;
 use stickslip::{Mode, Uncertainty};
 use stickslip_evaluation::paper::PaperExperiment;
 use stickslip_evaluation::{
-    CalibrationOptions, CalibrationRun, Physics, QUANTITIES, Tally, TruthSource,
+    CalibrationOptions, CalibrationRun, Physics, QUANTITIES, Tally, TruthSource, Variant,
 };
 use stickslip_formats::read_scene;
+
+/// With what names they are shown.
+const VARIANTS: [(Variant, &str); 3] = [
+    (Variant::Particle, "touch"),
+    (Variant::ParticleNoTouch, "no touch"),
+    (Variant::ParticleCameraOn, "touch, camera on"),
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let given: Vec<String> = std::env::args().skip(1).collect();
@@ -39,15 +46,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     for (source, truth) in sources {
         for &(mode, name) in modes {
-            for touch in [true, false] {
+            for (variant, sensors) in VARIANTS {
                 let options = CalibrationOptions {
                     source,
                     mode,
                     uncertainty,
-                    touch,
+                    variant,
                     particles,
                 };
-                let sensors = if touch { "touch" } else { "no touch" };
                 println!("\n{truth}: {name} mode, {sensors}");
                 show(&simulate(runs, &options));
             }

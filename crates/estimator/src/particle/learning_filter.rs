@@ -1,0 +1,179 @@
+//! The particles that say where the object is, and beside them, in contact mode, those that learn its
+//! friction: [`LearningFilter`], docs/method.md (52).
+
+use std::num::NonZero;
+
+use stickslip_dynamics::Friction;
+
+use crate::error::RunError;
+use crate::estimate::EstimateRow;
+use crate::mode::Mode;
+use crate::moves::Moves;
+use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::observation::PoseAt;
+use crate::particle::view::ParticleView;
+use crate::setup::{Camera, Setup};
+
+/// Seeds of the particles that learn lie apart from those of the others.
+const LEARNING_SEEDS: u64 = 1 << 48;
+
+/// The filter that says where the object is, with the friction that another one learns.
+///
+/// What serves the pose is not what serves the friction. Pushes that are smoother than the model's teach a
+/// wrong friction, unless particles know that pushes may be smooth and contacts may creep; where the object
+/// goes is then told too surely. So there are two sets of particles, each with its own model.
+pub(crate) struct LearningFilter<'o> {
+    poses: ContactFilter<'o>,
+    /// As long as there may be more to learn.
+    learner: Option<ContactFilter<'o>>,
+    /// What was known of friction when the camera last showed the object; none without a learner.
+    known: Option<KnownFriction>,
+}
+
+/// Means and standard deviations.
+#[derive(Clone, Copy, Debug)]
+struct KnownFriction {
+    mean: Friction,
+    std: Friction,
+}
+
+impl KnownFriction {
+    fn of(row: &EstimateRow) -> Option<Self> {
+        let mean = row.friction?;
+        let std = row.spread?.friction?;
+        Some(Self { mean, std })
+    }
+}
+
+impl<'o> LearningFilter<'o> {
+    /// Particles around `start`.
+    ///
+    /// # Errors
+    /// Where the filter's settings are out of range.
+    pub fn new(
+        setup: &Setup,
+        camera: Camera,
+        start: PoseAt,
+        options: &FilterOptions<'o>,
+    ) -> Result<Self, RunError> {
+        let learns =
+            options.mode == Mode::Contact && setup.uncertainty.friction != Friction::default();
+        let learner = learns.then(|| learner(setup, camera, start, options));
+        let learner = learner.transpose()?;
+        let mut this = Self {
+            poses: ContactFilter::new(setup, camera, start, options)?,
+            known: learner
+                .as_ref()
+                .map(ContactFilter::latest)
+                .and_then(KnownFriction::of),
+            learner,
+        };
+        this.tell_friction();
+        Ok(this)
+    }
+
+    /// One row: the step that leads to it, then what was measured there.
+    pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        self.poses.step(measured, drive);
+        if let Some(learner) = &mut self.learner {
+            let row = learner.step(measured, drive);
+            if row.visual {
+                self.known = KnownFriction::of(row);
+            }
+            self.poses.count_steps_of(row);
+        }
+        self.tell_friction();
+        self.latest()
+    }
+
+    /// Weighs the particles by a pose that arrives late.
+    pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
+        self.poses.weigh_late(late);
+        if let Some(learner) = &mut self.learner {
+            let row = learner.weigh_late(late);
+            self.known = KnownFriction::of(row);
+            self.poses.count_steps_of(row);
+        }
+        self.tell_friction();
+        self.latest()
+    }
+
+    /// The camera will show no more: what is known of friction stays as it is.
+    pub fn learn_no_more(&mut self) {
+        self.learner = None;
+    }
+
+    /// Writes what is known of friction into the latest row.
+    fn tell_friction(&mut self) {
+        if let Some(KnownFriction { mean, std }) = self.known {
+            self.poses.tell_friction(mean, std);
+        }
+    }
+
+    /// Goes on with another number of particles; where it is the same, nothing changes.
+    pub fn resize(&mut self, particles: NonZero<u32>) {
+        self.poses.resize(particles);
+        if let Some(learner) = &mut self.learner {
+            learner.resize(particles);
+        }
+    }
+
+    /// The number of particles that say where the object is; as many learn.
+    pub fn count(&self) -> NonZero<u32> {
+        self.poses.count()
+    }
+
+    /// The estimate at the latest row.
+    pub fn latest(&self) -> &EstimateRow {
+        self.poses.latest()
+    }
+
+    /// The particles that say where the object is, after the latest row.
+    pub fn particles(&self) -> ParticleView<'_> {
+        self.poses.particles()
+    }
+
+    /// Those that learn its friction.
+    pub fn learners(&self) -> Option<ParticleView<'_>> {
+        self.learner.as_ref().map(ContactFilter::particles)
+    }
+
+    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    pub fn collapses(&self) -> u32 {
+        self.poses.collapses()
+    }
+
+    /// How often the steps since a blackout were made again.
+    pub fn second_tries(&self) -> u32 {
+        self.poses.second_tries()
+    }
+
+    /// ln of the evidence of the rows so far.
+    pub fn log_evidence(&self) -> f64 {
+        self.poses.log_evidence()
+    }
+}
+
+/// The particles that learn friction.
+fn learner<'o>(
+    setup: &Setup,
+    camera: Camera,
+    start: PoseAt,
+    options: &FilterOptions<'o>,
+) -> Result<ContactFilter<'o>, RunError> {
+    let setup = Setup {
+        uncertainty: setup.uncertainty.of_learners(),
+        ..setup.clone()
+    };
+    let options = FilterOptions {
+        seed: options.seed.wrapping_add(LEARNING_SEEDS),
+        // nothing is learned in the dark
+        moves: Moves {
+            second_tries: false,
+            ..options.moves
+        },
+        observer: None,
+        ..*options
+    };
+    ContactFilter::new(&setup, camera, start, &options)
+}

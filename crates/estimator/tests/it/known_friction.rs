@@ -1,0 +1,83 @@
+//! What an estimate knows of friction, which particles of their own learn (docs/method.md (52)).
+
+use crate::common::{log, setup};
+use stickslip::dynamics::{Friction, Pose};
+use stickslip::{EstimateRow, Log, Mode, Occlusion, RunOptions, Setup, Uncertainty, run};
+
+/// A pusher that drives the disc of [`setup`] off its middle, so that it turns; the disc is not shown to turn,
+/// which some friction explains better than other.
+fn pushed() -> Log {
+    let at = |time: f64| 0.02 * (time - 1.0);
+    log(
+        120,
+        |time| Some(Pose::new(at(time).max(0.0), 0.0, 0.0)),
+        |time| Some(Pose::new(-0.034 + at(time), 0.006, 0.0)),
+    )
+}
+
+fn rows(setup: &Setup, log: &Log, occlusion: Occlusion, mode: Mode) -> Vec<EstimateRow> {
+    let options = RunOptions {
+        mode,
+        particles: 200,
+        occlusion,
+        ..RunOptions::default()
+    };
+    let run = run(setup, log, &options, &mut |_| ()).expect("a run");
+    run.estimate.rows
+}
+
+/// Means and standard deviations.
+fn known(row: &EstimateRow) -> (Friction, Friction) {
+    let std = row.spread.and_then(|spread| spread.friction);
+    (row.friction.expect("friction"), std.expect("its spread"))
+}
+
+#[test]
+fn in_the_dark_friction_stays_as_the_camera_left_it() {
+    let (setup, log) = (setup(&[]), pushed());
+    let dark = Occlusion::Rows {
+        from: 50,
+        to: Some(80),
+    };
+    let dark = rows(&setup, &log, dark, Mode::Contact);
+    let light = rows(&setup, &log, Occlusion::None, Mode::Contact);
+    assert_eq!(known(&dark[49]), known(&light[49]));
+    for (row, estimate) in dark.iter().enumerate().take(80).skip(50) {
+        assert_eq!(known(estimate), known(&dark[49]), "row {row}");
+    }
+    // the camera is back
+    assert_ne!(known(&dark[85]), known(&dark[49]));
+}
+
+#[test]
+fn the_last_blackout_changes_nothing_that_was_known_before() {
+    // after the last pose nothing is learned, and nothing else depends on that
+    let (setup, log) = (setup(&[]), pushed());
+    let ends = Occlusion::Rows { from: 50, to: None };
+    let returns = Occlusion::Rows {
+        from: 50,
+        to: Some(119),
+    };
+    let ends = rows(&setup, &log, ends, Mode::Contact);
+    let returns = rows(&setup, &log, returns, Mode::Contact);
+    assert_eq!(ends[..50], returns[..50]);
+    for row in 50..119 {
+        assert_eq!(ends[row].pose, returns[row].pose, "row {row}");
+        assert_eq!(known(&ends[row]), known(&returns[row]), "row {row}");
+    }
+}
+
+#[test]
+fn friction_that_is_told_exactly_is_not_learned() {
+    let mut setup = setup(&[]);
+    setup.uncertainty = Uncertainty {
+        friction: Friction::default(),
+        ..setup.uncertainty
+    };
+    let rows = rows(&setup, &pushed(), Occlusion::None, Mode::Contact);
+    let (mean, std) = known(rows.last().expect("rows"));
+    for (mean, told) in mean.fields().iter().zip(setup.scene.nominal.fields()) {
+        assert!((*mean - told).abs() < 1e-12, "{mean}, {told}");
+    }
+    assert!(std.fields().iter().all(|std| **std < 1e-7), "{std:?}");
+}
