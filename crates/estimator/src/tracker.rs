@@ -112,8 +112,8 @@ pub struct StepSize {
 ///
 /// It gives what [`run`](crate::run) gives with [`Tracking::Causal`](crate::Tracking), bit for bit:
 /// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the first
-/// rows, on one thread, a row allocates nothing, but where a step needs the search over contact
-/// modes.
+/// rows, on one thread, a row allocates nothing, but at the first contact, where the particles that learn
+/// friction are made, and where a step needs the search over contact modes.
 ///
 /// ```
 /// use stickslip::{Row, Tracker, TrackerOptions};

@@ -86,6 +86,15 @@ const BELIEVED_AFTER: u32 = 4;
 /// Evidence of a row below which no particle explains it (contact mode).
 const UNEXPLAINED: f64 = -10.0;
 
+/// Where an object waits that nothing has touched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Waiting {
+    /// Its pose.
+    pub at: PoseAt,
+    /// All that the camera has shown of it.
+    resting: RestingPose,
+}
+
 /// What a contact filter is made with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterOptions<'o> {
@@ -357,6 +366,24 @@ impl<'o> ContactFilter<'o> {
         let lineage = self.filter.lineage();
         row.distinct = Some(lineage.parents() as u32);
         row.ancestors = Some(lineage.ancestors() as u32);
+    }
+
+    /// Where the object waits at the latest row, whose time this is (s).
+    pub fn waiting_at(&self, time: f64) -> Waiting {
+        Waiting {
+            at: PoseAt {
+                time,
+                pose: self.latest.pose.unwrap_or_default(),
+                covariance: None,
+            },
+            resting: self.resting,
+        }
+    }
+
+    /// Takes the object for one that has waited like that, as another filter has seen it.
+    pub fn go_on_waiting(&mut self, waiting: &Waiting) {
+        self.resting = waiting.resting;
+        self.plan.resting = self.where_it_rests();
     }
 
     /// Writes what another filter knows of friction into the latest row, in place of what the particles have.

@@ -9,7 +9,7 @@ use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::moves::Moves;
-use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured};
+use crate::particle::contact_filter::{ContactFilter, Drive, FilterOptions, Measured, Waiting};
 use crate::particle::observation::PoseAt;
 use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
@@ -24,10 +24,21 @@ const LEARNING_SEEDS: u64 = 1 << 48;
 /// goes is then told too surely. So there are two sets of particles, each with its own model.
 pub(crate) struct LearningFilter<'o> {
     poses: ContactFilter<'o>,
-    /// As long as there may be more to learn.
-    learner: Option<ContactFilter<'o>>,
-    /// What was known of friction when the camera last showed the object; none without a learner.
+    learning: Learning<'o>,
+    /// What was known of friction when the camera last showed the object.
     known: Option<KnownFriction>,
+    /// Time of the latest row (s).
+    time: f64,
+}
+
+/// The particles that learn friction.
+enum Learning<'o> {
+    /// There are none, or no more: friction is told, or the camera will show no more.
+    None,
+    /// There is nothing to learn before a particle has touched anything.
+    AtContact(Box<Apprentice<'o>>),
+    /// They learn.
+    Underway(Box<ContactFilter<'o>>),
 }
 
 /// Means and standard deviations.
@@ -58,29 +69,42 @@ impl<'o> LearningFilter<'o> {
     ) -> Result<Self, RunError> {
         let learns =
             options.mode == Mode::Contact && setup.uncertainty.friction != Friction::default();
-        let learner = learns.then(|| learner(setup, camera, start, options));
-        let learner = learner.transpose()?;
-        let mut this = Self {
-            poses: ContactFilter::new(setup, camera, start, options)?,
-            known: learner
-                .as_ref()
-                .map(ContactFilter::latest)
-                .and_then(KnownFriction::of),
-            learner,
-        };
-        this.tell_friction();
-        Ok(this)
+        let poses = ContactFilter::new(setup, camera, start, options)?;
+        Ok(Self {
+            learning: match learns {
+                true => Learning::AtContact(Box::new(Apprentice::new(setup, camera, options))),
+                false => Learning::None,
+            },
+            known: KnownFriction::of(poses.latest()).filter(|_| learns),
+            poses,
+            time: start.time,
+        })
     }
 
     /// One row: the step that leads to it, then what was measured there.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        let waited = self.poses.waiting_at(self.time);
+        self.time = measured.time;
         self.poses.step(measured, drive);
-        if let Some(learner) = &mut self.learner {
-            let row = learner.step(measured, drive);
-            if row.visual {
-                self.known = KnownFriction::of(row);
+        if let Learning::AtContact(apprentice) = &self.learning
+            && self.poses.latest().any_contact()
+        {
+            let learner = apprentice.start(waited, self.poses.count());
+            self.learning = Learning::Underway(Box::new(learner));
+        }
+        match &mut self.learning {
+            Learning::Underway(learner) => {
+                let row = learner.step(measured, drive);
+                if row.visual {
+                    self.known = KnownFriction::of(row);
+                }
+                self.poses.count_steps_of(row);
             }
-            self.poses.count_steps_of(row);
+            // particles that have felt nothing have the prior
+            Learning::AtContact(_) if self.poses.latest().visual => {
+                self.known = KnownFriction::of(self.poses.latest());
+            }
+            Learning::AtContact(_) | Learning::None => {}
         }
         self.tell_friction();
         self.latest()
@@ -89,7 +113,7 @@ impl<'o> LearningFilter<'o> {
     /// Weighs the particles by a pose that arrives late.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         self.poses.weigh_late(late);
-        if let Some(learner) = &mut self.learner {
+        if let Learning::Underway(learner) = &mut self.learning {
             let row = learner.weigh_late(late);
             self.known = KnownFriction::of(row);
             self.poses.count_steps_of(row);
@@ -100,7 +124,7 @@ impl<'o> LearningFilter<'o> {
 
     /// The camera will show no more: what is known of friction stays as it is.
     pub fn learn_no_more(&mut self) {
-        self.learner = None;
+        self.learning = Learning::None;
     }
 
     /// Writes what is known of friction into the latest row.
@@ -113,7 +137,7 @@ impl<'o> LearningFilter<'o> {
     /// Goes on with another number of particles; where it is the same, nothing changes.
     pub fn resize(&mut self, particles: NonZero<u32>) {
         self.poses.resize(particles);
-        if let Some(learner) = &mut self.learner {
+        if let Learning::Underway(learner) = &mut self.learning {
             learner.resize(particles);
         }
     }
@@ -135,7 +159,10 @@ impl<'o> LearningFilter<'o> {
 
     /// Those that learn its friction.
     pub fn learners(&self) -> Option<ParticleView<'_>> {
-        self.learner.as_ref().map(ContactFilter::particles)
+        match &self.learning {
+            Learning::Underway(learner) => Some(learner.particles()),
+            Learning::AtContact(_) | Learning::None => None,
+        }
     }
 
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
@@ -154,26 +181,43 @@ impl<'o> LearningFilter<'o> {
     }
 }
 
-/// The particles that learn friction.
-fn learner<'o>(
-    setup: &Setup,
+/// What the particles that learn friction are made with.
+struct Apprentice<'o> {
+    setup: Setup,
     camera: Camera,
-    start: PoseAt,
-    options: &FilterOptions<'o>,
-) -> Result<ContactFilter<'o>, RunError> {
-    let setup = Setup {
-        uncertainty: setup.uncertainty.of_learners(),
-        ..setup.clone()
-    };
-    let options = FilterOptions {
-        seed: options.seed.wrapping_add(LEARNING_SEEDS),
-        // nothing is learned in the dark
-        moves: Moves {
-            second_tries: false,
-            ..options.moves
-        },
-        observer: None,
-        ..*options
-    };
-    ContactFilter::new(&setup, camera, start, &options)
+    options: FilterOptions<'o>,
+}
+
+impl<'o> Apprentice<'o> {
+    fn new(setup: &Setup, camera: Camera, options: &FilterOptions<'o>) -> Self {
+        Self {
+            setup: Setup {
+                uncertainty: setup.uncertainty.of_learners(),
+                ..setup.clone()
+            },
+            camera,
+            options: FilterOptions {
+                seed: options.seed.wrapping_add(LEARNING_SEEDS),
+                // nothing is learned in the dark
+                moves: Moves {
+                    second_tries: false,
+                    ..options.moves
+                },
+                observer: None,
+                ..*options
+            },
+        }
+    }
+
+    /// The particles, of an object that has waited so far.
+    fn start(&self, waited: Waiting, particles: NonZero<u32>) -> ContactFilter<'o> {
+        let options = FilterOptions {
+            particles: particles.get() as usize,
+            ..self.options
+        };
+        let learner = ContactFilter::new(&self.setup, self.camera, waited.at, &options);
+        let mut learner = learner.expect("the settings are those of the other particles");
+        learner.go_on_waiting(&waited);
+        learner
+    }
 }
