@@ -36,7 +36,7 @@ enum Learning<'o> {
     /// There are none, or no more: friction is told, or the camera will show no more.
     None,
     /// There is nothing to learn before a particle has touched anything.
-    AtContact(Box<Apprentice<'o>>),
+    AtContact(Box<LearnerOptions<'o>>),
     /// They learn.
     Underway(Box<ContactFilter<'o>>),
 }
@@ -72,7 +72,7 @@ impl<'o> LearningFilter<'o> {
         let poses = ContactFilter::new(setup, camera, start, options)?;
         Ok(Self {
             learning: match learns {
-                true => Learning::AtContact(Box::new(Apprentice::new(setup, camera, options))),
+                true => Learning::AtContact(Box::new(LearnerOptions::new(setup, camera, options))),
                 false => Learning::None,
             },
             known: KnownFriction::of(poses.latest()).filter(|_| learns),
@@ -86,10 +86,10 @@ impl<'o> LearningFilter<'o> {
         let waited = self.poses.waiting_at(self.time);
         self.time = measured.time;
         self.poses.step(measured, drive);
-        if let Learning::AtContact(apprentice) = &self.learning
+        if let Learning::AtContact(options) = &self.learning
             && self.poses.latest().any_contact()
         {
-            let learner = apprentice.start(waited, self.poses.count());
+            let learner = options.start(waited, self.poses.count());
             self.learning = Learning::Underway(Box::new(learner));
         }
         match &mut self.learning {
@@ -181,14 +181,14 @@ impl<'o> LearningFilter<'o> {
     }
 }
 
-/// What the particles that learn friction are made with.
-struct Apprentice<'o> {
+/// What the particles that learn friction are made with: a setup that leaves more open, and seeds of their own.
+struct LearnerOptions<'o> {
     setup: Setup,
     camera: Camera,
     options: FilterOptions<'o>,
 }
 
-impl<'o> Apprentice<'o> {
+impl<'o> LearnerOptions<'o> {
     fn new(setup: &Setup, camera: Camera, options: &FilterOptions<'o>) -> Self {
         Self {
             setup: Setup {
