@@ -71,8 +71,11 @@ def particles(
     """The particles of the particle filter after the rows in ``rows`` (None: all rows).
 
     Returns ``row`` (R,), the rows that have particles, rising; ``weight``, ``x``, ``y`` (m), ``theta``
-    (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each (R, N). Weights of a row sum to 1. Rows before
-    the first object pose have none.
+    (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each (R, N), of the particles that say where the object is.
+    The friction of the estimate is learned by others in contact mode: ``friction_weight``, ``friction_mu_s``,
+    ``friction_mu_p``, ``friction_mu_f``, ``friction_d_tri``, each (R, N), as they were when the camera last saw the
+    object; in paper mode, and where friction is told exactly, by the same. Weights of a row sum to 1. Rows before the
+    first object pose have none.
     """
     if options.get("method", "particle") != "particle":
         raise Error(f"method is `{options.get('method')}`; only `particle` has particles")
@@ -95,7 +98,8 @@ def samples(
 
     Chain c is a filter of its own with the seed ``seed + c``; its ``draws`` samples (None: one per
     particle) are drawn from its particles by systematic resampling, so they are not in sequence: chains
-    can be compared (R-hat), autocorrelation has no meaning.
+    can be compared (R-hat), autocorrelation has no meaning. In contact mode friction is learned by particles of its
+    own: samples of friction go together, and those of the pose, but not these with those.
 
     Returns ``x``, ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each
     (chains, draws, R) for the R rows in ``rows``: ``arviz.from_dict({"posterior": samples})``, before
@@ -111,18 +115,30 @@ def samples(
         if missing:
             raise Error(f"row {missing[0]} has no particles; rows go from the first object pose to the last row")
         order = np.searchsorted(cloud["row"], np.asarray(rows, dtype=np.float64))
-        picked = [_systematic(cloud["weight"][row], draws, seed + chain) for row in order]
         per_chain.append(
-            {
-                name: np.stack([cloud[name][row, pick] for row, pick in zip(order, picked, strict=True)], axis=-1)
-                for name in cloud
-                if name not in ("row", "weight")
-            }
+            _drawn(cloud, ("x", "y", "theta"), "", order, draws, (seed + chain, 0))
+            | _drawn(cloud, ("mu_s", "mu_p", "mu_f", "d_tri"), "friction_", order, draws, (seed + chain, 1))
         )
     return {name: np.stack([chain[name] for chain in per_chain]) for name in per_chain[0]}
 
 
-def _systematic(weights: NDArray[np.float64], draws: int | None, seed: int) -> NDArray[np.intp]:
+def _drawn(
+    cloud: dict[str, NDArray[np.float64]],
+    names: Sequence[str],
+    prefix: str,
+    order: NDArray[np.intp],
+    draws: int | None,
+    seed: tuple[int, int],
+) -> dict[str, NDArray[np.float64]]:
+    """Samples (draws, R) of each of ``names``, which go together, from the columns with ``prefix`` before them."""
+    picked = [_systematic(cloud[f"{prefix}weight"][row], draws, seed) for row in order]
+    return {
+        name: np.stack([cloud[prefix + name][row, pick] for row, pick in zip(order, picked, strict=True)], axis=-1)
+        for name in names
+    }
+
+
+def _systematic(weights: NDArray[np.float64], draws: int | None, seed: tuple[int, int]) -> NDArray[np.intp]:
     """Indices (draws,) of particles, each as often as its weight says, to one; in random order."""
     count = len(weights) if draws is None else draws
     rng = np.random.default_rng(seed)

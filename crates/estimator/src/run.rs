@@ -181,7 +181,7 @@ fn track_smoothed(
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[*first].clone_from(filter.latest());
     let show = |row: usize, filter: &LearningFilter<'_>| {
-        prepared.show(row, Some(filter.particles()), filter.learners());
+        prepared.show(row, Some(filter.particles()), filter.friction_particles());
     };
     show(*first, &filter);
     if *first == prepared.last_seen {
@@ -229,7 +229,7 @@ fn track_causal(
     for row in 0..prepared.log.len() {
         prepared.read(row, options.tactile, &mut row_at);
         estimate.rows[row].clone_from(tracker.push(&row_at)?);
-        prepared.show(row, tracker.particles(), tracker.learners());
+        prepared.show(row, tracker.particles(), tracker.friction_particles());
         if row == prepared.last_seen {
             tracker.learn_no_more();
         }
@@ -246,16 +246,22 @@ fn track_causal(
 }
 
 impl PreparedLog<'_> {
-    /// Shows the observer the particles after a row: those that say where the object is, and those that learn.
-    fn show(&self, row: usize, poses: Option<ParticleView<'_>>, learn: Option<ParticleView<'_>>) {
+    /// Shows the observer the particles after a row: those that have the friction of the estimate, and those that
+    /// say where the object is.
+    fn show(
+        &self,
+        row: usize,
+        poses: Option<ParticleView<'_>>,
+        friction: Option<ParticleView<'_>>,
+    ) {
         let Some(observer) = self.observer else {
             return;
         };
+        if let Some(particles) = friction.filter(|_| self.visible(row).is_some()) {
+            observer.on_friction(row, &particles);
+        }
         if let Some(particles) = poses {
             observer.on_row(row, &particles);
-        }
-        if let Some(particles) = learn {
-            observer.on_friction(row, &particles);
         }
     }
 

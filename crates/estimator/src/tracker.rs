@@ -330,9 +330,11 @@ impl<'o> Tracker<'o> {
         self.filter.as_ref().map(LearningFilter::particles)
     }
 
-    /// Those that learn its friction.
-    pub(crate) fn learners(&self) -> Option<ParticleView<'_>> {
-        self.filter.as_ref().and_then(LearningFilter::learners)
+    /// Those that have its friction.
+    pub(crate) fn friction_particles(&self) -> Option<ParticleView<'_>> {
+        self.filter
+            .as_ref()
+            .and_then(LearningFilter::friction_particles)
     }
 
     /// The camera will show no more: nothing is learned from here on.

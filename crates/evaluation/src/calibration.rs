@@ -207,7 +207,14 @@ impl Observer for Ranks<'_> {
 
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
         let ranks = self.among(row, particles);
-        self.ranks.lock().expect("no thread panicked")[row] = ranks;
+        let known = &mut self.ranks.lock().expect("no thread panicked")[row];
+        for (known, rank) in known
+            .iter_mut()
+            .zip(ranks)
+            .filter(|(known, _)| known.is_nan())
+        {
+            *known = rank;
+        }
     }
 
     fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {

@@ -157,11 +157,13 @@ impl<'o> LearningFilter<'o> {
         self.poses.particles()
     }
 
-    /// Those that learn its friction.
-    pub fn learners(&self) -> Option<ParticleView<'_>> {
+    /// Those that have its friction: the ones that learn it, and before contact the same; none where nothing is
+    /// learned, or no more.
+    pub fn friction_particles(&self) -> Option<ParticleView<'_>> {
         match &self.learning {
             Learning::Underway(learner) => Some(learner.particles()),
-            Learning::AtContact(_) | Learning::None => None,
+            Learning::AtContact(_) => Some(self.poses.particles()),
+            Learning::None => None,
         }
     }
 

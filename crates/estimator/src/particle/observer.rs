@@ -43,8 +43,8 @@ pub trait Observer: Debug + Sync {
         let _ = (row, particles);
     }
 
-    /// The particles that learn friction (contact mode, docs/method.md (52)), after those of the row, up to the last
-    /// one in which the camera sees the object.
+    /// The particles that have the friction of the estimate (contact mode, docs/method.md (52)): after each row in which
+    /// the camera sees the object, before [`on_row`](Self::on_row). In rows between, the friction stays as they have it.
     fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
         let _ = (row, particles);
     }
