@@ -70,7 +70,25 @@ pub struct CalibrationOptions {
     pub particles: usize,
 }
 
+impl Placed {
+    /// Whether the central 90 % of the belief hold the truth.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        covers(self.rank)
+    }
+}
+
 impl CalibrationRun {
+    /// The paper's experiments in turn, by as many seeds from 0 on; those that [`CalibrationRun::new`] has.
+    #[must_use]
+    pub fn of_papers(seeds: usize, options: &CalibrationOptions) -> Vec<Self> {
+        let papers = PaperExperiment::ALL.into_iter().cycle();
+        papers
+            .zip(0..seeds as u64)
+            .filter_map(|(paper, seed)| Self::new(paper, seed, options))
+            .collect()
+    }
+
     /// Simulates `paper` with friction drawn from its scene's prior, and tracks it, through a
     /// blackout that begins before the first contact with a fixel; where the filter's own model moves the object, that
     /// is the contact of the simulation whose pusher it has, so that no blackout tells of the truth. `None`
@@ -312,7 +330,7 @@ impl Tally {
     pub fn of(runs: &[CalibrationRun], which: usize) -> Option<Self> {
         let placed: Vec<Placed> = runs.iter().filter_map(|run| run.placed[which]).collect();
         let count = placed.len() as f64;
-        let covered = placed.iter().filter(|placed| covers(placed.rank)).count() as f64 / count;
+        let covered = placed.iter().filter(|placed| placed.is_held()).count() as f64 / count;
         let mut bins = [0.0; 10];
         for placed in &placed {
             bins[((placed.rank * 10.0) as usize).min(9)] += 1.0;

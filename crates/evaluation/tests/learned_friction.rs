@@ -1,7 +1,6 @@
 //! Friction that runs say they have observed, against truths that are drawn and known.
 
 use stickslip::{Mode, Uncertainty};
-use stickslip_evaluation::paper::PaperExperiment;
 use stickslip_evaluation::{
     CalibrationOptions, CalibrationRun, Physics, Placed, TruthSource, Variant,
 };
@@ -19,20 +18,14 @@ fn friction_of_smooth_pushes_is_observed_in_some_and_true_there() {
         variant: Variant::ParticleCameraOn,
         particles: 500,
     };
-    let papers = PaperExperiment::ALL.into_iter().cycle();
-    let runs: Vec<CalibrationRun> = papers
-        .zip(0..24)
-        .filter_map(|(paper, seed)| CalibrationRun::new(paper, seed, &options))
-        .collect();
+    let runs = CalibrationRun::of_papers(24, &options);
     let observed = runs
         .iter()
         .flat_map(|run| CONTACTS.map(|which| run.placed[which]));
     let observed: Vec<Placed> = observed.flatten().collect();
     assert!(observed.len() >= 5, "{} were observed", observed.len());
 
-    let held = observed
-        .iter()
-        .filter(|placed| (0.05..=0.95).contains(&placed.rank));
+    let held = observed.iter().filter(|placed| placed.is_held());
     let held = held.count() as f64 / observed.len() as f64;
     assert!(held >= 0.75, "{held} of 90 % intervals hold the truth");
 

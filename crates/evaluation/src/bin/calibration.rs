@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     particles,
                 };
                 println!("\n{truth}: {name} mode, {sensors}");
-                show(&simulate(runs, &options));
+                show(&CalibrationRun::of_papers(runs, &options));
             }
         }
     }
@@ -68,15 +68,6 @@ fn uncertainty(keys: &[&String]) -> Result<Uncertainty, Box<dyn Error>> {
     let scene = PaperExperiment::A.scene().scene;
     let text = format!("{scene}\n[uncertainty]\n{}\n", lines.join("\n"));
     Ok(read_scene(&text, "the given keys")?.uncertainty)
-}
-
-/// The paper's experiments in turn.
-fn simulate(runs: usize, options: &CalibrationOptions) -> Vec<CalibrationRun> {
-    let papers = PaperExperiment::ALL.into_iter().cycle();
-    let seeded = papers.zip(0..runs as u64);
-    seeded
-        .filter_map(|(paper, seed)| CalibrationRun::new(paper, seed, options))
-        .collect()
 }
 
 fn show(runs: &[CalibrationRun]) {
