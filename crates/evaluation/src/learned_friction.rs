@@ -29,15 +29,15 @@ pub struct LearnedParameter {
     /// Its name, as in files.
     #[serde(skip)]
     pub name: &'static str,
-    /// Posterior mean (SI).
+    /// Posterior mean (SI), at the last row that informed; where none did, that of the prior.
     pub mean: f64,
-    /// Posterior standard deviation (SI); 0 where it was not observed.
+    /// Posterior standard deviation of the same row (SI); 0 in a prior of paper mode, which leaves nothing open.
     pub std: f64,
-    /// Whether any row informed about it; where none did, the mean is the nominal value.
+    /// Whether the rows told enough of it.
     pub observed: bool,
-    /// The row of mean and standard deviation: the last one that informed.
+    /// The last row that informed, where it was observed.
     pub row: Option<usize>,
-    /// The last row that informed, if too little for it to be observed, too.
+    /// The same, if it told too little for it to be observed, too.
     #[serde(skip)]
     pub informed: Option<usize>,
 }
@@ -89,7 +89,7 @@ impl LearnedParameter {
         let value = |row: &EstimateRow| row.friction.map(|mean| (source.value)(&mean));
         let spread = |row: &EstimateRow| row.spread?.friction.map(|std| (source.value)(&std));
         let mut rows = estimate.rows.iter();
-        let nominal = rows.find_map(value)?;
+        let prior_mean = rows.find_map(value)?;
 
         let prior = estimate.rows.iter().find_map(spread).unwrap_or(0.0);
         let narrower = |std: f64| prior == 0.0 || std < NARROWER * prior;
@@ -100,11 +100,11 @@ impl LearnedParameter {
         };
         let informed = estimate.rows.iter().rposition(informing);
         let row = informed.filter(|row| spread(&estimate.rows[*row]).is_some_and(narrower));
-        let at_row = row.map(|row| &estimate.rows[row]);
+        let at_row = informed.map(|row| &estimate.rows[row]);
         Some(Self {
             name: source.name,
-            mean: at_row.and_then(value).unwrap_or(nominal),
-            std: at_row.and_then(spread).unwrap_or(0.0),
+            mean: at_row.and_then(value).unwrap_or(prior_mean),
+            std: at_row.and_then(spread).unwrap_or(prior),
             observed: row.is_some(),
             row,
             informed,
@@ -238,7 +238,20 @@ mod tests {
                 panic!("three parameters");
             };
             assert_eq!(mu_p.row, observed.then_some(1));
+            assert_eq!((mu_p.mean, mu_p.std), (0.3, std), "what is believed is said");
             assert_eq!(mu_p.informed, Some(1));
+        }
+    }
+
+    #[test]
+    fn what_no_row_informs_of_keeps_its_prior() {
+        let estimate = Estimate {
+            rows: vec![row(0.33, 0.15, 0.0, [0.0; 2], true)],
+            ..Estimate::default()
+        };
+        for parameter in LearnedParameter::all(&estimate) {
+            assert_eq!((parameter.mean, parameter.std), (0.33, 0.15));
+            assert!(!parameter.observed && parameter.informed.is_none());
         }
     }
 
