@@ -170,6 +170,7 @@ fn track_smoothed(
         seed: options.seed,
         late: 0.0,
         moves: options.moves,
+        least_moved: 0.0,
         observer: *observer,
     };
     let start = PoseAt {

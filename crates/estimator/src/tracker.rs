@@ -205,6 +205,7 @@ impl<'o> Tracker<'o> {
             seed: self.options.seed,
             late: self.options.late,
             moves: self.options.moves,
+            least_moved: 0.0,
             observer: self.observer,
         }
     }

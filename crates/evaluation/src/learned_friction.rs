@@ -21,7 +21,7 @@ const TOUCHING: f64 = 0.5;
 
 /// Share of the prior's spread below which a parameter was observed: what is known of it then is nearer the
 /// truth than the prior's mean by half (docs/decisions/007-contact-mode.md, "Friction that is learned beside").
-const NARROWER: f64 = 0.5;
+const NARROWER: f64 = 0.6;
 
 /// One friction parameter at the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -238,7 +238,11 @@ mod tests {
                 panic!("three parameters");
             };
             assert_eq!(mu_p.row, observed.then_some(1));
-            assert_eq!((mu_p.mean, mu_p.std), (0.3, std), "what is believed is said");
+            assert_eq!(
+                (mu_p.mean, mu_p.std),
+                (0.3, std),
+                "what is believed is said"
+            );
             assert_eq!(mu_p.informed, Some(1));
         }
     }

@@ -15,6 +15,10 @@ use crate::weights::LogWeights;
 /// is left with a tenth less resamples once in some ten observations.
 const LEFT: f64 = 0.9;
 
+/// ln of the least likelihood, beside the mean one, of particles that an observation moves by which weighing alone
+/// would leave enough: few lie so far from it then, and the covariances of the others say nothing of them.
+const FAR: f64 = -8.0;
+
 /// Halvings of the interval in which the share that moves is searched.
 const HALVINGS: usize = 12;
 
@@ -71,13 +75,50 @@ impl Bridge {
         sum * sum / squares
     }
 
-    /// The smallest share of the part that moves without which weighing leaves enough.
-    fn share(&mut self, weights: &LogWeights, log_likelihood: &[f64], moving: &[f64]) -> f64 {
-        let enough = LEFT * self.size_without(1.0, weights, log_likelihood, moving);
-        let (mut few, mut share) = (0.0, 1.0);
+    /// ln of the weighted mean of likelihoods.
+    fn log_mean(&mut self, weights: &LogWeights, log_likelihood: &[f64]) -> f64 {
+        let best = weights.best_log_likelihood(log_likelihood);
+        self.weights.copy_from_slice(log_likelihood);
+        exponentials(&mut self.weights, best);
+        let terms = self.weights.iter().zip(weights.weights());
+        best + libm::log(terms.map(|(likelihood, weight)| likelihood * weight).sum())
+    }
+
+    /// Weights of the particles that move, summing to 1; the others have none.
+    fn weigh_near(&mut self, far: f64, weights: &LogWeights, moving: &[f64]) {
+        self.weights.copy_from_slice(weights.weights());
+        let mut near = 1.0;
+        for (weight, _) in self
+            .weights
+            .iter_mut()
+            .zip(moving)
+            .filter(|(_, l)| **l < far)
+        {
+            near -= *weight;
+            *weight = 0.0;
+        }
+        if near < 1.0 {
+            self.weights.iter_mut().for_each(|weight| *weight /= near);
+        }
+    }
+
+    /// The smallest share of the part that moves, from `least` on, without which weighing leaves enough.
+    fn share(
+        &mut self,
+        least: f64,
+        weights: &LogWeights,
+        log_likelihood: &[f64],
+        moving: &[f64],
+    ) -> f64 {
+        let mut size = |share| self.size_without(share, weights, log_likelihood, moving);
+        let enough = LEFT * size(1.0);
+        if least > 0.0 && size(least) >= enough {
+            return least;
+        }
+        let (mut few, mut share) = (least, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (few + share);
-            if self.size_without(middle, weights, log_likelihood, moving) < enough {
+            if size(middle) < enough {
                 few = middle;
             } else {
                 share = middle;
@@ -96,19 +137,30 @@ impl<M: Model> ParticleFilter<M> {
             return self.weights.update(&mut self.unnormalised);
         }
         let all = self.unnormalised.normalise()?;
-        if all.effective_sample_size >= LEFT * self.weights.effective_sample_size() {
+        self.weigh_resetting(observation);
+        let evidence = self.bridge.log_mean(&self.weights, &self.resetting);
+        let least = self.model.least_moved(observation, evidence);
+        let enough = LEFT * self.weights.effective_sample_size();
+        let few = all.effective_sample_size < enough;
+        if !few && least == 0.0 {
             return self.weights.update(&mut self.unnormalised);
         }
-        self.weigh_resetting(observation);
+        let far = if few {
+            f64::NEG_INFINITY
+        } else {
+            evidence + FAR
+        };
         let log_likelihood = &mut self.unnormalised.log_likelihood;
         let share = self
             .bridge
-            .share(&self.weights, log_likelihood, &self.resetting);
+            .share(least, &self.weights, log_likelihood, &self.resetting);
         for (all, moving) in log_likelihood.iter_mut().zip(&self.resetting) {
-            *all -= share * moving;
+            // one that does not move is weighed by all of it, beside what it is to the others
+            *all -= share * if *moving < far { evidence } else { *moving };
         }
         self.unnormalised.weigh(&self.weights);
         self.weights.update(&mut self.unnormalised)?;
+        self.bridge.weigh_near(far, &self.weights, &self.resetting);
         self.move_particles(observation, share);
         Some(all.log_sum)
     }
@@ -120,7 +172,7 @@ impl<M: Model> ParticleFilter<M> {
         self.particles.visit(ensemble.blocks_mut(), |block, to| {
             model.read_ensemble(observation, block, to);
         });
-        ensemble.update(self.weights.weights(), share, draw);
+        ensemble.update(&self.bridge.weights, share, draw);
         self.particles
             .advance(None, ensemble.blocks(), |block, from| {
                 model.write_ensemble(from, block);

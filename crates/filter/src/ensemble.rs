@@ -113,7 +113,7 @@ impl Ensemble {
 
     /// Bayes' rule for normal distributions, by the likelihood to the power `share` in (0, 1]: every
     /// particle goes its own way to a measurement disturbed by its own error. The errors' noise is
-    /// independent, so that they can be taken one after the other.
+    /// independent, so that they can be taken one after the other. Particles without weight stay.
     pub fn update(&mut self, weights: &[f64], share: f64, draw: Draw) {
         on_widest(
             Level::new(),
@@ -123,7 +123,9 @@ impl Ensemble {
                 for k in 0..self.shape.errors {
                     self.take_sums(k, weights);
                     self.take_gains(k, self.noise_variance(k, weights) / share);
-                    self.go(k, share, |particle| draw.normal(particle, k as u32));
+                    self.go(k, share, weights, |particle| {
+                        draw.normal(particle, k as u32)
+                    });
                 }
             },
         );
@@ -204,7 +206,7 @@ impl Ensemble {
 
     /// Moves all columns by their gains.
     #[inline(always)]
-    fn go(&mut self, error: usize, share: f64, normal: impl Fn(u32) -> f64) {
+    fn go(&mut self, error: usize, share: f64, weights: &[f64], normal: impl Fn(u32) -> f64) {
         let (stride, columns) = (self.stride(), self.shape.moved());
         let (error, std) = (self.shape.quantities + error, columns + error);
         let scale = 1.0 / share.sqrt();
@@ -216,8 +218,11 @@ impl Ensemble {
                 let gains = &self.gains[group(number, count * PARTS) * columns..][..columns];
                 let first = (number * PART) as u32;
                 let [stds, errors] = [std, error].map(|column| &block[column * PARTS + part]);
-                let way: [f64; PART] =
-                    std::array::from_fn(|i| scale * stds[i] * normal(first + i as u32) - errors[i]);
+                let weights = padded(weights, number * PART);
+                let way: [f64; PART] = std::array::from_fn(|i| {
+                    let way = scale * stds[i] * normal(first + i as u32) - errors[i];
+                    if weights[i] > 0.0 { way } else { 0.0 }
+                });
                 for (gain, column) in gains.iter().zip(block[part..].iter_mut().step_by(PARTS)) {
                     for (x, way) in column.iter_mut().zip(&way) {
                         *x += gain * way;

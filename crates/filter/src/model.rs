@@ -103,6 +103,15 @@ pub trait Model: Sync {
         false
     }
 
+    /// Share of an observation that moves particles even where weighing by it would leave enough of them, given ln of
+    /// the mean likelihood of the part that moves; by default none.
+    ///
+    /// Weighing by many observations that each tell little leaves few particles all the same, and where nothing
+    /// disturbs them, those stay what they are.
+    fn least_moved(&self, _observation: &Self::Observation, _log_evidence: f64) -> f64 {
+        0.0
+    }
+
     /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then each
     /// error, what a particle expects less what was observed, then the standard deviation of each error's
     /// noise that the particle believes in. Places past the block's last particle hold any finite number.

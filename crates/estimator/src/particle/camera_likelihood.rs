@@ -70,6 +70,12 @@ impl CameraLikelihood {
         self.wrong.is_none()
     }
 
+    /// Probability that a pose is not wrong, given ln of the mean of its likelihoods, (37).
+    pub fn right(&self, log_evidence: f64) -> f64 {
+        let wrong = self.wrong.unwrap_or(0.0);
+        (1.0 - wrong / libm::exp(log_evidence)).max(0.0)
+    }
+
     /// From now on the particles have these columns.
     pub fn set_columns(&mut self, columns: Columns) {
         self.columns = columns;

@@ -78,6 +78,7 @@ pub(crate) struct ContactFilter<'o> {
     touched: bool,
     /// What brings particles to where weighing would leave few.
     moves: Moves,
+    least_moved: f64,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -108,6 +109,8 @@ pub(crate) struct FilterOptions<'o> {
     pub late: f64,
     /// What brings particles to where weighing would leave few (contact mode).
     pub moves: Moves,
+    /// Share of a camera pose that moves particles at least, where it may move them (contact mode).
+    pub least_moved: f64,
     /// Is shown every time step.
     pub observer: Option<&'o dyn Observer>,
 }
@@ -165,6 +168,7 @@ impl<'o> ContactFilter<'o> {
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
             touched: false,
             moves: options.moves,
+            least_moved: options.least_moved,
         };
         // a first pose that says how noisy it is is drawn as it says
         let told = start.covariance.is_some();
@@ -191,6 +195,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.felt = contact;
         self.touched |= self.latest.any_contact();
         self.observation.moves = contact && self.moves.camera && self.touched;
+        self.observation.least_moved = self.least_moved;
 
         let seen = self.observation.pose.is_some();
         let again = self.moves.second_tries;

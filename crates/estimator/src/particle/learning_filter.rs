@@ -14,6 +14,14 @@ use crate::particle::observation::PoseAt;
 use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
 
+/// Share of a camera pose that moves particles that learn, at least (52).
+const LEAST_MOVED: f64 = 0.9;
+
+/// Speed (m/s) and turn (rad/s) below both of which an object rests, as far as friction is concerned: a jam ends in
+/// a creep.
+const SLOW: f64 = 1e-3;
+const SLOW_TURN: f64 = 0.03;
+
 /// Seeds of the particles that learn lie apart from those of the others.
 const LEARNING_SEEDS: u64 = 1 << 48;
 
@@ -94,7 +102,9 @@ impl<'o> LearningFilter<'o> {
         }
         match &mut self.learning {
             Learning::Underway(learner) => {
-                let row = learner.step(measured, drive);
+                let looks = moves(self.poses.latest()) || moves(learner.latest());
+                let object = measured.object.filter(|_| looks);
+                let row = learner.step(Measured { object, ..measured }, drive);
                 if row.visual {
                     self.known = KnownFriction::of(row);
                 }
@@ -113,7 +123,9 @@ impl<'o> LearningFilter<'o> {
     /// Weighs the particles by a pose that arrives late.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         self.poses.weigh_late(late);
-        if let Learning::Underway(learner) = &mut self.learning {
+        if let Learning::Underway(learner) = &mut self.learning
+            && (moves(self.poses.latest()) || moves(learner.latest()))
+        {
             let row = learner.weigh_late(late);
             self.known = KnownFriction::of(row);
             self.poses.count_steps_of(row);
@@ -183,6 +195,13 @@ impl<'o> LearningFilter<'o> {
     }
 }
 
+/// Whether an estimate says that the object moves: where it rests, nothing is learned of friction, and poses of the
+/// camera that go on being weighed by leave few particles.
+fn moves(row: &EstimateRow) -> bool {
+    row.twist
+        .is_some_and(|twist| twist.vx.hypot(twist.vy) > SLOW || twist.omega.abs() > SLOW_TURN)
+}
+
 /// What the particles that learn friction are made with: a setup that leaves more open, and seeds of their own.
 struct LearnerOptions<'o> {
     setup: Setup,
@@ -205,6 +224,7 @@ impl<'o> LearnerOptions<'o> {
                     second_tries: false,
                     ..options.moves
                 },
+                least_moved: LEAST_MOVED,
                 observer: None,
                 ..*options
             },

@@ -273,6 +273,11 @@ impl Model for ContactModel<'_> {
         observation.moves && observation.pose.is_some()
     }
 
+    /// Not a pose that is wrong.
+    fn least_moved(&self, observation: &Observation, log_evidence: f64) -> f64 {
+        observation.least_moved * self.camera_likelihood.right(log_evidence)
+    }
+
     fn read_ensemble(&self, observation: &Observation, block: &Block<'_>, to: &mut [f64]) {
         let (quantities, errors) = to.split_at_mut(moved::count(self.columns()) * BLOCK);
         moved::read(self.columns(), block, quantities);

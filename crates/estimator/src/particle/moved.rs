@@ -19,6 +19,9 @@ enum Scale {
 /// Least friction whose logarithm is taken: where the feet are known, there is no d_tri.
 const LEAST: f64 = 1e-12;
 
+/// Largest friction that a particle is moved to; the next step brings it within its limits.
+const MOST: f64 = 10.0;
+
 /// The columns, each with its scale.
 fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let past = (0..columns.history()).map(move |slot| columns.past_pose(slot));
@@ -68,7 +71,7 @@ pub(super) fn write(columns: Columns, from: &[f64], block: &mut BlockMut<'_>) {
         for (value, from) in block.column_mut(column).iter_mut().zip(from) {
             *value = match scale {
                 Scale::Linear => *from,
-                Scale::Logarithm => libm::exp(*from),
+                Scale::Logarithm => libm::exp(*from).min(MOST),
                 Scale::FourthRoot => (from * from) * (from * from),
             };
         }
