@@ -75,7 +75,7 @@ impl ReportedExperiment<'_> {
                 figure.drawing(),
                 "Estimated friction, mean and one standard deviation; its nominal value; the truth, where it is known. Dotted from \
                  the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it. Not observed: there is no such row, or the standard \
-                 deviation in it is more than half of what it was at first.",
+                 deviation in it is more than 0.6 of what it was at first.",
             )
         });
         let cloud = self.clouds().map(|drawing| {

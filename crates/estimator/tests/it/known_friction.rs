@@ -68,6 +68,24 @@ fn the_last_blackout_changes_nothing_that_was_known_before() {
 }
 
 #[test]
+fn nothing_is_learned_while_the_object_rests() {
+    // the pusher stops at 3 s, and the camera looks on
+    let at = |time: f64| 0.02 * (time.min(3.0) - 1.0);
+    let log = log(
+        200,
+        |time| Some(Pose::new(at(time).max(0.0), 0.0, 0.0)),
+        |time| Some(Pose::new(-0.034 + at(time), 0.006, 0.0)),
+    );
+    let rows = rows(&setup(&[]), &log, Occlusion::None, Mode::Contact);
+    let row_at = |time: f64| log.time.iter().position(|row| *row > time).expect("a row");
+    assert_ne!(known(&rows[row_at(2.0)]), known(&rows[row_at(2.5)]));
+    let rests = row_at(3.5);
+    for (row, estimate) in rows.iter().enumerate().skip(rests) {
+        assert_eq!(known(estimate), known(&rows[rests]), "row {row}");
+    }
+}
+
+#[test]
 fn friction_that_is_told_exactly_is_not_learned() {
     let mut setup = setup(&[]);
     setup.uncertainty = Uncertainty {

@@ -9,6 +9,7 @@ mod collapse;
 mod common;
 mod imm;
 mod kalman;
+mod least_moved;
 mod linear_gaussian;
 mod particle_set;
 mod resampling;
