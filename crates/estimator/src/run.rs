@@ -258,7 +258,7 @@ impl PreparedLog<'_> {
         let Some(observer) = self.observer else {
             return;
         };
-        if let Some(particles) = friction.filter(|_| self.visible(row).is_some()) {
+        if let Some(particles) = friction {
             observer.on_friction(row, &particles);
         }
         if let Some(particles) = poses {

@@ -205,12 +205,19 @@ struct Ranks<'a> {
     truth: &'a [SampledState],
     /// By row, in the order of [`QUANTITIES`].
     ranks: Mutex<Vec<[f64; 7]>>,
+    /// The latest ones of friction that particles of their own learn.
+    learned: Mutex<Option<[f64; 7]>>,
 }
 
 impl<'a> Ranks<'a> {
     fn of(truth: &'a [SampledState]) -> Self {
         let ranks = Mutex::new(vec![[f64::NAN; 7]; truth.len()]);
-        Self { truth, ranks }
+        let learned = Mutex::new(None);
+        Self {
+            truth,
+            ranks,
+            learned,
+        }
     }
 
     /// At a row.
@@ -224,22 +231,17 @@ impl Observer for Ranks<'_> {
     fn on_step(&self, _: &SolvedStep<'_>) {}
 
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
-        let ranks = self.among(row, particles);
-        let known = &mut self.ranks.lock().expect("no thread panicked")[row];
-        for (known, rank) in known
-            .iter_mut()
-            .zip(ranks)
-            .filter(|(known, _)| known.is_nan())
-        {
-            *known = rank;
+        let mut ranks = self.among(row, particles);
+        // friction stays as they left it
+        if let Some(learned) = *self.learned.lock().expect("no thread panicked") {
+            ranks[POSE..].copy_from_slice(&learned[POSE..]);
         }
+        self.ranks.lock().expect("no thread panicked")[row] = ranks;
     }
 
     fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
         let ranks = self.among(row, particles);
-        let friction = POSE..QUANTITIES.len();
-        self.ranks.lock().expect("no thread panicked")[row][friction.clone()]
-            .copy_from_slice(&ranks[friction]);
+        *self.learned.lock().expect("no thread panicked") = Some(ranks);
     }
 }
 

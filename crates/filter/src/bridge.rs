@@ -1,6 +1,6 @@
 //! From the particle filter to the ensemble Kalman filter and back (Frei & Künsch 2013, "Bridging the
-//! ensemble Kalman and particle filters"): where an observation would leave few particles, a part of it
-//! weighs them and the rest moves them. [`Bridge`]; docs/method.md (45).
+//! ensemble Kalman and particle filters"): where an observation would leave few particles, or a model asks for it, a
+//! part of it weighs them and the rest moves them. [`Bridge`]; docs/method.md (45), (52).
 
 use stickslip_lanes::exponentials;
 
@@ -19,6 +19,9 @@ const LEFT: f64 = 0.9;
 /// would leave enough: few lie so far from it then, and the covariances of the others say nothing of them.
 const FAR: f64 = -8.0;
 
+/// Weight of the particles near an observation below which it moves none.
+const FEW_NEAR: f64 = 1e-3;
+
 /// Halvings of the interval in which the share that moves is searched.
 const HALVINGS: usize = 12;
 
@@ -26,7 +29,7 @@ const HALVINGS: usize = 12;
 #[derive(Debug)]
 pub(crate) struct Bridge {
     ensemble: Ensemble,
-    /// Weights by a share of an observation, (N,).
+    /// Weights by a share of an observation, likelihoods, or weights of the particles that move, (N,).
     weights: Vec<f64>,
     moved: bool,
 }
@@ -84,22 +87,24 @@ impl Bridge {
         best + libm::log(terms.map(|(likelihood, weight)| likelihood * weight).sum())
     }
 
-    /// Weights of the particles that move, summing to 1; the others have none.
-    fn weigh_near(&mut self, far: f64, weights: &LogWeights, moving: &[f64]) {
+    /// Weights of the particles that move, summing to 1; the others have none. Whether there are any to speak of: what
+    /// does not move can tell against all of them.
+    fn weigh_near(&mut self, far: f64, weights: &LogWeights, moving: &[f64]) -> bool {
         self.weights.copy_from_slice(weights.weights());
-        let mut near = 1.0;
-        for (weight, _) in self
-            .weights
-            .iter_mut()
-            .zip(moving)
-            .filter(|(_, l)| **l < far)
-        {
-            near -= *weight;
-            *weight = 0.0;
+        if moving.iter().all(|likelihood| *likelihood >= far) {
+            return true;
         }
-        if near < 1.0 {
-            self.weights.iter_mut().for_each(|weight| *weight /= near);
+        for (weight, likelihood) in self.weights.iter_mut().zip(moving) {
+            if *likelihood < far {
+                *weight = 0.0;
+            }
         }
+        let near: f64 = self.weights.iter().sum();
+        if near < FEW_NEAR {
+            return false;
+        }
+        self.weights.iter_mut().for_each(|weight| *weight /= near);
+        true
     }
 
     /// The smallest share of the part that moves, from `least` on, without which weighing leaves enough.
@@ -129,20 +134,25 @@ impl Bridge {
 }
 
 impl<M: Model> ParticleFilter<M> {
-    /// Bayes' rule with the likelihoods of the pass: by weighing alone where that leaves enough particles
-    /// or nothing may move, else by both. Returns ln of the evidence.
+    /// Bayes' rule with the likelihoods of the pass: by weighing alone where nothing may move, or that leaves enough
+    /// particles and the model asks for no more, else by both. Returns ln of the evidence.
     pub(crate) fn weigh_and_move(&mut self, observation: &M::Observation) -> Option<f64> {
         self.bridge.moved = false;
         if !self.model.moves(observation) {
             return self.weights.update(&mut self.unnormalised);
         }
         let all = self.unnormalised.normalise()?;
+        let few = all.effective_sample_size < LEFT * self.weights.effective_sample_size();
+        let mut least = self.model.least_moved(observation);
+        if !few && least <= 0.0 {
+            return self.weights.update(&mut self.unnormalised);
+        }
         self.weigh_resetting(observation);
         let evidence = self.bridge.log_mean(&self.weights, &self.resetting);
-        let least = self.model.least_moved(observation, evidence);
-        let enough = LEFT * self.weights.effective_sample_size();
-        let few = all.effective_sample_size < enough;
-        if !few && least == 0.0 {
+        if least > 0.0 {
+            least *= self.model.plausibility(observation, evidence);
+        }
+        if !few && least <= 0.0 {
             return self.weights.update(&mut self.unnormalised);
         }
         let far = if few {
@@ -160,8 +170,10 @@ impl<M: Model> ParticleFilter<M> {
         }
         self.unnormalised.weigh(&self.weights);
         self.weights.update(&mut self.unnormalised)?;
-        self.bridge.weigh_near(far, &self.weights, &self.resetting);
-        self.move_particles(observation, share);
+        let bridge = &mut self.bridge;
+        if bridge.weigh_near(far, &self.weights, &self.resetting) {
+            self.move_particles(observation, share);
+        }
         Some(all.log_sum)
     }
 

@@ -103,13 +103,19 @@ pub trait Model: Sync {
         false
     }
 
-    /// Share of an observation that moves particles even where weighing by it would leave enough of them, given ln of
-    /// the mean likelihood of the part that moves; by default none.
+    /// Share, 0 to 1, of an observation that moves particles even where weighing by it would leave enough of them; by
+    /// default none. Particles that lie far from it stay then, and are weighed by all of it.
     ///
     /// Weighing by many observations that each tell little leaves few particles all the same, and where nothing
     /// disturbs them, those stay what they are.
-    fn least_moved(&self, _observation: &Self::Observation, _log_evidence: f64) -> f64 {
+    fn least_moved(&self, _observation: &Self::Observation) -> f64 {
         0.0
+    }
+
+    /// Probability that an observation is not wrong, given ln of the mean likelihood of the part that moves; by
+    /// default 1. As much of [`least_moved`](Self::least_moved) counts.
+    fn plausibility(&self, _observation: &Self::Observation, _log_evidence: f64) -> f64 {
+        1.0
     }
 
     /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then each

@@ -33,8 +33,10 @@ const LEARNING_SEEDS: u64 = 1 << 48;
 pub(crate) struct LearningFilter<'o> {
     poses: ContactFilter<'o>,
     learning: Learning<'o>,
-    /// What was known of friction when the camera last showed the object.
+    /// What was known of friction when the particles that learn it last looked.
     known: Option<KnownFriction>,
+    /// Whether that was in the latest row.
+    learned: bool,
     /// Time of the latest row (s).
     time: f64,
 }
@@ -84,6 +86,7 @@ impl<'o> LearningFilter<'o> {
                 false => Learning::None,
             },
             known: KnownFriction::of(poses.latest()).filter(|_| learns),
+            learned: learns,
             poses,
             time: start.time,
         })
@@ -105,30 +108,33 @@ impl<'o> LearningFilter<'o> {
                 let looks = moves(self.poses.latest()) || moves(learner.latest());
                 let object = measured.object.filter(|_| looks);
                 let row = learner.step(Measured { object, ..measured }, drive);
+                self.learned = row.visual;
                 if row.visual {
                     self.known = KnownFriction::of(row);
                 }
                 self.poses.count_steps_of(row);
             }
             // particles that have felt nothing have the prior
-            Learning::AtContact(_) if self.poses.latest().visual => {
-                self.known = KnownFriction::of(self.poses.latest());
+            Learning::AtContact(_) => {
+                self.learned = self.poses.latest().visual;
+                if self.learned {
+                    self.known = KnownFriction::of(self.poses.latest());
+                }
             }
-            Learning::AtContact(_) | Learning::None => {}
+            Learning::None => self.learned = false,
         }
         self.tell_friction();
         self.latest()
     }
 
-    /// Weighs the particles by a pose that arrives late.
+    /// Weighs the particles by a pose that arrives late; those that learn, where the object has not come to rest since.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         self.poses.weigh_late(late);
-        if let Learning::Underway(learner) = &mut self.learning
-            && (moves(self.poses.latest()) || moves(learner.latest()))
-        {
-            let row = learner.weigh_late(late);
-            self.known = KnownFriction::of(row);
-            self.poses.count_steps_of(row);
+        if let Learning::Underway(learner) = &mut self.learning {
+            if moves(self.poses.latest()) || moves(learner.latest()) {
+                self.known = KnownFriction::of(learner.weigh_late(late));
+            }
+            self.poses.count_steps_of(learner.latest());
         }
         self.tell_friction();
         self.latest()
@@ -169,9 +175,12 @@ impl<'o> LearningFilter<'o> {
         self.poses.particles()
     }
 
-    /// Those that have its friction: the ones that learn it, and before contact the same; none where nothing is
-    /// learned, or no more.
+    /// Those that have its friction, where the latest row taught any: the ones that learn it, and before contact the
+    /// same.
     pub fn friction_particles(&self) -> Option<ParticleView<'_>> {
+        if !self.learned {
+            return None;
+        }
         match &self.learning {
             Learning::Underway(learner) => Some(learner.particles()),
             Learning::AtContact(_) => Some(self.poses.particles()),

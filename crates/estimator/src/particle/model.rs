@@ -273,9 +273,12 @@ impl Model for ContactModel<'_> {
         observation.moves && observation.pose.is_some()
     }
 
-    /// Not a pose that is wrong.
-    fn least_moved(&self, observation: &Observation, log_evidence: f64) -> f64 {
-        observation.least_moved * self.camera_likelihood.right(log_evidence)
+    fn least_moved(&self, observation: &Observation) -> f64 {
+        observation.least_moved
+    }
+
+    fn plausibility(&self, _: &Observation, log_evidence: f64) -> f64 {
+        self.camera_likelihood.right(log_evidence)
     }
 
     fn read_ensemble(&self, observation: &Observation, block: &Block<'_>, to: &mut [f64]) {

@@ -44,7 +44,8 @@ pub trait Observer: Debug + Sync {
     }
 
     /// The particles that have the friction of the estimate (contact mode, docs/method.md (52)): after each row in which
-    /// the camera sees the object, before [`on_row`](Self::on_row). In rows between, the friction stays as they have it.
+    /// the camera sees the object, and it moves or nothing has touched it yet, before [`on_row`](Self::on_row). In rows
+    /// between, the friction stays as they have it.
     fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
         let _ = (row, particles);
     }

@@ -73,7 +73,14 @@ fn nothing_is_learned_while_the_object_rests() {
     let at = |time: f64| 0.02 * (time.min(3.0) - 1.0);
     let log = log(
         200,
-        |time| Some(Pose::new(at(time).max(0.0), 0.0, 0.0)),
+        // no pose is that of the row before
+        |time| {
+            Some(Pose::new(
+                at(time).max(0.0) + 1e-5 * libm::sin(40.0 * time),
+                0.0,
+                0.0,
+            ))
+        },
         |time| Some(Pose::new(-0.034 + at(time), 0.006, 0.0)),
     );
     let rows = rows(&setup(&[]), &log, Occlusion::None, Mode::Contact);

@@ -5,10 +5,13 @@ use stickslip_filter::{
     BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, ParticleFilter, Streams,
 };
 
-/// A number that stays, standard normal before, but of the first particle; observed with normal noise, or wrongly.
+/// A number that stays; observed with normal noise, or wrongly.
 struct Number {
-    first: Option<f64>,
+    /// A particle's number, from a standard normal one.
+    number: fn(u32, f64) -> f64,
     least: f64,
+    /// −ln of the likelihood, by something else, of particles near 0.
+    against_near: f64,
 }
 
 const NOISE: f64 = 3.0;
@@ -31,13 +34,24 @@ impl Model for Number {
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
         for (lane, particle) in block.particles() {
             let drawn = draw.normal(particle, 0);
-            block.column_mut(0)[lane] = self.first.filter(|_| particle == 0).unwrap_or(drawn);
+            block.column_mut(0)[lane] = (self.number)(particle, drawn);
         }
     }
 
     fn propagate(&self, (): &(), _: Draw, _: &mut BlockMut<'_>, (): &mut ()) {}
 
     fn log_likelihood(&self, observed: &f64, block: &Block<'_>, out: &mut [f64]) {
+        self.resetting_log_likelihood(observed, block, out);
+        for (out, x) in out.iter_mut().zip(block.column(0)) {
+            *out -= if x.abs() < 100.0 {
+                self.against_near
+            } else {
+                0.0
+            };
+        }
+    }
+
+    fn resetting_log_likelihood(&self, observed: &f64, block: &Block<'_>, out: &mut [f64]) {
         for (out, x) in out.iter_mut().zip(block.column(0)) {
             let error = (x - observed) / NOISE;
             *out = libm::log(libm::exp(-0.5 * error * error) + WRONG);
@@ -57,7 +71,7 @@ impl Model for Number {
         true
     }
 
-    fn least_moved(&self, _: &f64, _: f64) -> f64 {
+    fn least_moved(&self, _: &f64) -> f64 {
         self.least
     }
 
@@ -87,7 +101,11 @@ fn after_many(least: f64) -> [f64; 2] {
     let exact = 1.0 / (1.0 + f64::from(count) / (NOISE * NOISE));
     let mut sums = [0.0; 2];
     for seed in 0..seeds {
-        let model = Number { first: None, least };
+        let model = Number {
+            number: |_, drawn| drawn,
+            least,
+            against_near: 0.0,
+        };
         let mut filter = ParticleFilter::new(model, settings(100, seed)).unwrap();
         let noise = Streams::new(1000 + seed);
         let mut sum = 0.0;
@@ -120,16 +138,33 @@ fn many_observations_that_each_tell_little_leave_the_exact_belief() {
 
 #[test]
 fn a_particle_that_lies_far_is_weighed_out_and_not_brought_near() {
-    let far = 1000.0;
     let model = Number {
-        first: Some(far),
+        number: |particle, drawn| if particle == 0 { 1000.0 } else { drawn },
         least: 0.9,
+        against_near: 0.0,
     };
     let mut filter = ParticleFilter::new(model, settings(500, 1)).unwrap();
     let _ = filter.step(&(), Some(&0.5));
-    assert_eq!(filter.particles().value(0, 0), far);
+    assert_eq!(filter.particles().value(0, 0), 1000.0);
     // by a tenth of what tells against it, it would keep a fifth of a particle's weight
     assert!(filter.weights().weights()[0] < 1e-8);
-    // nor does it move the others
-    assert!(std(&filter, 0) < 1.1, "{}", std(&filter, 0));
+}
+
+#[test]
+fn what_tells_against_all_that_are_near_moves_none() {
+    // all but ten lie far, and what is not moved tells against those ten by e⁻¹⁰⁰
+    let model = Number {
+        number: |particle, _| if particle < 490 { 1000.0 } else { 0.0 },
+        least: 0.9,
+        against_near: 100.0,
+    };
+    let mut filter = ParticleFilter::new(model, settings(500, 1)).unwrap();
+    let _ = filter.step(&(), Some(&0.5));
+    assert_eq!(filter.particles().value(0, 0), 1000.0);
+    assert_eq!(filter.particles().value(499, 0), 0.0);
+    let weights = filter.weights().weights();
+    assert!(
+        weights[0] > 0.9 / 490.0 && weights[499] < 1e-30,
+        "{weights:?}"
+    );
 }
