@@ -1,9 +1,9 @@
 //! What a run knows of friction when it ends: [`LearnedParameter`].
 //!
 //! In paper mode particles get new friction values only where the camera sees the object and Φ keeps
-//! them (docs/method.md (20), (21)); contact mode keeps in the dark what was known before it (52). At rest
-//! the set is resampled without new values, until all its particles are copies of a few: its spread
-//! then shrinks though nothing has been learnt. So the
+//! them (docs/method.md (20), (21)): at rest the set is resampled without new values, until all its particles are
+//! copies of a few, and its spread shrinks though nothing has been learnt. Contact mode keeps at rest and in the dark
+//! what was known before (52). So the
 //! last row that informs about a parameter has its estimate, and where there is none it was not
 //! observed. Where particles begin with a prior (contact mode), a parameter whose spread is not much
 //! narrower than that was not observed, either.
@@ -250,7 +250,10 @@ mod tests {
     #[test]
     fn what_no_row_informs_of_keeps_its_prior() {
         let estimate = Estimate {
-            rows: vec![row(0.33, 0.15, 0.0, [0.0; 2], true)],
+            rows: vec![
+                row(0.33, 0.15, 0.0, [0.0; 2], true),
+                row(0.4, 0.1, 0.0, [0.0; 2], true),
+            ],
             ..Estimate::default()
         };
         for parameter in LearnedParameter::all(&estimate) {

@@ -83,7 +83,7 @@ impl<M: Model> ParticleFilter<M> {
     /// all of them comes before it (choosing ancestors) and after it (normalising the weights, adding
     /// the blocks' sums). If no particle explains the part of the observation that a reinitialisation
     /// can improve, or all weights are zero, the particles are reinitialised around it. Where a model lets
-    /// an observation move them, it does as far as weighing alone would leave few.
+    /// an observation move them, it does as far as weighing alone would leave few, or the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.step += 1;
         self.lineage.begin_step();

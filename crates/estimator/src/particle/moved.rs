@@ -1,5 +1,5 @@
-//! What of a particle the camera's pose may move where it would leave few of them (contact mode;
-//! docs/method.md (45)): all that is continuous and not drawn anew.
+//! What of a particle the camera's pose may move (contact mode; docs/method.md (45)): all that is continuous and not
+//! drawn anew.
 
 use stickslip_filter::{BLOCK, Block, BlockMut};
 
