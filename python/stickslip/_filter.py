@@ -74,8 +74,8 @@ def particles(
     (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each (R, N), of the particles that say where the object is.
     The friction of the estimate is learned by others in contact mode: ``friction_weight``, ``friction_mu_s``,
     ``friction_mu_p``, ``friction_mu_f``, ``friction_d_tri``, each (R, N), as they were when the camera last saw the
-    object move; in paper mode, and where friction is told exactly, by the same. Weights of a row sum to 1. Rows before the
-    first object pose have none.
+    object move; in paper mode, and where friction is told exactly, by the same. Weights of a row sum to 1. Rows
+    before the first object pose have none.
     """
     if options.get("method", "particle") != "particle":
         raise Error(f"method is `{options.get('method')}`; only `particle` has particles")
