@@ -102,7 +102,18 @@ pub struct EstimateRow {
     pub failed: Option<u32>,
 }
 
+/// Speed (m/s) and turn (rad/s) above either of which an object moves: a jam ends in a creep.
+const MOVING: f64 = 1e-3;
+const TURNING: f64 = 0.03;
+
 impl EstimateRow {
+    /// Whether the object moves, faster than 1 mm/s or 0.03 rad/s: where it rests, nothing is learned of friction.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.twist
+            .is_some_and(|v| v.vx.hypot(v.vy) > MOVING || v.omega.abs() > TURNING)
+    }
+
     /// Whether a contact with pusher or fixel is possible at all.
     pub(crate) fn any_contact(&self) -> bool {
         let fixels = self.contact_fixels.iter().flatten();

@@ -12,10 +12,6 @@ use serde::Serialize;
 use stickslip::dynamics::Friction;
 use stickslip::{Estimate, EstimateRow};
 
-/// Speed from which the object counts as moving (m/s), and turning (rad/s): a jam ends in a creep.
-const MOVING: f64 = 1e-3;
-const TURNING: f64 = 0.03;
-
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
 
@@ -54,22 +50,22 @@ const SOURCES: [Source; 4] = [
     Source {
         name: "mu_s",
         value: |friction| friction.mu_s,
-        informs: |row| moves(row),
+        informs: EstimateRow::moves,
     },
     Source {
         name: "mu_p",
         value: |friction| friction.mu_p,
-        informs: |row| moves(row) && touches(row.contact_pusher),
+        informs: |row| row.moves() && touches(row.contact_pusher),
     },
     Source {
         name: "mu_f",
         value: |friction| friction.mu_f,
-        informs: |row| moves(row) && fixels(row).any(touches),
+        informs: |row| row.moves() && fixels(row).any(touches),
     },
     Source {
         name: "d_tri",
         value: |friction| friction.d_tri,
-        informs: |row| moves(row),
+        informs: EstimateRow::moves,
     },
 ];
 
@@ -138,11 +134,6 @@ impl LearnedParameter {
         let source = sources.find(|source| source.name == self.name)?;
         Some((source.value)(friction))
     }
-}
-
-fn moves(row: &EstimateRow) -> bool {
-    row.twist
-        .is_some_and(|v| v.vx.hypot(v.vy) > MOVING || v.omega.abs() > TURNING)
 }
 
 fn touches(probability: Option<f64>) -> bool {

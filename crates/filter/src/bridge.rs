@@ -148,18 +148,17 @@ impl<M: Model> ParticleFilter<M> {
             return self.weights.update(&mut self.unnormalised);
         }
         self.weigh_resetting(observation);
-        let evidence = self.bridge.log_mean(&self.weights, &self.resetting);
+        let (mut evidence, mut far) = (0.0, f64::NEG_INFINITY);
         if least > 0.0 {
+            evidence = self.bridge.log_mean(&self.weights, &self.resetting);
             least *= self.model.plausibility(observation, evidence);
         }
-        if !few && least <= 0.0 {
-            return self.weights.update(&mut self.unnormalised);
+        if !few {
+            if least <= 0.0 {
+                return self.weights.update(&mut self.unnormalised);
+            }
+            far = evidence + FAR;
         }
-        let far = if few {
-            f64::NEG_INFINITY
-        } else {
-            evidence + FAR
-        };
         let log_likelihood = &mut self.unnormalised.log_likelihood;
         let share = self
             .bridge

@@ -78,7 +78,6 @@ pub(crate) struct ContactFilter<'o> {
     touched: bool,
     /// What brings particles to where weighing would leave few.
     moves: Moves,
-    least_moved: f64,
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
@@ -145,7 +144,9 @@ impl<'o> ContactFilter<'o> {
         let PoseAt { time, pose, .. } = start;
         let history = PoseHistory::new(camera.latency + unknown + options.late, time);
         let model = ContactModel::new(options.mode, setup, camera, start, history.slots());
-        let model = model.observed(options.observer);
+        let model = model
+            .observed(options.observer)
+            .moved_by(options.least_moved);
         let reference = Reference::new(pose, setup.scene.nominal);
         let mut this = Self {
             filter: ParticleFilter::new(model, options.settings(setup))?,
@@ -168,7 +169,6 @@ impl<'o> ContactFilter<'o> {
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
             touched: false,
             moves: options.moves,
-            least_moved: options.least_moved,
         };
         // a first pose that says how noisy it is is drawn as it says
         let told = start.covariance.is_some();
@@ -195,7 +195,6 @@ impl<'o> ContactFilter<'o> {
         self.observation.felt = contact;
         self.touched |= self.latest.any_contact();
         self.observation.moves = contact && self.moves.camera && self.touched;
-        self.observation.least_moved = self.least_moved;
 
         let seen = self.observation.pose.is_some();
         let again = self.moves.second_tries;

@@ -17,11 +17,6 @@ use crate::setup::{Camera, Setup};
 /// Share of a camera pose that moves particles that learn, at least (52).
 const LEAST_MOVED: f64 = 0.9;
 
-/// Speed (m/s) and turn (rad/s) below both of which an object rests, as far as friction is concerned: a jam ends in
-/// a creep.
-const SLOW: f64 = 1e-3;
-const SLOW_TURN: f64 = 0.03;
-
 /// Seeds of the particles that learn lie apart from those of the others.
 const LEARNING_SEEDS: u64 = 1 << 48;
 
@@ -35,8 +30,6 @@ pub(crate) struct LearningFilter<'o> {
     learning: Learning<'o>,
     /// What was known of friction when the particles that learn it last looked.
     known: Option<KnownFriction>,
-    /// Whether that was in the latest row.
-    learned: bool,
     /// Time of the latest row (s).
     time: f64,
 }
@@ -86,7 +79,6 @@ impl<'o> LearningFilter<'o> {
                 false => Learning::None,
             },
             known: KnownFriction::of(poses.latest()).filter(|_| learns),
-            learned: learns,
             poses,
             time: start.time,
         })
@@ -105,23 +97,19 @@ impl<'o> LearningFilter<'o> {
         }
         match &mut self.learning {
             Learning::Underway(learner) => {
-                let looks = moves(self.poses.latest()) || moves(learner.latest());
+                let looks = self.poses.latest().moves() || learner.latest().moves();
                 let object = measured.object.filter(|_| looks);
                 let row = learner.step(Measured { object, ..measured }, drive);
-                self.learned = row.visual;
                 if row.visual {
                     self.known = KnownFriction::of(row);
                 }
                 self.poses.count_steps_of(row);
             }
             // particles that have felt nothing have the prior
-            Learning::AtContact(_) => {
-                self.learned = self.poses.latest().visual;
-                if self.learned {
-                    self.known = KnownFriction::of(self.poses.latest());
-                }
+            Learning::AtContact(_) if self.poses.latest().visual => {
+                self.known = KnownFriction::of(self.poses.latest());
             }
-            Learning::None => self.learned = false,
+            Learning::AtContact(_) | Learning::None => {}
         }
         self.tell_friction();
         self.latest()
@@ -131,7 +119,7 @@ impl<'o> LearningFilter<'o> {
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         self.poses.weigh_late(late);
         if let Learning::Underway(learner) = &mut self.learning {
-            if moves(self.poses.latest()) || moves(learner.latest()) {
+            if self.poses.latest().moves() || learner.latest().moves() {
                 self.known = KnownFriction::of(learner.weigh_late(late));
             }
             self.poses.count_steps_of(learner.latest());
@@ -178,14 +166,12 @@ impl<'o> LearningFilter<'o> {
     /// Those that have its friction, where the latest row taught any: the ones that learn it, and before contact the
     /// same.
     pub fn friction_particles(&self) -> Option<ParticleView<'_>> {
-        if !self.learned {
-            return None;
-        }
-        match &self.learning {
-            Learning::Underway(learner) => Some(learner.particles()),
-            Learning::AtContact(_) => Some(self.poses.particles()),
-            Learning::None => None,
-        }
+        let taught = match &self.learning {
+            Learning::Underway(learner) => &**learner,
+            Learning::AtContact(_) => &self.poses,
+            Learning::None => return None,
+        };
+        taught.latest().visual.then(|| taught.particles())
     }
 
     /// Rows at which no particle explained the camera and all were drawn anew around its pose.
@@ -202,13 +188,6 @@ impl<'o> LearningFilter<'o> {
     pub fn log_evidence(&self) -> f64 {
         self.poses.log_evidence()
     }
-}
-
-/// Whether an estimate says that the object moves: where it rests, nothing is learned of friction, and poses of the
-/// camera that go on being weighed by leave few particles.
-fn moves(row: &EstimateRow) -> bool {
-    row.twist
-        .is_some_and(|twist| twist.vx.hypot(twist.vy) > SLOW || twist.omega.abs() > SLOW_TURN)
 }
 
 /// What the particles that learn friction are made with: a setup that leaves more open, and seeds of their own.

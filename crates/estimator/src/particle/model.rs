@@ -39,6 +39,8 @@ pub struct ContactModel<'o> {
     start: PoseAt,
     camera_likelihood: CameraLikelihood,
     tactile_likelihood: TactileLikelihood,
+    /// Share of a camera pose that moves particles at least.
+    least_moved: f64,
 }
 
 impl<'o> ContactModel<'o> {
@@ -56,6 +58,7 @@ impl<'o> ContactModel<'o> {
             start,
             camera_likelihood: CameraLikelihood::new(&camera, setup, columns),
             tactile_likelihood: TactileLikelihood::new(&setup.tactile, columns),
+            least_moved: 0.0,
         }
     }
 
@@ -63,6 +66,13 @@ impl<'o> ContactModel<'o> {
     #[must_use]
     pub fn observed(mut self, observer: Option<&'o dyn Observer>) -> Self {
         self.transition.observer = observer;
+        self
+    }
+
+    /// The same, of particles that a camera pose moves by this share at least.
+    #[must_use]
+    pub fn moved_by(mut self, least: f64) -> Self {
+        self.least_moved = least;
         self
     }
 
@@ -273,8 +283,8 @@ impl Model for ContactModel<'_> {
         observation.moves && observation.pose.is_some()
     }
 
-    fn least_moved(&self, observation: &Observation) -> f64 {
-        observation.least_moved
+    fn least_moved(&self, _: &Observation) -> f64 {
+        self.least_moved
     }
 
     fn plausibility(&self, _: &Observation, log_evidence: f64) -> f64 {

@@ -48,8 +48,6 @@ pub struct Observation {
     /// Whether the camera's pose may move particles: the object no longer waits where it was first seen
     /// (contact mode).
     pub moves: bool,
-    /// Share of it that moves them at least, where it is not wrong.
-    pub least_moved: f64,
 }
 
 impl Observation {
@@ -63,7 +61,6 @@ impl Observation {
         self.tactile.clone_from(&other.tactile);
         self.felt = other.felt;
         self.moves = other.moves;
-        self.least_moved = other.least_moved;
     }
 
     /// True where nothing was read.
