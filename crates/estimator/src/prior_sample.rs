@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use stickslip_dynamics::{Body, Friction, Pose};
+use stickslip_dynamics::{Body, Friction, Lanes, Mask, Pose};
 use stickslip_filter::{Purpose, Streams};
 
 use crate::error::RunError;
@@ -181,7 +181,10 @@ impl Observer for Witness<'_> {
         let mut state = self.state.lock().expect("one thread");
         let idle = particles.is_idle(0);
         let felt = |&(impulse, gap): &(f64, f64)| match self.mode {
-            Mode::Contact => felt_or_idle(impulse, gap, idle),
+            Mode::Contact => {
+                let idle = Mask::splat(idle);
+                felt_or_idle(Lanes([impulse]), Lanes([gap]), idle).0[0]
+            }
             Mode::Paper => f64::from(u8::from(impulse > 1.0)),
         };
         let row = Witnessed {

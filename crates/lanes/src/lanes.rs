@@ -57,19 +57,23 @@ impl<const W: usize> Lanes<W> {
     /// ln x of positive normal numbers.
     #[inline(always)]
     pub fn ln(self) -> Self {
-        Self(from_fn(
-            #[inline(always)]
-            |i| ln(self.0[i]),
-        ))
+        // from_fn with a long closure is compiled out of line, by baseline code
+        let mut of = self;
+        for x in &mut of.0 {
+            *x = ln(*x);
+        }
+        of
     }
 
     /// e^x of numbers up to 700.
     #[inline(always)]
     pub fn exp(self) -> Self {
-        Self(from_fn(
-            #[inline(always)]
-            |i| exp(self.0[i]),
-        ))
+        // from_fn with a long closure is compiled out of line, by baseline code
+        let mut of = self;
+        for x in &mut of.0 {
+            *x = exp(*x);
+        }
+        of
     }
 
     /// 1/√x of positive normal numbers, with a relative error below 3e-12 and without the slow

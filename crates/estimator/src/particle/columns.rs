@@ -1,7 +1,7 @@
 //! Which column of the particle set holds what: [`Columns`].
 
 use crate::mode::Mode;
-use crate::particle::touch_channel::SensorBelief;
+use crate::particle::touch_channel::BELIEF_LEN;
 
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
@@ -19,7 +19,7 @@ const FLAGS_PER_FIXEL: usize = 5;
 const UNKNOWNS: usize = 16;
 
 /// Columns of contact mode for each fixel.
-const PER_FIXEL: usize = SensorBelief::LEN + 2;
+const PER_FIXEL: usize = BELIEF_LEN + 2;
 
 /// A condition of every particle: one bit of a column that holds nothing but such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -194,14 +194,14 @@ impl Columns {
         self.unknowns() + 7
     }
 
-    /// What is believed of sensor `fixel`, the numbers of a [`SensorBelief`] (contact mode).
+    /// What is believed of sensor `fixel`, the numbers of a [`SensorBelief`](super::touch_channel::SensorBelief) (contact mode).
     pub fn sensor(&self, fixel: usize) -> usize {
         self.unknowns() + UNKNOWNS + PER_FIXEL * fixel
     }
 
     /// Offset of fixel `fixel` from its pose, in standard deviations: x, y (contact mode).
     pub fn fixel_offset(&self, fixel: usize) -> usize {
-        self.sensor(fixel) + SensorBelief::LEN
+        self.sensor(fixel) + BELIEF_LEN
     }
 
     /// x of the past pose in ring slot `slot`; y and θ follow.

@@ -5,14 +5,14 @@ use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist,
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::mode::Mode;
-use crate::particle::chunk::{Column, FlagsMut, LANES, flag, is_set, load_chunk, store_chunk};
+use crate::particle::chunk::{Column, FlagsMut, LANES, flag, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::model::write;
 use crate::particle::noise_clock::NOISE_STEP;
-use crate::particle::propagation::{Propagation, Transition};
+use crate::particle::propagation::{Propagation, Transition, load_columns, store_columns};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
-use crate::particle::touch_channel::{SensorBelief, TouchChannel, felt_or_idle};
+use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
 use crate::setup::Limits;
 
 /// Numbers for what is unknown: behind those of all substeps.
@@ -37,7 +37,11 @@ impl Propagation {
         draw: Draw,
         block: &mut BlockMut<'_>,
     ) {
-        self.note_untouched(transition, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.note_untouched(transition, block),
+        );
         if let Some(resting) = &plan.resting {
             self.normals_of(draw, RESTING_PAIR, block);
             self.draw_resting_pose(transition, resting, block);
@@ -58,7 +62,11 @@ impl Propagation {
         if plan.noise_age == 0 {
             self.draw_rig(transition, plan, draw, block);
         }
-        self.load_offsets(transition, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.load_offsets(transition, block),
+        );
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
         }
@@ -73,19 +81,39 @@ impl Propagation {
         block: &mut BlockMut<'_>,
     ) {
         for j in 0..transition.columns.fixels() {
-            self.normals_of(draw, FIXEL_PAIR + 2 * j as u32, block);
-            self.draw_fixel_offset(transition, plan, j, block);
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || {
+                    self.draw_first_normals(draw, FIXEL_PAIR + 2 * j as u32, block);
+                    self.draw_fixel_offset(transition, plan, j, block);
+                },
+            );
         }
         self.normals_of(draw, OFFSET_PAIR, block);
-        self.draw_offsets(transition, plan, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.draw_offsets(transition, plan, block),
+        );
         self.normals_of(draw, LATENCY_PAIR, block);
-        self.draw_latency(transition, plan, block);
-        self.draw_force_factor(transition, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || {
+                self.draw_latency(transition, plan, block);
+                self.draw_force_factor(transition, block);
+            },
+        );
         if transition.setup.uncertainty.creep > 0.0 {
             self.normals_of(draw, CREEP_PAIR, block);
-            self.draw_creep(transition, plan, block);
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || self.draw_creep(transition, plan, block),
+            );
         }
-        if let Some(velocity) = plan.steady {
+        if let Some(velocity) = plan.steady.filter(|_| plan.unknowns_wander()) {
             self.normals_of(draw, EXCHANGE_PAIR, block);
             self.exchange_latency(transition, plan, velocity, block);
         }
@@ -101,6 +129,7 @@ impl Propagation {
     }
 
     /// Which particles nothing has come near yet: their objects rest where they were first seen.
+    #[inline(always)]
     fn note_untouched(
         &mut self,
         Transition { columns, .. }: &Transition<'_>,
@@ -262,7 +291,11 @@ impl Propagation {
         block: &mut BlockMut<'_>,
     ) {
         self.read_pusher(transition, block);
-        self.read_touch(transition, plan, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.read_touch(transition, plan, block),
+        );
     }
 
     /// Weighs how far behind its logged pose the pusher gave way in this step: a particle that jams
@@ -286,6 +319,7 @@ impl Propagation {
     }
 
     /// Weighs the tactile readings.
+    #[inline(always)]
     fn read_touch(
         &mut self,
         transition: &Transition<'_>,
@@ -296,23 +330,22 @@ impl Propagation {
         let channel = TouchChannel::new(&setup.tactile);
         let freed = channel.freed(plan.duration());
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
-        let threshold = setup.tactile.touch_force * last_h;
+        let threshold = Lanes::splat(setup.tactile.touch_force * last_h);
+        let touch_gap = Lanes::splat(setup.uncertainty.touch_gap);
         for (j, reading) in plan.tactile.iter().enumerate() {
             let Some(reading) = *reading else { continue };
             for chunk in 0..block.len().div_ceil(LANES) {
-                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j));
-                let gap = self.work.gaps(chunk, Body::Fixel(j));
-                for i in chunk * LANES..block.len().min((chunk + 1) * LANES) {
-                    let gap = gap.0[i % LANES] / setup.uncertainty.touch_gap;
-                    let idle = is_set(&block.as_block(), Columns::IDLE, i);
-                    let impulse = impulse.0[i % LANES] / threshold;
-                    let touch = felt_or_idle(impulse, gap, idle);
-                    let before = std::array::from_fn(|k| block.column(columns.sensor(j) + k)[i]);
-                    let before = SensorBelief::of(before);
-                    let (after, log_likelihood) = channel.read(before, freed, touch, reading);
-                    write(block, columns.sensor(j), i, after.fields());
-                    block.column_mut(columns.felt_log_likelihood())[i] += log_likelihood;
-                }
+                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j)) / threshold;
+                let gap = self.work.gaps(chunk, Body::Fixel(j)) / touch_gap;
+                let idle = flag(&block.as_block(), Columns::IDLE, chunk);
+                let touch = felt_or_idle(impulse, gap, idle);
+                let mut before = channel.start();
+                load_columns(block, columns.sensor(j), chunk, before.fields_mut());
+                let (after, log_likelihood) = channel.read(before, freed, touch, reading);
+                store_columns(block, columns.sensor(j), chunk, after.fields());
+                let column = columns.felt_log_likelihood();
+                let so_far = load_chunk(block.column(column), chunk, 0.0);
+                store_chunk(block.column_mut(column), chunk, &(so_far + log_likelihood));
             }
         }
     }
@@ -328,12 +361,6 @@ fn within(value: Column, limits: &Limits) -> Column {
 
 fn squared([x, y]: [Column; 2]) -> Column {
     x * x + y * y
-}
-
-/// One step of a random walk in a normal distribution that it keeps: `fresh` is drawn from that
-/// distribution, `step` is the share of it.
-pub(super) fn wandered(before: f64, step: f64, fresh: f64) -> f64 {
-    (1.0 - step * step).sqrt() * before + step * fresh
 }
 
 /// Notes in a chunk's flags which parameters took part, and keeps besides them those that never did:

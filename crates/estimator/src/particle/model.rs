@@ -165,9 +165,10 @@ impl<'o> ContactModel<'o> {
         for k in 0..3 {
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
         }
-        let start = TouchChannel::new(&setup.tactile).start();
+        let sensor = TouchChannel::new(&setup.tactile).start::<1>();
+        let sensor = sensor.fields().map(|number| number.0[0]);
         for j in 0..columns.fixels() {
-            write(block, columns.sensor(j), i, start.fields());
+            write(block, columns.sensor(j), i, sensor.each_ref());
             let offset = draw.normals::<2>(particle, 18 + 2 * j as u32);
             write(block, columns.fixel_offset(j), i, [&offset[0], &offset[1]]);
         }

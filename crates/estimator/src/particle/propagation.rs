@@ -238,9 +238,17 @@ impl Propagation {
     #[inline(always)]
     pub(super) fn draw_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
         let (len, first) = (block.len(), block.first_particle());
-        let [a, b, c, d] = &mut self.normals;
-        draw.normal_columns(first, pair, &mut a[..len], &mut b[..len]);
+        self.draw_first_normals(draw, pair, block);
+        let [_, _, c, d] = &mut self.normals;
         draw.normal_columns(first, pair + 1, &mut c[..len], &mut d[..len]);
+    }
+
+    /// Fills the first two columns of normals with the pair `pair`.
+    #[inline(always)]
+    pub(super) fn draw_first_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+        let (len, first) = (block.len(), block.first_particle());
+        let [a, b, ..] = &mut self.normals;
+        draw.normal_columns(first, pair, &mut a[..len], &mut b[..len]);
     }
 
     /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, the variance of
@@ -405,7 +413,7 @@ pub(super) fn load_columns<const N: usize>(
 
 /// Writes one chunk of neighbouring columns.
 #[inline(always)]
-fn store_columns<const N: usize>(
+pub(super) fn store_columns<const N: usize>(
     block: &mut BlockMut<'_>,
     first_column: usize,
     chunk: usize,

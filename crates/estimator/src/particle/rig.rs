@@ -1,12 +1,11 @@
 //! What the particles do not know of the rig (contact mode): where pusher and fixels stand, how large
 //! the object is, how late the camera (docs/method.md (36), (43)).
 
-use stickslip_dynamics::{Lanes, Particles};
+use stickslip_dynamics::{Lanes, Mask, Particles};
 use stickslip_filter::{Block, BlockMut};
 
-use crate::particle::chunk::{Column, LANES, is_set, load_chunk};
+use crate::particle::chunk::{Column, LANES, flag, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
-use crate::particle::contact_mode::wandered;
 use crate::particle::noise_clock::sharing;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
@@ -33,6 +32,7 @@ const LATENCY_STEP: f64 = 0.02;
 
 impl Propagation {
     /// Where fixel j stands: drawn anew until the object comes near.
+    #[inline(always)]
     pub(super) fn draw_fixel_offset(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -40,16 +40,14 @@ impl Propagation {
         j: usize,
         block: &mut BlockMut<'_>,
     ) {
-        for (i, _) in block.particles() {
-            let near = is_set(&block.as_block(), columns.fixel_was_near(j), i);
-            let roughness = block.column(columns.roughness())[i];
-            let wander = || offset_step(measured(&setup.uncertainty, roughness));
-            let Some(step) = plan.step_of_unknown(near, wander) else {
-                continue;
-            };
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let seen = &block.as_block();
+            let near = flag(seen, columns.fixel_was_near(j), chunk);
+            let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
+            let step = offset_step(measured(&setup.uncertainty, roughness));
             for axis in 0..2 {
-                let offset = &mut block.column_mut(columns.fixel_offset(j) + axis)[i];
-                *offset = wandered(*offset, step, self.normals[axis][i]);
+                let column = columns.fixel_offset(j) + axis;
+                self.wander(plan, (near, step), axis, block.column_mut(column), chunk);
             }
         }
     }
@@ -57,6 +55,7 @@ impl Propagation {
     /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
     /// pusher comes near. After that the rig stays as rough as it is: a particle whose offsets wander
     /// less would be favoured for that.
+    #[inline(always)]
     pub(super) fn draw_offsets(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -64,42 +63,58 @@ impl Propagation {
         block: &mut BlockMut<'_>,
     ) {
         let unsure = &setup.uncertainty;
-        for (i, _) in block.particles() {
-            let [x, y, grown, rough] = self.normals.each_ref().map(|column| column[i]);
-            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
-            let roughness = &mut block.column_mut(columns.roughness())[i];
-            if !near {
-                *roughness = unsure.roughness * rough;
-            }
-            let step = |scale: fn(&Uncertainty, f64) -> f64| {
-                plan.step_of_unknown(near, || offset_step(scale(unsure, *roughness)))
-            };
-            let [Some(of_pusher), Some(of_outline)] = [step(registered), step(measured)] else {
-                continue;
-            };
-            let offsets = [
-                (columns.pusher_offset(), of_pusher, x),
-                (columns.pusher_offset() + 1, of_pusher, y),
-                (columns.growth(), of_outline, grown),
-            ];
-            for (column, step, normal) in offsets {
-                let offset = &mut block.column_mut(column)[i];
-                *offset = wandered(*offset, step, normal);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let near = flag(&block.as_block(), Columns::PUSHER_WAS_NEAR, chunk);
+            let before = load_chunk(block.column(columns.roughness()), chunk, 0.0);
+            let fresh = load_chunk(&self.normals[3], chunk, 0.0) * unsure.roughness;
+            let roughness = near.select(before, fresh);
+            store_chunk(block.column_mut(columns.roughness()), chunk, &roughness);
+            let of_pusher = offset_step(registered(unsure, roughness));
+            let of_outline = offset_step(measured(unsure, roughness));
+            for (number, column, step) in [
+                (0, columns.pusher_offset(), of_pusher),
+                (1, columns.pusher_offset() + 1, of_pusher),
+                (2, columns.growth(), of_outline),
+            ] {
+                self.wander(plan, (near, step), number, block.column_mut(column), chunk);
             }
         }
     }
 
+    /// A chunk of an unknown, by the column `number` of normal numbers: drawn anew until what tells of it has been
+    /// `near`; then a random `step` that keeps its prior, the standard normal distribution, where unknowns wander.
+    #[inline(always)]
+    fn wander(
+        &self,
+        plan: &StepPlan,
+        (near, step): (Mask<LANES>, Column),
+        number: usize,
+        unknown: &mut [f64],
+        chunk: usize,
+    ) {
+        let before = load_chunk(unknown, chunk, 0.0);
+        let fresh = load_chunk(&self.normals[number], chunk, 0.0);
+        let known = match plan.unknowns_wander() {
+            true => wandered(before, step, fresh),
+            false => before,
+        };
+        store_chunk(unknown, chunk, &near.select(known, fresh));
+    }
+
     /// How smooth the push is, by the number that the latency leaves: drawn anew until the pusher comes near.
+    #[inline(always)]
     pub(super) fn draw_force_factor(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
         block: &mut BlockMut<'_>,
     ) {
         let spread = setup.uncertainty.force_spread;
-        for (i, _) in block.particles() {
-            if !is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i) {
-                block.column_mut(columns.force())[i] = spread * self.normals[3][i];
-            }
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let near = flag(&block.as_block(), Columns::PUSHER_WAS_NEAR, chunk);
+            let force = block.column_mut(columns.force());
+            let fresh = load_chunk(&self.normals[3], chunk, 0.0) * spread;
+            let factor = near.select(load_chunk(force, chunk, 0.0), fresh);
+            store_chunk(force, chunk, &factor);
         }
     }
 
@@ -128,27 +143,31 @@ impl Propagation {
     }
 
     /// How contacts creep, with the pusher and with fixels: drawn anew until these come near.
+    #[inline(always)]
     pub(super) fn draw_creep(
         &self,
         Transition { columns, .. }: &Transition<'_>,
         plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
-        for (i, _) in block.particles() {
+        let step = Lanes::splat(CREEP_STEP);
+        for chunk in 0..block.len().div_ceil(LANES) {
             let seen = &block.as_block();
-            let fixel = (0..columns.fixels()).any(|j| is_set(seen, columns.fixel_was_near(j), i));
-            let pusher = is_set(seen, Columns::PUSHER_WAS_NEAR, i);
+            let pusher = flag(seen, Columns::PUSHER_WAS_NEAR, chunk);
+            let mut fixel = Mask::splat(false);
+            for j in 0..columns.fixels() {
+                fixel = fixel | flag(seen, columns.fixel_was_near(j), chunk);
+            }
             for (k, near) in [pusher, fixel].into_iter().enumerate() {
-                if let Some(step) = plan.step_of_unknown(near, || CREEP_STEP) {
-                    let creep = &mut block.column_mut(columns.creep() + k)[i];
-                    *creep = wandered(*creep, step, self.normals[k][i]);
-                }
+                let column = columns.creep() + k;
+                self.wander(plan, (near, step), k, block.column_mut(column), chunk);
             }
         }
     }
 
     /// How late the camera is: drawn anew until the pusher comes near; then a random walk that keeps
     /// the prior (Metropolis).
+    #[inline(always)]
     pub(super) fn draw_latency(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -156,20 +175,19 @@ impl Propagation {
         block: &mut BlockMut<'_>,
     ) {
         let mean = setup.uncertainty.latency;
-        for (i, _) in block.particles() {
-            let [a, b, step, _] = self.normals.each_ref().map(|column| column[i]);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let a = load_chunk(&self.normals[0], chunk, 0.0);
+            let b = load_chunk(&self.normals[1], chunk, 0.0);
+            let step = load_chunk(&self.normals[2], chunk, 0.0);
+            let near = flag(&block.as_block(), Columns::PUSHER_WAS_NEAR, chunk);
+            let column = block.column_mut(columns.latency());
+            let before = load_chunk(column, chunk, 0.0);
             // half the sum of squares of two normal numbers is exponential
-            let fresh = mean * 0.5 * (a * a + b * b);
-            let near = is_set(&block.as_block(), Columns::PUSHER_WAS_NEAR, i);
-            let latency = &mut block.column_mut(columns.latency())[i];
-            let proposed = match (near, plan.unknowns_wander()) {
-                (false, _) => fresh,
-                (true, true) => (*latency + LATENCY_STEP * mean * step).abs(),
-                (true, false) => continue,
-            };
-            if !near || proposed - *latency < fresh {
-                *latency = proposed;
-            }
+            let fresh = (a * a + b * b) * (0.5 * mean);
+            let moved = (before + step * (LATENCY_STEP * mean)).abs();
+            let accepted = (moved - before).lt(fresh) & Mask::splat(plan.unknowns_wander());
+            let known = accepted.select(moved, before);
+            store_chunk(column, chunk, &near.select(known, fresh));
         }
     }
 
@@ -185,7 +203,7 @@ impl Propagation {
     ) {
         let unsure = &setup.uncertainty;
         let speed = libm::hypot(velocity[0], velocity[1]);
-        if !(unsure.pusher_offset > 0.0 && unsure.latency > 0.0 && plan.unknowns_wander()) {
+        if !(unsure.pusher_offset > 0.0 && unsure.latency > 0.0) {
             return;
         }
         for (i, _) in block.particles() {
@@ -193,9 +211,9 @@ impl Propagation {
                 continue;
             }
             let [step, a, b, _] = self.normals.each_ref().map(|column| column[i]);
-            let roughness = block.column(columns.roughness())[i];
-            let later = measured(unsure, roughness);
-            let scale = unsure.pusher_offset * registered(unsure, roughness);
+            let roughness = Lanes([block.column(columns.roughness())[i]]);
+            let later = measured(unsure, roughness).0[0];
+            let scale = unsure.pusher_offset * registered(unsure, roughness).0[0];
             let early = step * scale / speed;
             let offset = [0, 1].map(|axis| block.column(columns.pusher_offset() + axis)[i]);
             let moved = [0, 1].map(|axis| offset[axis] + velocity[axis] * early / scale);
@@ -252,6 +270,7 @@ impl Propagation {
 
     /// Where each particle's pusher and fixels stand beside their poses, and how contacts creep, in all
     /// substeps.
+    #[inline(always)]
     pub(super) fn load_offsets(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -261,7 +280,7 @@ impl Propagation {
         let offset = |column: usize, chunk: usize, scale: Column| {
             let mut offset = [Lanes::ZERO; 2];
             load_columns(block, column, chunk, offset.each_mut());
-            offset.map(|offset| offset * scale)
+            [offset[0] * scale, offset[1] * scale]
         };
         self.pusher_offsets.clear();
         self.fixel_offsets.clear();
@@ -270,11 +289,10 @@ impl Propagation {
         for chunk in 0..block.len().div_ceil(LANES) {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
-            let rougher = Lanes(roughness.0.map(libm::exp));
-            let scale = rougher * unsure.well_registered_at(roughness) * unsure.pusher_offset;
+            let scale = registered(unsure, roughness) * unsure.pusher_offset;
             let pusher = offset(columns.pusher_offset(), chunk, scale);
             self.pusher_offsets.push(pusher);
-            let measured = rougher * unsure.well_measured_at(roughness);
+            let measured = measured(unsure, roughness);
             let scale = measured * unsure.fixel_position;
             let fixels = 0..columns.fixels();
             let fixels = fixels.map(|j| offset(columns.fixel_offset(j), chunk, scale));
@@ -303,17 +321,27 @@ fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
 }
 
 /// Factor of fixels' offsets, outline and latency on a rig so rough.
-fn measured(unsure: &Uncertainty, roughness: f64) -> f64 {
-    libm::exp(roughness) * unsure.well_measured_at(Lanes([roughness])).0[0]
+#[inline(always)]
+fn measured<const W: usize>(unsure: &Uncertainty, roughness: Lanes<W>) -> Lanes<W> {
+    roughness.exp() * unsure.well_measured_at(roughness)
 }
 
 /// Factor of the pusher's offset on a rig so rough.
-fn registered(unsure: &Uncertainty, roughness: f64) -> f64 {
-    libm::exp(roughness) * unsure.well_registered_at(Lanes([roughness])).0[0]
+#[inline(always)]
+fn registered<const W: usize>(unsure: &Uncertainty, roughness: Lanes<W>) -> Lanes<W> {
+    roughness.exp() * unsure.well_registered_at(roughness)
 }
 
 /// Share of their spread by which offsets wander at a time that are `scale` times as large as told: by the
 /// same way (m), however large they are.
-fn offset_step(scale: f64) -> f64 {
-    (OFFSET_STEP / scale).min(1.0)
+#[inline(always)]
+fn offset_step(scale: Column) -> Column {
+    (Lanes::splat(OFFSET_STEP) / scale).min(Lanes::splat(1.0))
+}
+
+/// One step of a random walk in a normal distribution that it keeps: `fresh` is drawn from that
+/// distribution, `step` is the share of it.
+#[inline(always)]
+fn wandered(before: Column, step: Column, fresh: Column) -> Column {
+    (Lanes::splat(1.0) - step * step).sqrt() * before + step * fresh
 }

@@ -79,16 +79,6 @@ impl StepPlan {
         self.driven || !self.is_dark()
     }
 
-    /// Step of one such number, in spreads of its prior: 1, which draws it anew, until what tells of it
-    /// has been `near`; then `wander`, where unknowns do.
-    pub(crate) fn step_of_unknown(&self, near: bool, wander: impl FnOnce() -> f64) -> Option<f64> {
-        match (near, self.unknowns_wander()) {
-            (false, _) => Some(1.0),
-            (true, true) => Some(wander()),
-            (true, false) => None,
-        }
-    }
-
     /// No step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {

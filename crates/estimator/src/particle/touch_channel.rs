@@ -1,34 +1,32 @@
 //! What a binary tactile sensor says over time (contact mode): [`TouchChannel`].
 
+use stickslip_dynamics::{Lanes, Mask};
+
 use crate::setup::Tactile;
 
-/// Probabilities that a sensor is stuck at 0 and at 1.
-type Stuck = [f64; 2];
+/// Numbers of a [`SensorBelief`], each a column.
+pub(crate) const BELIEF_LEN: usize = 2 + QUARTERS;
 
-/// What a particle believes of a sensor.
+/// What W particles believe of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SensorBelief {
-    stuck: Stuck,
+pub(crate) struct SensorBelief<const W: usize> {
+    /// Probabilities that it is stuck at 0 and at 1.
+    stuck: [Lanes<W>; 2],
     /// If it works, in which quarter the probability of a touch lies from which on it feels it. Within a
     /// quarter that counts as drawn anew in every row.
-    felt_from: [f64; QUARTERS],
+    felt_from: [Lanes<W>; QUARTERS],
 }
 
-impl SensorBelief {
-    /// Its numbers, to be stored in columns.
-    pub const LEN: usize = 2 + QUARTERS;
-
-    /// From its numbers.
-    pub fn of([zero, one, felt_from @ ..]: [f64; Self::LEN]) -> Self {
-        Self {
-            stuck: [zero, one],
-            felt_from,
-        }
+impl<const W: usize> SensorBelief<W> {
+    /// Its numbers.
+    pub fn fields(&self) -> [&Lanes<W>; BELIEF_LEN] {
+        let ([zero, one], [a, b, c, d]) = (&self.stuck, &self.felt_from);
+        [zero, one, a, b, c, d]
     }
 
-    /// Its numbers.
-    pub fn fields(&self) -> [&f64; Self::LEN] {
-        let ([zero, one], [a, b, c, d]) = (&self.stuck, &self.felt_from);
+    /// Its numbers, to be written.
+    pub fn fields_mut(&mut self) -> [&mut Lanes<W>; BELIEF_LEN] {
+        let ([zero, one], [a, b, c, d]) = (&mut self.stuck, &mut self.felt_from);
         [zero, one, a, b, c, d]
     }
 }
@@ -44,7 +42,7 @@ pub(crate) struct TouchChannel {
     /// Of a sensor that works: probability of reading 1 without touch, and with it.
     reads_one: [f64; 2],
     /// Share of time for which a sensor is stuck at 0 and at 1.
-    share: Stuck,
+    share: [f64; 2],
     /// Rate at which what is stuck gets free, and `felt_from` changes (1/s).
     recovery: f64,
 }
@@ -59,10 +57,10 @@ impl TouchChannel {
     }
 
     /// Before the first reading.
-    pub fn start(&self) -> SensorBelief {
+    pub fn start<const W: usize>(&self) -> SensorBelief<W> {
         SensorBelief {
-            stuck: self.share,
-            felt_from: [QUARTER; QUARTERS],
+            stuck: self.share.map(Lanes::splat),
+            felt_from: [Lanes::splat(QUARTER); QUARTERS],
         }
     }
 
@@ -73,45 +71,49 @@ impl TouchChannel {
 
     /// After some time, in which what is stuck is [`freed`](Self::freed), and a reading of a sensor that is
     /// touched with probability `touch`: what is believed, and the log-likelihood of the reading.
-    pub fn read(
+    #[inline(always)]
+    pub fn read<const W: usize>(
         &self,
-        SensorBelief { stuck, felt_from }: SensorBelief,
+        SensorBelief {
+            stuck,
+            mut felt_from,
+        }: SensorBelief<W>,
         freed: f64,
-        touch: f64,
+        touch: Lanes<W>,
         reading: bool,
-    ) -> (SensorBelief, f64) {
+    ) -> (SensorBelief<W>, Lanes<W>) {
+        let one = Lanes::splat(1.0);
+
         // what may have happened since the last reading
-        let repaired = freed * (stuck[0] + stuck[1]) * (1.0 - self.share[0] - self.share[1]);
-        let stuck: Stuck = std::array::from_fn(|k| stuck[k] + freed * (self.share[k] - stuck[k]));
-        let works = 1.0 - stuck[0] - stuck[1];
+        let repaired = (stuck[0] + stuck[1]) * freed * (1.0 - self.share[0] - self.share[1]);
+        let later = |stuck, share| stuck + (Lanes::splat(share) - stuck) * freed;
+        let at_zero = later(stuck[0], self.share[0]);
+        let at_one = later(stuck[1], self.share[1]);
+        let works = one - at_zero - at_one;
         // a sensor that was stuck has told nothing of the contact
-        let known = (1.0 - freed) * (1.0 - repaired / works);
-        let felt_from = felt_from.map(|share| QUARTER + known * (share - QUARTER));
+        let known = (one - repaired / works) * (1.0 - freed);
 
         // Bayes' rule
-        let of_working = [0, 1].map(|touched| {
-            let one = self.reads_one[touched];
-            if reading { one } else { 1.0 - one }
-        });
-        let of_stuck = [0, 1].map(|at| {
-            if reading == (at == 1) {
-                1.0 - SLIP
-            } else {
-                SLIP
-            }
-        });
-        let joint: Stuck = std::array::from_fn(|k| stuck[k] * of_stuck[k]);
-        let of_quarters: [f64; QUARTERS] = std::array::from_fn(|k| {
-            let felt = (QUARTERS as f64 * touch - k as f64).clamp(0.0, 1.0);
-            felt_from[k] * ((1.0 - felt) * of_working[0] + felt * of_working[1])
-        });
-        let of_works: f64 = of_quarters.iter().sum();
-        let likelihood = works * of_works + joint[0] + joint[1];
+        let [of_untouched, of_touched] = self
+            .reads_one
+            .map(|one| if reading { one } else { 1.0 - one });
+        let of_stuck_at = |at: bool| if reading == at { 1.0 - SLIP } else { SLIP };
+        let (of_zero, of_one) = (at_zero * of_stuck_at(false), at_one * of_stuck_at(true));
+        let quarter = Lanes::splat(QUARTER);
+        for (k, share) in felt_from.iter_mut().enumerate() {
+            *share = quarter + known * (*share - quarter);
+            let felt = touch * QUARTERS as f64 - Lanes::splat(k as f64);
+            let felt = felt.max(Lanes::ZERO).min(one);
+            *share = *share * ((one - felt) * of_untouched + felt * of_touched);
+        }
+        let [a, b, c, d] = felt_from;
+        let of_works = a + b + c + d;
+        let likelihood = works * of_works + of_zero + of_one;
         let after = SensorBelief {
-            stuck: joint.map(|joint| joint / likelihood),
-            felt_from: of_quarters.map(|quarter| quarter / of_works),
+            stuck: [of_zero / likelihood, of_one / likelihood],
+            felt_from: [a / of_works, b / of_works, c / of_works, d / of_works],
         };
-        (after, libm::log(likelihood))
+        (after, likelihood.ln())
     }
 
     /// A reading by the same rules, `h` seconds after the state given, with a touch of this probability,
@@ -175,25 +177,28 @@ pub(crate) enum SensorState {
     StuckAt(bool),
 }
 
-/// Probability that a sensor feels a contact, from its impulse in units of the sensor's felt_from,
+/// Probability that a sensor feels a contact, from its impulse in units of the sensor's threshold,
 /// and its gap in units of what is not known of it. A contact that rests without pressing may or may
-/// not be felt, and the felt_from is not known exactly.
-pub(crate) fn felt(impulse: f64, gap: f64) -> f64 {
-    let near = 0.5 * libm::exp(-0.5 * gap.max(0.0) * gap.max(0.0));
-    if impulse > 0.0 {
-        near.max(1.0 - 0.5 / (1.0 + impulse * impulse))
-    } else {
-        near
-    }
+/// not be felt, and the threshold is not known exactly.
+#[inline(always)]
+pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W> {
+    let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
+    let apart = gap.max(Lanes::ZERO);
+    let near = (apart * -0.5 * apart).exp() * 0.5;
+    let pressed = near.max(one - half / (one + impulse * impulse));
+    impulse.gt(Lanes::ZERO).select(pressed, near)
 }
 
 /// The same of a contact that may be idle: no step tells whether one that is near presses (docs/method.md
 /// (38)).
-pub(crate) fn felt_or_idle(impulse: f64, gap: f64, idle: bool) -> f64 {
-    match idle && gap < NEAR {
-        true => PRESSES,
-        false => felt(impulse, gap),
-    }
+#[inline(always)]
+pub(crate) fn felt_or_idle<const W: usize>(
+    impulse: Lanes<W>,
+    gap: Lanes<W>,
+    idle: Mask<W>,
+) -> Lanes<W> {
+    let may_press = idle & gap.lt(Lanes::splat(NEAR));
+    may_press.select(Lanes::splat(PRESSES), felt(impulse, gap))
 }
 
 /// Gap, in units of what is not known of it, within which an idle contact may press or not.
@@ -229,8 +234,8 @@ mod tests {
         let (mut belief, mut sum) = (channel().start(), 0.0);
         for reading in readings {
             let (next, log_likelihood) =
-                channel().read(belief, channel().freed(1.0 / 30.0), touch, reading);
-            (belief, sum) = (next, sum + log_likelihood);
+                channel().read(belief, channel().freed(1.0 / 30.0), Lanes([touch]), reading);
+            (belief, sum) = (next, sum + log_likelihood.0[0]);
         }
         sum
     }
@@ -240,13 +245,15 @@ mod tests {
         for touch in [0.0, 0.3, 0.5, 1.0] {
             for [zero, one] in [[0.05, 0.01], [0.9, 0.0], [0.0, 0.7]] {
                 for [a, b, c, d] in [[QUARTER; 4], [0.7, 0.0, 0.1, 0.2]] {
-                    let belief = SensorBelief::of([zero, one, a, b, c, d]);
+                    let mut belief = channel().start();
+                    let numbers = [zero, one, a, b, c, d];
+                    for (to, number) in belief.fields_mut().into_iter().zip(numbers) {
+                        *to = Lanes([number]);
+                    }
+                    let freed = channel().freed(0.1);
                     let of = |reading| {
-                        libm::exp(
-                            channel()
-                                .read(belief, channel().freed(0.1), touch, reading)
-                                .1,
-                        )
+                        let read = channel().read(belief, freed, Lanes([touch]), reading);
+                        libm::exp(read.1.0[0])
                     };
                     assert!(
                         (of(false) + of(true) - 1.0).abs() < 1e-12,
@@ -289,11 +296,12 @@ mod tests {
 
     #[test]
     fn a_wrong_reading_after_right_ones_makes_the_sensor_suspect() {
-        let (channel, touched) = (channel(), 1.0);
+        let (channel, touched) = (channel(), Lanes([1.0]));
         let (before, _) = channel.read(channel.start(), channel.freed(0.03), touched, true);
         let (after, _) = channel.read(before, channel.freed(0.03), touched, false);
         assert!(
-            after.stuck[0] > 10.0 * before.stuck[0] && after.stuck[1] < before.stuck[1],
+            after.stuck[0].0[0] > 10.0 * before.stuck[0].0[0]
+                && after.stuck[1].0[0] < before.stuck[1].0[0],
             "{before:?}, {after:?}"
         );
     }
@@ -323,8 +331,9 @@ mod tests {
             let (mut belief, mut log_likelihood) = (channel.start(), 0.0);
             for (row, touch) in touches.into_iter().enumerate() {
                 let reading = read >> (3 - row) & 1 == 1;
-                let (next, more) = channel.read(belief, channel.freed(0.4), touch, reading);
-                (belief, log_likelihood) = (next, log_likelihood + more);
+                let (next, more) =
+                    channel.read(belief, channel.freed(0.4), Lanes([touch]), reading);
+                (belief, log_likelihood) = (next, log_likelihood + more.0[0]);
             }
             libm::exp(log_likelihood)
         };
@@ -348,6 +357,7 @@ mod tests {
 
     #[test]
     fn felt_grows_with_the_impulse_and_falls_with_the_gap() {
+        let felt = |impulse, gap| felt(Lanes([impulse]), Lanes([gap])).0[0];
         assert_eq!(felt(0.0, 0.0), 0.5);
         assert!(felt(3.0, 0.0) > 0.9 && felt(0.0, 3.0) < 0.01);
         assert!(felt(0.0, f64::INFINITY) == 0.0 && felt(f64::INFINITY, 0.0) == 1.0);
