@@ -29,7 +29,7 @@ const LATE: f64 = 0.9;
 const GROWTH: f64 = 1.25;
 const GROWS_AFTER: u32 = 25;
 
-/// Least number of particles, where not fewer were asked for: one block.
+/// Least number of particles, where not fewer were asked for.
 const LEAST: u32 = 64;
 
 /// How many particles each row is given, so that its answer is there in time.

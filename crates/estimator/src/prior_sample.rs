@@ -59,6 +59,8 @@ impl PriorSample {
         let streams = Streams::new(seed).of(Purpose::Measure);
         let mut log = log.clone();
         log.object_covariance.clear();
+        let first = log.object.iter().position(Option::is_some);
+        let first = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
 
         // what happens: second tries would favour what the pusher agrees with, as `chance` does already, and
         // where the object waits is known as well as the first pose is
@@ -67,7 +69,10 @@ impl PriorSample {
             particles: 1,
             seed,
             tactile: TactileUse::Ignored,
-            occlusion: Occlusion::Rows { from: 1, to: None },
+            occlusion: Occlusion::Rows {
+                from: first + 1,
+                to: None,
+            },
             moves: Moves {
                 second_tries: false,
                 waiting: false,

@@ -113,7 +113,8 @@ pub struct StepSize {
 /// It gives what [`run`](crate::run) gives with [`Tracking::Causal`](crate::Tracking), bit for bit:
 /// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the first
 /// rows, on one thread, a row allocates nothing, but at the first contact, where the particles that learn
-/// friction are made, and where a step needs the search over contact modes.
+/// friction are made, in the dark, whose rows are kept and may be made again, where the number of particles
+/// changes, and where a step needs the search over contact modes.
 ///
 /// ```
 /// use stickslip::{Row, Tracker, TrackerOptions};

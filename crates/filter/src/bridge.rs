@@ -31,7 +31,8 @@ pub(crate) struct Bridge {
     ensemble: Ensemble,
     /// Weights by a share of an observation, likelihoods, or weights of the particles that move, (N,).
     weights: Vec<f64>,
-    moved: bool,
+    /// Whether the latest observation gave particles other weights than the pass over them did, or moved them.
+    parted: bool,
 }
 
 impl Bridge {
@@ -45,13 +46,14 @@ impl Bridge {
         Self {
             ensemble: Ensemble::new(shape, moving.div_ceil(BLOCK)),
             weights: vec![0.0; moving],
-            moved: false,
+            parted: false,
         }
     }
 
-    /// Whether the latest observation moved the particles.
-    pub fn moved(&self) -> bool {
-        self.moved
+    /// Whether sums of the pass over the particles hold no longer: the latest observation was parted into what
+    /// weighs them and what moves them.
+    pub fn parted(&self) -> bool {
+        self.parted
     }
 
     /// The effective sample size under likelihoods of which `share` of the part that moves is left out.
@@ -76,15 +78,6 @@ impl Bridge {
             squares += weight * weight;
         }
         sum * sum / squares
-    }
-
-    /// ln of the weighted mean of likelihoods.
-    fn log_mean(&mut self, weights: &LogWeights, log_likelihood: &[f64]) -> f64 {
-        let best = weights.best_log_likelihood(log_likelihood);
-        self.weights.copy_from_slice(log_likelihood);
-        exponentials(&mut self.weights, best);
-        let terms = self.weights.iter().zip(weights.weights());
-        best + libm::log(terms.map(|(likelihood, weight)| likelihood * weight).sum())
     }
 
     /// Weights of the particles that move, summing to 1; the others have none. Whether there are any to speak of: what
@@ -136,8 +129,14 @@ impl Bridge {
 impl<M: Model> ParticleFilter<M> {
     /// Bayes' rule with the likelihoods of the pass: by weighing alone where nothing may move, or that leaves enough
     /// particles and the model asks for no more, else by both. Returns ln of the evidence.
-    pub(crate) fn weigh_and_move(&mut self, observation: &M::Observation) -> Option<f64> {
-        self.bridge.moved = false;
+    ///
+    /// `judged` is ln of the mean likelihood of the part that moves, where the model judges it.
+    pub(crate) fn weigh_and_move(
+        &mut self,
+        observation: &M::Observation,
+        judged: Option<f64>,
+    ) -> Option<f64> {
+        self.bridge.parted = false;
         if !self.model.moves(observation) {
             return self.weights.update(&mut self.unnormalised);
         }
@@ -147,18 +146,16 @@ impl<M: Model> ParticleFilter<M> {
         if !few && least <= 0.0 {
             return self.weights.update(&mut self.unnormalised);
         }
-        self.weigh_resetting(observation);
-        let (mut evidence, mut far) = (0.0, f64::NEG_INFINITY);
-        if least > 0.0 {
-            evidence = self.bridge.log_mean(&self.weights, &self.resetting);
-            least *= self.model.plausibility(observation, evidence);
+        let evidence = judged.unwrap_or_else(|| self.resetting_log_evidence(observation));
+        least *= self.model.plausibility(observation, evidence);
+        if !few && least <= 0.0 {
+            return self.weights.update(&mut self.unnormalised);
         }
-        if !few {
-            if least <= 0.0 {
-                return self.weights.update(&mut self.unnormalised);
-            }
-            far = evidence + FAR;
-        }
+        let far = if few {
+            f64::NEG_INFINITY
+        } else {
+            evidence + FAR
+        };
         let log_likelihood = &mut self.unnormalised.log_likelihood;
         let share = self
             .bridge
@@ -168,6 +165,7 @@ impl<M: Model> ParticleFilter<M> {
             *all -= share * if *moving < far { evidence } else { *moving };
         }
         self.unnormalised.weigh(&self.weights);
+        self.bridge.parted = true;
         self.weights.update(&mut self.unnormalised)?;
         let bridge = &mut self.bridge;
         if bridge.weigh_near(far, &self.weights, &self.resetting) {
@@ -188,6 +186,5 @@ impl<M: Model> ParticleFilter<M> {
             .advance(None, ensemble.blocks(), |block, from| {
                 model.write_ensemble(from, block);
             });
-        self.bridge.moved = true;
     }
 }

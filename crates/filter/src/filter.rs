@@ -7,6 +7,7 @@ use crate::model::{Model, WeightedSums};
 use crate::parallel::PerThread;
 use crate::particles::{BLOCK, ParticleSet};
 use crate::report::{StepReport, WeightUpdate};
+use crate::second_try::keep_failed_out;
 use crate::settings::{Settings, SettingsError};
 use crate::streams::{Draw, Purpose, Streams};
 use crate::weights::{BlockWeights, LogWeights, UnnormalisedWeights};
@@ -25,6 +26,8 @@ pub struct ParticleFilter<M: Model> {
     pub(crate) bridge: Bridge,
     ancestors: Vec<u32>,
     pub(crate) lineage: Lineage,
+    /// Whether their number has changed since the last step.
+    resized: bool,
     scratch: PerThread<M::Scratch>,
     /// The sums over every block, and over all.
     block_sums: Vec<M::Sums>,
@@ -49,6 +52,7 @@ impl<M: Model> ParticleFilter<M> {
             bridge: Bridge::new(model.ensemble(), &particles),
             ancestors: vec![0; settings.particles],
             lineage: Lineage::new(settings.particles),
+            resized: false,
             scratch: PerThread::new(blocks.len(), || model.scratch()),
             block_sums: blocks.map(|_| M::Sums::default()).collect(),
             sums: M::Sums::default(),
@@ -92,20 +96,34 @@ impl<M: Model> ParticleFilter<M> {
             self.choose_ancestors(Purpose::Resample);
         }
         self.pass_over_blocks(resampled, input, observation);
+        let judged = observation.filter(|observation| self.model.judges_resetting(observation));
+        let judged = judged.map(|observation| self.resetting_log_evidence(observation));
         let weight_update = match observation {
-            Some(observation) => self.update_weights(observation),
+            Some(observation) => self.update_weights(observation, judged),
             None => WeightUpdate::Unobserved,
         };
+        self.lineage.end_step();
         match weight_update {
             WeightUpdate::Unobserved => self.combine_sums(|_| 1.0),
-            WeightUpdate::Weighed { .. } if self.bridge.moved() => self.recompute_sums(input),
+            WeightUpdate::Weighed { .. } if self.bridge.parted() => self.recompute_sums(input),
             WeightUpdate::Weighed { .. } => self.combine_sums(BlockWeights::scale),
             WeightUpdate::Collapsed { .. } => self.recompute_sums(input),
         }
+        let resized = std::mem::take(&mut self.resized);
+        self.report(resampled || resized, weight_update, judged)
+    }
+
+    fn report(
+        &self,
+        resampled: bool,
+        weight_update: WeightUpdate,
+        resetting_log_evidence: Option<f64>,
+    ) -> StepReport {
         StepReport {
             effective_sample_size: self.weights.effective_sample_size(),
             resampled,
             weight_update,
+            resetting_log_evidence,
         }
     }
 
@@ -117,10 +135,7 @@ impl<M: Model> ParticleFilter<M> {
     /// Draws the ancestors by the weights, which become equal.
     fn choose_ancestors(&mut self, purpose: Purpose) {
         let draw = self.draw(purpose);
-        let (model, particles) = (&self.model, &self.particles);
-        self.weights.keep_only(|particle| {
-            model.may_be_copied(&particles.block(particle / BLOCK), particle % BLOCK)
-        });
+        keep_failed_out(&self.model, &self.particles, &mut self.weights);
         self.settings
             .resampling
             .ancestors(self.weights.weights(), draw, &mut self.ancestors);
@@ -142,6 +157,8 @@ impl<M: Model> ParticleFilter<M> {
         if particles == self.settings.particles {
             return Ok(());
         }
+        self.lineage.begin_step();
+        self.resized = true;
         self.ancestors.resize(particles, 0);
         self.choose_ancestors(Purpose::Resize);
         let blocks_before = self.particles.block_count();
@@ -193,13 +210,17 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles.
-    fn update_weights(&mut self, observation: &M::Observation) -> WeightUpdate {
+    fn update_weights(
+        &mut self,
+        observation: &M::Observation,
+        judged: Option<f64>,
+    ) -> WeightUpdate {
         let mut best_log_likelihood = self.unnormalised.best_log_likelihood();
         if self.model.collapsed(best_log_likelihood) {
             best_log_likelihood = self.best_resetting_log_likelihood(observation);
         }
         if !self.model.collapsed(best_log_likelihood)
-            && let Some(log_evidence) = self.weigh_and_move(observation)
+            && let Some(log_evidence) = self.weigh_and_move(observation, judged)
         {
             return WeightUpdate::Weighed { log_evidence };
         }
@@ -210,29 +231,30 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// Weighs the particles by one more observation of the step just made, such as one that arrives
-    /// late. Where no particle explains it, it changes nothing.
-    pub fn observe(&mut self, input: &M::Input, observation: &M::Observation) -> WeightUpdate {
+    /// late; after a collapse, reinitialises them.
+    pub fn observe(&mut self, input: &M::Input, observation: &M::Observation) -> StepReport {
         let (model, weights) = (&self.model, &self.weights);
         self.particles
             .visit(self.unnormalised.blocks_mut(), |block, mut unnormalised| {
                 model.log_likelihood(observation, block, unnormalised.log_likelihood);
                 unnormalised.weigh(weights, block.range());
             });
-        let best_log_likelihood = self.unnormalised.best_log_likelihood();
-        if !self.model.collapsed(best_log_likelihood)
-            && let Some(log_evidence) = self.weights.update(&mut self.unnormalised)
-        {
-            self.recompute_sums(input);
-            return WeightUpdate::Weighed { log_evidence };
-        }
-        WeightUpdate::Collapsed {
-            best_log_likelihood,
-        }
+        let judged = self.model.judges_resetting(observation);
+        let judged = judged.then(|| self.resetting_log_evidence(observation));
+        let weight_update = self.update_weights(observation, judged);
+        self.recompute_sums(input);
+        self.report(false, weight_update, judged)
     }
 
     fn best_resetting_log_likelihood(&mut self, observation: &M::Observation) -> f64 {
         self.weigh_resetting(observation);
         self.weights.best_log_likelihood(&self.resetting)
+    }
+
+    /// ln of the mean of them, by the weights as they are.
+    pub(crate) fn resetting_log_evidence(&mut self, observation: &M::Observation) -> f64 {
+        self.weigh_resetting(observation);
+        self.weights.log_mean_likelihood(&self.resetting)
     }
 
     /// ln of the likelihoods of what reinitialising can improve, and what moves.

@@ -8,10 +8,14 @@
 pub struct Lineage {
     /// For each particle the one of the generation that it descends from.
     roots: Vec<u32>,
+    /// And the one before the latest step.
+    parents: Vec<u32>,
     spare: Vec<u32>,
-    /// Particles of that generation.
+    /// Particles of that generation, and before that step.
     generation: usize,
-    parents: usize,
+    before_step: usize,
+    /// Whether the latest step is over: what follows is of the next one.
+    over: bool,
     counted: Vec<bool>,
 }
 
@@ -19,13 +23,14 @@ impl Lineage {
     /// `particles` that descend from themselves.
     pub(crate) fn new(particles: usize) -> Self {
         let mut lineage = Self {
-            roots: Vec::with_capacity(particles),
+            roots: vec![0; particles],
+            parents: Vec::with_capacity(2 * particles),
             spare: vec![0; particles],
             generation: 0,
-            parents: 0,
+            before_step: 0,
+            over: true,
             counted: Vec::with_capacity(2 * particles),
         };
-        lineage.roots.resize(particles, 0);
         lineage.begin_step();
         lineage.begin_generation();
         lineage
@@ -33,8 +38,8 @@ impl Lineage {
 
     /// Number of particles before the latest step that those of now descend from.
     #[must_use]
-    pub fn parents(&self) -> usize {
-        self.parents
+    pub fn parents(&mut self) -> usize {
+        count_distinct(&self.parents, self.before_step, &mut self.counted)
     }
 
     /// Number of particles of the generation that those of now descend from.
@@ -46,36 +51,53 @@ impl Lineage {
     /// The particles as they are now become the generation that is counted.
     pub(crate) fn begin_generation(&mut self) {
         self.generation = self.roots.len();
-        self.roots
-            .iter_mut()
-            .zip(0..)
-            .for_each(|(root, i)| *root = i);
+        number(&mut self.roots);
     }
 
-    /// The particles as they are now become parents.
+    /// The particles as they are now become parents, unless they follow from those already.
     pub(crate) fn begin_step(&mut self) {
-        self.parents = self.roots.len();
+        if std::mem::replace(&mut self.over, false) {
+            self.before_step = self.roots.len();
+            self.parents.resize(self.before_step, 0);
+            number(&mut self.parents);
+        }
+    }
+
+    /// The next step begins with other parents.
+    pub(crate) fn end_step(&mut self) {
+        self.over = true;
     }
 
     /// Particle i becomes a copy of particle `ancestors[i]`.
     pub(crate) fn follow(&mut self, ancestors: &[u32]) {
-        let before = self.roots.len();
-        self.parents = count_distinct(ancestors, before, &mut self.counted);
-        self.spare.clear();
-        let roots = ancestors.iter().map(|i| self.roots[*i as usize]);
-        self.spare.extend(roots);
-        std::mem::swap(&mut self.roots, &mut self.spare);
+        for ancestry in [&mut self.roots, &mut self.parents] {
+            self.spare.clear();
+            self.spare
+                .extend(ancestors.iter().map(|i| ancestry[*i as usize]));
+            std::mem::swap(ancestry, &mut self.spare);
+        }
     }
 
     /// The same with ancestors of this set or, counted on, of `other`, whose roots are of the same
-    /// generation.
+    /// generation. Each set has parents of its own.
     pub(crate) fn follow_both(&mut self, other: &Self, ancestors: &[u32]) {
         assert_eq!(self.generation, other.generation, "one generation");
-        let here = self.roots.len();
+        let (here, before) = (self.roots.len(), self.before_step as u32);
         self.roots.extend_from_slice(&other.roots);
+        self.parents
+            .extend(other.parents.iter().map(|i| before + i));
+        self.before_step += other.before_step;
         self.follow(ancestors);
         debug_assert_eq!(self.roots.len(), here, "as many as before");
     }
+}
+
+/// Numbers the particles.
+fn number(ancestry: &mut [u32]) {
+    ancestry
+        .iter_mut()
+        .zip(0..)
+        .for_each(|(number, i)| *number = i);
 }
 
 impl Clone for Lineage {
@@ -88,7 +110,9 @@ impl Clone for Lineage {
     /// Allocates nothing where as many were kept.
     fn clone_from(&mut self, other: &Self) {
         self.roots.clone_from(&other.roots);
-        (self.generation, self.parents) = (other.generation, other.parents);
+        self.parents.clone_from(&other.parents);
+        (self.generation, self.before_step) = (other.generation, other.before_step);
+        self.over = other.over;
     }
 }
 
@@ -115,15 +139,20 @@ mod tests {
         assert_eq!((lineage.parents(), lineage.ancestors()), (3, 3));
 
         // copies of one particle are parents of their own, and of one ancestor
+        lineage.end_step();
         lineage.begin_step();
         lineage.follow(&[0, 1, 1, 2]);
         assert_eq!((lineage.parents(), lineage.ancestors()), (3, 2));
+        lineage.end_step();
         lineage.begin_step();
         assert_eq!((lineage.parents(), lineage.ancestors()), (4, 2));
 
-        // another number of particles, then a new generation
+        // another number of particles, and in the same step copies of copies; then a new generation
         lineage.follow(&[3, 3, 0, 0, 1]);
+        lineage.begin_step();
         assert_eq!((lineage.parents(), lineage.ancestors()), (3, 2));
+        lineage.follow(&[0, 1, 1, 0, 2]);
+        assert_eq!((lineage.parents(), lineage.ancestors()), (2, 2));
         lineage.begin_generation();
         assert_eq!(lineage.ancestors(), 5);
     }
@@ -133,7 +162,10 @@ mod tests {
         let (mut a, mut b) = (Lineage::new(3), Lineage::new(3));
         a.follow(&[0, 0, 1]);
         b.follow(&[2, 1, 1]);
-        a.begin_step();
+        for lineage in [&mut a, &mut b] {
+            lineage.end_step();
+            lineage.begin_step();
+        }
 
         // particle 2 of the first set, and 1 and 2 of the other, all of ancestor 1
         a.follow_both(&b, &[2, 4, 5]);

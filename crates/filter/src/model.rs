@@ -91,6 +91,12 @@ pub trait Model: Sync {
         self.log_likelihood(observation, block, out);
     }
 
+    /// Whether [`StepReport::resetting_log_evidence`](crate::StepReport::resetting_log_evidence) is to tell how well
+    /// the particles expected that part of an observation; by default not.
+    fn judges_resetting(&self, _observation: &Self::Observation) -> bool {
+        false
+    }
+
     /// What observations may move beside weighing it; by default nothing.
     fn ensemble(&self) -> EnsembleShape {
         EnsembleShape::default()

@@ -6,10 +6,14 @@
 pub struct StepReport {
     /// The effective sample size at the end of the step, in [1, N].
     pub effective_sample_size: f64,
-    /// Whether the step began with resampling.
+    /// Whether the step began with resampling, or the number of particles changed before it.
     pub resampled: bool,
     /// What the observation did to the weights.
     pub weight_update: WeightUpdate,
+    /// ln of the mean likelihood, by the weights before, of the part of the observation that
+    /// [`reinitialise`](crate::Model::reinitialise) draws the particles around; where the model
+    /// [judges](crate::Model::judges_resetting) it.
+    pub resetting_log_evidence: Option<f64>,
 }
 
 impl StepReport {
@@ -30,8 +34,7 @@ pub enum WeightUpdate {
         /// ln p(observation | observations before), as the particles estimate it.
         log_evidence: f64,
     },
-    /// No particle explained the observation. A step reinitialises the particles around it, with
-    /// equal weights; [`observe`](crate::ParticleFilter::observe) leaves them as they were.
+    /// No particle explained the observation; the particles were reinitialised around it, with equal weights.
     Collapsed {
         /// The largest log-likelihood that a particle gave to the part of the observation that
         /// reinitialising can explain.

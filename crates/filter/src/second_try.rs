@@ -144,7 +144,12 @@ impl<M: Model> ParticleFilter<M> {
 
         // as many of each as their evidence is worth
         let (pool, share) = pool.with(again);
-        self.keep_failed_out();
+        for (weights, particles) in [
+            (&mut self.weights, &self.particles),
+            (&mut rivals.weights, &rivals.particles),
+        ] {
+            keep_failed_out(&self.model, particles, weights);
+        }
         let before = rivals.weights.weights().iter();
         let weights: Vec<f64> = (self.weights.weights().iter().map(|w| w * share))
             .chain(before.map(|w| w * (1.0 - share)))
@@ -165,11 +170,15 @@ impl<M: Model> ParticleFilter<M> {
             share,
         }
     }
+}
 
-    fn keep_failed_out(&mut self) {
-        let (model, particles) = (&self.model, &self.particles);
-        self.weights.keep_only(|particle| {
-            model.may_be_copied(&particles.block(particle / BLOCK), particle % BLOCK)
-        });
-    }
+/// Leaves weight to particles only that may be copied.
+pub(crate) fn keep_failed_out<M: Model>(
+    model: &M,
+    particles: &ParticleSet,
+    weights: &mut LogWeights,
+) {
+    weights.keep_only(|particle| {
+        model.may_be_copied(&particles.block(particle / BLOCK), particle % BLOCK)
+    });
 }

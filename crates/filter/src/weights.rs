@@ -176,6 +176,16 @@ impl LogWeights {
         best_log_likelihood(0, &self.log, log_likelihood)
     }
 
+    /// ln of the weighted mean of likelihoods.
+    pub(crate) fn log_mean_likelihood(&self, log_likelihood: &[f64]) -> f64 {
+        let best = self.best_log_likelihood(log_likelihood);
+        let of_best = log_likelihood.iter().map(|l| libm::exp(l - best));
+        let terms = of_best
+            .zip(&self.linear)
+            .map(|(likelihood, weight)| likelihood * weight);
+        best + libm::log(terms.sum())
+    }
+
     /// The effective sample size `(sum w)^2 / sum w^2` (Kong, Liu & Wong 1994): N for equal
     /// weights, 1 when one particle holds all the mass.
     pub fn effective_sample_size(&self) -> f64 {

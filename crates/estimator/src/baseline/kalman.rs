@@ -125,16 +125,6 @@ fn track_axis(
     // predicted from it
     Ok(rows
         .into_iter()
-        .map(|row| row.map(|at| ahead(&model, at, latency)))
+        .map(|row| row.map(|at| AxisEstimate::from(model.predict(&at.into(), latency))))
         .collect())
-}
-
-fn ahead(model: &ConstantVelocity, at: AxisEstimate, time: f64) -> AxisEstimate {
-    let spread =
-        at.velocity_variance * time * time + model.process_noise * time * time * time / 3.0;
-    AxisEstimate {
-        position: at.position + time * at.velocity,
-        position_variance: at.position_variance + spread,
-        ..at
-    }
 }

@@ -9,12 +9,15 @@ const DARK_AFTER: f64 = 2.5;
 /// How often the camera gives a pose, from the rows so far.
 ///
 /// Where every row has a pose, a row without one is dark. Where other sensors bring rows between the
-/// camera's, as a pusher does that is tracked faster, a row without a pose is none until one is clearly
-/// overdue.
+/// camera's, as a pusher does that is tracked faster, or the camera's poses come after their rows, a row without a
+/// pose is none until one is clearly overdue.
 #[derive(Clone, Debug)]
 pub(crate) struct CameraClock {
-    /// Time of the latest pose (s).
+    /// Time of the latest row (s).
+    now: f64,
+    /// When the latest pose came (s), and whether it came after its row.
     latest: f64,
+    late: bool,
     /// Rows since then.
     rows: u32,
     /// From pose to pose: time (s) and rows, a ring of which `known` are written.
@@ -26,7 +29,9 @@ impl CameraClock {
     /// The first pose comes at `time` (s).
     pub fn new(time: f64) -> Self {
         Self {
+            now: time,
             latest: time,
+            late: false,
             rows: 0,
             intervals: [(0.0, 0); REMEMBERED],
             known: 0,
@@ -35,17 +40,31 @@ impl CameraClock {
 
     /// A row at `time` (s), with a pose or without; whether the camera is dark there.
     pub fn is_dark(&mut self, time: f64, has_pose: bool) -> bool {
+        self.now = time;
         self.rows += 1;
-        let silence = time - self.latest;
         if has_pose {
-            self.intervals[self.known % REMEMBERED] = (silence, self.rows);
-            (self.latest, self.rows, self.known) = (time, 0, self.known + 1);
+            self.pose_came(false);
             return false;
         }
         match self.typical() {
-            Some((interval, rows)) if rows > 1 => silence > DARK_AFTER * interval,
+            Some((interval, rows)) if rows > 1 || self.late => {
+                time - self.latest > DARK_AFTER * interval
+            }
             _ => true,
         }
+    }
+
+    /// After the latest row, a pose of an earlier time comes.
+    pub fn late_pose(&mut self) {
+        if self.now > self.latest {
+            self.pose_came(true);
+        }
+    }
+
+    fn pose_came(&mut self, late: bool) {
+        self.intervals[self.known % REMEMBERED] = (self.now - self.latest, self.rows);
+        self.known += 1;
+        (self.latest, self.late, self.rows) = (self.now, late, 0);
     }
 
     /// Medians of the past intervals and of their rows.
@@ -77,6 +96,23 @@ mod tests {
             dark(100, |row| !(40..43).contains(&row) && row != 70),
             [40, 41, 42, 70]
         );
+    }
+
+    #[test]
+    fn rows_whose_poses_come_late_are_not_dark_until_one_is_overdue() {
+        // each row's pose comes after it, up to row 50
+        let mut clock = CameraClock::new(0.0);
+        let mut dark = Vec::new();
+        for row in 1..60 {
+            if clock.is_dark(0.1 * f64::from(row), false) {
+                dark.push(row);
+            }
+            if row < 50 {
+                clock.late_pose();
+            }
+        }
+        // the first interval is not known before it ends
+        assert_eq!(dark, [1, 52, 53, 54, 55, 56, 57, 58, 59]);
     }
 
     #[test]

@@ -69,8 +69,6 @@ pub(crate) struct ContactFilter<'o> {
     log_evidence: f64,
     /// Camera poses in a row that no particle explained (contact mode).
     unexplained: u32,
-    /// The latest camera pose.
-    shown: Option<Pose>,
     replay: Replay,
     steadiness: Steadiness,
     resting: RestingPose,
@@ -83,7 +81,7 @@ pub(crate) struct ContactFilter<'o> {
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
 const BELIEVED_AFTER: u32 = 4;
 
-/// Evidence of a row below which no particle explains it (contact mode).
+/// Evidence of a camera pose below which no particle explains it (contact mode).
 const UNEXPLAINED: f64 = -10.0;
 
 /// Where an object waits that nothing has touched.
@@ -163,7 +161,6 @@ impl<'o> ContactFilter<'o> {
             collapsed: false,
             log_evidence: 0.0,
             unexplained: 0,
-            shown: None,
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
@@ -181,7 +178,6 @@ impl<'o> ContactFilter<'o> {
 
     /// One row: the step that leads to it, then what was measured there.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
-        let measured = self.without_repeats(measured);
         self.plan_step(&measured, drive);
         self.remember_observation();
         self.observation.pose = measured.object;
@@ -191,26 +187,29 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         let tactile = measured.tactile.iter().copied();
         self.observation.tactile.extend(tactile);
-        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        let contact = self.mode() == Mode::Contact;
         self.observation.felt = contact;
         self.touched |= self.latest.any_contact();
         self.observation.moves = contact && self.moves.camera && self.touched;
 
-        let seen = self.observation.pose.is_some();
-        let again = self.moves.second_tries;
-        self.replay.before(&self.filter, seen || !again);
+        let tries = self.moves.second_tries && self.plan.is_dark();
+        self.replay.before(&self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
-        self.collapsed = report.collapsed();
-        self.collapses += u32::from(self.collapsed);
+        self.take(&report);
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.log_evidence += log_evidence;
         }
         let row = (&self.plan, &self.observation);
-        self.log_evidence += self.replay.after(&mut self.filter, row, &report);
-        self.judge_camera(&report);
-        self.learn_where_it_rests();
-        self.report(&report, measured.object.is_some());
+        let tried = self.replay.after(&mut self.filter, row, &report);
+        self.log_evidence += tried.unwrap_or_default();
+        self.summarise();
+        self.latest.collapsed = Some(self.collapsed);
+        self.latest.resampled = Some(report.resampled || tried.is_some());
+        self.latest.visual = measured.object.is_some();
+        if self.latest.visual {
+            self.filter.count_ancestors_from_now();
+        }
         &self.latest
     }
 
@@ -224,6 +223,11 @@ impl<'o> ContactFilter<'o> {
         resized.expect("a u32 from 1 up is a number of particles");
     }
 
+    /// Rules of the filter.
+    pub fn mode(&self) -> Mode {
+        self.filter.model().columns().mode()
+    }
+
     /// The number of particles.
     pub fn count(&self) -> NonZero<u32> {
         let count = u32::try_from(self.filter.particles().len());
@@ -231,21 +235,10 @@ impl<'o> ContactFilter<'o> {
         count.expect("a particle set is numbered in u32 and never empty")
     }
 
-    /// In contact mode, a pose equal to the one before is that frame again, not a new measurement.
-    fn without_repeats<'a>(&mut self, measured: Measured<'a>) -> Measured<'a> {
-        let mode = self.filter.model().columns().mode();
-        let repeated = mode == Mode::Contact && measured.object == self.shown;
-        self.shown = measured.object.or(self.shown);
-        Measured {
-            object: measured.object.filter(|_| !repeated),
-            ..measured
-        }
-    }
-
     /// Keeps what weighed the particles last for them to learn of, in contact mode.
     fn remember_observation(&mut self) {
         std::mem::swap(&mut self.plan.seen, &mut self.observation);
-        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        let contact = self.mode() == Mode::Contact;
         if !contact || self.collapsed {
             self.plan.seen.pose = None;
         }
@@ -268,7 +261,7 @@ impl<'o> ContactFilter<'o> {
 
     /// What particles that nothing has moved yet are drawn anew from, in contact mode.
     fn where_it_rests(&self) -> Option<RestingPose> {
-        let contact = self.filter.model().columns().mode() == Mode::Contact;
+        let contact = self.mode() == Mode::Contact;
         (contact && self.moves.waiting).then_some(self.resting)
     }
 
@@ -276,21 +269,29 @@ impl<'o> ContactFilter<'o> {
     fn look_back(&mut self, time: f64) {
         self.observation.time = time;
         self.observation.past.clear();
-        if self.filter.model().columns().mode() == Mode::Contact {
+        if self.mode() == Mode::Contact {
             self.observation.past.extend(self.history.kept());
         }
     }
 
-    /// Counts the poses in a row that no particle explains; after some, they are no outliers.
+    /// Takes what a row's pose, on time or late, did to the particles.
+    fn take(&mut self, report: &StepReport) {
+        self.collapsed = report.collapsed();
+        self.collapses += u32::from(self.collapsed);
+        self.judge_camera(report);
+        self.learn_where_it_rests();
+    }
+
+    /// Counts the poses in a row that no particle explains; after some, they are no outliers, until one is explained
+    /// or the particles are drawn anew.
     fn judge_camera(&mut self, report: &StepReport) {
-        if self.observation.pose.is_none() {
+        let Some(log_evidence) = report.resetting_log_evidence else {
             return;
-        }
+        };
         let before = self.unexplained;
-        self.unexplained = match report.weight_update {
-            WeightUpdate::Weighed { log_evidence } if log_evidence < UNEXPLAINED => before + 1,
-            WeightUpdate::Collapsed { .. } => before,
-            _ => 0,
+        self.unexplained = match log_evidence < UNEXPLAINED && !self.collapsed {
+            true => before + 1,
+            false => 0,
         };
         let trusted = self.unexplained >= BELIEVED_AFTER;
         if trusted != (before >= BELIEVED_AFTER) {
@@ -326,7 +327,7 @@ impl<'o> ContactFilter<'o> {
     }
 
     /// Weighs the particles by a pose that arrives late, against their own poses at its time, from
-    /// which the latency has not been taken yet. A pose that no particle explains changes nothing.
+    /// which the latency has not been taken yet.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         let PoseAt { time, pose, .. } = late;
         self.observation.pose = Some(pose);
@@ -336,24 +337,13 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         self.observation.moves = false;
-        let _ = self.filter.observe(&self.plan, &self.observation);
-        self.collapsed = false;
-        self.learn_where_it_rests();
+        let report = self.filter.observe(&self.plan, &self.observation);
+        self.take(&report);
+        self.camera.late_pose();
         self.replay.forget();
         self.summarise();
-        &self.latest
-    }
-
-    /// Writes the estimate at the row just made.
-    fn report(&mut self, report: &StepReport, visual: bool) {
-        self.summarise();
-        self.latest.ess = Some(report.effective_sample_size);
-        self.latest.resampled = Some(report.resampled);
         self.latest.collapsed = Some(self.collapsed);
-        self.latest.visual = visual;
-        if visual {
-            self.filter.count_ancestors_from_now();
-        }
+        &self.latest
     }
 
     /// Writes what the particles amount to.

@@ -333,15 +333,19 @@ impl Propagation {
         let threshold = Lanes::splat(setup.tactile.touch_force * last_h);
         let touch_gap = Lanes::splat(setup.uncertainty.touch_gap);
         for (j, reading) in plan.tactile.iter().enumerate() {
-            let Some(reading) = *reading else { continue };
             for chunk in 0..block.len().div_ceil(LANES) {
+                let mut belief = channel.start();
+                load_columns(block, columns.sensor(j), chunk, belief.fields_mut());
+                belief = channel.later(belief, freed);
+                let Some(reading) = *reading else {
+                    store_columns(block, columns.sensor(j), chunk, belief.fields());
+                    continue;
+                };
                 let impulse = self.work.normal_impulses(chunk, Body::Fixel(j)) / threshold;
                 let gap = self.work.gaps(chunk, Body::Fixel(j)) / touch_gap;
                 let idle = flag(&block.as_block(), Columns::IDLE, chunk);
                 let touch = felt_or_idle(impulse, gap, idle);
-                let mut before = channel.start();
-                load_columns(block, columns.sensor(j), chunk, before.fields_mut());
-                let (after, log_likelihood) = channel.read(before, freed, touch, reading);
+                let (after, log_likelihood) = channel.read(belief, touch, reading);
                 store_columns(block, columns.sensor(j), chunk, after.fields());
                 let column = columns.felt_log_likelihood();
                 let so_far = load_chunk(block.column(column), chunk, 0.0);

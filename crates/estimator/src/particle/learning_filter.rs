@@ -3,7 +3,7 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::Friction;
+use stickslip_dynamics::{Friction, Pose};
 
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
@@ -30,6 +30,8 @@ pub(crate) struct LearningFilter<'o> {
     learning: Learning<'o>,
     /// What was known of friction when the particles that learn it last looked.
     known: Option<KnownFriction>,
+    /// The latest camera pose.
+    shown: Pose,
     /// Time of the latest row (s).
     time: f64,
 }
@@ -80,12 +82,17 @@ impl<'o> LearningFilter<'o> {
             },
             known: KnownFriction::of(poses.latest()).filter(|_| learns),
             poses,
+            shown: start.pose,
             time: start.time,
         })
     }
 
     /// One row: the step that leads to it, then what was measured there.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        let measured = Measured {
+            object: measured.object.filter(|pose| self.is_new(*pose)),
+            ..measured
+        };
         let waited = self.poses.waiting_at(self.time);
         self.time = measured.time;
         self.poses.step(measured, drive);
@@ -102,8 +109,8 @@ impl<'o> LearningFilter<'o> {
                 let row = learner.step(Measured { object, ..measured }, drive);
                 if row.visual {
                     self.known = KnownFriction::of(row);
+                    self.poses.count_steps_of(row);
                 }
-                self.poses.count_steps_of(row);
             }
             // particles that have felt nothing have the prior
             Learning::AtContact(_) if self.poses.latest().visual => {
@@ -117,15 +124,24 @@ impl<'o> LearningFilter<'o> {
 
     /// Weighs the particles by a pose that arrives late; those that learn, where the object has not come to rest since.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
+        if !self.is_new(late.pose) {
+            return self.latest();
+        }
         self.poses.weigh_late(late);
-        if let Learning::Underway(learner) = &mut self.learning {
-            if self.poses.latest().moves() || learner.latest().moves() {
-                self.known = KnownFriction::of(learner.weigh_late(late));
-            }
-            self.poses.count_steps_of(learner.latest());
+        if let Learning::Underway(learner) = &mut self.learning
+            && (self.poses.latest().moves() || learner.latest().moves())
+        {
+            self.known = KnownFriction::of(learner.weigh_late(late));
         }
         self.tell_friction();
         self.latest()
+    }
+
+    /// Whether a camera pose is a new measurement: in contact mode, one that equals the one before is that frame
+    /// again.
+    fn is_new(&mut self, pose: Pose) -> bool {
+        let before = std::mem::replace(&mut self.shown, pose);
+        pose != before || self.poses.mode() == Mode::Paper
     }
 
     /// The camera will show no more: what is known of friction stays as it is.

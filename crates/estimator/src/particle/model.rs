@@ -270,6 +270,10 @@ impl Model for ContactModel<'_> {
         );
     }
 
+    fn judges_resetting(&self, observation: &Observation) -> bool {
+        self.columns().mode() == Mode::Contact && observation.pose.is_some()
+    }
+
     fn ensemble(&self) -> EnsembleShape {
         match self.columns().mode() {
             Mode::Paper => EnsembleShape::default(),

@@ -1,5 +1,7 @@
 //! What the sensors read at one row: [`Observation`].
 
+use std::mem::take;
+
 use stickslip_dynamics::Pose;
 
 use crate::covariance::PoseCovariance;
@@ -53,14 +55,29 @@ pub struct Observation {
 impl Observation {
     /// Becomes a copy of `other`, in the memory that it has.
     pub(crate) fn overwrite(&mut self, other: &Self) {
-        self.pose = other.pose;
-        self.covariance = other.covariance;
-        self.time = other.time;
-        self.past.clone_from(&other.past);
-        self.latency = other.latency;
-        self.tactile.clone_from(&other.tactile);
-        self.felt = other.felt;
-        self.moves = other.moves;
+        let (mut past, mut tactile) = (take(&mut self.past), take(&mut self.tactile));
+        past.clone_from(&other.past);
+        tactile.clone_from(&other.tactile);
+        let Self {
+            past: _,
+            tactile: _,
+            pose,
+            covariance,
+            time,
+            latency,
+            felt,
+            moves,
+        } = *other;
+        *self = Self {
+            past,
+            tactile,
+            pose,
+            covariance,
+            time,
+            latency,
+            felt,
+            moves,
+        };
     }
 
     /// True where nothing was read.

@@ -21,7 +21,7 @@ pub struct SolvedStep<'a> {
     pub report: Report,
 }
 
-/// Is shown the time steps of a run, substeps included: those that count, with all contacts that
+/// Is shown the time steps of a run, substeps and steps that are made again included, with all contacts that
 /// could act. Steps of the particles that learn friction are not shown.
 ///
 /// The steps of a block of 128 particles come in order from one thread; those of a
@@ -31,7 +31,7 @@ pub trait Observer: Debug + Sync {
     fn on_step(&self, step: &SolvedStep<'_>);
 
     /// What the coming step of up to 128 particles starts from, noise included; lanes past the last
-    /// particle repeat it.
+    /// particle hold any numbers.
     fn before_step(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let _ = (input, particles);
     }

@@ -47,10 +47,10 @@ const EARLY: u32 = 16;
 const MUCH_WORSE: f64 = 32.0;
 
 impl Replay {
-    /// Before a step: remembers the particles where it is the first one in the dark, or where the
-    /// memory is full.
-    pub fn before(&mut self, filter: &ParticleFilter<ContactModel<'_>>, seen: bool) {
-        if seen || filter.model().columns().mode() == Mode::Paper {
+    /// Before a step, in the dark or not: remembers the particles where it is the first one in the dark, or where
+    /// the memory is full.
+    pub fn before(&mut self, filter: &ParticleFilter<ContactModel<'_>>, dark: bool) {
+        if !dark || filter.model().columns().mode() == Mode::Paper {
             self.dark = false;
             return;
         }
@@ -74,26 +74,24 @@ impl Replay {
     }
 
     /// After it. Where the particles explain what was measured in the dark too badly, makes all its
-    /// steps again; returns by how much ln of the evidence has changed.
+    /// steps again; returns by how much ln of the evidence has changed then.
     pub fn after(
         &mut self,
         filter: &mut ParticleFilter<ContactModel<'_>>,
         (plan, observation): (&StepPlan, &Observation),
         report: &StepReport,
-    ) -> f64 {
+    ) -> Option<f64> {
         if !self.dark {
-            return 0.0;
+            return None;
         }
         self.remember(plan, observation);
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.pool.log_evidence += log_evidence;
         }
         if self.pool.log_evidence >= self.limit || self.attempts == ATTEMPTS {
-            return 0.0;
+            return None;
         }
-        let Some(checkpoint) = &self.checkpoint else {
-            return 0.0;
-        };
+        let checkpoint = self.checkpoint.as_ref()?;
         self.attempts += 1;
         self.tries += 1;
         let steps = self.steps[..self.made].iter();
@@ -102,7 +100,7 @@ impl Replay {
         let tried = filter.try_again(checkpoint, steps, before, u64::from(self.attempts));
         self.pool = tried.pool;
         self.limit = self.pool.log_evidence - self.fall();
-        self.pool.log_evidence - before.log_evidence
+        Some(self.pool.log_evidence - before.log_evidence)
     }
 
     /// By how much ln of the evidence has to fall for the next attempt.
@@ -114,9 +112,9 @@ impl Replay {
         }
     }
 
-    /// Forgets the blackout: something else was learnt of it.
+    /// Steps made so far are not made again: something else was learnt since, or there are other particles.
     pub fn forget(&mut self) {
-        self.dark = false;
+        self.made = LONGEST;
     }
 
     /// How often steps were made again.

@@ -25,7 +25,11 @@ impl Steadiness {
 
     /// The pusher's velocity at `time` (s), where it has been about that for the whole window.
     pub fn velocity(&mut self, time: f64, substeps: &[StepInput]) -> Option<[f64; 2]> {
-        let twist = substeps.last()?.pusher?.twist;
+        let Some(motion) = substeps.last().and_then(|step| step.pusher) else {
+            self.since = None;
+            return None;
+        };
+        let twist = motion.twist;
         let now = [twist.vx, twist.vy];
         let even = |before: [f64; 2]| {
             let [dx, dy] = [now[0] - before[0], now[1] - before[1]];
@@ -82,5 +86,17 @@ mod tests {
             assert_eq!(steadiness.velocity(time, &step(0.0, 0.0)), None);
         }
         assert_eq!(steadiness.velocity(1.5, &[]), None);
+
+        // lifted, and put down again at the same velocity
+        let lifted = [StepInput {
+            pusher: None,
+            ..step(0.0, 0.0)[0]
+        }];
+        let mut at = |time: f64, step: &[StepInput]| steadiness.velocity(time, step);
+        assert_eq!(at(2.0, &step(0.02, 0.0)), None);
+        assert!(at(2.4, &step(0.02, 0.0)).is_some());
+        assert_eq!(at(3.0, &lifted), None);
+        assert_eq!(at(8.0, &step(0.02, 0.0)), None);
+        assert!(at(8.4, &step(0.02, 0.0)).is_some());
     }
 }

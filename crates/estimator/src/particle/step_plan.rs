@@ -1,5 +1,7 @@
 //! The step to one row, as the model gets it: [`StepPlan`].
 
+use std::mem::take;
+
 use stickslip_dynamics::StepInput;
 
 use crate::particle::observation::Observation;
@@ -26,7 +28,7 @@ pub struct StepPlan {
     pub parameter_noise: ParameterNoise,
     /// Steps since the one that drew the noise which this step shares with it; 0 where it draws its own.
     pub noise_age: u64,
-    /// The pusher's velocity (m/s), where it has been the same for as long as poses are kept (contact
+    /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag (contact
     /// mode).
     pub steady: Option<[f64; 2]>,
     /// History slot for the pose at the end of the step, where past poses are kept.
@@ -48,17 +50,37 @@ pub struct StepPlan {
 impl StepPlan {
     /// Becomes a copy of `other`, in the memory that it has.
     pub(crate) fn overwrite(&mut self, other: &Self) {
-        self.substeps.clone_from(&other.substeps);
-        self.driven = other.driven;
-        self.parameter_noise = other.parameter_noise;
-        self.noise_age = other.noise_age;
-        self.steady = other.steady;
-        self.slot = other.slot;
-        self.seen.overwrite(&other.seen);
-        self.resting = other.resting;
-        self.tactile.clone_from(&other.tactile);
-        self.reference = other.reference;
-        self.second_try = other.second_try;
+        let (mut substeps, mut tactile) = (take(&mut self.substeps), take(&mut self.tactile));
+        let mut seen = take(&mut self.seen);
+        substeps.clone_from(&other.substeps);
+        tactile.clone_from(&other.tactile);
+        seen.overwrite(&other.seen);
+        let Self {
+            substeps: _,
+            tactile: _,
+            seen: _,
+            driven,
+            parameter_noise,
+            noise_age,
+            steady,
+            slot,
+            resting,
+            reference,
+            second_try,
+        } = *other;
+        *self = Self {
+            substeps,
+            tactile,
+            seen,
+            driven,
+            parameter_noise,
+            noise_age,
+            steady,
+            slot,
+            resting,
+            reference,
+            second_try,
+        };
     }
 
     /// Length of the step (s).

@@ -69,44 +69,53 @@ impl TouchChannel {
         1.0 - libm::exp(-self.recovery * h)
     }
 
-    /// After some time, in which what is stuck is [`freed`](Self::freed), and a reading of a sensor that is
-    /// touched with probability `touch`: what is believed, and the log-likelihood of the reading.
+    /// What is believed of a sensor after some time, in which what is stuck is [`freed`](Self::freed).
+    #[inline(always)]
+    pub fn later<const W: usize>(
+        &self,
+        SensorBelief { stuck, felt_from }: SensorBelief<W>,
+        freed: f64,
+    ) -> SensorBelief<W> {
+        let one = Lanes::splat(1.0);
+        let repaired = (stuck[0] + stuck[1]) * freed * (1.0 - self.share[0] - self.share[1]);
+        let later = |stuck, share| stuck + (Lanes::splat(share) - stuck) * freed;
+        let [at_zero, at_one] = stuck;
+        let stuck = [later(at_zero, self.share[0]), later(at_one, self.share[1])];
+        let works = one - stuck[0] - stuck[1];
+        // a sensor that was stuck has told nothing of the contact
+        let known = (one - repaired / works) * (1.0 - freed);
+        let quarter = Lanes::splat(QUARTER);
+        let known_of = |share| quarter + known * (share - quarter);
+        let [a, b, c, d] = felt_from;
+        SensorBelief {
+            stuck,
+            felt_from: [known_of(a), known_of(b), known_of(c), known_of(d)],
+        }
+    }
+
+    /// A reading of a sensor that is touched with probability `touch`: what is believed then, and the log-likelihood of
+    /// the reading.
     #[inline(always)]
     pub fn read<const W: usize>(
         &self,
-        SensorBelief {
-            stuck,
-            mut felt_from,
-        }: SensorBelief<W>,
-        freed: f64,
+        SensorBelief { stuck, felt_from }: SensorBelief<W>,
         touch: Lanes<W>,
         reading: bool,
     ) -> (SensorBelief<W>, Lanes<W>) {
         let one = Lanes::splat(1.0);
-
-        // what may have happened since the last reading
-        let repaired = (stuck[0] + stuck[1]) * freed * (1.0 - self.share[0] - self.share[1]);
-        let later = |stuck, share| stuck + (Lanes::splat(share) - stuck) * freed;
-        let at_zero = later(stuck[0], self.share[0]);
-        let at_one = later(stuck[1], self.share[1]);
-        let works = one - at_zero - at_one;
-        // a sensor that was stuck has told nothing of the contact
-        let known = (one - repaired / works) * (1.0 - freed);
-
-        // Bayes' rule
         let [of_untouched, of_touched] = self
             .reads_one
             .map(|one| if reading { one } else { 1.0 - one });
         let of_stuck_at = |at: bool| if reading == at { 1.0 - SLIP } else { SLIP };
-        let (of_zero, of_one) = (at_zero * of_stuck_at(false), at_one * of_stuck_at(true));
-        let quarter = Lanes::splat(QUARTER);
-        for (k, share) in felt_from.iter_mut().enumerate() {
-            *share = quarter + known * (*share - quarter);
+        let (of_zero, of_one) = (stuck[0] * of_stuck_at(false), stuck[1] * of_stuck_at(true));
+        let works = one - stuck[0] - stuck[1];
+        let mut of_quarters = felt_from;
+        for (k, share) in of_quarters.iter_mut().enumerate() {
             let felt = touch * QUARTERS as f64 - Lanes::splat(k as f64);
             let felt = felt.max(Lanes::ZERO).min(one);
             *share = *share * ((one - felt) * of_untouched + felt * of_touched);
         }
-        let [a, b, c, d] = felt_from;
+        let [a, b, c, d] = of_quarters;
         let of_works = a + b + c + d;
         let likelihood = works * of_works + of_zero + of_one;
         let after = SensorBelief {
@@ -225,6 +234,19 @@ mod tests {
         TouchChannel::new(&Tactile::default())
     }
 
+    /// What is believed after `h` seconds and a reading, and the log-likelihood of that.
+    fn read_after(
+        h: f64,
+        belief: SensorBelief<1>,
+        touch: f64,
+        reading: bool,
+    ) -> (SensorBelief<1>, f64) {
+        let channel = channel();
+        let later = channel.later(belief, channel.freed(h));
+        let (after, log_likelihood) = channel.read(later, Lanes([touch]), reading);
+        (after, log_likelihood.0[0])
+    }
+
     /// log-likelihood of `rows` equal readings of a contact.
     fn evidence(rows: usize, touch: f64, reading: bool) -> f64 {
         evidence_of(std::iter::repeat_n(reading, rows), touch)
@@ -233,9 +255,8 @@ mod tests {
     fn evidence_of(readings: impl Iterator<Item = bool>, touch: f64) -> f64 {
         let (mut belief, mut sum) = (channel().start(), 0.0);
         for reading in readings {
-            let (next, log_likelihood) =
-                channel().read(belief, channel().freed(1.0 / 30.0), Lanes([touch]), reading);
-            (belief, sum) = (next, sum + log_likelihood.0[0]);
+            let (next, log_likelihood) = read_after(1.0 / 30.0, belief, touch, reading);
+            (belief, sum) = (next, sum + log_likelihood);
         }
         sum
     }
@@ -250,11 +271,7 @@ mod tests {
                     for (to, number) in belief.fields_mut().into_iter().zip(numbers) {
                         *to = Lanes([number]);
                     }
-                    let freed = channel().freed(0.1);
-                    let of = |reading| {
-                        let read = channel().read(belief, freed, Lanes([touch]), reading);
-                        libm::exp(read.1.0[0])
-                    };
+                    let of = |reading| libm::exp(read_after(0.1, belief, touch, reading).1);
                     assert!(
                         (of(false) + of(true) - 1.0).abs() < 1e-12,
                         "{touch}, {belief:?}"
@@ -296,9 +313,8 @@ mod tests {
 
     #[test]
     fn a_wrong_reading_after_right_ones_makes_the_sensor_suspect() {
-        let (channel, touched) = (channel(), Lanes([1.0]));
-        let (before, _) = channel.read(channel.start(), channel.freed(0.03), touched, true);
-        let (after, _) = channel.read(before, channel.freed(0.03), touched, false);
+        let (before, _) = read_after(0.03, channel().start(), 1.0, true);
+        let (after, _) = read_after(0.03, before, 1.0, false);
         assert!(
             after.stuck[0].0[0] > 10.0 * before.stuck[0].0[0]
                 && after.stuck[1].0[0] < before.stuck[1].0[0],
@@ -331,9 +347,8 @@ mod tests {
             let (mut belief, mut log_likelihood) = (channel.start(), 0.0);
             for (row, touch) in touches.into_iter().enumerate() {
                 let reading = read >> (3 - row) & 1 == 1;
-                let (next, more) =
-                    channel.read(belief, channel.freed(0.4), Lanes([touch]), reading);
-                (belief, log_likelihood) = (next, log_likelihood + more.0[0]);
+                let (next, more) = read_after(0.4, belief, touch, reading);
+                (belief, log_likelihood) = (next, log_likelihood + more);
             }
             libm::exp(log_likelihood)
         };

@@ -135,6 +135,7 @@ impl Axis {
             velocity: 0.0,
             position_variance: 0.0,
             velocity_variance: 0.0,
+            covariance: 0.0,
         };
         Self {
             state,

@@ -126,6 +126,7 @@ fn bridge(time: &[f64], measured: &[Option<f64>]) -> Vec<AxisEstimate> {
         velocity: velocity(row),
         position_variance: 0.0,
         velocity_variance: 0.0,
+        covariance: 0.0,
     };
     (0..time.len()).map(at).collect()
 }

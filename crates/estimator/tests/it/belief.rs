@@ -25,10 +25,15 @@ fn head_on_with(mode: Mode, seed: u64) -> (Setup, Estimate) {
     setup.uncertainty.well_measured = 1.0;
     let stopped = |time: f64| time.min(3.5);
     let pusher = |time: f64| Some(Pose::new(-0.036 + SPEED * stopped(time), 0.0, 0.0));
-    let log = log(140, |_| Some(Pose::default()), pusher);
+    let log = log(140, frame, pusher);
     let hidden = Occlusion::Rows { from: 15, to: None };
     let estimate = estimate(&setup, &log, (mode, seed), hidden);
     (setup, estimate)
+}
+
+/// The object where it waits, in frames that differ, so that each is a measurement.
+fn frame(time: f64) -> Option<Pose> {
+    Some(Pose::new(1e-9 * time, 0.0, 0.0))
 }
 
 fn estimate(setup: &Setup, log: &Log, (mode, seed): (Mode, u64), occlusion: Occlusion) -> Estimate {
@@ -178,7 +183,7 @@ fn what_touches_while_nothing_moves_goes_on_touching() {
     };
     let noise = |time: f64| 1.5e-4 * libm::sin(1e3 * time * time);
     let pusher = |time: f64| Some(Pose::new(-0.036 + way(time) + noise(time), 0.0, 0.0));
-    let log = log(150, |_| Some(Pose::default()), pusher);
+    let log = log(150, frame, pusher);
     let hidden = Occlusion::Rows { from: 2, to: None };
     let estimate = estimate(&setup, &log, (Mode::Contact, 0), hidden);
     let touches = |row: &EstimateRow| row.contact_pusher.expect("a share");

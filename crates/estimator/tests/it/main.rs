@@ -15,6 +15,7 @@ mod prior_sample;
 mod random_force;
 mod refused;
 mod rivals;
+mod rows;
 mod tactile;
 mod track;
 mod tracker;

@@ -34,6 +34,8 @@ pub struct AxisEstimate {
     pub position_variance: f64,
     /// Variance of the velocity \[unit²/s²\].
     pub velocity_variance: f64,
+    /// Covariance of position and velocity \[unit²/s\].
+    pub covariance: f64,
 }
 
 /// A series' forward pass.
@@ -251,6 +253,21 @@ impl From<Gaussian<2>> for AxisEstimate {
             velocity: state.mean[1],
             position_variance: state.covariance[(0, 0)],
             velocity_variance: state.covariance[(1, 1)],
+            covariance: state.covariance[(0, 1)],
+        }
+    }
+}
+
+impl From<AxisEstimate> for Gaussian<2> {
+    fn from(axis: AxisEstimate) -> Self {
+        let (p, v, both) = (
+            axis.position_variance,
+            axis.velocity_variance,
+            axis.covariance,
+        );
+        Gaussian {
+            mean: Vector2::new(axis.position, axis.velocity),
+            covariance: Matrix2::new(p, both, both, v),
         }
     }
 }

@@ -35,6 +35,7 @@ fn mixture(parts: &[(f64, AxisEstimate)]) -> AxisEstimate {
         velocity,
         position_variance: variance(&|e| e.position_variance + (e.position - position).powi(2)),
         velocity_variance: variance(&|e| e.velocity_variance + (e.velocity - velocity).powi(2)),
+        covariance: variance(&|e| e.covariance + (e.position - position) * (e.velocity - velocity)),
     }
 }
 
@@ -46,6 +47,7 @@ fn distance(got: AxisEstimate, exact: AxisEstimate) -> f64 {
         .max(mean(got.velocity, exact.velocity, exact.velocity_variance))
         .max(relative(got.position_variance, exact.position_variance))
         .max(relative(got.velocity_variance, exact.velocity_variance))
+        .max(relative(got.covariance, exact.covariance))
 }
 
 #[test]

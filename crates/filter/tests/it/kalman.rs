@@ -49,6 +49,7 @@ fn batch(
         velocity: mean[2 * row + 1],
         position_variance: inverse[(2 * row, 2 * row)],
         velocity_variance: inverse[(2 * row + 1, 2 * row + 1)],
+        covariance: inverse[(2 * row, 2 * row + 1)],
     };
     (0..n).map(at).collect()
 }
@@ -67,6 +68,7 @@ fn assert_close(row: usize, got: AxisEstimate, exact: AxisEstimate) {
             got.velocity_variance,
             exact.velocity_variance,
         ),
+        ("covariance", got.covariance, exact.covariance),
     ] {
         assert!(
             (got - exact).abs() < 1e-9 * exact.abs().max(1.0),

@@ -1,0 +1,252 @@
+//! What a row brings is used once, for what it tells, and what its estimate says of the particles is true of them.
+
+use std::num::NonZero;
+
+use crate::common::{log, setup};
+use stickslip::dynamics::Pose;
+use stickslip::*;
+
+/// Where the pusher is far away.
+const AWAY: Option<Pose> = Some(Pose {
+    x: -0.1,
+    y: 0.0,
+    theta: 0.0,
+});
+
+fn tracker(setup: &Setup, particles: usize) -> Tracker<'static> {
+    let options = TrackerOptions {
+        particles,
+        ..TrackerOptions::default()
+    };
+    Tracker::new(setup, &options).expect("a tracker")
+}
+
+/// A disc that slips past a fixel, as its scene says, and the same in a scene where everything sticks.
+fn sticky_and_slippery() -> (Setup, Log) {
+    let mut setup = setup(&[[0.032, -0.022]]);
+    let nominal = &mut setup.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
+    let beside = |time: f64| Some(Pose::new(-0.0348 + 0.02 * time, 0.004, 0.0));
+    let mut log = log(110, |_| Some(Pose::default()), beside);
+    let options = RunOptions {
+        method: Method::Nominal,
+        ..RunOptions::default()
+    };
+    let truth = run(&setup, &log, &options, &mut |_| ()).expect("a simulation");
+    log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
+    let nominal = &mut setup.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (0.8, 0.8);
+    (setup, log)
+}
+
+#[test]
+fn the_effective_sample_size_is_that_of_the_weights_also_after_a_second_try() {
+    let (setup, log) = sticky_and_slippery();
+    let mut tracker = tracker(&setup, 20);
+    for k in 0..log.len() {
+        let row = Row {
+            object: log.object[k].filter(|_| k < 5),
+            ..log.row(k)
+        };
+        let before = tracker.second_tries();
+        let estimate = tracker.push(&row).expect("a row").clone();
+        if k > 0 {
+            let particles = tracker.particles().expect("particles");
+            let squares: f64 = particles.weights().iter().map(|w| w * w).sum();
+            let ess = estimate.ess.expect("a size");
+            assert!((ess * squares - 1.0).abs() < 1e-9, "row {k}: {ess}");
+        }
+        if tracker.second_tries() > before {
+            assert_eq!(estimate.resampled, Some(true), "row {k}");
+        }
+    }
+    assert!(tracker.second_tries() > 3);
+}
+
+#[test]
+fn copies_made_for_another_number_of_particles_are_no_distinct_ones() {
+    let (setup, log) = sticky_and_slippery();
+    let mut tracker = tracker(&setup, 64);
+    for k in 0..30 {
+        let _ = tracker.push(&log.row(k)).expect("a row");
+    }
+    let many = |_: StepSize| NonZero::new(500).expect("not 0");
+    let estimate = tracker.push_sized(&log.row(30), many).expect("a row");
+    assert!(estimate.distinct.expect("a count") <= 64, "{estimate:?}");
+    assert_eq!(estimate.resampled, Some(true));
+}
+
+/// Spread of x after a first pose and `again`, how often it is shown in the rows after it.
+fn spread_after(mut again: impl FnMut(&mut Tracker<'_>, Row)) -> f64 {
+    let mut setup = setup(&[]);
+    setup.uncertainty.camera_noise = 0.0;
+    let mut tracker = tracker(&setup, 500);
+    let row = |time: f64, object| Row {
+        time,
+        object,
+        pusher: AWAY,
+        ..Row::default()
+    };
+    let _ = tracker
+        .push(&row(0.0, Some(Pose::default())))
+        .expect("a row");
+    again(&mut tracker, row(0.1, Some(Pose::default())));
+    let estimate = tracker.push(&row(0.2, None)).expect("a row");
+    estimate.spread.expect("a spread").pose.x
+}
+
+#[test]
+fn a_frame_that_comes_again_tells_nothing_new() {
+    let once = spread_after(|_, _| ());
+    let first_again = spread_after(|tracker, row| {
+        let estimate = tracker.push(&row).expect("a row");
+        assert!(!estimate.visual);
+    });
+    let late_again = spread_after(|tracker, row| {
+        let later = Row {
+            object: None,
+            ..row.clone()
+        };
+        let _ = tracker.push(&later).expect("a row");
+        let _ = tracker.push(&row).expect("a late row");
+    });
+    for again in [first_again, late_again] {
+        assert!((again / once - 1.0).abs() < 0.1, "{again}, {once}");
+    }
+}
+
+#[test]
+fn a_camera_whose_every_pose_comes_late_is_believed_as_one_that_is_on_time() {
+    let setup = setup(&[]);
+    for late in [false, true] {
+        let mut tracker = tracker(&setup, 500);
+        for k in 0..60 {
+            // moved by hand at row 20
+            let x = if k < 20 { 0.0 } else { 0.05 };
+            let object = Some(Pose::new(x + 1e-6 * f64::from(k), 0.0, 0.0));
+            let time = f64::from(k) / 30.0;
+            let on_time = Row {
+                time,
+                object,
+                pusher: AWAY,
+                ..Row::default()
+            };
+            if !late || k == 0 {
+                let _ = tracker.push(&on_time).expect("a row");
+                continue;
+            }
+            let unseen = Row {
+                object: None,
+                ..on_time.clone()
+            };
+            let _ = tracker.push(&unseen).expect("a row");
+            let after = Row {
+                time: time - 0.01,
+                ..on_time
+            };
+            let _ = tracker.push(&after).expect("a late row");
+        }
+        let x = tracker.estimate().pose.expect("a pose").x;
+        assert!((x - 0.05).abs() < 1e-3, "late {late}: {x}");
+        assert_eq!(tracker.collapses(), 1, "late {late}");
+    }
+}
+
+/// The object is jammed between pusher and fixel, as the camera shows it, and the pusher's log creeps on; one pose is
+/// wrong.
+#[test]
+fn a_pusher_that_contradicts_all_particles_makes_no_camera_pose_believed() {
+    let setup = setup(&[[0.0351, 0.0]]);
+    for speed in [0.005, 0.01] {
+        let mut tracker = tracker(&setup, 500);
+        for k in 0..60 {
+            let time = f64::from(k) / 30.0;
+            let jams = speed * (time - 0.5_f64).max(0.0);
+            let x = if k == 50 { 0.05 } else { 1e-6 * f64::from(k) };
+            let row = Row {
+                time,
+                object: Some(Pose::new(x, 0.0, 0.0)),
+                pusher: Some(Pose::new(-0.0352 + jams, 0.0, 0.0)),
+                ..Row::default()
+            };
+            let estimate = tracker.push(&row).expect("a row");
+            let x = estimate.pose.expect("a pose").x;
+            assert!(x.abs() < 5e-3, "speed {speed}, row {k}: {x}");
+        }
+        assert_eq!(tracker.collapses(), 0, "speed {speed}");
+    }
+}
+
+#[test]
+fn a_row_says_the_same_of_the_learning_particles_whether_more_poses_come_or_not() {
+    let mut setup = setup(&[[0.0452, 0.0]]);
+    setup.scene.pusher.stall_force = None;
+    let object = |time: f64| Some(Pose::new((0.02 * time).min(0.0102) + 1e-7 * time, 0.0, 0.0));
+    let pusher = |time: f64| Some(Pose::new(-0.0351 + 0.02 * time, 0.0, 0.0));
+    let mut log = log(90, object, pusher);
+    log.object[30..].fill(None);
+    let options = RunOptions {
+        particles: 100,
+        tracking: Tracking::Causal,
+        ..RunOptions::default()
+    };
+    let whole = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+    let mut tracker = tracker(&setup, 100);
+    for (k, row) in whole.estimate.rows.iter().enumerate() {
+        let estimate = tracker.push(&log.row(k)).expect("a row");
+        assert_eq!(estimate, row, "row {k}");
+    }
+    assert!(whole.unsolved > 0);
+}
+
+/// ln of the likelihood of a 1 far from all, after a second of them and ten seconds in which the sensor is read, or
+/// rows come without a reading, or none comes.
+fn false_alarm(rows_between: usize) -> f64 {
+    let setup = setup(&[[0.2, 0.0]]);
+    let mut tracker = tracker(&setup, 50);
+    let mut push = |time: f64, reading| {
+        let before = tracker.log_evidence();
+        let row = Row {
+            time,
+            object: (time == 0.0).then(Pose::default),
+            pusher: Some(Pose::new(-0.2, 0.0, 0.0)),
+            tactile: vec![reading],
+            ..Row::default()
+        };
+        let _ = tracker.push(&row).expect("a row");
+        tracker.log_evidence() - before
+    };
+    for k in 0..30 {
+        let _ = push(f64::from(k) / 30.0, Some(true));
+    }
+    for k in 1..=rows_between {
+        let _ = push(1.0 + 10.0 * k as f64 / rows_between as f64, None);
+    }
+    push(11.1, Some(true))
+}
+
+#[test]
+fn a_stuck_sensor_gets_free_whether_it_is_read_or_not() {
+    let (few, many) = (false_alarm(4), false_alarm(300));
+    assert!((few - many).abs() < 0.02, "{few}, {many}");
+    assert!(many < -3.0, "{many}");
+}
+
+#[test]
+fn second_tries_of_a_blackout_end_also_where_the_number_of_particles_changes() {
+    let (mut setup, log) = sticky_and_slippery();
+    let nominal = &mut setup.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (3.0, 3.0);
+    setup.uncertainty.pusher_lag = 1e-5;
+    let mut tracker = tracker(&setup, 20);
+    for k in 0..log.len() {
+        let row = Row {
+            object: log.object[k].filter(|_| k < 5),
+            ..log.row(k)
+        };
+        let number = NonZero::new(20 + (k / 8 % 2) as u32).expect("not 0");
+        let _ = tracker.push_sized(&row, |_| number).expect("a row");
+    }
+    let tries = tracker.second_tries();
+    assert!((17..=48).contains(&tries), "{tries}");
+}
