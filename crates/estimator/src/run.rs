@@ -201,7 +201,10 @@ fn track_smoothed(
             substeps: schedule.step(row - 1),
             moves: schedule.driven(row - 1),
         };
-        estimate.rows[row].clone_from(filter.step(measured, drive));
+        estimate.rows[row].clone_from(match drive.substeps {
+            [] => filter.look(measured),
+            _ => filter.step(measured, drive),
+        });
         show(row, &filter);
         if row == prepared.last_seen {
             filter.learn_no_more();

@@ -15,7 +15,7 @@ use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
 use crate::particle::view::ParticleView;
 use crate::pusher::causal::CausalTrack;
-use crate::pusher::schedule::split;
+use crate::pusher::schedule::{SHORTEST_STEP, split};
 use crate::pusher::tracked_pose::{TrackedPose, motion};
 use crate::row::{LONGEST_PAUSE, Row, RowError};
 use crate::setup::{Camera, Setup};
@@ -139,12 +139,14 @@ pub struct Tracker<'o> {
     options: TrackerOptions,
     observer: Option<&'o dyn Observer>,
     pusher: CausalTrack,
-    /// The pusher at the latest row.
+    /// The pusher at the latest step's end.
     tracked: Option<TrackedPose>,
     direction: [f64; 2],
     substeps: Vec<StepInput>,
     /// Time of the latest row (s).
     time: Option<f64>,
+    /// Time of the latest step's end (s).
+    stepped: Option<f64>,
     /// From the first object pose on.
     filter: Option<LearningFilter<'o>>,
     /// The row before there is a pose.
@@ -192,6 +194,7 @@ impl<'o> Tracker<'o> {
             direction: FIRST_DIRECTION,
             substeps: Vec::new(),
             time: None,
+            stepped: None,
             filter: None,
             nothing: EstimateRow::default(),
         };
@@ -249,8 +252,8 @@ impl<'o> Tracker<'o> {
         // the pusher, and the substeps over which it drives the object
         let tracked = self.pusher.push(row.time, row.pusher);
         let moves = tracked.is_some_and(|tracked| tracked.moves());
+        self.time = Some(row.time);
         self.plan_substeps(row.time, tracked);
-        (self.time, self.tracked) = (Some(row.time), tracked);
 
         // the particles, which begin at the first pose of the object
         match (&mut self.filter, row.object) {
@@ -266,6 +269,10 @@ impl<'o> Tracker<'o> {
                     tactile,
                 };
                 let substeps = &self.substeps;
+                if substeps.is_empty() {
+                    filter.look(measured);
+                    return Ok(self.estimate());
+                }
                 filter.resize(particles(StepSize {
                     substeps: substeps.len() as u32,
                     particles: filter.count(),
@@ -287,12 +294,21 @@ impl<'o> Tracker<'o> {
         Ok(self.estimate())
     }
 
-    /// Writes the substeps from the latest row to `time`, at whose end the pusher is `next`.
+    /// Writes the substeps from the latest step's end to `time`, at whose end the pusher is `next`: none where it is
+    /// too near.
     fn plan_substeps(&mut self, time: f64, next: Option<TrackedPose>) {
         self.substeps.clear();
-        let Some(from) = self.time else { return };
+        let Some(from) = self.stepped else {
+            (self.stepped, self.tracked) = (Some(time), next);
+            return;
+        };
         let h = time - from;
-        let motion = motion(self.tracked, next, h, self.direction);
+        if h < SHORTEST_STEP {
+            return;
+        }
+        let before = std::mem::replace(&mut self.tracked, next);
+        self.stepped = Some(time);
+        let motion = motion(before, next, h, self.direction);
         if let Some(motion) = &motion {
             self.direction = motion.direction;
         }

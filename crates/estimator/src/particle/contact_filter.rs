@@ -346,6 +346,17 @@ impl<'o> ContactFilter<'o> {
         &self.latest
     }
 
+    /// Makes of the latest row one that no step leads to, with a pose or without.
+    pub fn make_no_step(&mut self, visual: bool) {
+        let row = &mut self.latest;
+        row.visual = visual;
+        for count in [&mut row.unsolved, &mut row.failed] {
+            *count = count.map(|_| 0);
+        }
+        row.resampled = row.resampled.map(|_| false);
+        row.collapsed = row.collapsed.map(|collapsed| collapsed && visual);
+    }
+
     /// Writes what the particles amount to.
     fn summarise(&mut self) {
         let row = &mut self.latest;

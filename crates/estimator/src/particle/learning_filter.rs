@@ -122,6 +122,20 @@ impl<'o> LearningFilter<'o> {
         self.latest()
     }
 
+    /// A row that comes so soon after the latest step that none leads to it: its pose is weighed as one of the past.
+    pub fn look(&mut self, measured: Measured<'_>) -> &EstimateRow {
+        let seen = measured.object.filter(|pose| *pose != self.shown);
+        if let Some(pose) = seen {
+            self.weigh_late(PoseAt {
+                time: measured.time,
+                pose,
+                covariance: measured.covariance,
+            });
+        }
+        self.poses.make_no_step(seen.is_some());
+        self.latest()
+    }
+
     /// Weighs the particles by a pose that arrives late; those that learn, where the object has not come to rest since.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         if !self.is_new(late.pose) {

@@ -7,6 +7,10 @@ use crate::pusher::track::PusherTrack;
 /// A step is split where it is longer than this (s).
 const LONGEST_STEP: f64 = 0.055;
 
+/// No step is shorter than this (s): in less, what overlaps a little would be thrown apart, since a step takes the
+/// bodies out of each other within its time.
+pub(crate) const SHORTEST_STEP: f64 = 5e-4;
+
 /// Length that the parts of a split step do not exceed (s).
 const SPLIT_TO: f64 = 0.05;
 
@@ -18,15 +22,21 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts.
+    /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts. A row that comes less
+    /// than half a millisecond after the last step has none: the next one begins where the last one ended.
     pub fn new(time: &[f64], track: &PusherTrack, substeps: Option<u32>) -> Self {
         let mut direction = track.first_direction(time);
-        let steps = time.windows(2).enumerate().map(|(row, pair)| {
-            let h = pair[1] - pair[0];
-            let motion = track.motion(row, h, direction);
+        let mut from = 0;
+        let steps = (1..time.len()).map(|to| {
+            let h = time[to] - time[from];
+            if h < SHORTEST_STEP {
+                return Vec::new();
+            }
+            let motion = track.motion(from..to, h, direction);
             if let Some(motion) = &motion {
                 direction = motion.direction;
             }
+            from = to;
             split(h, motion, substeps).collect()
         });
         Self {

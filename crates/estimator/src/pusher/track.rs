@@ -8,6 +8,8 @@
 //! contact can only push, so a noisy position source ratchets the object forward by two or three of
 //! its standard deviations: the track is a first-order error.
 
+use std::ops::Range;
+
 use stickslip_dynamics::{Pose, PusherMotion};
 
 use crate::error::RunError;
@@ -62,7 +64,8 @@ impl PusherTrack {
         const GUESS: [f64; 2] = [1.0, 0.0];
         const UNDECIDED: [f64; 2] = [0.0; 2];
         let directions = time.windows(2).enumerate().filter_map(|(row, pair)| {
-            Some(self.motion(row, pair[1] - pair[0], UNDECIDED)?.direction)
+            let motion = self.motion(row..row + 1, pair[1] - pair[0], UNDECIDED);
+            Some(motion?.direction)
         });
         match self.tracking {
             Tracking::Smoothed => directions
@@ -73,18 +76,14 @@ impl PusherTrack {
         }
     }
 
-    /// The pusher during the step from `row` to the next, of length `h` (s); `last` is its last
+    /// The pusher during a step from one row to another, of length `h` (s); `last` is its last
     /// direction of motion.
     ///
     /// It takes part where it is on the plane at both ends. A tracked velocity within a few
     /// standard deviations of zero does not change its direction.
-    pub fn motion(&self, row: usize, h: f64, last: [f64; 2]) -> Option<PusherMotion> {
-        motion(
-            self.rows[row],
-            self.rows.get(row + 1).copied().flatten(),
-            h,
-            last,
-        )
+    pub fn motion(&self, rows: Range<usize>, h: f64, last: [f64; 2]) -> Option<PusherMotion> {
+        let at = |row: usize| self.rows.get(row).copied().flatten();
+        motion(at(rows.start), at(rows.end), h, last)
     }
 
     /// Whether the pusher moves at the end of the step from `row`, as far as its track can tell.

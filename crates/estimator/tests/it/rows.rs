@@ -250,3 +250,42 @@ fn second_tries_of_a_blackout_end_also_where_the_number_of_particles_changes() {
     let tries = tracker.second_tries();
     assert!((17..=48).contains(&tries), "{tries}");
 }
+
+/// Rows of a camera, and beside each one of a faster tracker that has the pusher alone, so much later (s).
+fn two_clocks(later: f64) -> Log {
+    let place = |time: f64| 0.02 * (time - 0.4_f64).max(0.0);
+    let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);
+    let mut log = Log::default();
+    for k in 0..150 {
+        let time = k as f64 / 30.0;
+        let object = Pose::new(place(time) + noise(k), noise(k + 77), 0.0);
+        let pusher = |time: f64| Some(Pose::new(-0.035 + place(time), 0.001, 0.0));
+        log.time.extend([time, time + later]);
+        log.object.extend([Some(object), None]);
+        log.pusher.extend([pusher(time), pusher(time + later)]);
+    }
+    log
+}
+
+#[test]
+fn rows_a_moment_apart_throw_nothing_apart() {
+    let setup = setup(&[]);
+    for later in [1e-9, 3e-6, 1e-4, 1e-3] {
+        let log = two_clocks(later);
+        for tracking in [Tracking::Smoothed, Tracking::Causal] {
+            let options = RunOptions {
+                tracking,
+                ..RunOptions::default()
+            };
+            let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+            for (row, time) in run.estimate.rows.iter().zip(&log.time) {
+                let error = row.pose.expect("a pose").x - 0.02 * (time - 0.4).max(0.0);
+                assert!(
+                    error.abs() < 1e-3,
+                    "{later} s apart, at {time} s: {error} m"
+                );
+            }
+            assert_eq!(run.collapses, 0, "{later} s apart");
+        }
+    }
+}
