@@ -197,10 +197,7 @@ fn track_smoothed(
             covariance: row_at.object_covariance,
             tactile: &row_at.tactile,
         };
-        let drive = Drive {
-            substeps: schedule.step(row - 1),
-            moves: schedule.driven(row - 1),
-        };
+        let drive = Drive::new(schedule.step(row - 1), schedule.driven(row - 1));
         estimate.rows[row].clone_from(match drive.substeps {
             [] => filter.look(measured),
             _ => filter.step(measured, drive),

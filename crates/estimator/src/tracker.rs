@@ -13,6 +13,7 @@ use crate::particle::contact_filter::{Drive, FilterOptions, Measured};
 use crate::particle::learning_filter::LearningFilter;
 use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
+use crate::particle::pose_clock::PoseClock;
 use crate::particle::view::ParticleView;
 use crate::pusher::causal::CausalTrack;
 use crate::pusher::schedule::{SHORTEST_STEP, split};
@@ -139,6 +140,8 @@ pub struct Tracker<'o> {
     options: TrackerOptions,
     observer: Option<&'o dyn Observer>,
     pusher: CausalTrack,
+    /// How often the pusher is seen, from the first row on.
+    pusher_clock: Option<PoseClock>,
     /// The pusher at the latest step's end.
     tracked: Option<TrackedPose>,
     direction: [f64; 2],
@@ -190,6 +193,7 @@ impl<'o> Tracker<'o> {
             options: *options,
             observer,
             pusher: CausalTrack::new(Some(&camera))?,
+            pusher_clock: None,
             tracked: None,
             direction: FIRST_DIRECTION,
             substeps: Vec::new(),
@@ -252,6 +256,8 @@ impl<'o> Tracker<'o> {
         // the pusher, and the substeps over which it drives the object
         let tracked = self.pusher.push(row.time, row.pusher);
         let moves = tracked.is_some_and(|tracked| tracked.moves());
+        let clock = self.pusher_clock.get_or_insert(PoseClock::new(row.time));
+        let overdue = clock.is_dark(row.time, row.pusher.is_some());
         self.time = Some(row.time);
         self.plan_substeps(row.time, tracked);
 
@@ -277,7 +283,9 @@ impl<'o> Tracker<'o> {
                     substeps: substeps.len() as u32,
                     particles: filter.count(),
                 }));
-                filter.step(measured, Drive { substeps, moves });
+                let drive = Drive::new(substeps, moves);
+                let unseen = drive.unseen || overdue;
+                filter.step(measured, Drive { unseen, ..drive });
             }
             (None, Some(pose)) => {
                 let options = self.filter_options();

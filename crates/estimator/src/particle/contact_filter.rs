@@ -3,7 +3,7 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::{Friction, Pose, StepInput};
+use stickslip_dynamics::{Friction, Pose, StepInput, Twist};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
 
 use crate::covariance::PoseCovariance;
@@ -11,13 +11,13 @@ use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::moves::Moves;
-use crate::particle::camera_clock::CameraClock;
 use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::observer::Observer;
+use crate::particle::pose_clock::PoseClock;
 use crate::particle::replay::Replay;
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::steadiness::Steadiness;
@@ -47,6 +47,19 @@ pub(crate) struct Drive<'a> {
     pub substeps: &'a [StepInput],
     /// Whether the pusher moves.
     pub moves: bool,
+    /// Whether nobody sees the pusher.
+    pub unseen: bool,
+}
+
+impl<'a> Drive<'a> {
+    /// By these substeps of a pusher that is seen where they have it.
+    pub fn new(substeps: &'a [StepInput], moves: bool) -> Self {
+        Self {
+            substeps,
+            moves,
+            unseen: substeps.last().is_some_and(|step| step.pusher.is_none()),
+        }
+    }
 }
 
 /// The particle filter, with the estimate at the latest row.
@@ -54,7 +67,7 @@ pub(crate) struct ContactFilter<'o> {
     filter: ParticleFilter<ContactModel<'o>>,
     history: PoseHistory,
     latency: f64,
-    camera: CameraClock,
+    camera: PoseClock,
     noise: NoiseClock,
     plan: StepPlan,
     observation: Observation,
@@ -71,6 +84,8 @@ pub(crate) struct ContactFilter<'o> {
     unexplained: u32,
     replay: Replay,
     steadiness: Steadiness,
+    /// The pusher's latest speed (m/s).
+    pusher_speed: f64,
     resting: RestingPose,
     /// Whether a particle has touched anything.
     touched: bool,
@@ -150,7 +165,7 @@ impl<'o> ContactFilter<'o> {
             filter: ParticleFilter::new(model, options.settings(setup))?,
             history,
             latency: camera.latency,
-            camera: CameraClock::new(time),
+            camera: PoseClock::new(time),
             noise: NoiseClock::default(),
             plan: StepPlan::none(reference),
             reference,
@@ -163,6 +178,7 @@ impl<'o> ContactFilter<'o> {
             unexplained: 0,
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
+            pusher_speed: 0.0,
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
             touched: false,
             moves: options.moves,
@@ -319,6 +335,11 @@ impl<'o> ContactFilter<'o> {
         plan.reference = self.reference;
         plan.steady = self.steadiness.velocity(measured.time, drive.substeps);
         plan.steady = plan.steady.filter(|_| self.moves.steady_push);
+        let pusher = drive.substeps.last().and_then(|step| step.pusher);
+        if let Some(Twist { vx, vy, .. }) = pusher.filter(|_| !drive.unseen).map(|p| p.twist) {
+            self.pusher_speed = libm::hypot(vx, vy);
+        }
+        plan.unseen_pusher = Some(self.pusher_speed).filter(|_| drive.unseen && !plan.is_dark());
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
         if slots > self.filter.model().columns().history() {

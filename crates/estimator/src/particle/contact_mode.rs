@@ -1,7 +1,9 @@
 //! What contact mode adds to a step (docs/method.md, "Contact mode"): every particle has its own
 //! friction, offsets and latency, and its own view of the tactile sensors.
 
-use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
+use stickslip_dynamics::{
+    Body, Friction, Lanes, Mask, Offsets, Particles, StepInput, Twist, on_widest,
+};
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::mode::Mode;
@@ -23,7 +25,14 @@ const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
 const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
 const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
 /// Behind those of all fixels.
+const UNSEEN_PAIR: u32 = (1 << 21) + 2;
 const CREEP_PAIR: u32 = 1 << 21;
+
+/// Speed that an unseen pusher may have at least (m/s).
+const UNSEEN_SPEED: f64 = 0.01;
+
+/// For how long an object that an unseen pusher carries goes on as it does, or rests (s).
+const UNSEEN_LASTS: f64 = 0.15;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -45,6 +54,16 @@ impl Propagation {
         if let Some(resting) = &plan.resting {
             self.normals_of(draw, RESTING_PAIR, block);
             self.draw_resting_pose(transition, resting, block);
+        }
+        self.carried.fill(Twist::default());
+        if let Some(speed) = plan.unseen_pusher {
+            self.normals_of(draw, UNSEEN_PAIR, block);
+            self.carry(
+                transition,
+                speed.max(UNSEEN_SPEED),
+                (plan.duration(), draw),
+                block,
+            );
         }
         self.normals_of(draw, 0, block);
         on_widest(
@@ -171,6 +190,43 @@ impl Propagation {
             }
             let noise = resting.noise_seen_at(&pose);
             write(block, columns.camera_noise(), i, noise.each_ref());
+        }
+    }
+
+    /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in each particle, which
+    /// is drawn anew now and then.
+    fn carry(
+        &mut self,
+        transition: &Transition<'_>,
+        speed: f64,
+        (h, draw): (f64, Draw),
+        block: &BlockMut<'_>,
+    ) {
+        let rho = transition.setup.scene.object.gyration_radius();
+        let changes = 1.0 - libm::exp(-h / UNSEEN_LASTS);
+        for (i, particle) in block.particles() {
+            let (chunk, lane) = (i / LANES, i % LANES);
+            if self.untouched[chunk].lane(lane) {
+                continue;
+            }
+            let [x, y, turn, _] = self.normals.each_ref().map(|column| speed * column[i]);
+            let Particles { pose, twist, .. } = &mut self.particles[chunk];
+            let carried = match draw.uniform(particle, UNSEEN_PAIR) {
+                chance if chance < 0.5 * changes => Twist::default(),
+                chance if chance < changes => Twist {
+                    vx: x,
+                    vy: y,
+                    omega: turn / rho,
+                },
+                _ => twist.map(|column| column.0[lane]),
+            };
+            let columns = pose.fields_mut().into_iter().zip(twist.fields_mut());
+            let to = columns.zip(self.carried[chunk].fields_mut());
+            for (((pose, twist), to), velocity) in to.zip(carried.fields()) {
+                pose.0[lane] += velocity * h;
+                twist.0[lane] = 0.0;
+                to.0[lane] = *velocity;
+            }
         }
     }
 

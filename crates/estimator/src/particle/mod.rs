@@ -1,6 +1,5 @@
 //! The particle filter over contact dynamics: the model, its columns, and what they amount to.
 
-mod camera_clock;
 mod camera_likelihood;
 pub(crate) mod camera_noise;
 mod chunk;
@@ -18,6 +17,7 @@ mod moved;
 pub(crate) mod noise_clock;
 pub(crate) mod observation;
 pub(crate) mod observer;
+pub(crate) mod pose_clock;
 pub(crate) mod propagation;
 mod replay;
 mod resting_pose;

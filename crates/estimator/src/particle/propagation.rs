@@ -55,6 +55,8 @@ pub struct Propagation {
     pub(super) creep: Vec<[Column; 2]>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
+    /// Velocities at which an unseen pusher carries objects along (contact mode).
+    pub(super) carried: [Twist<Column>; CHUNKS],
     /// Particles that nothing has come near yet: no force disturbs them (contact mode).
     pub(super) untouched: [Mask<LANES>; CHUNKS],
     involved: [Involved; CHUNKS],
@@ -107,6 +109,7 @@ impl Default for Propagation {
             growth: Vec::new(),
             creep: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
+            carried: [Twist::default(); CHUNKS],
             untouched: [Mask::splat(false); CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],
             normals: [[0.0; BLOCK]; 4],
@@ -345,7 +348,15 @@ impl Propagation {
         for chunk in 0..block.len().div_ceil(LANES) {
             let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
             store_columns(block, Columns::POSE, chunk, particles.pose.fields());
-            store_columns(block, Columns::TWIST, chunk, particles.twist.fields());
+            let mut twist = particles.twist;
+            for (twist, carried) in twist
+                .fields_mut()
+                .into_iter()
+                .zip(self.carried[chunk].fields())
+            {
+                *twist += *carried;
+            }
+            store_columns(block, Columns::TWIST, chunk, twist.fields());
             let lag = particles.pusher_lag.each_ref();
             store_columns(block, Columns::PUSHER_LAG, chunk, lag);
             store_columns(block, Columns::WARM_START, chunk, particles.warm.fields());

@@ -31,6 +31,8 @@ pub struct StepPlan {
     /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag (contact
     /// mode).
     pub steady: Option<[f64; 2]>,
+    /// The pusher's last speed (m/s), where nobody knows where it is and the camera sees the object (contact mode).
+    pub unseen_pusher: Option<f64>,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
     /// What weighed the particles at the row before, of which they learn how noisy the camera is;
@@ -63,6 +65,7 @@ impl StepPlan {
             parameter_noise,
             noise_age,
             steady,
+            unseen_pusher,
             slot,
             resting,
             reference,
@@ -76,6 +79,7 @@ impl StepPlan {
             parameter_noise,
             noise_age,
             steady,
+            unseen_pusher,
             slot,
             resting,
             reference,
@@ -109,6 +113,7 @@ impl StepPlan {
             parameter_noise: ParameterNoise::Frozen,
             noise_age: 0,
             steady: None,
+            unseen_pusher: None,
             slot: 0,
             seen: Observation::default(),
             resting: None,

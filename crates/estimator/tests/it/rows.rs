@@ -289,3 +289,50 @@ fn rows_a_moment_apart_throw_nothing_apart() {
         }
     }
 }
+
+/// Largest distance (m) in x from where the object is while the pusher's poses are missing for a second, in which it
+/// moves the object on or is lifted off it; and the mean standard deviation.
+fn without_pusher(moves_on: bool, tracking: Tracking) -> (f64, f64) {
+    let setup = setup(&[]);
+    let (lost, back) = (2.0, 3.0);
+    let place = |time: f64| {
+        let rested = (time.min(back) - lost).max(0.0);
+        0.02 * ((time - 0.4).max(0.0) - if moves_on { 0.0 } else { rested })
+    };
+    let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);
+    let mut log = Log::default();
+    for k in 0..120 {
+        let time = k as f64 / 30.0;
+        let object = Pose::new(place(time) + noise(k), noise(k + 77), 0.0);
+        let pusher = Pose::new(-0.035 + place(time), 0.001, 0.0);
+        log.time.push(time);
+        log.object.push(Some(object));
+        log.pusher
+            .push(Some(pusher).filter(|_| !(lost..back).contains(&time)));
+    }
+    let options = RunOptions {
+        tracking,
+        ..RunOptions::default()
+    };
+    let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+    assert_eq!(run.collapses, 0);
+    let (mut most, mut sum) = (0.0_f64, 0.0);
+    for (row, time) in run.estimate.rows.iter().zip(&log.time).skip(60).take(30) {
+        most = most.max((row.pose.expect("a pose").x - place(*time)).abs());
+        sum += row.spread.expect("a spread").pose.x;
+    }
+    (most, sum / 30.0)
+}
+
+#[test]
+fn while_nobody_sees_the_pusher_the_camera_says_whether_it_moves_the_object() {
+    for tracking in [Tracking::Smoothed, Tracking::Causal] {
+        let (moved, _) = without_pusher(true, tracking);
+        assert!(moved < 1e-3, "{tracking:?}: {moved}");
+        let (rested, spread) = without_pusher(false, tracking);
+        assert!(
+            rested < 7e-4 && spread < 3e-4,
+            "{tracking:?}: {rested}, {spread}"
+        );
+    }
+}

@@ -1,4 +1,4 @@
-//! When the camera is dark: [`CameraClock`], which knows how often poses come.
+//! When a body is out of sight: [`PoseClock`], which knows how often its poses come.
 
 /// Past intervals from pose to pose that are remembered.
 const REMEMBERED: usize = 15;
@@ -6,13 +6,13 @@ const REMEMBERED: usize = 15;
 /// Typical intervals after which a camera that is silent is dark.
 const DARK_AFTER: f64 = 2.5;
 
-/// How often the camera gives a pose, from the rows so far.
+/// How often there is a pose of object or pusher, from the rows so far.
 ///
 /// Where every row has a pose, a row without one is dark. Where other sensors bring rows between the
 /// camera's, as a pusher does that is tracked faster, or the camera's poses come after their rows, a row without a
 /// pose is none until one is clearly overdue.
 #[derive(Clone, Debug)]
-pub(crate) struct CameraClock {
+pub(crate) struct PoseClock {
     /// Time of the latest row (s).
     now: f64,
     /// When the latest pose came (s), and whether it came after its row.
@@ -25,7 +25,7 @@ pub(crate) struct CameraClock {
     known: usize,
 }
 
-impl CameraClock {
+impl PoseClock {
     /// The first pose comes at `time` (s).
     pub fn new(time: f64) -> Self {
         Self {
@@ -38,7 +38,7 @@ impl CameraClock {
         }
     }
 
-    /// A row at `time` (s), with a pose or without; whether the camera is dark there.
+    /// A row at `time` (s), with a pose or without; whether the body is out of sight there.
     pub fn is_dark(&mut self, time: f64, has_pose: bool) -> bool {
         self.now = time;
         self.rows += 1;
@@ -85,7 +85,7 @@ mod tests {
 
     /// Rows that are dark among rows at 1 kHz; those with a pose are told by `has_pose`.
     fn dark(rows: usize, has_pose: impl Fn(usize) -> bool) -> Vec<usize> {
-        let mut clock = CameraClock::new(0.0);
+        let mut clock = PoseClock::new(0.0);
         let mut dark = |row: &usize| clock.is_dark(1e-3 * *row as f64, has_pose(*row));
         (1..rows).filter(|row| dark(row)).collect()
     }
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn rows_whose_poses_come_late_are_not_dark_until_one_is_overdue() {
         // each row's pose comes after it, up to row 50
-        let mut clock = CameraClock::new(0.0);
+        let mut clock = PoseClock::new(0.0);
         let mut dark = Vec::new();
         for row in 1..60 {
             if clock.is_dark(0.1 * f64::from(row), false) {
