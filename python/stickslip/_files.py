@@ -67,6 +67,11 @@ def experiments(folder: Path, scene_name: str) -> list[Path]:
     return found or [folder]
 
 
+def scene_of(scene: Scene | str | os.PathLike[str]) -> Scene:
+    """A scene, or that of a file."""
+    return load_scene(scene) if isinstance(scene, str | os.PathLike) else scene
+
+
 def log_of(log: Any) -> Columns:
     """The columns of a log that is given by its path, as a mapping or as a data frame."""
     if isinstance(log, str | os.PathLike):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import operator
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack
 
@@ -10,7 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip import _native
 from stickslip._columns import Columns, Log
-from stickslip._files import log_of
+from stickslip._files import log_of, scene_of
 from stickslip._native import Error, Scene
 
 if TYPE_CHECKING:
@@ -20,9 +22,9 @@ if TYPE_CHECKING:
 class FilterOptions(TypedDict, total=False):
     """How a log is run; the defaults are those of the program."""
 
-    #: ``particle`` (default), ``kalman`` (knows nothing of contact), ``extended-kalman`` (knows contact, feels no
-    #: touch) or ``nominal`` (looks once).
-    method: Literal["particle", "kalman", "extended-kalman", "nominal"]
+    #: ``particle`` (default), ``kalman`` (knows nothing of contact), ``kalman-stops`` (the same, stops at touch),
+    #: ``with-pusher`` (moves with it), ``extended-kalman`` (knows contact, feels no touch) or ``nominal`` (looks once).
+    method: Literal["particle", "kalman", "kalman-stops", "with-pusher", "extended-kalman", "nominal"]
     #: Rules of the particle filter: ``contact`` (default) or ``paper``.
     mode: Literal["contact", "paper"]
     #: Number of particles, 500 by default.
@@ -43,11 +45,12 @@ class FilterOptions(TypedDict, total=False):
     threads: int | None
 
 
-def filter(log: Log, scene: Scene, **options: Unpack[FilterOptions]) -> Columns:
+def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[FilterOptions]) -> Columns:
     """Tracks the object of a log.
 
     ``log``: path of ``log.csv`` or ``log.mcap``, dict of columns, or data frame, in the columns of
-    ``log.csv`` (see :func:`stickslip.load_log`). ``options``: see :class:`FilterOptions`.
+    ``log.csv`` (see :func:`stickslip.load_log`). ``scene``: a scene, or the path of its file. ``options``: see
+    :class:`FilterOptions`.
 
     Returns the columns of ``estimate.csv``, each (rows,), one row per log row: ``time`` (s); pose ``x``,
     ``y`` (m), ``theta`` (rad, unwrapped); twist ``vx``, ``vy`` (m/s), ``omega`` (rad/s); friction
@@ -62,11 +65,15 @@ def filter(log: Log, scene: Scene, **options: Unpack[FilterOptions]) -> Columns:
 
     Raises :class:`stickslip.Error` where log, scene or options cannot be used.
     """
-    return _native.filter(log_of(log), scene, arguments(options))
+    return _native.filter(log_of(log), scene_of(scene), arguments(options))
 
 
 def particles(
-    log: Log, scene: Scene, *, rows: Sequence[int] | None = None, **options: Unpack[FilterOptions]
+    log: Log,
+    scene: Scene | str | os.PathLike[str],
+    *,
+    rows: Sequence[int] | None = None,
+    **options: Unpack[FilterOptions],
 ) -> dict[str, NDArray[np.float64]]:
     """The particles of the particle filter after the rows in ``rows`` (None: all rows).
 
@@ -80,14 +87,14 @@ def particles(
     if options.get("method", "particle") != "particle":
         raise Error(f"method is `{options.get('method')}`; only `particle` has particles")
     wanted = None if rows is None else [int(row) for row in rows]
-    kept, columns = _native.particles(log_of(log), scene, arguments(options), wanted)
+    kept, columns = _native.particles(log_of(log), scene_of(scene), arguments(options), wanted)
     shape = (len(kept), -1 if len(kept) else 0)
     return {"row": kept.astype(np.float64)} | {name: column.reshape(shape) for name, column in columns.items()}
 
 
 def samples(
     log: Log,
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     *,
     rows: Sequence[int],
     chains: int = 4,
@@ -105,7 +112,7 @@ def samples(
     (chains, draws, R) for the R rows in ``rows``: ``arviz.from_dict({"posterior": samples})``, before
     ArviZ 1.0 ``arviz.from_dict(posterior=samples)``.
     """
-    columns = log_of(log)
+    columns, scene = log_of(log), scene_of(scene)
     seed = options.get("seed", 0)
     per_chain: list[dict[str, NDArray[np.float64]]] = []
     for chain in range(chains):
@@ -171,7 +178,11 @@ def _rows(occlude: int | tuple[int, int | None] | None) -> tuple[int, int | None
     """First hidden row and the first visible one after it."""
     if occlude is None:
         return None
-    first, last = occlude if isinstance(occlude, tuple) else (occlude, None)
+    rule = f"occlude is {occlude!r}; give the first hidden row, from 0, or that and the first visible one after it"
+    try:
+        first, last = occlude if isinstance(occlude, tuple) else (operator.index(occlude), None)
+    except (TypeError, ValueError) as error:
+        raise Error(rule) from error
     if first < 0 or (last is not None and last <= first):
-        raise Error(f"occlude is {occlude}; give the first hidden row, from 0, and the first visible one after it")
+        raise Error(rule)
     return first, last

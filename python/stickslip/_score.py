@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any
 
 from stickslip import _native
 from stickslip._columns import Log, columns_of
-from stickslip._files import log_of
+from stickslip._files import log_of, scene_of
 from stickslip._filter import FilterOptions, arguments
 from stickslip._native import Scene
 
@@ -15,7 +16,7 @@ from stickslip._native import Scene
 def score(
     estimate: Mapping[str, Any],
     log: Log,
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     *,
     truth: Mapping[str, Any] | None = None,
     occlude: int | tuple[int, int | None] | None = None,
@@ -39,7 +40,7 @@ def score(
         columns_of(estimate, "the estimate"),
         {
             "log": log_of(log),
-            "scene": scene,
+            "scene": scene_of(scene),
             "truth": None if truth is None else columns_of(truth, "the truth"),
             "options": arguments(FilterOptions(occlude=occlude, occlude_middle=occlude_middle)),
             "first_pusher_contact": first_pusher_contact,

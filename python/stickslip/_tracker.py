@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from typing import Any, Literal, TypedDict
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from stickslip import _native
 from stickslip._columns import Log
-from stickslip._files import log_of
+from stickslip._files import log_of, scene_of
 from stickslip._native import Scene
 
 #: Columns of a log that say how noisy the object's pose is.
@@ -35,8 +36,8 @@ class Row(TypedDict):
     object_covariance: Sequence[float] | None
     #: Pose of the pusher (m, m, rad).
     pusher: Sequence[float] | None
-    #: Readings of the sensors on the fixels over the interval that ends here.
-    tactile: Sequence[bool | None]
+    #: Readings of the sensors on the fixels over the interval that ends here, 0 or 1.
+    tactile: Sequence[bool | int | None]
     #: Force of the pusher on the object, world frame (N).
     force: Sequence[float] | None
 
@@ -53,7 +54,7 @@ class Tracker:
 
     def __init__(
         self,
-        scene: Scene,
+        scene: Scene | str | os.PathLike[str],
         *,
         mode: Literal["contact", "paper"] = "contact",
         particles: int = 500,
@@ -63,7 +64,7 @@ class Tracker:
         late: float = 0.2,
     ) -> None:
         self._tracker = _native.Tracker(
-            scene,
+            scene_of(scene),
             {
                 "mode": mode,
                 "particles": particles,
@@ -79,12 +80,12 @@ class Tracker:
         time: float,
         object: Sequence[float] | None = None,
         pusher: Sequence[float] | None = None,
-        tactile: Sequence[bool | None] = (),
+        tactile: Sequence[bool | int | None] = (),
         force: Sequence[float] | None = None,
         object_covariance: Sequence[float] | None = None,
     ) -> dict[str, float]:
         """Takes what was measured at ``time`` (s): poses of object and pusher (m, m, rad), readings of the
-        tactile sensors, sensor k on fixel k, and the force of the pusher on the object (N), None where
+        tactile sensors, 0 or 1, sensor k on fixel k, and the force of the pusher on the object (N), None where
         there is none. ``object_covariance`` says how noisy the object's pose is, where that is told: the
         variances of x, y and theta, then the covariances of x with y, x with theta and y with theta.
 

@@ -99,6 +99,8 @@ def test_logs_that_cannot_be_used_are_refused(demo, scene, change, words):
         ({"mode": "fast"}, "mode is `fast`; it must be `contact` or `paper`"),
         ({"method": "ekf"}, "method is `ekf`"),
         ({"occlude": (9, 3)}, "occlude is (9, 3)"),
+        ({"occlude": "10:20"}, "occlude is '10:20'"),
+        ({"particles": -1}, "particles is -1"),
         ({"occlude": 9, "occlude_middle": 1.0}, "both given"),
         ({"threads": 0}, "0 threads"),
         ({"substeps": 0}, "0 substeps"),

@@ -7,6 +7,7 @@ use stickslip_formats::{check_sensors, estimate_columns};
 
 use crate::columns::to_dict;
 use crate::error::refused;
+use crate::given::Given;
 use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
@@ -18,10 +19,10 @@ pub fn filter<'py>(
     py: Python<'py>,
     log: &Bound<'py, PyDict>,
     scene: &Bound<'py, Scene>,
-    options: RunArguments,
+    options: Given<RunArguments>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let log = log_of(log)?;
-    let run = run_log(py, scene.get(), &log, &options, None)?;
+    let run = run_log(py, scene.get(), &log, &options.0, None)?;
     to_dict(py, estimate_columns(&run.estimate))
 }
 

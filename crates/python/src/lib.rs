@@ -9,6 +9,7 @@ mod columns;
 mod error;
 mod filter;
 mod fit;
+mod given;
 mod log;
 mod particles;
 mod program;

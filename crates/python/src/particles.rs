@@ -9,6 +9,7 @@ use stickslip::{Observer, ParticleView, SolvedStep};
 
 use crate::columns::to_dict;
 use crate::filter::run_log;
+use crate::given::Given;
 use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
@@ -106,7 +107,7 @@ pub fn particles<'py>(
     py: Python<'py>,
     log: &Bound<'py, PyDict>,
     scene: &Bound<'py, Scene>,
-    options: RunArguments,
+    options: Given<RunArguments>,
     rows: Option<Vec<usize>>,
 ) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyDict>)> {
     let log = log_of(log)?;
@@ -118,7 +119,7 @@ pub fn particles<'py>(
         rows,
         kept: Mutex::default(),
     };
-    run_log(py, scene.get(), &log, &options, Some(&keeper))?;
+    run_log(py, scene.get(), &log, &options.0, Some(&keeper))?;
     let Kept { rows, columns, .. } = keeper
         .kept
         .into_inner()

@@ -62,10 +62,12 @@ pub fn method(name: &str) -> PyResult<Method> {
     match name {
         "particle" => Ok(Method::Particle),
         "kalman" => Ok(Method::Kalman),
+        "kalman-stops" => Ok(Method::KalmanStops),
+        "with-pusher" => Ok(Method::WithPusher),
         "extended-kalman" => Ok(Method::ExtendedKalman),
         "nominal" => Ok(Method::Nominal),
         _ => Err(refused(format!(
-            "method is `{name}`; it must be `particle`, `kalman`, `extended-kalman` or `nominal`"
+            "method is `{name}`; it must be `particle`, `kalman`, `kalman-stops`, `with-pusher`, `extended-kalman` or `nominal`"
         ))),
     }
 }

@@ -7,6 +7,7 @@ use stickslip_formats::{Experiment, TruthFacts, estimate_of_columns, truth_of_co
 
 use crate::columns::Columns;
 use crate::error::refused;
+use crate::given::Given;
 use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
@@ -19,7 +20,7 @@ pub struct Arguments<'py> {
     scene: Bound<'py, Scene>,
     truth: Option<Bound<'py, PyDict>>,
     first_pusher_contact: Option<usize>,
-    options: RunArguments,
+    options: Given<RunArguments>,
     virtual_radius: Option<f64>,
 }
 
@@ -46,7 +47,7 @@ pub fn score<'py>(
     };
     let experiment =
         Experiment::new(setup.clone(), log_of(&on.log)?, truth, facts).map_err(refused)?;
-    let hidden = on.options.occlusion()?.hidden(&experiment.log);
+    let hidden = on.options.0.occlusion()?.hidden(&experiment.log);
     let radius = on.virtual_radius.unwrap_or_else(|| setup.virtual_radius());
     let scores = score_against(&estimate, &Reference::of(&experiment), &hidden, radius);
     to_scores(py, &scores)

@@ -7,6 +7,7 @@ use stickslip_formats::{TruthFacts, log_columns, truth_columns, write_truth_json
 
 use crate::columns::to_dict;
 use crate::error::refused;
+use crate::given::Given;
 use crate::scene::Scene;
 
 /// The items of a dict of options.
@@ -30,8 +31,9 @@ type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, String);
 pub fn simulate<'py>(
     py: Python<'py>,
     scene: &Bound<'py, Scene>,
-    options: Arguments,
+    options: Given<Arguments>,
 ) -> PyResult<Simulated<'py>> {
+    let options = options.0;
     let known = TruthFacts {
         mu_s: options.mu_s,
         mu_p: options.mu_p,

@@ -7,6 +7,7 @@ use stickslip_dynamics::Pose;
 use stickslip_formats::estimate_columns;
 
 use crate::error::refused;
+use crate::given::{Given, Reading};
 use crate::run_options::{mode, touch};
 use crate::scene::Scene;
 
@@ -52,15 +53,16 @@ struct Measured {
     object: Option<Numbers>,
     object_covariance: Option<[f64; 6]>,
     pusher: Option<Numbers>,
-    tactile: Vec<Option<bool>>,
+    tactile: Vec<Option<Reading>>,
     force: Option<[f64; 2]>,
 }
 
 #[pymethods]
 impl Tracker {
     #[new]
-    fn new(scene: &Bound<'_, Scene>, options: Arguments) -> PyResult<Self> {
+    fn new(scene: &Bound<'_, Scene>, options: Given<Arguments>) -> PyResult<Self> {
         let setup = &scene.get().setup;
+        let options = options.0;
         let options = TrackerOptions {
             mode: mode(&options.mode)?,
             particles: options.particles,
@@ -78,14 +80,19 @@ impl Tracker {
     }
 
     /// Takes a row, gives the estimate at the latest one.
-    fn push<'py>(&mut self, py: Python<'py>, row: Measured) -> PyResult<Bound<'py, PyDict>> {
+    fn push<'py>(&mut self, py: Python<'py>, row: Given<Measured>) -> PyResult<Bound<'py, PyDict>> {
+        let row = row.0;
         let pose = |[x, y, theta]: Numbers| Pose::new(x, y, theta);
         let row = Row {
             time: row.time,
             object: row.object.map(pose),
             object_covariance: row.object_covariance.map(covariance),
             pusher: row.pusher.map(pose),
-            tactile: row.tactile,
+            tactile: row
+                .tactile
+                .iter()
+                .map(|reading| reading.map(|r| r.0))
+                .collect(),
             force: row.force,
         };
         let tracker = &mut self.tracker;
