@@ -227,6 +227,6 @@ fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> Trut
             .occlude_from
             .filter(|row| *row < trace.frames.len())
             .or(before_contact),
-        final_pose: None,
+        final_pose: trace.frames.last().map(|frame| frame.object),
     }
 }

@@ -95,7 +95,7 @@ pub enum CsvProblem {
     },
     /// A number of cells that is not the header's.
     #[error(
-        "the line has {found} cells, the header {expected}. Give every column a cell, an empty one where nothing was measured"
+        "the line has {found} cells, the header {expected}. Give every column a cell, an empty one where nothing was measured; numbers have a decimal point, no comma"
     )]
     CellCount {
         /// Cells in the line.

@@ -51,7 +51,13 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         "object poses are {delay:.3} s late, told from {stops} {} of the pusher; the scene says {stated} s",
         if stops == 1 { "stop" } else { "stops" }
     );
-    let advice = format!("set latency = {:.2} under [camera]", delay.max(0.0));
+    let advice = match delay < 0.0 {
+        false => format!("set latency = {delay:.2} under [camera]"),
+        true => format!(
+            "the pusher's poses are {:.2} s late, or the object's times too early: set the log's times right",
+            -delay
+        ),
+    };
     vec![match (delay - stated).abs() {
         off if off * speed < MATTERS * evidence.position_std() => {
             Finding::ok(Subject::Latency, found)
