@@ -298,14 +298,14 @@ impl<'o> ContactFilter<'o> {
         self.learn_where_it_rests();
     }
 
-    /// Counts the poses in a row that no particle explains; after some, they are no outliers, until one is explained
-    /// or the particles are drawn anew.
+    /// Counts the poses in a row that no particle explains; after some, they are no outliers, until one is explained.
     fn judge_camera(&mut self, report: &StepReport) {
         let Some(log_evidence) = report.resetting_log_evidence else {
             return;
         };
         let before = self.unexplained;
-        self.unexplained = match log_evidence < UNEXPLAINED && !self.collapsed {
+        self.unexplained = match log_evidence < UNEXPLAINED {
+            _ if self.collapsed => before,
             true => before + 1,
             false => 0,
         };
