@@ -138,16 +138,34 @@ impl Estimate {
     /// The pose at `time` (s), linear between rows; `None` outside the estimated rows.
     #[must_use]
     pub fn pose_at(&self, time: f64) -> Option<Pose> {
-        let later = self.time.partition_point(|t| *t < time);
-        let after = self.rows.get(later)?.pose;
-        if self.time.get(later) == Some(&time) || later == 0 {
-            return after.filter(|_| self.time[later] == time);
+        let (before, after, share) = self.rows_about(time)?;
+        match share {
+            0.0 => before.pose,
+            _ => Some(before.pose?.interpolate(after.pose?, share)),
         }
-        let (t0, t1) = (self.time[later - 1], self.time[later]);
-        Some(
-            self.rows[later - 1]
-                .pose?
-                .interpolate(after?, (time - t0) / (t1 - t0)),
-        )
+    }
+
+    /// The pose's standard deviations at `time` (s), variances linear between rows; `None` outside the estimated rows.
+    #[must_use]
+    pub fn std_at(&self, time: f64) -> Option<Pose> {
+        let (before, after, share) = self.rows_about(time)?;
+        let (mut std, after) = (before.spread?.pose, after.spread?.pose);
+        if share > 0.0 {
+            for (std, after) in std.fields_mut().into_iter().zip(after.fields()) {
+                *std = ((1.0 - share) * *std * *std + share * after * after).sqrt();
+            }
+        }
+        Some(std)
+    }
+
+    /// The rows before and after `time`, and how far it is from the one to the other.
+    fn rows_about(&self, time: f64) -> Option<(&EstimateRow, &EstimateRow, f64)> {
+        let later = self.time.partition_point(|t| *t < time);
+        let after = self.rows.get(later)?;
+        if self.time[later] == time {
+            return Some((after, after, 0.0));
+        }
+        let (t0, t1) = (self.time[later.checked_sub(1)?], self.time[later]);
+        Some((&self.rows[later - 1], after, (time - t0) / (t1 - t0)))
     }
 }

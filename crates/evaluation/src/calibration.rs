@@ -322,7 +322,7 @@ pub struct Tally {
     pub covered_seen: f64,
     /// Median distance from the truth (SI).
     pub error: f64,
-    /// The same of what was believed before the run; 0 for a pose.
+    /// The same of what was believed before the run; for a pose that of what is believed.
     pub prior_error: f64,
 }
 

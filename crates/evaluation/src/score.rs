@@ -238,7 +238,8 @@ impl Error {
     /// With what the estimate says of it, and the reference's own noise; `None` where it says
     /// nothing.
     fn judged(self, estimate: &Estimate, reference: &Reference, row: usize) -> Option<Judged> {
-        let (own, noise) = (estimate.rows[row].spread?.pose, reference.std);
+        let own = estimate.std_at(reference.time[row] - reference.latency)?;
+        let noise = reference.std;
         Some(Judged {
             error: Pose::new(self.dx, self.dy, self.turn),
             std: Pose::new(

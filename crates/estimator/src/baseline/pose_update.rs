@@ -6,14 +6,12 @@ use stickslip_dynamics::Pose;
 use crate::angle::unwrapped;
 use crate::baseline::belief::{Belief, STATES, TWIST};
 use crate::covariance::PoseCovariance;
+use crate::particle::contact_filter::BELIEVED_AFTER;
 use crate::setup::Camera;
 
 /// A squared innovation that one right pose in 10,000 exceeds, in units of what was expected of it: χ² of
 /// three degrees of freedom.
 const UNLIKELY: f64 = 21.108;
-
-/// Poses in a row that were not expected, after which they are believed, as in contact mode.
-const BELIEVED_AFTER: u32 = 4;
 
 /// Covariance of x, y and θ (m, m, rad).
 pub(super) type PoseNoise = SMatrix<f64, 3, 3>;

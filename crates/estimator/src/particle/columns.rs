@@ -22,7 +22,7 @@ const UNKNOWNS: usize = 16;
 const PER_FIXEL: usize = BELIEF_LEN + 2;
 
 /// A condition of every particle: one bit of a column that holds nothing but such bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Flag {
     /// The column.
     pub column: usize,
@@ -229,26 +229,71 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
+    const FIXELS: usize = 50;
+
+    /// Flags of all kinds.
+    fn flags(columns: &Columns) -> Vec<Flag> {
+        let of_slip = |SlipFlags { stick, left }: SlipFlags| [stick, left];
+        let single = [
+            Columns::CONTACT_PUSHER,
+            Columns::UNSOLVED,
+            Columns::FAILED,
+            Columns::IDLE,
+            Columns::PUSHER_WAS_NEAR,
+        ];
+        let of_fixels = (0..FIXELS).flat_map(|j| {
+            let flags = [
+                columns.contact_fixel(j),
+                columns.driven_contact_fixel(j),
+                columns.fixel_was_near(j),
+            ];
+            flags.into_iter().chain(of_slip(columns.slip_fixel(j)))
+        });
+        let felt = (0..4).map(Columns::felt);
+        let single = single.into_iter().chain(of_slip(Columns::SLIP_PUSHER));
+        single.chain(felt).chain(of_fixels).collect()
+    }
+
+    /// First column and length of all that holds numbers.
+    fn numbers(columns: &Columns) -> Vec<(usize, usize)> {
+        let mut numbers = vec![
+            (Columns::POSE, 3),
+            (Columns::TWIST, 3),
+            (Columns::FRICTION, 4),
+            (Columns::PUSHER_LAG, 2),
+            (Columns::WARM_START, WARM),
+            (columns.variation(), 4),
+            (columns.pusher_offset(), 2),
+            (columns.growth(), 1),
+            (columns.felt_log_likelihood(), 1),
+            (columns.roughness(), 1),
+            (columns.latency(), 1),
+            (columns.camera_noise(), 3),
+            (columns.force(), 1),
+            (columns.creep(), 2),
+        ];
+        for j in 0..FIXELS {
+            numbers.push((columns.sensor(j), BELIEF_LEN));
+            numbers.push((columns.fixel_offset(j), 2));
+        }
+        numbers.extend((0..columns.history()).map(|slot| (columns.past_pose(slot), 3)));
+        numbers
+    }
+
     #[test]
-    fn flags_of_many_fixels_lie_apart_and_before_the_past_poses() {
-        let columns = Columns::new(Mode::Contact, 50, 1);
-        let of_fixels =
-            (0..50).flat_map(|j| [columns.contact_fixel(j), columns.driven_contact_fixel(j)]);
-        let flags: Vec<Flag> = of_fixels
-            .chain([
-                Columns::CONTACT_PUSHER,
-                Columns::UNSOLVED,
-                Columns::IDLE,
-                Columns::FAILED,
-            ])
-            .collect();
-        let places: HashSet<(usize, u32)> =
-            flags.iter().map(|flag| (flag.column, flag.bit)).collect();
-        assert_eq!((flags.len(), places.len()), (104, 104));
-        assert!(
-            flags
-                .iter()
-                .all(|flag| flag.column < columns.past_pose(0) && flag.bit < 52)
-        );
+    fn everything_has_a_place_of_its_own_and_every_column_is_used() {
+        let columns = Columns::new(Mode::Contact, FIXELS, 3);
+        let flags = flags(&columns);
+        let places: HashSet<Flag> = flags.iter().copied().collect();
+        assert_eq!(flags.len(), SINGLE + FLAGS_PER_FIXEL * FIXELS);
+        assert_eq!(places.len(), flags.len());
+        assert!(flags.iter().all(|flag| flag.bit < 52));
+
+        let of_flags: HashSet<usize> = flags.iter().map(|flag| flag.column).collect();
+        let numbers = numbers(&columns).into_iter();
+        let of_numbers = numbers.flat_map(|(first, length)| first..first + length);
+        let mut used: Vec<usize> = of_numbers.chain(of_flags).collect();
+        used.sort_unstable();
+        assert_eq!(used, (0..columns.count()).collect::<Vec<_>>());
     }
 }

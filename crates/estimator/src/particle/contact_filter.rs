@@ -94,7 +94,7 @@ pub(crate) struct ContactFilter<'o> {
 }
 
 /// Camera poses in a row that no particle explains, after which they are believed (contact mode).
-const BELIEVED_AFTER: u32 = 4;
+pub(crate) const BELIEVED_AFTER: u32 = 4;
 
 /// Evidence of a camera pose below which no particle explains it (contact mode).
 const UNEXPLAINED: f64 = -10.0;
