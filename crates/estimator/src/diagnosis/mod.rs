@@ -73,10 +73,14 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// The problems that show without the geometry, in a time that no filter notices: numbers in other units
-/// or by other clocks. With them, an estimate and its scores mean nothing.
+/// The problems that show in a time that no filter notices: numbers in other units or by other clocks, bodies that
+/// overlap at the start. With them, an estimate and its scores mean nothing.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let mut findings = plain(&Evidence::new(setup, log));
+    let evidence = Evidence::new(setup, log);
+    let mut findings = plain(&evidence);
+    if !findings.iter().any(is_misread) {
+        findings.extend(overlap::check(&evidence));
+    }
     findings.retain(|finding| finding.severity == Severity::Problem);
     findings
 }

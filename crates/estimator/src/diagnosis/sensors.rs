@@ -45,9 +45,19 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     let (false_touches, free) = free_rows(evidence, sensor, near);
     if may_be_swapped && 2 * false_touches > free {
         let found = format!(
-            "{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near: 0 and 1 seem to be swapped"
+            "{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near"
         );
-        return Finding::problem(subject, found, "write 1 for a touch, 0 for none");
+        let (seems, advice) = match clear.len() < FEWEST {
+            true => (
+                "it is stuck at 1, or 0 and 1 seem to be swapped",
+                "see whether it works, and leave its cells empty if not; 1 is a touch, 0 none",
+            ),
+            false => (
+                "0 and 1 seem to be swapped",
+                "write 1 for a touch, 0 for none",
+            ),
+        };
+        return Finding::problem(subject, format!("{found}: {seems}"), advice);
     }
     let others = (0..evidence.setup.scene.fixels.len()).filter(|&fixel| fixel != sensor);
     let nearest = others
