@@ -89,13 +89,23 @@ impl<M: Model> ParticleFilter<M> {
     /// can improve, or all weights are zero, the particles are reinitialised around it. Where a model lets
     /// an observation move them, it does as far as weighing alone would leave few, or the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
+        self.make_step(input, observation, true)
+    }
+
+    /// The same; the sums over the particles are taken only where they are asked for.
+    pub(crate) fn make_step(
+        &mut self,
+        input: &M::Input,
+        observation: Option<&M::Observation>,
+        sums: bool,
+    ) -> StepReport {
         self.step += 1;
         self.lineage.begin_step();
         let resampled = self.satisfies_resample_condition();
         if resampled {
             self.choose_ancestors(Purpose::Resample);
         }
-        self.pass_over_blocks(resampled, input, observation);
+        self.pass_over_blocks(resampled, (input, observation), sums);
         let judged = observation.filter(|observation| self.model.judges_resetting(observation));
         let judged = judged.map(|observation| self.resetting_log_evidence(observation));
         let weight_update = match observation {
@@ -104,6 +114,7 @@ impl<M: Model> ParticleFilter<M> {
         };
         self.lineage.end_step();
         match weight_update {
+            _ if !sums => {}
             WeightUpdate::Unobserved => self.combine_sums(|_| 1.0),
             WeightUpdate::Weighed { .. } if self.bridge.parted() => self.recompute_sums(input),
             WeightUpdate::Weighed { .. } => self.combine_sums(BlockWeights::scale),
@@ -180,8 +191,8 @@ impl<M: Model> ParticleFilter<M> {
     fn pass_over_blocks(
         &mut self,
         resample: bool,
-        input: &M::Input,
-        observation: Option<&M::Observation>,
+        (input, observation): (&M::Input, Option<&M::Observation>),
+        with_sums: bool,
     ) {
         let draw = self.draw(Purpose::Propagate);
         let (model, scratch, weights) = (&self.model, &self.scratch, &self.weights);
@@ -205,7 +216,9 @@ impl<M: Model> ParticleFilter<M> {
                 };
 
                 // estimate
-                model.sum(input, block, weights, sums);
+                if with_sums {
+                    model.sum(input, block, weights, sums);
+                }
             });
     }
 

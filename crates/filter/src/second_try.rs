@@ -133,7 +133,8 @@ impl<M: Model> ParticleFilter<M> {
         let mut again = 0.0;
         let mut last = None;
         for (input, observation) in steps {
-            again += match self.step(input, observation).weight_update {
+            let report = self.make_step(input, observation, false);
+            again += match report.weight_update {
                 WeightUpdate::Unobserved => 0.0,
                 WeightUpdate::Weighed { log_evidence } => log_evidence,
                 WeightUpdate::Collapsed { .. } => f64::NEG_INFINITY,

@@ -15,7 +15,7 @@ use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
 
 /// Share of a camera pose that moves particles that learn, at least (52).
-const LEAST_MOVED: f64 = 0.9;
+const LEAST_MOVED: f64 = 0.97;
 
 /// Seeds of the particles that learn lie apart from those of the others.
 const LEARNING_SEEDS: u64 = 1 << 48;
