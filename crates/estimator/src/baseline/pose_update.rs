@@ -6,7 +6,7 @@ use stickslip_dynamics::Pose;
 use crate::angle::unwrapped;
 use crate::baseline::belief::{Belief, STATES, TWIST};
 use crate::covariance::PoseCovariance;
-use crate::particle::contact_filter::BELIEVED_AFTER;
+use crate::particle::camera_trust::BELIEVED_AFTER;
 use crate::setup::Camera;
 
 /// A squared innovation that one right pose in 10,000 exceeds, in units of what was expected of it: χ² of

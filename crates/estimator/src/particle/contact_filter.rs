@@ -11,6 +11,7 @@ use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::moves::Moves;
+use crate::particle::camera_trust::CameraTrust;
 use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
@@ -80,8 +81,7 @@ pub(crate) struct ContactFilter<'o> {
     collapsed: bool,
     /// ln of what the particles gave to the rows so far.
     log_evidence: f64,
-    /// Camera poses in a row that no particle explained (contact mode).
-    unexplained: u32,
+    trust: CameraTrust,
     replay: Replay,
     steadiness: Steadiness,
     /// The pusher's latest speed (m/s).
@@ -92,12 +92,6 @@ pub(crate) struct ContactFilter<'o> {
     /// What brings particles to where weighing would leave few.
     moves: Moves,
 }
-
-/// Camera poses in a row that no particle explains, after which they are believed (contact mode).
-pub(crate) const BELIEVED_AFTER: u32 = 4;
-
-/// Evidence of a camera pose below which no particle explains it (contact mode).
-const UNEXPLAINED: f64 = -10.0;
 
 /// Where an object waits that nothing has touched.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +169,7 @@ impl<'o> ContactFilter<'o> {
             collapses: 0,
             collapsed: false,
             log_evidence: 0.0,
-            unexplained: 0,
+            trust: CameraTrust::default(),
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
             pusher_speed: 0.0,
@@ -294,26 +288,11 @@ impl<'o> ContactFilter<'o> {
     fn take(&mut self, report: &StepReport) {
         self.collapsed = report.collapsed();
         self.collapses += u32::from(self.collapsed);
-        self.judge_camera(report);
-        self.learn_where_it_rests();
-    }
-
-    /// Counts the poses in a row that no particle explains; after some, they are no outliers, until one is explained.
-    fn judge_camera(&mut self, report: &StepReport) {
-        let Some(log_evidence) = report.resetting_log_evidence else {
-            return;
-        };
-        let before = self.unexplained;
-        self.unexplained = match log_evidence < UNEXPLAINED {
-            _ if self.collapsed => before,
-            true => before + 1,
-            false => 0,
-        };
-        let trusted = self.unexplained >= BELIEVED_AFTER;
-        if trusted != (before >= BELIEVED_AFTER) {
+        if let Some(trusted) = self.trust.judge(report) {
             self.filter
                 .change_model(|model| model.trust_camera(trusted));
         }
+        self.learn_where_it_rests();
     }
 
     /// Writes the plan of the step to a row.

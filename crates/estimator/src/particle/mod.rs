@@ -2,6 +2,7 @@
 
 mod camera_likelihood;
 pub(crate) mod camera_noise;
+pub(crate) mod camera_trust;
 mod chunk;
 mod columns;
 pub(crate) mod contact_filter;
