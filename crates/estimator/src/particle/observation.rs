@@ -1,7 +1,5 @@
 //! What the sensors read at one row: [`Observation`].
 
-use std::mem::take;
-
 use stickslip_dynamics::Pose;
 
 use crate::covariance::PoseCovariance;
@@ -55,29 +53,21 @@ pub struct Observation {
 impl Observation {
     /// Becomes a copy of `other`, in the memory that it has.
     pub(crate) fn overwrite(&mut self, other: &Self) {
-        let (mut past, mut tactile) = (take(&mut self.past), take(&mut self.tactile));
-        past.clone_from(&other.past);
-        tactile.clone_from(&other.tactile);
         let Self {
-            past: _,
-            tactile: _,
             pose,
             covariance,
             time,
-            latency,
-            felt,
-            moves,
-        } = *other;
-        *self = Self {
             past,
-            tactile,
-            pose,
-            covariance,
-            time,
             latency,
+            tactile,
             felt,
             moves,
-        };
+        } = other;
+        self.past.clone_from(past);
+        self.tactile.clone_from(tactile);
+        (self.pose, self.covariance) = (*pose, *covariance);
+        (self.time, self.latency) = (*time, *latency);
+        (self.felt, self.moves) = (*felt, *moves);
     }
 
     /// True where nothing was read.

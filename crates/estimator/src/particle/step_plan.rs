@@ -1,7 +1,5 @@
 //! The step to one row, as the model gets it: [`StepPlan`].
 
-use std::mem::take;
-
 use stickslip_dynamics::StepInput;
 
 use crate::particle::observation::Observation;
@@ -52,39 +50,28 @@ pub struct StepPlan {
 impl StepPlan {
     /// Becomes a copy of `other`, in the memory that it has.
     pub(crate) fn overwrite(&mut self, other: &Self) {
-        let (mut substeps, mut tactile) = (take(&mut self.substeps), take(&mut self.tactile));
-        let mut seen = take(&mut self.seen);
-        substeps.clone_from(&other.substeps);
-        tactile.clone_from(&other.tactile);
-        seen.overwrite(&other.seen);
         let Self {
-            substeps: _,
-            tactile: _,
-            seen: _,
-            driven,
-            parameter_noise,
-            noise_age,
-            steady,
-            unseen_pusher,
-            slot,
-            resting,
-            reference,
-            second_try,
-        } = *other;
-        *self = Self {
             substeps,
-            tactile,
-            seen,
             driven,
             parameter_noise,
             noise_age,
             steady,
             unseen_pusher,
             slot,
+            seen,
             resting,
+            tactile,
             reference,
             second_try,
-        };
+        } = other;
+        self.substeps.clone_from(substeps);
+        self.tactile.clone_from(tactile);
+        self.seen.overwrite(seen);
+        (self.driven, self.parameter_noise) = (*driven, *parameter_noise);
+        (self.noise_age, self.steady) = (*noise_age, *steady);
+        (self.unseen_pusher, self.slot) = (*unseen_pusher, *slot);
+        (self.resting, self.reference) = (*resting, *reference);
+        self.second_try = *second_try;
     }
 
     /// Length of the step (s).
