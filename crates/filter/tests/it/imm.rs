@@ -43,11 +43,12 @@ fn mixture(parts: &[(f64, AxisEstimate)]) -> AxisEstimate {
 fn distance(got: AxisEstimate, exact: AxisEstimate) -> f64 {
     let mean = |a: f64, b: f64, variance: f64| (a - b).abs() / variance.sqrt();
     let relative = |a: f64, b: f64| (a / b - 1.0).abs();
+    let scale = exact.position_variance * exact.velocity_variance;
     mean(got.position, exact.position, exact.position_variance)
         .max(mean(got.velocity, exact.velocity, exact.velocity_variance))
         .max(relative(got.position_variance, exact.position_variance))
         .max(relative(got.velocity_variance, exact.velocity_variance))
-        .max(relative(got.covariance, exact.covariance))
+        .max((got.covariance - exact.covariance).abs() / scale.sqrt())
 }
 
 #[test]
