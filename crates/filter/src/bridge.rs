@@ -29,7 +29,7 @@ const HALVINGS: usize = 12;
 #[derive(Debug)]
 pub(crate) struct Bridge {
     ensemble: Ensemble,
-    /// Weights by a share of an observation, likelihoods, or weights of the particles that move, (N,).
+    /// Weights by a share of an observation, or weights of the particles that move, (N,).
     weights: Vec<f64>,
     /// Whether the latest observation gave particles other weights than the pass over them did, or moved them.
     parted: bool,

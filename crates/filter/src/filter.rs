@@ -106,11 +106,9 @@ impl<M: Model> ParticleFilter<M> {
             self.choose_ancestors(Purpose::Resample);
         }
         self.pass_over_blocks(resampled, (input, observation), sums);
-        let judged = observation.filter(|observation| self.model.judges_resetting(observation));
-        let judged = judged.map(|observation| self.resetting_log_evidence(observation));
-        let weight_update = match observation {
-            Some(observation) => self.update_weights(observation, judged),
-            None => WeightUpdate::Unobserved,
+        let (weight_update, judged) = match observation {
+            Some(observation) => self.update_weights(observation),
+            None => (WeightUpdate::Unobserved, None),
         };
         self.lineage.end_step();
         match weight_update {
@@ -222,12 +220,11 @@ impl<M: Model> ParticleFilter<M> {
             });
     }
 
-    /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles.
-    fn update_weights(
-        &mut self,
-        observation: &M::Observation,
-        judged: Option<f64>,
-    ) -> WeightUpdate {
+    /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles. Also ln of the mean
+    /// likelihood of what reinitialising can improve, by the weights before, where the model judges it.
+    fn update_weights(&mut self, observation: &M::Observation) -> (WeightUpdate, Option<f64>) {
+        let judged = self.model.judges_resetting(observation);
+        let judged = judged.then(|| self.resetting_log_evidence(observation));
         let mut best_log_likelihood = self.unnormalised.best_log_likelihood();
         if self.model.collapsed(best_log_likelihood) {
             best_log_likelihood = self.best_resetting_log_likelihood(observation);
@@ -235,12 +232,13 @@ impl<M: Model> ParticleFilter<M> {
         if !self.model.collapsed(best_log_likelihood)
             && let Some(log_evidence) = self.weigh_and_move(observation, judged)
         {
-            return WeightUpdate::Weighed { log_evidence };
+            return (WeightUpdate::Weighed { log_evidence }, judged);
         }
         self.reinitialise(observation);
-        WeightUpdate::Collapsed {
+        let collapsed = WeightUpdate::Collapsed {
             best_log_likelihood,
-        }
+        };
+        (collapsed, judged)
     }
 
     /// Weighs the particles by one more observation of the step just made, such as one that arrives
@@ -252,9 +250,7 @@ impl<M: Model> ParticleFilter<M> {
                 model.log_likelihood(observation, block, unnormalised.log_likelihood);
                 unnormalised.weigh(weights, block.range());
             });
-        let judged = self.model.judges_resetting(observation);
-        let judged = judged.then(|| self.resetting_log_evidence(observation));
-        let weight_update = self.update_weights(observation, judged);
+        let (weight_update, judged) = self.update_weights(observation);
         self.recompute_sums(input);
         self.report(false, weight_update, judged)
     }

@@ -25,8 +25,8 @@ const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
 const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
 const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
 /// Behind those of all fixels.
-const UNSEEN_PAIR: u32 = (1 << 21) + 2;
 const CREEP_PAIR: u32 = 1 << 21;
+const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
 
 /// Speed that an unseen pusher may have at least (m/s).
 const UNSEEN_SPEED: f64 = 0.01;

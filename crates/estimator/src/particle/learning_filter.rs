@@ -124,22 +124,27 @@ impl<'o> LearningFilter<'o> {
 
     /// A row that comes so soon after the latest step that none leads to it: its pose is weighed as one of the past.
     pub fn look(&mut self, measured: Measured<'_>) -> &EstimateRow {
-        let seen = measured.object.filter(|pose| *pose != self.shown);
-        if let Some(pose) = seen {
-            self.weigh_late(PoseAt {
+        let seen = measured.object.is_some_and(|pose| {
+            self.weigh(PoseAt {
                 time: measured.time,
                 pose,
                 covariance: measured.covariance,
-            });
-        }
-        self.poses.make_no_step(seen.is_some());
+            })
+        });
+        self.poses.make_no_step(seen);
         self.latest()
     }
 
     /// Weighs the particles by a pose that arrives late; those that learn, where the object has not come to rest since.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
+        self.weigh(late);
+        self.latest()
+    }
+
+    /// The same; whether the pose is a new one, and counted.
+    fn weigh(&mut self, late: PoseAt) -> bool {
         if !self.is_new(late.pose) {
-            return self.latest();
+            return false;
         }
         self.poses.weigh_late(late);
         if let Learning::Underway(learner) = &mut self.learning
@@ -148,7 +153,7 @@ impl<'o> LearningFilter<'o> {
             self.known = KnownFriction::of(learner.weigh_late(late));
         }
         self.tell_friction();
-        self.latest()
+        true
     }
 
     /// Whether a camera pose is a new measurement: in contact mode, one that equals the one before is that frame
