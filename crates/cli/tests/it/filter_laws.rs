@@ -1,8 +1,13 @@
 //! What the particle filter owes on a recorded experiment with known truth: recovery after a
 //! blackout, the same bits on any number of threads, a certified solution of every step.
 
-use stickslip::dynamics::Pose;
-use stickslip::{Log, Method, Mode, Occlusion, Run, RunOptions, Setup, Tracking, run};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use stickslip::dynamics::{Outcome, Pose};
+use stickslip::{
+    Log, Method, Mode, Observer, Occlusion, Run, RunOptions, Setup, SolvedStep, Tracking, run,
+    run_observed,
+};
 use stickslip_formats::{Truth, read_log, read_scene, read_truth_csv};
 
 struct Experiment {
@@ -157,6 +162,17 @@ fn filter_causal_estimate_does_not_depend_on_later_rows_in_any_bit() {
     }
 }
 
+/// Counts the steps that are not solved, of the particles that say where the object is.
+#[derive(Debug, Default)]
+struct OpenSteps(AtomicU64);
+
+impl Observer for OpenSteps {
+    fn on_step(&self, step: &SolvedStep<'_>) {
+        let open = step.report.outcome != Outcome::Solved;
+        self.0.fetch_add(u64::from(open), Ordering::Relaxed);
+    }
+}
+
 #[test]
 fn filter_solves_every_step_of_the_experiment() {
     let experiment = stop_experiment();
@@ -166,14 +182,24 @@ fn filter_solves_every_step_of_the_experiment() {
     };
     for tracking in [Tracking::Smoothed, Tracking::Causal] {
         for mode in [Mode::Paper, Mode::Contact] {
-            let run = experiment.run(&RunOptions {
+            let options = RunOptions {
                 mode,
                 occlusion,
                 tracking,
                 particles: 200,
                 ..RunOptions::default()
-            });
-            // with the friction that a particle may have in contact mode, a step in ten thousand may have no solution
+            };
+            let open = OpenSteps::default();
+            let run = run_observed(
+                &experiment.setup,
+                &experiment.log,
+                &options,
+                &open,
+                &mut |_| (),
+            );
+            let run = run.unwrap();
+            assert_eq!(open.0.into_inner(), 0, "{tracking:?}, {mode:?}");
+            // with the friction that a particle which learns it may have, a step in ten thousand may have no solution
             let unsolvable = match mode {
                 Mode::Paper => 0,
                 Mode::Contact => 2 * 200 * run.estimate.rows.len() as u64 / 10_000,

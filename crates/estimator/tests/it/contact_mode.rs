@@ -1,7 +1,7 @@
 //! What contact mode does that paper mode does not, on experiments whose truth is known by
 //! construction.
 
-use crate::common::{RATE, log, setup};
+use crate::common::{RATE, log, setup, slippery, sticky};
 use stickslip::dynamics::Pose;
 use stickslip::{
     Estimate, Log, Method, Mode, Moves, Occlusion, Run, RunOptions, Setup, Tracking, run,
@@ -142,32 +142,6 @@ fn a_camera_that_moves_for_good_is_followed() {
         (pose.x - 0.1).abs() < 2e-3 && (pose.y - 0.05).abs() < 2e-3,
         "{pose:?}"
     );
-}
-
-/// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
-/// else it slides round the fixel. Here it slides.
-fn slippery() -> (Setup, Log) {
-    let mut slippery = setup(&[[0.032, -0.022]]);
-    let nominal = &mut slippery.scene.nominal;
-    (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
-    let beside = |time: f64| Some(Pose::new(-0.0348 + SPEED * time, 0.004, 0.0));
-    let mut log = log(110, |_| Some(Pose::default()), beside);
-    let options = RunOptions {
-        method: Method::Nominal,
-        ..RunOptions::default()
-    };
-    let truth = run(&slippery, &log, &options, &mut |_| ()).expect("a simulation");
-    log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
-    assert!(log.object[109].expect("a pose").y > 0.01);
-    (slippery, log)
-}
-
-/// The same, told another friction with pusher and fixel: most particles believe that it jams.
-fn sticky(slippery: &Setup, friction: f64) -> Setup {
-    let mut sticky = slippery.clone();
-    let nominal = &mut sticky.scene.nominal;
-    (nominal.mu_p, nominal.mu_f) = (friction, friction);
-    sticky
 }
 
 /// A run in the dark.

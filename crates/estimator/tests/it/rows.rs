@@ -2,7 +2,7 @@
 
 use std::num::NonZero;
 
-use crate::common::{log, setup};
+use crate::common::{log, setup, slippery, sticky};
 use stickslip::dynamics::Pose;
 use stickslip::*;
 
@@ -21,22 +21,10 @@ fn tracker(setup: &Setup, particles: usize) -> Tracker<'static> {
     Tracker::new(setup, &options).expect("a tracker")
 }
 
-/// A disc that slips past a fixel, as its scene says, and the same in a scene where everything sticks.
+/// A disc that slips past a fixel, in a scene where everything sticks.
 fn sticky_and_slippery() -> (Setup, Log) {
-    let mut setup = setup(&[[0.032, -0.022]]);
-    let nominal = &mut setup.scene.nominal;
-    (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
-    let beside = |time: f64| Some(Pose::new(-0.0348 + 0.02 * time, 0.004, 0.0));
-    let mut log = log(110, |_| Some(Pose::default()), beside);
-    let options = RunOptions {
-        method: Method::Nominal,
-        ..RunOptions::default()
-    };
-    let truth = run(&setup, &log, &options, &mut |_| ()).expect("a simulation");
-    log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
-    let nominal = &mut setup.scene.nominal;
-    (nominal.mu_p, nominal.mu_f) = (0.8, 0.8);
-    (setup, log)
+    let (slippery, log) = slippery();
+    (sticky(&slippery, 0.8), log)
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Scenes of discs that the tests of this crate share.
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
-    Camera, FilterSettings, Log, Observer, RunOptions, Setup, Tactile, Uncertainty, run_observed,
+    Camera, FilterSettings, Log, Method, Observer, RunOptions, Setup, Tactile, Uncertainty, run,
+    run_observed,
 };
 
 /// Frames per second (Hz).
@@ -99,4 +100,30 @@ pub fn run_from_rest(setup: &Setup, seed: u64, seeing: bool, observer: &impl Obs
         ..RunOptions::default()
     };
     run_observed(setup, &log, &options, observer, &mut |_| ()).expect("a run");
+}
+
+/// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
+/// else it slides round the fixel. Here it slides.
+pub fn slippery() -> (Setup, Log) {
+    let mut slippery = setup(&[[0.032, -0.022]]);
+    let nominal = &mut slippery.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
+    let beside = |time: f64| Some(Pose::new(-0.0348 + 0.02 * time, 0.004, 0.0));
+    let mut log = log(110, |_| Some(Pose::default()), beside);
+    let options = RunOptions {
+        method: Method::Nominal,
+        ..RunOptions::default()
+    };
+    let truth = run(&slippery, &log, &options, &mut |_| ()).expect("a simulation");
+    log.object = truth.estimate.rows.iter().map(|row| row.pose).collect();
+    assert!(log.object[109].expect("a pose").y > 0.01);
+    (slippery, log)
+}
+
+/// The same, told another friction with pusher and fixel: most particles believe that it jams.
+pub fn sticky(slippery: &Setup, friction: f64) -> Setup {
+    let mut sticky = slippery.clone();
+    let nominal = &mut sticky.scene.nominal;
+    (nominal.mu_p, nominal.mu_f) = (friction, friction);
+    sticky
 }
