@@ -23,10 +23,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import joblib
-
 from stickslip._compare import compare
 from stickslip._native import Error
+
+try:
+    import joblib
+except ImportError as error:
+    raise ImportError(
+        "stickslip.study runs on joblib, which is not installed. Install it: pip install 'stickslip[study]'"
+    ) from error
 
 __all__ = ["Task", "grid", "run", "score_folder", "to_parquet"]
 

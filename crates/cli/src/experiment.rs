@@ -78,21 +78,30 @@ pub fn read_folder(folder: &Path, scene: &Path, topics: &Topics) -> Result<(Expe
     read_experiment(scene, &log_path(folder), topics, None)
 }
 
-/// An occlusion that hides no pose is a slip of the pen.
+/// An occlusion that hides no pose is a slip of the pen, and one that hides every pose leaves nothing to start from.
 pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
-    let hides = occlusion
-        .hidden(&experiment.log)
-        .iter()
-        .zip(&experiment.log.object)
-        .any(|(hidden, pose)| *hidden && pose.is_some());
-    if occlusion == Occlusion::None || hides {
+    if occlusion == Occlusion::None {
         return Ok(());
     }
     let rows = experiment.log.len();
-    Err(hinted(
-        format!("the occlusion hides no object pose of the log's {rows} rows"),
-        format!("rows go from 0 to {}; choose a range among them", rows - 1),
-    ))
+    let hidden = occlusion.hidden(&experiment.log);
+    let measured: Vec<usize> = (0..rows)
+        .filter(|row| experiment.log.object[*row].is_some())
+        .collect();
+    let hides = measured.iter().filter(|row| hidden[**row]).count();
+    match measured.as_slice() {
+        [first, ..] if hides == measured.len() => Err(hinted(
+            format!(
+                "the occlusion hides all {hides} object poses of the log; one is needed to start from"
+            ),
+            format!("hide rows from {0} on: `--occlude {0}`", first + 1),
+        )),
+        _ if hides == 0 => Err(hinted(
+            format!("the occlusion hides no object pose of the log's {rows} rows"),
+            format!("rows go from 0 to {}; choose a range among them", rows - 1),
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// What to call the experiment of a log: its folder where the log has the name that all have.

@@ -30,7 +30,7 @@ impl CsvTable {
     /// Reads all of `reader` and its header; `file` is the name to show in errors.
     ///
     /// # Errors
-    /// The bytes cannot be read, are not UTF-8, hold no header or no row, or name a column twice.
+    /// The bytes cannot be read, are not UTF-8, hold no header, or name a column twice.
     pub(crate) fn read(reader: impl Read, file: &str) -> Result<Self, CsvError> {
         let text = read_text(reader).map_err(|(line, problem)| CsvError {
             file: file.to_owned(),
@@ -46,6 +46,10 @@ impl CsvTable {
         };
         let header = table.lines().next().map(|(_, header)| split(header));
         table.columns = header.ok_or_else(|| table.error(1, None, CsvProblem::Empty))?;
+        if let Some(found) = table.columns.first().filter(|name| is_number(name)) {
+            let found = found.clone();
+            return Err(table.error(1, None, CsvProblem::NoHeader { found }));
+        }
         for (index, name) in table.columns.iter().enumerate() {
             table.places.entry(name.clone()).or_insert(index);
         }
@@ -173,6 +177,9 @@ impl CsvTable {
 
     /// What a person may have done instead of naming `column`.
     fn missing_hint(&self, column: &str) -> String {
+        if self.columns[0].starts_with('#') {
+            return "; the first line is a comment, which the format has not".to_owned();
+        }
         if let [only] = self.columns.as_slice()
             && let Some(separator) = only.chars().find(|c| matches!(c, ';' | '\t'))
         {
@@ -247,7 +254,8 @@ impl Row<'_> {
             .map(Some)
     }
 
-    /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them.
+    /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them, and so do `False` and
+    /// `True` of pandas, in any case.
     pub(crate) fn binary(&self, column: usize) -> Result<Option<bool>, CsvError> {
         let wrong = || {
             self.error(
@@ -258,6 +266,11 @@ impl Row<'_> {
                 },
             )
         };
+        for truth in [false, true] {
+            if self.cells[column].eq_ignore_ascii_case(&truth.to_string()) {
+                return Ok(Some(truth));
+            }
+        }
         match self.number(column).map_err(|_| wrong())? {
             None => Ok(None),
             Some(0.0) => Ok(Some(false)),
@@ -326,6 +339,11 @@ fn read_text(mut reader: impl Read) -> Result<String, (usize, CsvProblem)> {
         .strip_prefix('\u{feff}')
         .map(str::to_owned)
         .unwrap_or(text))
+}
+
+/// Whether a cell of a first line is a measurement rather than a name; `nan` and `inf` are names.
+fn is_number(cell: &str) -> bool {
+    cell.parse().is_ok_and(f64::is_finite)
 }
 
 /// The cells of one line; a comma between double quotes does not separate, `""` is a quote.

@@ -106,7 +106,7 @@ fn good_experiments_raise_no_doubt() {
 }
 
 #[test]
-fn compare_refuses_an_occlusion_that_hides_nothing() {
+fn compare_refuses_an_occlusion_that_hides_nothing_or_all() {
     let case = Experiment::copy(SLIDE, "doubts/occlusion");
     fs::remove_file(case.folder.join("truth.json")).unwrap();
     let compare = |rows: &str| {
@@ -117,10 +117,15 @@ fn compare_refuses_an_occlusion_that_hides_nothing() {
             .args(["--particles", "20", "--occlude", rows]);
         command.output().unwrap()
     };
-    let run = compare("100000:");
-    let talk = String::from_utf8(run.stderr).unwrap();
-    assert_eq!(run.status.code(), Some(1), "{talk}");
-    assert!(talk.contains("hides no object pose"), "{talk}");
+    for (rows, said) in [
+        ("100000:", "hides no object pose"),
+        ("0", "one is needed to start from"),
+    ] {
+        let run = compare(rows);
+        let talk = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(1), "{talk}");
+        assert!(talk.contains(said), "{talk}");
+    }
     assert_eq!(compare("100:").status.code(), Some(0));
 }
 
