@@ -307,19 +307,58 @@ fn covers(rank: f64) -> bool {
     (0.05..=0.95).contains(&rank)
 }
 
-/// What many runs say of one quantity.
+/// How many truths beliefs hold, and how evenly their ranks are spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tally {
-    /// Runs in which it was observed.
-    pub runs: usize,
-    /// Share of them in which the central 90 % of the belief hold the truth.
+pub struct RankTally {
+    /// Number of beliefs.
+    pub count: usize,
+    /// Share of them whose central 90 % hold the truth.
     pub covered: f64,
     /// Standard error of that share.
     pub standard_error: f64,
     /// χ² of the ranks in ten equal bins against uniform ones; 21.7 is its 99 % quantile.
     pub chi_squared: f64,
-    /// Share of all runs in which they hold it at the last row that the camera saw, observed or not.
-    pub covered_seen: f64,
+}
+
+impl RankTally {
+    /// `None` where there are none.
+    fn of(ranks: &[f64]) -> Option<Self> {
+        if ranks.is_empty() {
+            return None;
+        }
+        let count = ranks.len() as f64;
+        let covered = ranks.iter().filter(|rank| covers(**rank)).count() as f64 / count;
+        let mut bins = [0.0; 10];
+        for rank in ranks {
+            bins[((rank * 10.0) as usize).min(9)] += 1.0;
+        }
+        let expected = count / 10.0;
+        Some(Self {
+            count: ranks.len(),
+            covered,
+            standard_error: (covered * (1.0 - covered) / count).sqrt(),
+            chi_squared: bins
+                .iter()
+                .map(|bin| (bin - expected) * (bin - expected) / expected)
+                .sum(),
+        })
+    }
+}
+
+/// What many runs say of one quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tally {
+    /// In the runs that observed it, `None` where none did.
+    pub observed: Option<Observed>,
+    /// In all runs, at the last row that the camera saw.
+    pub seen: RankTally,
+}
+
+/// What the runs that observed a quantity say of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observed {
+    /// Where the truth lies.
+    pub ranks: RankTally,
     /// Median distance from the truth (SI).
     pub error: f64,
     /// The same of what was believed before the run; for a pose that of what is believed.
@@ -327,31 +366,27 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Of quantity number `which` of [`QUANTITIES`]; `None` where no run observed it.
+    /// Of quantity number `which` of [`QUANTITIES`]; `None` where there is no run.
     #[must_use]
     pub fn of(runs: &[CalibrationRun], which: usize) -> Option<Self> {
+        let seen: Vec<f64> = runs.iter().map(|run| run.seen[which]).collect();
         let placed: Vec<Placed> = runs.iter().filter_map(|run| run.placed[which]).collect();
-        let count = placed.len() as f64;
-        let covered = placed.iter().filter(|placed| placed.is_held()).count() as f64 / count;
-        let mut bins = [0.0; 10];
-        for placed in &placed {
-            bins[((placed.rank * 10.0) as usize).min(9)] += 1.0;
-        }
-        let expected = count / 10.0;
-        let seen = runs.iter().filter(|run| covers(run.seen[which])).count();
+        Some(Self {
+            observed: Observed::of(&placed),
+            seen: RankTally::of(&seen)?,
+        })
+    }
+}
+
+impl Observed {
+    fn of(placed: &[Placed]) -> Option<Self> {
+        let ranks: Vec<f64> = placed.iter().map(|placed| placed.rank).collect();
         let median = |distance: fn(&Placed) -> f64| {
             let distances: Vec<f64> = placed.iter().map(distance).collect();
             stickslip::quantile(&distances, 0.5)
         };
         Some(Self {
-            runs: placed.len(),
-            covered,
-            standard_error: (covered * (1.0 - covered) / count).sqrt(),
-            chi_squared: bins
-                .iter()
-                .map(|bin| (bin - expected) * (bin - expected) / expected)
-                .sum(),
-            covered_seen: seen as f64 / runs.len() as f64,
+            ranks: RankTally::of(&ranks)?,
             error: median(|placed| placed.error)?,
             prior_error: median(|placed| placed.prior_error)?,
         })
@@ -363,7 +398,7 @@ mod tests {
     use super::*;
 
     /// Beliefs of standard deviation `std` about truths from N(0, 1) measured with deviation 1.
-    fn tally(std: f64) -> Tally {
+    fn tally(std: f64) -> Observed {
         let runs: Vec<CalibrationRun> = (0..2000)
             .map(|seed| {
                 let [truth, noise] = Streams::new(seed).normals::<2>(0, 0, 0);
@@ -379,22 +414,26 @@ mod tests {
                 }
             })
             .collect();
-        Tally::of(&runs, 0).expect("runs")
+        let tally = Tally::of(&runs, 0).expect("runs");
+        let observed = tally.observed.expect("all observe");
+        assert_eq!(tally.seen, observed.ranks);
+        observed
     }
 
     #[test]
     fn the_exact_posterior_is_calibrated_and_a_narrow_one_is_not() {
         // the posterior of N(0, 1) measured once with deviation 1 has variance 1/2
         let exact = tally(0.5_f64.sqrt());
+        let ranks = exact.ranks;
         assert!(
-            (exact.covered - 0.9).abs() < 4.0 * exact.standard_error,
+            (ranks.covered - 0.9).abs() < 4.0 * ranks.standard_error,
             "{exact:?}"
         );
         assert!(
-            exact.chi_squared < 30.0 && exact.error < exact.prior_error,
+            ranks.chi_squared < 30.0 && exact.error < exact.prior_error,
             "{exact:?}"
         );
-        let narrow = tally(0.3);
+        let narrow = tally(0.3).ranks;
         assert!(
             narrow.covered < 0.6 && narrow.chi_squared > 100.0,
             "{narrow:?}"

@@ -16,7 +16,9 @@ mod statistics;
 mod variant;
 
 pub use belief::Belief;
-pub use calibration::{CalibrationOptions, CalibrationRun, Placed, QUANTITIES, Tally, TruthSource};
+pub use calibration::{
+    CalibrationOptions, CalibrationRun, Observed, Placed, QUANTITIES, RankTally, Tally, TruthSource,
+};
 pub use ingredient::Ingredient;
 pub use learned_friction::LearnedParameter;
 pub use reference::Agreement;

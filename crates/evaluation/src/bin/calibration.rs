@@ -1,16 +1,18 @@
 //! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...`: where
 //! the truth lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by
 //! the filter's own noisy dynamics, by these without noise and by the testbed, with touch, without, and with the
-//! camera on throughout, in both modes. "last seen" is the coverage when the camera goes dark, in all runs. Keys are those of a
-//! scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is what they cost. With keys
-//! only contact mode, which knows them, is run.
+//! camera on throughout, in both modes: at the end in the runs that observe a quantity, and in all runs at the last row
+//! that the camera saw. Keys are those of a scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is
+//! what they cost, `force_spread=1 creep=0.1` the model of the particles that learn friction. With keys only contact
+//! mode, which knows them, is run.
 
 use std::error::Error;
 
 use stickslip::{Mode, Uncertainty};
 use stickslip_evaluation::paper::PaperExperiment;
 use stickslip_evaluation::{
-    CalibrationOptions, CalibrationRun, Physics, QUANTITIES, Tally, TruthSource, Variant,
+    CalibrationOptions, CalibrationRun, Observed, Physics, QUANTITIES, RankTally, Tally,
+    TruthSource, Variant,
 };
 use stickslip_formats::read_scene;
 
@@ -71,22 +73,36 @@ fn uncertainty(keys: &[&String]) -> Result<Uncertainty, Box<dyn Error>> {
 }
 
 fn show(runs: &[CalibrationRun]) {
+    let ranks = |of: &str| format!("{of:>13}  {:<14} {:>6}", "coverage", "chi2");
+    let errors = format!("{:>14} {:>13}", "median error", "of the prior");
     println!(
-        "  quantity  runs  coverage      chi2 of ranks   median error   of the prior   last seen"
+        "  quantity {} {errors}    {}",
+        ranks("observed"),
+        ranks("last seen")
     );
     for (which, name) in QUANTITIES.iter().enumerate() {
-        match Tally::of(runs, which) {
-            None => println!("  {name:<8}  not observed"),
-            Some(tally) => println!(
-                "  {name:<8} {:5}  {:.2} +- {:.2} {:12.1} {:15.3e} {:14.3e} {:11.2}",
-                tally.runs,
-                tally.covered,
-                tally.standard_error,
-                tally.chi_squared,
-                tally.error,
-                tally.prior_error,
-                tally.covered_seen
-            ),
-        }
+        let Some(tally) = Tally::of(runs, which) else {
+            println!("  {name:<8}  no runs");
+            continue;
+        };
+        let observed = match tally.observed {
+            None => format!("{:13} {:40}", 0, ""),
+            Some(Observed {
+                ranks,
+                error,
+                prior_error,
+            }) => format!("{} {error:14.3e} {prior_error:13.3e}", columns(&ranks)),
+        };
+        println!("  {name:<8} {observed}    {}", columns(&tally.seen));
     }
+}
+
+fn columns(ranks: &RankTally) -> String {
+    let RankTally {
+        count,
+        covered,
+        standard_error,
+        chi_squared,
+    } = ranks;
+    format!("{count:13}  {covered:.3} +- {standard_error:.3} {chi_squared:6.1}")
 }
