@@ -15,6 +15,9 @@ use crate::uncertainty::Uncertainty;
 /// as told: copies of a particle are to differ.
 const OFFSET_STEP: f64 = 0.1;
 
+/// Share of its spread by which the logarithm of a rig's roughness wanders at rest.
+const ROUGHNESS_STEP: f64 = 0.05;
+
 /// Share of its spread by which creep wanders.
 const CREEP_STEP: f64 = 0.1;
 
@@ -53,8 +56,8 @@ impl Propagation {
     }
 
     /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
-    /// pusher comes near. After that the rig stays as rough as it is: a particle whose offsets wander
-    /// less would be favoured for that.
+    /// pusher comes near. After that the rig stays as rough as it is while the object moves, since a particle whose
+    /// offsets wander less would be favoured for that. Where the camera sees it rest, it may turn out to be another.
     #[inline(always)]
     pub(super) fn draw_offsets(
         &self,
@@ -67,7 +70,11 @@ impl Propagation {
             let near = flag(&block.as_block(), Columns::PUSHER_WAS_NEAR, chunk);
             let before = load_chunk(block.column(columns.roughness()), chunk, 0.0);
             let fresh = load_chunk(&self.normals[3], chunk, 0.0) * unsure.roughness;
-            let roughness = near.select(before, fresh);
+            let known = match plan.shows_rest() {
+                true => wandered(before, Lanes::splat(ROUGHNESS_STEP), fresh),
+                false => before,
+            };
+            let roughness = near.select(known, fresh);
             store_chunk(block.column_mut(columns.roughness()), chunk, &roughness);
             let of_pusher = offset_step(registered(unsure, roughness));
             let of_outline = offset_step(measured(unsure, roughness));

@@ -92,6 +92,11 @@ impl StepPlan {
         self.driven || !self.is_dark()
     }
 
+    /// Whether the camera sees where the object rests: what keeps it from the poses that are seen is the rig.
+    pub(crate) fn shows_rest(&self) -> bool {
+        !self.driven && !self.is_dark()
+    }
+
     /// No step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {

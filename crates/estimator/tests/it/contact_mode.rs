@@ -144,6 +144,41 @@ fn a_camera_that_moves_for_good_is_followed() {
     );
 }
 
+/// Bodies that are pressed give a little: a disc that jams rests deeper in the fixel than the rig says, and no particle
+/// may have believed so of a rig that seemed well measured while the disc moved.
+#[test]
+fn a_jam_that_gives_way_ends_where_the_camera_shows_it() {
+    let setup = setup(&[[0.105, 0.0]]);
+    let (rate, give) = (120.0, 1.5e-4);
+    let pusher = |time: f64| (-0.045 + SPEED * time).min(0.035 + 2.0 * give);
+    let rests = 0.07 + give;
+    let time: Vec<f64> = (0..1440).map(|row| f64::from(row) / rate).collect();
+    let object = |(row, time): (usize, &f64)| {
+        // some noise that returns, as far from zero in the mean as a hundredth of the camera's
+        let noise = 3e-4 * libm::sin(11.0 * row as f64);
+        let other = 3e-4 * libm::sin(17.0 * row as f64);
+        let x = (pusher(*time) + 0.035).clamp(0.0, rests);
+        Some(Pose::new(x + noise, other, 10.0 * noise))
+    };
+    let log = Log {
+        object: time.iter().enumerate().map(object).collect(),
+        pusher: time
+            .iter()
+            .map(|t| Some(Pose::new(pusher(*t), 0.0, 0.0)))
+            .collect(),
+        time,
+        ..Log::default()
+    };
+    let estimate = estimate(&setup, &log, Mode::Contact);
+    let late = &estimate.rows[1200..];
+    let error: f64 = late
+        .iter()
+        .map(|row| row.pose.expect("a pose").x - rests)
+        .sum();
+    let error = error / late.len() as f64;
+    assert!(error.abs() < 4e-5, "{error} m");
+}
+
 /// A run in the dark.
 fn blind(setup: &Setup, log: &Log) -> Run {
     let options = RunOptions {
