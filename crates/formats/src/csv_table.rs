@@ -257,26 +257,21 @@ impl Row<'_> {
     /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them, and so do `False` and
     /// `True` of pandas, in any case.
     pub(crate) fn binary(&self, column: usize) -> Result<Option<bool>, CsvError> {
-        let wrong = || {
-            self.error(
-                column,
-                CsvProblem::NotBinary {
-                    found: self.cells[column].clone(),
-                    may_be_empty: true,
-                },
-            )
+        let cell = self.cells[column].as_str();
+        let reading = match self.number(column) {
+            Ok(None) => return Ok(None),
+            Ok(Some(0.0)) => Some(false),
+            Ok(Some(1.0)) => Some(true),
+            Ok(Some(_)) => None,
+            Err(_) if cell.eq_ignore_ascii_case("false") => Some(false),
+            Err(_) if cell.eq_ignore_ascii_case("true") => Some(true),
+            Err(_) => None,
         };
-        for truth in [false, true] {
-            if self.cells[column].eq_ignore_ascii_case(&truth.to_string()) {
-                return Ok(Some(truth));
-            }
-        }
-        match self.number(column).map_err(|_| wrong())? {
-            None => Ok(None),
-            Some(0.0) => Ok(Some(false)),
-            Some(1.0) => Ok(Some(true)),
-            Some(_) => Err(wrong()),
-        }
+        let wrong = || CsvProblem::NotBinary {
+            found: cell.to_owned(),
+            may_be_empty: true,
+        };
+        reading.map(Some).ok_or_else(|| self.error(column, wrong()))
     }
 
     /// The text in a cell that must be filled.

@@ -94,7 +94,7 @@ impl StepPlan {
 
     /// Whether the camera sees where the object rests: what keeps it from the poses that are seen is the rig.
     pub(crate) fn shows_rest(&self) -> bool {
-        !self.driven && !self.is_dark()
+        !self.driven && self.unseen_pusher.is_none() && !self.is_dark()
     }
 
     /// No step at all.

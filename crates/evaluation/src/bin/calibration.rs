@@ -86,7 +86,7 @@ fn show(runs: &[CalibrationRun]) {
             continue;
         };
         let observed = match tally.observed {
-            None => format!("{:13} {:40}", 0, ""),
+            None => format!("{:13} {:51}", 0, ""),
             Some(Observed {
                 ranks,
                 error,
