@@ -52,14 +52,6 @@ pub enum CsvProblem {
     /// There is no header.
     #[error("the file is empty; its first line must name the columns")]
     Empty,
-    /// The first line is numbers.
-    #[error(
-        "the first line starts with the number `{found}`; it must name the columns, separated by commas. Put a header above it"
-    )]
-    NoHeader {
-        /// The first cell.
-        found: String,
-    },
     /// There is a header and nothing else.
     #[error("the file has a header and no rows; at least one row is needed")]
     NoRows,

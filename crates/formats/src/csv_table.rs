@@ -46,10 +46,6 @@ impl CsvTable {
         };
         let header = table.lines().next().map(|(_, header)| split(header));
         table.columns = header.ok_or_else(|| table.error(1, None, CsvProblem::Empty))?;
-        if let Some(found) = table.columns.first().filter(|name| is_number(name)) {
-            let found = found.clone();
-            return Err(table.error(1, None, CsvProblem::NoHeader { found }));
-        }
         for (index, name) in table.columns.iter().enumerate() {
             table.places.entry(name.clone()).or_insert(index);
         }
@@ -160,6 +156,9 @@ impl CsvTable {
     }
 
     fn check_unique(&self) -> Result<(), CsvError> {
+        if self.number_for_name().is_some() {
+            return Ok(());
+        }
         for (index, name) in self.columns.iter().enumerate() {
             if let Some(first) = self
                 .find(name)
@@ -175,8 +174,19 @@ impl CsvTable {
         Ok(())
     }
 
+    /// The first of the header's cells where all that are filled are numbers: no header then, but a row.
+    fn number_for_name(&self) -> Option<&str> {
+        let mut filled = self.columns.iter().filter(|name| !name.is_empty());
+        let first = filled.next()?;
+        let are_numbers = is_number(first) && filled.all(|name| is_number(name));
+        are_numbers.then_some(first)
+    }
+
     /// What a person may have done instead of naming `column`.
     fn missing_hint(&self, column: &str) -> String {
+        if let Some(number) = self.number_for_name() {
+            return format!("; the first line has numbers for names, `{number}` to begin with");
+        }
         if self.columns[0].starts_with('#') {
             return "; the first line is a comment, which the format has not".to_owned();
         }
@@ -254,24 +264,23 @@ impl Row<'_> {
             .map(Some)
     }
 
-    /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them, and so do `False` and
-    /// `True` of pandas, in any case.
+    /// A cell that is 0, 1 or empty; 0.0 and 1.0 count as such, since table programs write them.
     pub(crate) fn binary(&self, column: usize) -> Result<Option<bool>, CsvError> {
-        let cell = self.cells[column].as_str();
-        let reading = match self.number(column) {
-            Ok(None) => return Ok(None),
-            Ok(Some(0.0)) => Some(false),
-            Ok(Some(1.0)) => Some(true),
-            Ok(Some(_)) => None,
-            Err(_) if cell.eq_ignore_ascii_case("false") => Some(false),
-            Err(_) if cell.eq_ignore_ascii_case("true") => Some(true),
-            Err(_) => None,
+        let wrong = || {
+            self.error(
+                column,
+                CsvProblem::NotBinary {
+                    found: self.cells[column].clone(),
+                    may_be_empty: true,
+                },
+            )
         };
-        let wrong = || CsvProblem::NotBinary {
-            found: cell.to_owned(),
-            may_be_empty: true,
-        };
-        reading.map(Some).ok_or_else(|| self.error(column, wrong()))
+        match self.number(column).map_err(|_| wrong())? {
+            None => Ok(None),
+            Some(0.0) => Ok(Some(false)),
+            Some(1.0) => Ok(Some(true)),
+            Some(_) => Err(wrong()),
+        }
     }
 
     /// The text in a cell that must be filled.

@@ -157,22 +157,22 @@ fn missing_column_is_refused_with_the_nearest() {
         "1",
         &["`object_theta`", "`object_tetha`"],
     );
+    refused("0,1,2,3,4,5,6\n", "1", &["`time`", "missing", "first line"]);
+    refused(
+        "0.5,1,2,,4,0,0\n",
+        "1",
+        &["`time`", "missing", "numbers", "`0.5`"],
+    );
     refused(
         &format!("# of Monday\n{HEADER}\n0,1,2,3,4,5,6\n"),
         "1",
-        &["`time`", "comment", "first line"],
+        &["`time`", "missing", "comment"],
     );
     refused(
         &format!("{}\n0;1;2;3;4;5;6\n", HEADER.replace(',', ";")),
         "1",
         &["`time`", "';'", "commas"],
     );
-}
-
-#[test]
-fn log_without_a_header_is_refused() {
-    refused("0,1,2,3,4,5,6\n", "1", &["`0`", "header", "first line"]);
-    refused("0.5,1,2,3,4,0,0\n", "1", &["`0.5`", "header"]);
 }
 
 #[test]
@@ -298,14 +298,8 @@ fn one_force_column_alone_is_refused() {
 }
 
 #[test]
-fn tactile_cell_may_be_a_truth_value_of_pandas() {
-    let text = format!("{HEADER},tactile_1\n0,1,2,3,4,5,6,True\n1,,,,4,5,6,false\n");
-    assert_eq!(read(&text).0.tactile, [[Some(true), Some(false)]]);
-}
-
-#[test]
 fn tactile_cell_that_is_neither_0_nor_1_is_refused() {
-    for value in ["2", "-1", "0.5", "yes", "nan"] {
+    for value in ["2", "-1", "0.5", "true", "nan"] {
         let text = format!("{HEADER},tactile_1\n0,1,2,3,4,5,6,{value}\n");
         refused(
             &text,
