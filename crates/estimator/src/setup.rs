@@ -96,6 +96,23 @@ impl Default for FilterSettings {
     }
 }
 
+impl FilterSettings {
+    /// The defaults for an object whose friction is near `nominal`: limits reach to half and twice of that at least, of
+    /// d_tri to 1.6 times, for objects larger than most.
+    pub fn around(nominal: &Friction) -> Self {
+        let mut settings = Self::default();
+        let nominal = nominal.fields().into_iter();
+        let limits = settings.limits.fields_mut().into_iter();
+        for ((limits, nominal), most) in limits.zip(nominal).zip([2.0, 2.0, 2.0, 1.6]) {
+            if *nominal > 0.0 {
+                limits.min = limits.min.min(nominal / most);
+                limits.max = limits.max.max(nominal * most);
+            }
+        }
+        settings
+    }
+}
+
 /// Standard deviations of a logged pusher position within which the pusher stands.
 const PUSHER_SIGMAS: f64 = 3.0;
 

@@ -17,7 +17,7 @@ use crate::particle::pose_clock::PoseClock;
 use crate::particle::view::ParticleView;
 use crate::pusher::causal::CausalTrack;
 use crate::pusher::schedule::{SHORTEST_STEP, split};
-use crate::pusher::tracked_pose::{TrackedPose, motion};
+use crate::pusher::tracked_pose::{TrackedPose, motion, step_length};
 use crate::row::{LONGEST_PAUSE, Row, RowError};
 use crate::setup::{Camera, Setup};
 
@@ -316,6 +316,7 @@ impl<'o> Tracker<'o> {
         }
         let before = std::mem::replace(&mut self.tracked, next);
         self.stepped = Some(time);
+        let h = step_length(next, h);
         let motion = motion(before, next, h, self.direction);
         if let Some(motion) = &motion {
             self.direction = motion.direction;

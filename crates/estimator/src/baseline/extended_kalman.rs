@@ -38,12 +38,19 @@ pub(crate) fn track(
         let noise = camera.noise(prepared.covariance(row));
         let pose = prepared.visible(row);
         let visual = pose.is_some_and(|pose| camera.see(&mut belief, pose, &noise));
-        let last_h = prepared.schedule.step(row - 1).last().map_or(0.0, |s| s.h);
-        let (pusher, fixels) = touch_flags(setup, step.work(), last_h);
+        // a row that no step leads to touches what the row before did
+        let before = &estimate.rows[row - 1];
+        let (contact_pusher, contact_fixels) = match prepared.schedule.step(row - 1).last() {
+            Some(last) => {
+                let (pusher, fixels) = touch_flags(setup, step.work(), last.h);
+                (Some(pusher), Some(fixels))
+            }
+            None => (before.contact_pusher, before.contact_fixels.clone()),
+        };
         let [unsolved, failed] = step.since.counts();
         estimate.rows[row] = EstimateRow {
-            contact_pusher: Some(pusher),
-            contact_fixels: Some(fixels),
+            contact_pusher,
+            contact_fixels,
             visual,
             unsolved: Some(unsolved),
             failed: Some(failed),

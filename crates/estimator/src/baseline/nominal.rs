@@ -25,12 +25,13 @@ pub(crate) fn simulate(
     for k in prepared.first..prepared.log.len() - 1 {
         particle.limit_pusher_lag(setup.most_pusher_lag());
         let outcome = advance(&dynamics, prepared, k, &mut particle, &mut work);
-        let touch = touch_flags(
-            setup,
-            &work,
-            prepared.schedule.step(k).last().map_or(0.0, |s| s.h),
-        );
-        estimate.rows[k + 1] = row(&particle, Some(touch), outcome);
+        // a row that no step leads to touches what the row before did
+        let before = &estimate.rows[k];
+        let touch = match prepared.schedule.step(k).last() {
+            Some(step) => Some(touch_flags(setup, &work, step.h)),
+            None => before.contact_pusher.zip(before.contact_fixels.clone()),
+        };
+        estimate.rows[k + 1] = row(&particle, touch, outcome);
         progress(k + 1);
     }
     estimate

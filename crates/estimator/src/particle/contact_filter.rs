@@ -84,8 +84,9 @@ pub(crate) struct ContactFilter<'o> {
     trust: CameraTrust,
     replay: Replay,
     steadiness: Steadiness,
-    /// The pusher's latest speed (m/s).
+    /// The pusher's latest speed (m/s), and whether it moved by that.
     pusher_speed: f64,
+    pusher_moved: bool,
     resting: RestingPose,
     /// Whether a particle has touched anything.
     touched: bool,
@@ -173,6 +174,7 @@ impl<'o> ContactFilter<'o> {
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
             pusher_speed: 0.0,
+            pusher_moved: false,
             resting: RestingPose::new((pose, start.covariance), &camera, setup),
             touched: false,
             moves: options.moves,
@@ -317,8 +319,11 @@ impl<'o> ContactFilter<'o> {
         let pusher = drive.substeps.last().and_then(|step| step.pusher);
         if let Some(Twist { vx, vy, .. }) = pusher.filter(|_| !drive.unseen).map(|p| p.twist) {
             self.pusher_speed = libm::hypot(vx, vy);
+            self.pusher_moved = drive.moves;
         }
-        plan.unseen_pusher = Some(self.pusher_speed).filter(|_| drive.unseen && !plan.is_dark());
+        // in the dark, one that stood when it was last seen has been lifted
+        let carries = drive.unseen && (self.pusher_moved || !plan.is_dark());
+        plan.unseen_pusher = Some(self.pusher_speed).filter(|_| carries);
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
         if slots > self.filter.model().columns().history() {

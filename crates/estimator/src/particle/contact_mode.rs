@@ -1,18 +1,14 @@
 //! What contact mode adds to a step (docs/method.md, "Contact mode"): every particle has its own
 //! friction, offsets and latency, and its own view of the tactile sensors.
 
-use stickslip_dynamics::{
-    Body, Friction, Lanes, Mask, Offsets, Particles, StepInput, Twist, on_widest,
-};
+use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::mode::Mode;
 use crate::particle::chunk::{Column, FlagsMut, LANES, flag, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
-use crate::particle::model::write;
 use crate::particle::noise_clock::NOISE_STEP;
 use crate::particle::propagation::{Propagation, Transition, load_columns, store_columns};
-use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
 use crate::setup::Limits;
@@ -26,13 +22,8 @@ const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
 const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
 /// Behind those of all fixels.
 const CREEP_PAIR: u32 = 1 << 21;
-const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
-
-/// Speed that an unseen pusher may have at least (m/s).
-const UNSEEN_SPEED: f64 = 0.01;
-
-/// For how long an object that an unseen pusher carries goes on as it does, or rests (s).
-const UNSEEN_LASTS: f64 = 0.15;
+pub(super) const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
+const SHAKEN_PAIR: u32 = UNSEEN_PAIR + 2;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -58,12 +49,7 @@ impl Propagation {
         self.carried.fill(Twist::default());
         if let Some(speed) = plan.unseen_pusher {
             self.normals_of(draw, UNSEEN_PAIR, block);
-            self.carry(
-                transition,
-                speed.max(UNSEEN_SPEED),
-                (plan.duration(), draw),
-                block,
-            );
+            self.carry(transition, plan, (speed, draw), block);
         }
         self.normals_of(draw, 0, block);
         on_widest(
@@ -80,6 +66,10 @@ impl Propagation {
         // drawn anew in every row of a fast pusher, its offset would be the largest of many when it comes near
         if plan.noise_age == 0 {
             self.draw_rig(transition, plan, draw, block);
+            if plan.shows_rest() {
+                self.normals_of(draw, SHAKEN_PAIR, block);
+                self.shake(transition, plan, block);
+            }
         }
         on_widest(
             self.level,
@@ -163,70 +153,6 @@ impl Propagation {
                 touched = touched | flag(block, columns.fixel_was_near(j), chunk);
             }
             self.untouched[chunk] = !touched;
-        }
-    }
-
-    /// Draws anew where an object rests that nothing has come near.
-    fn draw_resting_pose(
-        &mut self,
-        Transition { columns, .. }: &Transition<'_>,
-        resting: &RestingPose,
-        block: &mut BlockMut<'_>,
-    ) {
-        let belief = resting.belief();
-        for (i, _) in block.particles() {
-            let (chunk, lane) = (i / LANES, i % LANES);
-            if !self.untouched[chunk].lane(lane) {
-                continue;
-            }
-            let [x, y, theta, _] = self.normals.each_ref().map(|column| column[i]);
-            let pose = belief.at([x, y, theta]);
-            let now = self.particles[chunk].pose.fields_mut();
-            for (now, drawn) in now.into_iter().zip(pose.fields()) {
-                now.0[lane] = *drawn;
-            }
-            for slot in 0..columns.history() {
-                write(block, columns.past_pose(slot), i, pose.fields());
-            }
-            let noise = resting.noise_seen_at(&pose);
-            write(block, columns.camera_noise(), i, noise.each_ref());
-        }
-    }
-
-    /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in each particle, which
-    /// is drawn anew now and then.
-    fn carry(
-        &mut self,
-        transition: &Transition<'_>,
-        speed: f64,
-        (h, draw): (f64, Draw),
-        block: &BlockMut<'_>,
-    ) {
-        let rho = transition.setup.scene.object.gyration_radius();
-        let changes = 1.0 - libm::exp(-h / UNSEEN_LASTS);
-        for (i, particle) in block.particles() {
-            let (chunk, lane) = (i / LANES, i % LANES);
-            if self.untouched[chunk].lane(lane) {
-                continue;
-            }
-            let [x, y, turn, _] = self.normals.each_ref().map(|column| speed * column[i]);
-            let Particles { pose, twist, .. } = &mut self.particles[chunk];
-            let carried = match draw.uniform(particle, UNSEEN_PAIR) {
-                chance if chance < 0.5 * changes => Twist::default(),
-                chance if chance < changes => Twist {
-                    vx: x,
-                    vy: y,
-                    omega: turn / rho,
-                },
-                _ => twist.map(|column| column.0[lane]),
-            };
-            let columns = pose.fields_mut().into_iter().zip(twist.fields_mut());
-            let to = columns.zip(self.carried[chunk].fields_mut());
-            for (((pose, twist), to), velocity) in to.zip(carried.fields()) {
-                pose.0[lane] += velocity * h;
-                twist.0[lane] = 0.0;
-                to.0[lane] = *velocity;
-            }
         }
     }
 
@@ -388,12 +314,14 @@ impl Propagation {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let threshold = Lanes::splat(setup.tactile.touch_force * last_h);
         let touch_gap = Lanes::splat(setup.uncertainty.touch_gap);
-        for (j, reading) in plan.tactile.iter().enumerate() {
+        for j in 0..columns.fixels() {
+            // a row that tells of no sensor is silent on all
+            let reading = plan.tactile.get(j).copied().flatten();
             for chunk in 0..block.len().div_ceil(LANES) {
                 let mut belief = channel.start();
                 load_columns(block, columns.sensor(j), chunk, belief.fields_mut());
                 belief = channel.later(belief, freed);
-                let Some(reading) = *reading else {
+                let Some(reading) = reading else {
                     store_columns(block, columns.sensor(j), chunk, belief.fields());
                     continue;
                 };

@@ -4,7 +4,6 @@
 use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
 use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model};
 
-use crate::angle::wrapped;
 use crate::covariance::PoseCovariance;
 use crate::mode::Mode;
 use crate::particle::camera_likelihood::CameraLikelihood;
@@ -336,10 +335,11 @@ impl Model for ContactModel<'_> {
                 (&measured, observation.covariance),
                 draw.normals::<3>(particle, 0),
             );
+            // not the shorter way: all are to end on one winding
             let shift = Pose {
                 x: drawn.x - shown.x,
                 y: drawn.y - shown.y,
-                theta: wrapped(drawn.theta - shown.theta),
+                theta: drawn.theta - shown.theta,
             };
             let past = (0..self.columns().history()).map(|slot| self.columns().past_pose(slot));
             for column in std::iter::once(Columns::POSE).chain(past) {

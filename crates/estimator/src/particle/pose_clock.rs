@@ -3,6 +3,9 @@
 /// Past intervals from pose to pose that are remembered.
 const REMEMBERED: usize = 15;
 
+/// Intervals that tell how often there are poses.
+pub(crate) const TELLING: usize = 5;
+
 /// Typical intervals after which a camera that is silent is dark.
 const DARK_AFTER: f64 = 2.5;
 
@@ -36,6 +39,12 @@ impl PoseClock {
             intervals: [(0.0, 0); REMEMBERED],
             known: 0,
         }
+    }
+
+    /// Typical time from pose to pose (s), once enough of them have come to tell.
+    pub fn interval(&self) -> Option<f64> {
+        let typical = self.typical().filter(|_| self.known >= TELLING);
+        typical.map(|(interval, _)| interval)
     }
 
     /// A row at `time` (s), with a pose or without; whether the body is out of sight there.

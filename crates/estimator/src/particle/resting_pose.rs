@@ -83,7 +83,10 @@ impl RestingPose {
         for (k, (mean, away)) in mean.enumerate() {
             let evidence = self.variance[k] * right + measured[k];
             *mean += self.variance[k] * right / evidence * away;
-            self.variance[k] *= measured[k] / evidence;
+            let after = self.variance[k] * measured[k] / evidence;
+            // of what was long ago, as much is forgotten as of the camera's noise
+            let least = self.variance[k].min(measured[k] / MEMORY);
+            self.variance[k] = after.max(least);
         }
 
         // the camera's noise
@@ -244,6 +247,24 @@ mod tests {
         }
         let variance = CAMERA.position_std * CAMERA.position_std / total;
         assert!((resting.variance[0] / variance - 1.0).abs() < 1e-3);
+    }
+
+    /// An object that was nudged by a few standard deviations, none of which makes a pose wrong.
+    #[test]
+    fn where_it_was_long_ago_is_forgotten() {
+        let mut resting = told_noise(Pose::default(), 1.0);
+        let nudged = Pose::new(1e-3, 0.0, 0.0);
+        for pose in poses(Pose::default(), 3000, 1.0) {
+            resting.see((pose, None));
+        }
+        let known = resting.variance[0].sqrt() / CAMERA.position_std;
+        assert!((known * MEMORY.sqrt() - 1.0).abs() < 0.01, "{known}");
+        for pose in poses(nudged, 1500, 1.0) {
+            resting.see((pose, None));
+        }
+        // e^-5 of the way is left, and noise
+        let left = (resting.mean.x - nudged.x).abs();
+        assert!(left < 7e-6 + 4.0 * known * CAMERA.position_std, "{left}");
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub struct StepPlan {
     /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag (contact
     /// mode).
     pub steady: Option<[f64; 2]>,
-    /// The pusher's last speed (m/s), where nobody knows where it is and the camera sees the object (contact mode).
+    /// The pusher's last speed (m/s), where nobody knows where it is, and it may carry the object along (contact mode).
     pub unseen_pusher: Option<f64>,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,

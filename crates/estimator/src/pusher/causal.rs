@@ -9,6 +9,7 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMultipleModel};
 
 use crate::error::RunError;
+use crate::particle::pose_clock::PoseClock;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::setup::Camera;
 
@@ -26,6 +27,8 @@ pub(crate) struct CausalTrack {
     filters: [Option<AxisFilter>; 3],
     /// The pusher on the plane; `None` while it is lifted.
     seen: Option<Seen>,
+    /// How often there is a pose; `None` before the first one.
+    clock: Option<PoseClock>,
 }
 
 /// The filter of one axis.
@@ -62,6 +65,7 @@ impl CausalTrack {
         Ok(Self {
             filters: [x, x, theta],
             seen: None,
+            clock: None,
         })
     }
 
@@ -69,15 +73,28 @@ impl CausalTrack {
     /// pusher is off the plane.
     pub fn push(&mut self, time: f64, pose: Option<Pose>) -> Option<TrackedPose> {
         let filters = &self.filters;
-        let since = self.seen.take().filter(|seen| bridged(seen.measured, time));
+        let interval = self.clock.as_ref().and_then(PoseClock::interval);
+        let since = self.seen.take();
+        let since = since.filter(|seen| bridged(seen.measured, time, interval));
+        match &mut self.clock {
+            Some(clock) => {
+                let _ = clock.is_dark(time, pose.is_some());
+            }
+            None => self.clock = pose.map(|_| PoseClock::new(time)),
+        }
+        let held = match &since {
+            Some(seen) if pose.is_some() && seen.measured < seen.time => time - seen.measured,
+            _ => 0.0,
+        };
         self.seen = match (since, pose) {
             (Some(seen), pose) => Some(seen.step(filters, time, pose)),
             (None, Some(pose)) => Some(Seen::start(filters, time, pose)),
             (None, None) => None,
         };
-        self.seen
-            .as_ref()
-            .map(|seen| TrackedPose::of(seen.axes.map(|axis| axis.estimate)))
+        self.seen.as_ref().map(|seen| TrackedPose {
+            held,
+            ..TrackedPose::of(seen.axes.map(|axis| axis.estimate))
+        })
     }
 }
 

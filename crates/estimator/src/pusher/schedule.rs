@@ -32,6 +32,7 @@ impl Schedule {
             if h < SHORTEST_STEP {
                 return Vec::new();
             }
+            let h = track.step_length(to, h);
             let motion = track.motion(from..to, h, direction);
             if let Some(motion) = &motion {
                 direction = motion.direction;

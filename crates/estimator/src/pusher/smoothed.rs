@@ -8,7 +8,9 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::error::RunError;
 use crate::log::Log;
+use crate::particle::pose_clock::TELLING;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
+use crate::quantile::quantile;
 use crate::setup::Camera;
 
 /// Tracks the pusher of `log`, one pose per row; without a `camera` its poses count as exact.
@@ -30,9 +32,17 @@ pub(crate) fn smoothed_track(
 /// is too long.
 /// A gap that runs to the end of the log is bridged like any other.
 fn spans(log: &Log) -> Vec<Range<usize>> {
-    let bridged = |from: usize, to: usize| bridged(log.time[from], log.time[to]);
+    let seen: Vec<usize> = (0..log.len())
+        .filter(|&row| log.pusher[row].is_some())
+        .collect();
+    let intervals = seen
+        .windows(2)
+        .map(|pair| log.time[pair[1]] - log.time[pair[0]]);
+    let intervals: Vec<f64> = intervals.collect();
+    let interval = quantile(&intervals, 0.5).filter(|_| intervals.len() >= TELLING);
+    let bridged = |from: usize, to: usize| bridged(log.time[from], log.time[to], interval);
     let mut spans: Vec<Range<usize>> = Vec::new();
-    for row in (0..log.len()).filter(|&row| log.pusher[row].is_some()) {
+    for row in seen {
         match spans.last_mut() {
             Some(span) if bridged(span.end - 1, row) => span.end = row + 1,
             _ => spans.push(row..row + 1),

@@ -16,7 +16,7 @@ use crate::error::RunError;
 use crate::log::Log;
 use crate::pusher::causal::CausalTrack;
 use crate::pusher::smoothed::smoothed_track;
-use crate::pusher::tracked_pose::{TrackedPose, motion};
+use crate::pusher::tracked_pose::{TrackedPose, motion, step_length};
 use crate::setup::Camera;
 
 /// How much of the log the track may use.
@@ -84,6 +84,11 @@ impl PusherTrack {
     pub fn motion(&self, rows: Range<usize>, h: f64, last: [f64; 2]) -> Option<PusherMotion> {
         let at = |row: usize| self.rows.get(row).copied().flatten();
         motion(at(rows.start), at(rows.end), h, last)
+    }
+
+    /// Length (s) of the step to `row`, which comes `h` seconds after the last one.
+    pub(crate) fn step_length(&self, row: usize, h: f64) -> f64 {
+        step_length(self.rows.get(row).copied().flatten(), h)
     }
 
     /// Whether the pusher moves at the end of the step from `row`, as far as its track can tell.

@@ -20,3 +20,4 @@ mod tactile;
 mod track;
 mod tracker;
 mod turned_table;
+mod unseen_pusher;

@@ -19,7 +19,7 @@ mod uncertainty;
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip::{ASSUMED_STALL, Rule, Setup, Unit};
+use stickslip::{ASSUMED_STALL, FilterSettings, Rule, Setup, Unit};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
@@ -202,8 +202,9 @@ fn syntax(source: Source<'_>, place: usize, message: &str) -> SceneError {
 }
 
 fn setup(root: &Table<'_>) -> Result<Setup> {
+    let scene = scene(root)?;
+    let by_default = FilterSettings::around(&scene.nominal);
     Ok(Setup {
-        scene: scene(root)?,
         stall_force_assumed: root.section("pusher")?.optional(STALL_FORCE.key).is_none(),
         camera: root
             .section_if("camera")?
@@ -219,9 +220,9 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
         filter: root
             .section_if("filter")?
             .as_ref()
-            .map(sensing::filter)
+            .map(|table| sensing::filter(table, by_default))
             .transpose()?
-            .unwrap_or_default(),
+            .unwrap_or(by_default),
         uncertainty: root
             .section_if("uncertainty")?
             .as_ref()
@@ -233,6 +234,7 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
             .as_ref()
             .map(start::start)
             .transpose()?,
+        scene,
     })
 }
 

@@ -129,9 +129,8 @@ pub(super) fn tactile(table: &Table<'_>) -> Result<Tactile> {
     })
 }
 
-/// `[filter]`.
-pub(super) fn filter(table: &Table<'_>) -> Result<FilterSettings> {
-    let default = FilterSettings::default();
+/// `[filter]`; what it does not tell is by `default`.
+pub(super) fn filter(table: &Table<'_>, default: FilterSettings) -> Result<FilterSettings> {
     Ok(FilterSettings {
         force_std: table.number_or(&FORCE_STD, default.force_std)?,
         parameter_std: table.number_or(&PARAMETER_STD, default.parameter_std)?,

@@ -261,6 +261,28 @@ fn scene_of_the_guide_is_one() {
 }
 
 #[test]
+fn limits_that_are_not_told_leave_room_about_the_nominal_values() {
+    // a plate of 300 mm: its feet stand far beyond the 40 mm of small objects
+    let wide = replaced(LEAST, "tripod_radius = 0.02", "tripod_radius = 0.1");
+    let limits = read(&wide).filter.limits;
+    let default = FilterSettings::default().limits;
+    assert!((limits.d_tri.max - 0.16).abs() < 1e-12 && limits.d_tri.min == default.d_tri.min);
+    assert_eq!(
+        (limits.mu_s, limits.mu_p, limits.mu_f),
+        (default.mu_s, default.mu_p, default.mu_f)
+    );
+    // what is told is kept
+    let told = read(&format!("{wide}\n[filter]\nd_tri = [0.05, 0.12]\n"));
+    assert_eq!(
+        told.filter.limits.d_tri,
+        Limits {
+            min: 0.05,
+            max: 0.12
+        }
+    );
+}
+
+#[test]
 fn least_scene_takes_the_defaults_of_the_contract() {
     let setup = read(LEAST);
     assert_eq!(setup.scene.feet, Feet::Tripod { angle: FRAC_PI_2 });

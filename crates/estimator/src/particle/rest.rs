@@ -1,0 +1,65 @@
+//! Objects that rest: where one waits that nothing has come near (docs/method.md (44)), and how little one stays
+//! in place that the camera sees rest, (36).
+
+use stickslip_filter::BlockMut;
+
+use crate::particle::chunk::{LANES, load_chunk};
+use crate::particle::model::write;
+use crate::particle::noise_clock::NOISE_STEP;
+use crate::particle::propagation::{Propagation, Transition};
+use crate::particle::resting_pose::RestingPose;
+use crate::particle::step_plan::StepPlan;
+
+/// Standard deviation (m) per axis by which an object that the camera sees rest is displaced within [`NOISE_STEP`].
+const SHAKE: f64 = 5e-6;
+
+impl Propagation {
+    /// Draws anew where an object rests that nothing has come near.
+    pub(super) fn draw_resting_pose(
+        &mut self,
+        Transition { columns, .. }: &Transition<'_>,
+        resting: &RestingPose,
+        block: &mut BlockMut<'_>,
+    ) {
+        let belief = resting.belief();
+        for (i, _) in block.particles() {
+            let (chunk, lane) = (i / LANES, i % LANES);
+            if !self.untouched[chunk].lane(lane) {
+                continue;
+            }
+            let [x, y, theta, _] = self.normals.each_ref().map(|column| column[i]);
+            let pose = belief.at([x, y, theta]);
+            let now = self.particles[chunk].pose.fields_mut();
+            for (now, drawn) in now.into_iter().zip(pose.fields()) {
+                now.0[lane] = *drawn;
+            }
+            for slot in 0..columns.history() {
+                write(block, columns.past_pose(slot), i, pose.fields());
+            }
+            let noise = resting.noise_seen_at(&pose);
+            write(block, columns.camera_noise(), i, noise.each_ref());
+        }
+    }
+
+    /// Displaces objects that the camera sees rest. What a camera pose moves into a body that touches, the next step
+    /// takes out again, and what it moves away stays; and no rig is still to the last micrometre.
+    pub(super) fn shake(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        block: &BlockMut<'_>,
+    ) {
+        let rho = transition.setup.scene.object.gyration_radius();
+        // of the noise, one draw serves rows that come faster
+        let size = SHAKE * (plan.duration().max(NOISE_STEP) / NOISE_STEP).sqrt();
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let touched = !self.untouched[chunk];
+            let pose = self.particles[chunk].pose.fields_mut();
+            let sizes = [size, size, size / rho];
+            for (k, (value, size)) in pose.into_iter().zip(sizes).enumerate() {
+                let way = load_chunk(&self.normals[k], chunk, 0.0) * size;
+                *value += touched.zero_unless(way);
+            }
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! A pusher that nobody sees and that may move the object on (docs/method.md (53)).
+
+use stickslip_dynamics::{Mask, Particles, Twist};
+use stickslip_filter::{BlockMut, Draw};
+
+use crate::particle::chunk::{LANES, is_set};
+use crate::particle::columns::Columns;
+use crate::particle::contact_mode::UNSEEN_PAIR;
+use crate::particle::propagation::{Propagation, Transition, moving};
+use crate::particle::step_plan::StepPlan;
+
+/// Speed that an unseen pusher may have at least (m/s).
+const UNSEEN_SPEED: f64 = 0.01;
+
+/// For how long an object that an unseen pusher carries goes on as it does, or rests (s).
+const UNSEEN_LASTS: f64 = 0.15;
+
+/// The same where the object is not seen, either (s).
+const UNSEEN_LASTS_IN_THE_DARK: f64 = 1.0;
+
+impl Propagation {
+    /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in each particle, which
+    /// is drawn anew now and then. In the dark it is one that touched the object when it was last seen, and that goes
+    /// on as it did for longer, since no pose of the camera corrects a guess.
+    pub(super) fn carry(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        (speed, draw): (f64, Draw),
+        block: &BlockMut<'_>,
+    ) {
+        let rho = transition.setup.scene.object.gyration_radius();
+        let (speed, h) = (speed.max(UNSEEN_SPEED), plan.duration());
+        let lasts = if plan.is_dark() {
+            UNSEEN_LASTS_IN_THE_DARK
+        } else {
+            UNSEEN_LASTS
+        };
+        let changes = 1.0 - libm::exp(-h / lasts);
+        for (i, particle) in block.particles() {
+            let (chunk, lane) = (i / LANES, i % LANES);
+            let touched = is_set(&block.as_block(), Columns::CONTACT_PUSHER, i);
+            if self.untouched[chunk].lane(lane) || (plan.is_dark() && !touched) {
+                continue;
+            }
+            let [x, y, turn, _] = self.normals.each_ref().map(|column| speed * column[i]);
+            let Particles { pose, twist, .. } = &mut self.particles[chunk];
+            let carried = match draw.uniform(particle, UNSEEN_PAIR) {
+                chance if chance < 0.5 * changes => Twist::default(),
+                chance if chance < changes => Twist {
+                    vx: x,
+                    vy: y,
+                    omega: turn / rho,
+                },
+                _ => twist.map(|column| column.0[lane]),
+            };
+            let columns = pose.fields_mut().into_iter().zip(twist.fields_mut());
+            let to = columns.zip(self.carried[chunk].fields_mut());
+            for (((pose, twist), to), velocity) in to.zip(carried.fields()) {
+                pose.0[lane] += velocity * h;
+                twist.0[lane] = 0.0;
+                to.0[lane] = *velocity;
+            }
+        }
+    }
+
+    /// Particles whose object an unseen pusher carries along.
+    #[inline(always)]
+    pub(super) fn is_carried(&self, transition: &Transition<'_>, chunk: usize) -> Mask<LANES> {
+        moving(
+            &self.carried[chunk],
+            transition.setup.scene.object.gyration_radius(),
+        )
+    }
+}

@@ -1,0 +1,166 @@
+//! A pusher whose poses are missing: what it does to the object meanwhile, and when it is back.
+
+use crate::common::setup;
+use stickslip::dynamics::Pose;
+use stickslip::*;
+
+/// Speed of the pusher (m/s), from when on it moves (s), and by how much its centre lies behind that of the disc.
+const SPEED: f64 = 0.02;
+const START: f64 = 0.4;
+const BEHIND: f64 = 0.035;
+
+/// Where a disc is that has been pushed since [`START`].
+fn place(time: f64) -> f64 {
+    SPEED * (time - START).max(0.0)
+}
+
+/// So many rows at `rate` (Hz) of a push that goes on to the end, without the object and without the pusher where these
+/// are `hidden` at a time (s).
+fn push(rows: usize, rate: f64, hidden: impl Fn(f64) -> [bool; 2]) -> Log {
+    let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);
+    let mut log = Log::default();
+    for k in 0..rows {
+        let time = k as f64 / rate;
+        let [object, pusher] = hidden(time);
+        let seen = Pose::new(place(time) + noise(k), noise(k + 77), 0.0);
+        let pusher_pose = Pose::new(-BEHIND + place(time), 0.001, 0.0);
+        log.time.push(time);
+        log.object.push((!object).then_some(seen));
+        log.pusher.push((!pusher).then_some(pusher_pose));
+    }
+    log
+}
+
+/// Errors (m) and standard deviations (m) of x, row by row.
+fn tracked(log: &Log, tracking: Tracking) -> Vec<[f64; 2]> {
+    let options = RunOptions {
+        tracking,
+        ..RunOptions::default()
+    };
+    let run = run(&setup(&[]), log, &options, &mut |_| ()).expect("a run");
+    assert_eq!(run.collapses, 0, "{tracking:?}");
+    let rows = run.estimate.rows.iter().zip(&log.time);
+    rows.map(|(row, time)| {
+        let error = row.pose.expect("a pose").x - place(*time);
+        [error, row.spread.expect("a spread").pose.x]
+    })
+    .collect()
+}
+
+#[test]
+fn a_pusher_that_is_seen_again_throws_nothing_ahead() {
+    // a tracker at 200 Hz that misses twenty poses; the step to the next one would be 21 times as fast
+    let lost = 1.5..1.6;
+    let log = push(400, 200.0, |time| [time >= 1.4, lost.contains(&time)]);
+    let rows = tracked(&log, Tracking::Causal);
+    for (k, [error, _]) in rows.iter().enumerate() {
+        // as far as the pusher goes unseen
+        assert!(error.abs() < 2.5e-3, "row {k}: {error}");
+    }
+    let [last, _] = rows[399];
+    assert!(last.abs() < 1e-3, "{last}");
+}
+
+#[test]
+fn where_pusher_and_object_are_hidden_together_the_push_may_have_gone_on() {
+    for tracking in [Tracking::Smoothed, Tracking::Causal] {
+        let lost = 1.5..2.5;
+        let log = push(120, 30.0, |time| [lost.contains(&time); 2]);
+        for (k, [error, std]) in tracked(&log, tracking).into_iter().enumerate() {
+            assert!(
+                error.abs() < 2.5 * std,
+                "{tracking:?}, row {k}: {error}, {std}"
+            );
+            // it pushes on as likely as not; where it is seen, that is known at once
+            let most = if lost.contains(&log.time[k]) {
+                0.012
+            } else {
+                1e-3
+            };
+            assert!(error.abs() < most, "{tracking:?}, row {k}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_pusher_that_stood_when_it_was_last_seen_has_been_lifted() {
+    for tracking in [Tracking::Smoothed, Tracking::Causal] {
+        // nothing has moved yet when both are lost, a pusher beside the object
+        let log = push(90, 30.0, |time| [time >= 0.3; 2]);
+        let rows = tracked(&log, tracking);
+        let [before, last] = [rows[8], rows[89]].map(|[_, std]| std);
+        assert!(last < 1.5 * before, "{tracking:?}: {before}, {last}");
+    }
+}
+
+#[test]
+fn a_pusher_that_is_seldom_seen_pushes_between_its_poses() {
+    // four poses a second, and then some that come a little later than the median
+    for tracking in [Tracking::Smoothed, Tracking::Causal] {
+        let mut log = push(40, 4.0, |time| [time >= 5.0, false]);
+        for (k, time) in log.time.iter_mut().enumerate() {
+            *time += if k % 3 == 0 { 0.03 } else { 0.0 };
+        }
+        log.pusher = log
+            .time
+            .iter()
+            .map(|time| Some(Pose::new(-BEHIND + place(*time), 0.001, 0.0)))
+            .collect();
+        let track = PusherTrack::new(&log, setup(&[]).camera.as_ref(), tracking).expect("a track");
+        // causally, six poses tell how often they come
+        let moves = (7..39).filter(|&row| track.moves_after(row)).count();
+        assert!(moves > 28, "{tracking:?}: {moves}");
+        let [error, std] = tracked(&log, tracking)[39];
+        assert!(
+            error.abs() < 2e-3 && std < 3e-3,
+            "{tracking:?}: {error}, {std}"
+        );
+    }
+}
+
+/// Largest distance (m) in x from where the object is while the pusher's poses are missing for a second, in which it
+/// moves the object on or is lifted off it; and the mean standard deviation.
+fn without_pusher(moves_on: bool, tracking: Tracking) -> (f64, f64) {
+    let setup = setup(&[]);
+    let (lost, back) = (2.0, 3.0);
+    let place = |time: f64| {
+        let rested = (time.min(back) - lost).max(0.0);
+        0.02 * ((time - 0.4).max(0.0) - if moves_on { 0.0 } else { rested })
+    };
+    let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);
+    let mut log = Log::default();
+    for k in 0..120 {
+        let time = k as f64 / 30.0;
+        let object = Pose::new(place(time) + noise(k), noise(k + 77), 0.0);
+        let pusher = Pose::new(-0.035 + place(time), 0.001, 0.0);
+        log.time.push(time);
+        log.object.push(Some(object));
+        log.pusher
+            .push(Some(pusher).filter(|_| !(lost..back).contains(&time)));
+    }
+    let options = RunOptions {
+        tracking,
+        ..RunOptions::default()
+    };
+    let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
+    assert_eq!(run.collapses, 0);
+    let (mut most, mut sum) = (0.0_f64, 0.0);
+    for (row, time) in run.estimate.rows.iter().zip(&log.time).skip(60).take(30) {
+        most = most.max((row.pose.expect("a pose").x - place(*time)).abs());
+        sum += row.spread.expect("a spread").pose.x;
+    }
+    (most, sum / 30.0)
+}
+
+#[test]
+fn while_nobody_sees_the_pusher_the_camera_says_whether_it_moves_the_object() {
+    for tracking in [Tracking::Smoothed, Tracking::Causal] {
+        let (moved, _) = without_pusher(true, tracking);
+        assert!(moved < 1e-3, "{tracking:?}: {moved}");
+        let (rested, spread) = without_pusher(false, tracking);
+        assert!(
+            rested < 7e-4 && spread < 3e-4,
+            "{tracking:?}: {rested}, {spread}"
+        );
+    }
+}
