@@ -177,11 +177,12 @@ impl<M: Model> ParticleFilter<M> {
     /// Moves the particles by a share of the observation.
     fn move_particles(&mut self, observation: &M::Observation, share: f64) {
         let draw = self.draw(Purpose::Move);
+        let first = self.observed * self.model.ensemble().errors as u32;
         let (model, ensemble) = (&self.model, &mut self.bridge.ensemble);
         self.particles.visit(ensemble.blocks_mut(), |block, to| {
             model.read_ensemble(observation, block, to);
         });
-        ensemble.update(&self.bridge.weights, share, draw);
+        ensemble.update(&self.bridge.weights, share, (draw, first));
         self.particles
             .advance(None, ensemble.blocks(), |block, from| {
                 model.write_ensemble(from, block);

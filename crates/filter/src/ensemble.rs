@@ -113,8 +113,9 @@ impl Ensemble {
 
     /// Bayes' rule for normal distributions, by the likelihood to the power `share` in (0, 1]: every
     /// particle goes its own way to a measurement disturbed by its own error. The errors' noise is
-    /// independent, so that they can be taken one after the other. Particles without weight stay.
-    pub fn update(&mut self, weights: &[f64], share: f64, draw: Draw) {
+    /// independent, so that they can be taken one after the other. Particles without weight stay. The numbers of a
+    /// particle's draws begin at `first`.
+    pub fn update(&mut self, weights: &[f64], share: f64, (draw, first): (Draw, u32)) {
         on_widest(
             Level::new(),
             #[inline(always)]
@@ -124,7 +125,7 @@ impl Ensemble {
                     self.take_sums(k, weights);
                     self.take_gains(k, self.noise_variance(k, weights) / share);
                     self.go(k, share, weights, |particle| {
-                        draw.normal(particle, k as u32)
+                        draw.normal(particle, first + k as u32)
                     });
                 }
             },

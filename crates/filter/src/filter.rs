@@ -18,6 +18,8 @@ pub struct ParticleFilter<M: Model> {
     pub(crate) settings: Settings,
     pub(crate) streams: Streams,
     pub(crate) step: u64,
+    /// Observations since the one of that step.
+    pub(crate) observed: u32,
     pub(crate) particles: ParticleSet,
     pub(crate) weights: LogWeights,
     pub(crate) unnormalised: UnnormalisedWeights,
@@ -46,6 +48,7 @@ impl<M: Model> ParticleFilter<M> {
         let mut filter = ParticleFilter {
             streams: Streams::new(settings.seed),
             step: 0,
+            observed: 0,
             weights: LogWeights::equal(settings.particles),
             unnormalised: UnnormalisedWeights::zeros(settings.particles),
             resetting: vec![0.0; settings.particles],
@@ -100,6 +103,7 @@ impl<M: Model> ParticleFilter<M> {
         sums: bool,
     ) -> StepReport {
         self.step += 1;
+        self.observed = 0;
         self.lineage.begin_step();
         let resampled = self.satisfies_resample_condition();
         if resampled {
@@ -244,6 +248,7 @@ impl<M: Model> ParticleFilter<M> {
     /// Weighs the particles by one more observation of the step just made, such as one that arrives
     /// late; after a collapse, reinitialises them.
     pub fn observe(&mut self, input: &M::Input, observation: &M::Observation) -> StepReport {
+        self.observed += 1;
         let (model, weights) = (&self.model, &self.weights);
         self.particles
             .visit(self.unnormalised.blocks_mut(), |block, mut unnormalised| {

@@ -202,7 +202,7 @@ impl<'o> ContactFilter<'o> {
         let contact = self.mode() == Mode::Contact;
         self.observation.felt = contact;
         self.touched |= self.latest.any_contact();
-        self.observation.moves = contact && self.moves.camera && self.touched;
+        self.observation.moves = self.camera_moves();
 
         let tries = self.moves.second_tries && self.plan.is_dark();
         self.replay.before(&self.filter, tries);
@@ -245,6 +245,11 @@ impl<'o> ContactFilter<'o> {
         let count = u32::try_from(self.filter.particles().len());
         let count = count.ok().and_then(NonZero::new);
         count.expect("a particle set is numbered in u32 and never empty")
+    }
+
+    /// Whether camera poses may move particles: the object no longer waits where it was first seen.
+    fn camera_moves(&self) -> bool {
+        self.mode() == Mode::Contact && self.moves.camera && self.touched
     }
 
     /// Keeps what weighed the particles last for them to learn of, in contact mode.
@@ -341,12 +346,13 @@ impl<'o> ContactFilter<'o> {
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();
         self.observation.felt = false;
-        self.observation.moves = false;
+        self.observation.moves = self.camera_moves();
         let report = self.filter.observe(&self.plan, &self.observation);
         self.take(&report);
         self.camera.late_pose();
         self.replay.forget();
         self.summarise();
+        self.filter.count_ancestors_from_now();
         self.latest.collapsed = Some(self.collapsed);
         &self.latest
     }

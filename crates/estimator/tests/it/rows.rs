@@ -140,6 +140,42 @@ fn a_camera_whose_every_pose_comes_late_is_believed_as_one_that_is_on_time() {
     }
 }
 
+/// Weighing by a pose alone would leave a quarter of the particles, row after row.
+#[test]
+fn poses_that_come_late_or_beside_a_step_move_particles_as_those_on_time_do() {
+    let setup = setup(&[]);
+    let log = two_clocks(1e-4);
+    // the pusher's rows, with the pose of each 10 ms late, or beside it in a row that makes no step
+    for late in [Some(0.01), None] {
+        let mut tracker = tracker(&setup, 500);
+        let mut few = 500.0_f64;
+        for k in (0..log.len()).step_by(2) {
+            let object = log.object[k];
+            let row = Row {
+                object: object.filter(|_| k == 0),
+                ..log.row(k)
+            };
+            let _ = tracker.push(&row).expect("a row");
+            if k == 0 {
+                continue;
+            }
+            let time = row.time + late.map_or(1e-4, |late: f64| -late);
+            let seen = Row {
+                time,
+                object,
+                ..row
+            };
+            let estimate = tracker.push(&seen).expect("a row");
+            assert!(
+                estimate.ancestors.expect("a count") > 100,
+                "{late:?}, row {k}"
+            );
+            few = few.min(estimate.ess.expect("a size"));
+        }
+        assert!(few > 150.0, "{late:?}: {few}");
+    }
+}
+
 /// The object is jammed between pusher and fixel, as the camera shows it, and the pusher's log creeps on; one pose is
 /// wrong.
 #[test]
