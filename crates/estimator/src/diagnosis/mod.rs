@@ -74,7 +74,8 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
 }
 
 /// The problems that show in a time that no filter notices: numbers in other units or by other clocks, bodies that
-/// overlap at the start. With them, an estimate and its scores mean nothing.
+/// overlap at the start. With them, an estimate and its scores mean nothing. And pusher poses that scatter by more than
+/// told: a recorded log is tracked by the noise that they have, not by the told one.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
     let mut findings = plain(&evidence);
@@ -82,6 +83,9 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
         findings.extend(overlap::check(&evidence));
     }
     findings.retain(|finding| finding.severity == Severity::Problem);
+    if !findings.iter().any(is_misread) {
+        findings.extend(noise::pusher(&evidence));
+    }
     findings
 }
 

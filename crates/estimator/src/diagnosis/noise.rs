@@ -3,8 +3,10 @@
 use super::evidence::{Evidence, PoseNoise, pose_noise};
 use super::finding::{Finding, Subject};
 
-/// Ratio of measured and stated noise that is worth a warning.
+/// Ratio of measured and stated noise that is worth a warning: of the object, which contact mode learns, and of the
+/// pusher.
 const FAR_OFF: f64 = 4.0;
+const PUSHER_OFF: f64 = 2.0;
 
 /// Noise that needs no statement: that of encoders and rounding.
 const NEGLIGIBLE: PoseNoise = PoseNoise {
@@ -33,34 +35,32 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         ),
         Some(noise) => compared(&noise, &stated),
     }];
+    findings.extend(pusher(evidence));
+    findings
+}
+
+/// Pusher poses that scatter by more than told.
+pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
+    let camera = evidence.setup.camera.as_ref()?;
     let stated = PoseNoise {
         position: camera.pusher_position_std,
         angle: camera.pusher_orientation_std,
     };
-    if let Some(noise) =
-        pose_noise(&evidence.log.pusher).filter(|noise| is_far_off(noise, &stated, &NEGLIGIBLE))
-    {
-        let advice = "set pusher_position_std and pusher_orientation_std under [camera] to what is measured: what is taken for exact jerks \
-                      the object at every row";
-        findings.push(Finding::warning(
-            Subject::Noise,
-            told("pusher", &noise, &stated),
-            advice,
-        ));
-    }
-    findings
+    let noise = pose_noise(&evidence.log.pusher)
+        .filter(|noise| is_above(noise, &stated, PUSHER_OFF, &NEGLIGIBLE))?;
+    let advice = "set pusher_position_std and pusher_orientation_std under [camera] to what is measured: a recorded log is tracked \
+                  by noise as its poses have it, live and causally what is taken for exact jerks the object at every row";
+    let found = told("pusher", &noise, &stated);
+    Some(Finding::warning(Subject::Noise, found, advice))
 }
 
 fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
     let found = told("object", noise, stated);
-    match is_far_off(
-        noise,
-        stated,
-        &PoseNoise {
-            position: 0.0,
-            angle: 0.0,
-        },
-    ) {
+    let none = PoseNoise {
+        position: 0.0,
+        angle: 0.0,
+    };
+    match is_above(noise, stated, FAR_OFF, &none) {
         true => Finding::warning(
             Subject::Noise,
             found,
@@ -70,10 +70,10 @@ fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
     }
 }
 
-/// Whether a noise is far above the stated one, and above what needs no statement.
-fn is_far_off(measured: &PoseNoise, stated: &PoseNoise, negligible: &PoseNoise) -> bool {
+/// Whether a noise is above `ratio` times the stated one, and above what needs no statement.
+fn is_above(measured: &PoseNoise, stated: &PoseNoise, ratio: f64, negligible: &PoseNoise) -> bool {
     let is = |pick: fn(&PoseNoise) -> f64| {
-        pick(measured) > FAR_OFF * pick(stated) && pick(measured) > pick(negligible)
+        pick(measured) > ratio * pick(stated) && pick(measured) > pick(negligible)
     };
     is(|noise| noise.position) || is(|noise| noise.angle)
 }

@@ -13,6 +13,12 @@ use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
 
+/// By how much larger noise has to raise ln of a series' likelihood to be believed in place of the told one.
+const CLEARLY: f64 = 12.0;
+
+/// The larger noises that are tried, in told ones.
+const LARGER: [f64; 7] = [2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0];
+
 /// Tracks the pusher of `log`, one pose per row; without a `camera` its poses count as exact.
 pub(crate) fn smoothed_track(
     log: &Log,
@@ -96,14 +102,38 @@ fn track_axis(
     if std == 0.0 || too_few {
         return Ok(bridge(time, measured));
     }
-    let model = |process_noise: f64| ConstantVelocity {
-        process_noise,
-        measurement_std: std,
-        initial_velocity_std: INITIAL_VELOCITY_STD,
-    };
-    let fitted = model(0.0).fit_process_noise(time, measured)?.process_noise;
-    let rows = model(fitted).smooth(time, measured)?;
+    let rows = fitted(time, measured, std)?.smooth(time, measured)?;
     Ok(rows.into_iter().flatten().collect())
+}
+
+/// The model of greatest likelihood: with the told noise `std`, or with a larger one where the series says clearly that
+/// the poses scatter by more.
+fn fitted(time: &[f64], measured: &[Option<f64>], std: f64) -> Result<ConstantVelocity, RunError> {
+    let fit = |measurement_std: f64| -> Result<(ConstantVelocity, f64), RunError> {
+        let model = ConstantVelocity {
+            process_noise: 0.0,
+            measurement_std,
+            initial_velocity_std: INITIAL_VELOCITY_STD,
+        };
+        let fit = model.fit_process_noise(time, measured)?;
+        let process_noise = fit.process_noise;
+        Ok((
+            ConstantVelocity {
+                process_noise,
+                ..model
+            },
+            fit.log_likelihood,
+        ))
+    };
+    let (mut best, told) = fit(std)?;
+    let mut most = told + CLEARLY;
+    for factor in LARGER {
+        let (larger, log_likelihood) = fit(factor * std)?;
+        if log_likelihood > most {
+            (best, most) = (larger, log_likelihood);
+        }
+    }
+    Ok(best)
 }
 
 /// Exact poses: gaps are interpolated, and held at the end. The first row is measured.

@@ -131,6 +131,41 @@ fn smoothed_track_depends_on_later_rows() {
     assert_ne!(smoothed(&log).pose(50), smoothed(&elsewhere).pose(50));
 }
 
+/// Tag poses of 0.5 mm under a camera that is told 0.1 mm, as of an encoder.
+#[test]
+fn recorded_poses_noisier_than_told_are_tracked_as_if_it_were_told() {
+    let told = Camera {
+        pusher_position_std: 5e-4,
+        ..CAMERA
+    };
+    for seed in 0..10 {
+        let mut noisy = log(seed);
+        for (pose, time) in noisy.pusher.iter_mut().zip(&noisy.time) {
+            let (pose, exact) = (pose.as_mut().expect("a pose"), moved(*time));
+            pose.x = exact.x + 5.0 * (pose.x - exact.x);
+            pose.y = exact.y + 5.0 * (pose.y - exact.y);
+        }
+        let error = |camera: &Camera| {
+            let track = PusherTrack::new(&noisy, Some(camera), Tracking::Smoothed);
+            errors(&track.expect("a track"), &noisy, 1..240)
+        };
+        let ([all, step], [known, known_step]) = (error(&CAMERA), error(&told));
+        assert!(
+            all < 1.1 * known && step < 1.3 * known_step,
+            "seed {seed}: {all}, {step}, {known}, {known_step}"
+        );
+        assert!(step < 1e-4, "seed {seed}: {step}");
+        // poses as noisy as told are tracked by what is told
+        let right = PusherTrack::new(&noisy, Some(&told), Tracking::Smoothed).expect("a track");
+        let less = Camera {
+            pusher_position_std: 1.1 * told.pusher_position_std,
+            ..CAMERA
+        };
+        let other = PusherTrack::new(&noisy, Some(&less), Tracking::Smoothed).expect("a track");
+        assert_ne!(right.pose(100), other.pose(100), "seed {seed}");
+    }
+}
+
 /// Root mean square of (position error, error of its change from row to row) (m), along the motion,
 /// over some rows.
 fn errors(track: &PusherTrack, log: &Log, rows: std::ops::Range<usize>) -> [f64; 2] {
