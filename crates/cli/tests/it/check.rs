@@ -165,6 +165,19 @@ fn check_names_inverted_sensors() {
 }
 
 #[test]
+fn check_takes_touches_as_few_as_false_alarms_for_these() {
+    let case = Experiment::copy(STOP, "false_alarms");
+    // the sensor of a fixel that the object only reaches at the end; before that six readings, of 600, of nothing
+    case.edit_rows(|rows| {
+        rows.iter_mut().for_each(|row| row[SENSOR] = 0.0);
+        (0..6).for_each(|k| rows[3 * k][SENSOR] = 1.0);
+    });
+    assert_eq!(check(&case, "problem"), (Some(0), Vec::new()));
+    case.edit_rows(|rows| (0..20).for_each(|k| rows[3 * k][SENSOR] = 1.0));
+    assert_problem(&case, &["sensor 1", "reads touches that cannot be"]);
+}
+
+#[test]
 fn check_does_not_blame_sensors_for_an_object_that_is_turned() {
     let case = Experiment::copy(SLIDE, "turned_tag");
     case.edit_rows(|rows| rows.iter_mut().for_each(|row| row[OBJECT_THETA] += 1.5));
