@@ -76,8 +76,11 @@ impl<const W: usize> Pushers<'_, W> {
             } => {
                 let beside: Vec<_> = self.fixel_offsets(chunk).iter().map(alone).collect();
                 let creep: Vec<_> = self.creep(chunk).into_iter().map(alone).collect();
+                let turn = offsets.pusher_turn.get(chunk);
+                let turn: Vec<_> = turn.map(|turn| Lanes([turn.0[lane]])).into_iter().collect();
                 let offsets = Offsets {
                     pusher: &[alone(&offsets.pusher[chunk])],
+                    pusher_turn: &turn,
                     fixels: &beside,
                     growth: &[Lanes([offsets.growth[chunk].0[lane]])],
                     creep: &creep,

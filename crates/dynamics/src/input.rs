@@ -35,6 +35,8 @@ impl PusherMotion {
 pub struct Offsets<'a, const W: usize> {
     /// Offset of the pusher (m), chunk by chunk.
     pub pusher: &'a [[Lanes<W>; 2]],
+    /// By how much the pusher is turned beside its pose (rad), chunk by chunk; empty where it is not.
+    pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
     /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is

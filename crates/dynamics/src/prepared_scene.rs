@@ -157,6 +157,10 @@ impl<const W: usize> Pushers<'_, W> {
                 context.motion.pose.y += y;
                 context.transform.origin[0] += x;
                 context.transform.origin[1] += y;
+                if let Some(turn) = offsets.pusher_turn.get(chunk) {
+                    context.motion.pose.theta += *turn;
+                    context.transform = Transform::from(context.motion.pose);
+                }
                 Some(context)
             }
         }

@@ -125,8 +125,8 @@ impl Dynamics {
     /// than its shape, and whose contacts creep, each by its own `offsets`.
     ///
     /// # Panics
-    /// If there is not one offset of the pusher, one growth and one creep, or none at all, for each chunk of
-    /// particles, and one offset of each fixel.
+    /// If there is not one offset of the pusher and one growth for each chunk of particles, and one offset of each
+    /// fixel; nor one turn of the pusher and one creep, or none at all.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -140,6 +140,8 @@ impl Dynamics {
         assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
         assert_eq!(offsets.growth.len(), chunks, "a growth for each chunk");
+        let turn = offsets.pusher_turn.len();
+        assert!(turn == chunks || turn == 0, "a turn for each chunk");
         let creep = offsets.creep.len();
         assert!(creep == chunks || creep == 0, "a creep for each chunk");
         let pushers = Pushers::Offset {

@@ -1,7 +1,7 @@
 //! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as
 //! `scene.toml` holds it.
 
-use stickslip_dynamics::{Feet, Friction, Scene, Start};
+use stickslip_dynamics::{Feet, Friction, Part, Scene, Start};
 
 use crate::uncertainty::Uncertainty;
 
@@ -140,6 +140,15 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// Standard deviation of the angle (rad) by which the pusher may be turned beside its logged poses, on a rig as rough as
+    /// told; 0 where turning it changes nothing.
+    pub(crate) fn pusher_turn(&self) -> f64 {
+        let parts = self.scene.pusher.shape.parts();
+        let round = matches!(parts, [Part::Disc { centre, .. }] if *centre == [0.0, 0.0]);
+        let camera = self.camera.as_ref().filter(|_| !round);
+        camera.map_or(0.0, |camera| camera.pusher_orientation_std)
+    }
+
     /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`]
     /// standard deviations of that pose (docs/method.md (13)). What stood farther behind the log
     /// contradicts: it is dragged to that distance.

@@ -97,6 +97,7 @@ fn lanes_step_as_alone(level: Level) {
     for step in 0..30 {
         let offsets = Offsets {
             pusher: &pushers,
+            pusher_turn: &[],
             fixels: &places,
             growth: &[Lanes::ZERO],
             creep: &[],
@@ -139,6 +140,58 @@ fn told<const W: usize>(work: &StepWork<W>, body: Body) -> [[f64; W]; 3] {
     ]
 }
 
+/// A bar that is turned beside its pose is one with a turned pose.
+#[test]
+fn a_turned_pusher_is_one_whose_pose_is_turned() {
+    const LANES: usize = 8;
+    let turn = |i: usize| 5e-3 * (i as f64 - 3.5);
+    let mut scene = scene([[0.0; 2]; 2]);
+    let corners = vec![
+        [-0.004, -0.02],
+        [0.004, -0.02],
+        [0.004, 0.02],
+        [-0.004, 0.02],
+    ];
+    scene.pusher.shape = Shape::new(vec![Part::Polygon { vertices: corners }]).expect("a bar");
+    let dynamics = Dynamics::new(scene);
+    let mut chunk = [Particles::<LANES>::default()];
+    (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
+    let turns = [Lanes(std::array::from_fn(turn))];
+    let mut alone: Vec<Particle> = vec![Particle::default(); LANES];
+    let (mut work, mut own_work) = (StepWork::default(), StepWork::<1>::default());
+    for step in 0..30 {
+        let offsets = Offsets {
+            pusher: &[[Lanes::ZERO; 2]],
+            pusher_turn: &turns,
+            fixels: &[[Lanes::ZERO; 2]; 2],
+            growth: &[Lanes::ZERO],
+            creep: &[],
+        };
+        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
+        for (i, particle) in alone.iter_mut().enumerate() {
+            let mut turned = push(step, [0.0; 2]);
+            let pusher = turned.pusher.as_mut().expect("a pusher");
+            pusher.pose.theta += turn(i);
+            let mut one = [*particle];
+            dynamics.step(&turned, &[FRICTION], &mut one, &mut own_work);
+            [*particle] = one;
+            let (found, expected) = (chunk[0].get(i).pose, particle.pose);
+            let apart = (found.x - expected.x).abs() + (found.y - expected.y).abs();
+            assert!(
+                apart + 0.02 * (found.theta - expected.theta).abs() < 1e-9,
+                "lane {i}, step {step}: {found:?}, {expected:?}"
+            );
+        }
+    }
+    let turned: Vec<f64> = alone.iter().map(|particle| particle.pose.theta).collect();
+    assert!(
+        turned
+            .windows(2)
+            .any(|pair| (pair[0] - pair[1]).abs() > 1e-3),
+        "{turned:?}"
+    );
+}
+
 /// A larger object is one that meets discs which are larger by as much.
 #[test]
 fn an_object_that_has_grown_meets_larger_discs() {
@@ -154,6 +207,7 @@ fn an_object_that_has_grown_meets_larger_discs() {
     for step in 0..30 {
         let offsets = Offsets {
             pusher: &[[Lanes::ZERO; 2]],
+            pusher_turn: &[],
             fixels: &[[Lanes::ZERO; 2]; 2],
             growth: &grown,
             creep: &[],
@@ -207,6 +261,7 @@ fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
             .collect();
         let offsets = Offsets {
             pusher: &[[Lanes::ZERO; 2]],
+            pusher_turn: &[],
             fixels: &[[Lanes::ZERO; 2]; 2],
             growth: &[Lanes::ZERO],
             creep: &shares,
@@ -215,6 +270,7 @@ fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
         for (i, particle) in alone.iter_mut().enumerate() {
             let offsets = Offsets {
                 pusher: &[[Lanes::ZERO; 2]],
+                pusher_turn: &[],
                 fixels: &[[Lanes::ZERO; 2]; 2],
                 growth: &[Lanes::ZERO],
                 creep: &[[Lanes([share(i)]); 2]],

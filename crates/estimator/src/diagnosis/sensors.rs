@@ -41,8 +41,7 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
         return Finding::ok(subject, shown);
     }
     let readings = touched.len() + clear.len();
-    let alarms = evidence.setup.tactile.false_positive * readings as f64;
-    if touched.len() as f64 <= alarms {
+    if touched.len() as f64 <= evidence.setup.tactile.false_positive * readings as f64 {
         let found = format!("{shown}, which may be the false alarms of {readings} readings");
         return Finding::ok(subject, found);
     }
@@ -53,16 +52,7 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
         let found = format!(
             "{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near"
         );
-        let (seems, advice) = match clear.len() < FEWEST {
-            true => (
-                "it is stuck at 1, or 0 and 1 seem to be swapped",
-                "see whether it works, and leave its cells empty if not; 1 is a touch, 0 none",
-            ),
-            false => (
-                "0 and 1 seem to be swapped",
-                "write 1 for a touch, 0 for none",
-            ),
-        };
+        let (seems, advice) = inverted(clear.len() < FEWEST);
         return Finding::problem(subject, format!("{found}: {seems}"), advice);
     }
     let others = (0..evidence.setup.scene.fixels.len()).filter(|&fixel| fixel != sensor);
@@ -95,6 +85,20 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
             subject,
             shown,
             "the outline, the fixel's position or a tag's place on the object is wrong, or the sensor: it reads touches that cannot be",
+        ),
+    }
+}
+
+/// What a sensor seems to be that reads 1 where nothing is near, and what to do: one that hardly ever reads 0, or another.
+fn inverted(always: bool) -> (&'static str, &'static str) {
+    match always {
+        true => (
+            "it is stuck at 1, or 0 and 1 seem to be swapped",
+            "see whether it works, and leave its cells empty if not; 1 is a touch, 0 none",
+        ),
+        false => (
+            "0 and 1 seem to be swapped",
+            "write 1 for a touch, 0 for none",
         ),
     }
 }

@@ -16,7 +16,7 @@ const SINGLE: usize = 11;
 const FLAGS_PER_FIXEL: usize = 5;
 
 /// Columns of contact mode that do not belong to a fixel.
-const UNKNOWNS: usize = 16;
+const UNKNOWNS: usize = 17;
 
 /// Columns of contact mode for each fixel.
 const PER_FIXEL: usize = BELIEF_LEN + 2;
@@ -161,6 +161,11 @@ impl Columns {
         self.unknowns() + 4
     }
 
+    /// By how much the pusher is turned beside its logged poses, in standard deviations (contact mode).
+    pub fn pusher_turn(&self) -> usize {
+        self.unknowns() + 16
+    }
+
     /// Time by which the camera lags more than told (s) (contact mode).
     pub fn latency(&self) -> usize {
         self.unknowns() + 9
@@ -271,6 +276,7 @@ mod tests {
             (columns.camera_noise(), 3),
             (columns.force(), 1),
             (columns.creep(), 2),
+            (columns.pusher_turn(), 1),
         ];
         for j in 0..FIXELS {
             numbers.push((columns.sensor(j), BELIEF_LEN));

@@ -24,6 +24,7 @@ const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
 const CREEP_PAIR: u32 = 1 << 21;
 pub(super) const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
 const SHAKEN_PAIR: u32 = UNSEEN_PAIR + 2;
+const TURN_PAIR: u32 = SHAKEN_PAIR + 2;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -105,6 +106,10 @@ impl Propagation {
             #[inline(always)]
             || self.draw_offsets(transition, plan, block),
         );
+        if transition.setup.pusher_turn() > 0.0 {
+            self.normals_of(draw, TURN_PAIR, block);
+            self.draw_pusher_turn(transition, plan, block);
+        }
         self.normals_of(draw, LATENCY_PAIR, block);
         on_widest(
             self.level,
@@ -234,6 +239,7 @@ impl Propagation {
     ) {
         let offsets = Offsets {
             pusher: &self.pusher_offsets,
+            pusher_turn: &self.pusher_turn,
             fixels: &self.fixel_offsets,
             growth: &self.growth,
             creep: &self.creep,

@@ -26,6 +26,9 @@ const COLLAPSED: f64 = -6.0;
 /// Number of a particle's first draw for how contacts creep: behind those for all fixels.
 const CREEP_NUMBER: u32 = 1 << 20;
 
+/// Number of a particle's first draw for how the pusher is turned.
+const TURN_NUMBER: u32 = CREEP_NUMBER + 2;
+
 /// The model of one setup, started at one pose.
 ///
 /// A new sensor is one more field of [`Observation`] and one more term of
@@ -161,6 +164,7 @@ impl<'o> ContactModel<'o> {
         write(block, columns.creep(), i, creep.each_ref());
         let [a, b] = [normals[12], normals[13]];
         block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
+        block.column_mut(columns.pusher_turn())[i] = draw.normal(particle, TURN_NUMBER);
         for k in 0..3 {
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
         }

@@ -30,6 +30,7 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let rig = [
         offset,
         offset + 1,
+        columns.pusher_turn(),
         columns.growth(),
         columns.force(),
         columns.creep(),

@@ -48,6 +48,8 @@ pub struct Propagation {
     pub(super) proposed: [Friction<Column>; CHUNKS],
     /// Where each particle's pusher and fixels stand beside their poses (contact mode).
     pub(super) pusher_offsets: Vec<[Column; 2]>,
+    /// By how much it is turned; empty where that is known (contact mode).
+    pub(super) pusher_turn: Vec<Column>,
     pub(super) fixel_offsets: Vec<[Column; 2]>,
     /// How much larger than its shape each particle's object is (contact mode).
     pub(super) growth: Vec<Column>,
@@ -105,6 +107,7 @@ impl Default for Propagation {
             particles: [Particles::default(); CHUNKS],
             proposed: [Friction::default(); CHUNKS],
             pusher_offsets: Vec::new(),
+            pusher_turn: Vec::new(),
             fixel_offsets: Vec::new(),
             growth: Vec::new(),
             creep: Vec::new(),

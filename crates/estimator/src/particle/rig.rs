@@ -88,6 +88,22 @@ impl Propagation {
         }
     }
 
+    /// By how much the pusher is turned: drawn anew until it comes near.
+    pub(super) fn draw_pusher_turn(
+        &self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let near = flag(&block.as_block(), Columns::PUSHER_WAS_NEAR, chunk);
+            let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
+            let step = offset_step(registered(&setup.uncertainty, roughness));
+            let turn = block.column_mut(columns.pusher_turn());
+            self.wander(plan, (near, step), 0, turn, chunk);
+        }
+    }
+
     /// A chunk of an unknown, by the column `number` of normal numbers: drawn anew until what tells of it has been
     /// `near`; then a random `step` that keeps its prior, the standard normal distribution, where unknowns wander.
     #[inline(always)]
@@ -289,7 +305,9 @@ impl Propagation {
             load_columns(block, column, chunk, offset.each_mut());
             [offset[0] * scale, offset[1] * scale]
         };
+        let pusher_turn = setup.pusher_turn();
         self.pusher_offsets.clear();
+        self.pusher_turn.clear();
         self.fixel_offsets.clear();
         self.growth.clear();
         self.creep.clear();
@@ -299,6 +317,12 @@ impl Propagation {
             let scale = registered(unsure, roughness) * unsure.pusher_offset;
             let pusher = offset(columns.pusher_offset(), chunk, scale);
             self.pusher_offsets.push(pusher);
+            if pusher_turn > 0.0 {
+                let mut turn = Lanes::ZERO;
+                load_columns(block, columns.pusher_turn(), chunk, [&mut turn]);
+                self.pusher_turn
+                    .push(turn * (registered(unsure, roughness) * pusher_turn));
+            }
             let measured = measured(unsure, roughness);
             let scale = measured * unsure.fixel_position;
             let fixels = 0..columns.fixels();
