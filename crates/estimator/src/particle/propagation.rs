@@ -214,7 +214,10 @@ impl Propagation {
                 chunk,
                 particles.pusher_lag.each_mut(),
             );
-            particles.limit_pusher_lag(most_lag);
+            // a pusher that stands goes on through no jam: what it yielded may be the bodies' give
+            if plan.driven || paper {
+                particles.limit_pusher_lag(most_lag);
+            }
             load_columns(
                 block,
                 Columns::WARM_START,
