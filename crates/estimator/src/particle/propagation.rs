@@ -214,8 +214,9 @@ impl Propagation {
                 chunk,
                 particles.pusher_lag.each_mut(),
             );
-            // a pusher that stands goes on through no jam: what it yielded may be the bodies' give
-            if plan.driven || paper {
+            // a pusher that stands goes on through no jam: what it yielded may be the bodies' give; in view the camera
+            // tells
+            if paper || plan.driven || !plan.is_dark() {
                 particles.limit_pusher_lag(most_lag);
             }
             load_columns(

@@ -11,7 +11,7 @@ use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
 
 /// Standard deviation (m) per axis by which an object that the camera sees rest is displaced within [`NOISE_STEP`].
-const SHAKE: f64 = 5e-6;
+const SHAKE: f64 = 3e-6;
 
 impl Propagation {
     /// Draws anew where an object rests that nothing has come near.
