@@ -92,6 +92,11 @@ impl<'o> ContactModel<'o> {
         self.transition.columns = columns;
     }
 
+    /// Noise, limits and sensors.
+    pub(crate) fn setup(&self) -> &Setup {
+        &self.transition.setup
+    }
+
     /// The object's radius of gyration (m).
     pub fn gyration_radius(&self) -> f64 {
         self.transition.setup.scene.object.gyration_radius()

@@ -3,6 +3,7 @@
 use stickslip_filter::{Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
 use crate::mode::Mode;
+use crate::particle::columns::Columns;
 use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::step_plan::StepPlan;
@@ -88,6 +89,10 @@ impl Replay {
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.pool.log_evidence += log_evidence;
         }
+        // it may be the bodies' give, which weighs no particle; or all of them went another way
+        if !plan.driven {
+            self.limit -= log_share_beside(filter);
+        }
         if self.pool.log_evidence >= self.limit || self.attempts == ATTEMPTS {
             return None;
         }
@@ -133,4 +138,20 @@ impl Replay {
         self.steps[self.made].0.second_try = true;
         self.made += 1;
     }
+}
+
+/// ln of the share of particles whose pusher stands within the bound of (13), each by how far it is beyond that, (40).
+fn log_share_beside(filter: &ParticleFilter<ContactModel<'_>>) -> f64 {
+    let setup = filter.model().setup();
+    let (bound, std) = (setup.most_pusher_lag(), setup.uncertainty.pusher_lag);
+    let column = |axis: usize| filter.particles().column(Columns::PUSHER_LAG + axis);
+    let weights = filter.weights().weights();
+    let lags = column(0).zip(column(1)).zip(weights);
+    let share: f64 = lags
+        .map(|((x, y), weight)| {
+            let beyond = (x * x + y * y - bound * bound).max(0.0);
+            weight * libm::exp(-0.5 * beyond / (std * std))
+        })
+        .sum();
+    libm::log(share.max(f64::MIN_POSITIVE))
 }

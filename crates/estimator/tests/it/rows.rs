@@ -278,6 +278,27 @@ fn second_tries_of_a_blackout_end_also_where_the_number_of_particles_changes() {
     assert!((17..=48).contains(&tries), "{tries}");
 }
 
+/// Where it stands, what a jam gives weighs no particle; but a pusher that stands far beyond all jams says that all of
+/// them went another way than the object.
+#[test]
+fn a_pusher_that_stands_beyond_all_jams_has_the_steps_made_again() {
+    let (setup, log) = sticky_and_slippery();
+    let mut tracker = tracker(&setup, 20);
+    let mut tries = Vec::new();
+    for k in 0..log.len() {
+        let row = Row {
+            object: log.object[k].filter(|_| k < 5),
+            pusher: log.pusher[k.min(20)],
+            ..log.row(k)
+        };
+        let _ = tracker.push(&row).expect("a row");
+        tries.push(tracker.second_tries());
+    }
+    // it takes some rows to tell that it stands
+    let (at_rest, last) = (tries[28], tries[log.len() - 1]);
+    assert!(last > at_rest + 5, "{at_rest}, {last}");
+}
+
 /// Rows of a camera, and beside each one of a faster tracker that has the pusher alone, so much later (s).
 fn two_clocks(later: f64) -> Log {
     let place = |time: f64| 0.02 * (time - 0.4_f64).max(0.0);
