@@ -8,7 +8,7 @@
 
 use crate::baseline::belief::Belief;
 use crate::baseline::linearised_step::LinearisedStep;
-use crate::baseline::nominal::touch_flags;
+use crate::baseline::nominal::touch;
 use crate::baseline::pose_update::PoseUpdate;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::particle::noise_clock::NOISE_STEP;
@@ -38,15 +38,9 @@ pub(crate) fn track(
         let noise = camera.noise(prepared.covariance(row));
         let pose = prepared.visible(row);
         let visual = pose.is_some_and(|pose| camera.see(&mut belief, pose, &noise));
-        // a row that no step leads to touches what the row before did
-        let before = &estimate.rows[row - 1];
-        let (contact_pusher, contact_fixels) = match prepared.schedule.step(row - 1).last() {
-            Some(last) => {
-                let (pusher, fixels) = touch_flags(setup, step.work(), last.h);
-                (Some(pusher), Some(fixels))
-            }
-            None => (before.contact_pusher, before.contact_fixels.clone()),
-        };
+        let last = prepared.schedule.step(row - 1).last();
+        let touch = touch(setup, step.work(), last, &estimate.rows[row - 1]);
+        let (contact_pusher, contact_fixels) = touch.unzip();
         let [unsolved, failed] = step.since.counts();
         estimate.rows[row] = EstimateRow {
             contact_pusher,

@@ -1,7 +1,7 @@
 //! The nominal simulation: Γ with fixed nominal friction from the first observed pose, driven by
 //! the recorded pusher.
 
-use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepWork};
+use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepInput, StepWork};
 
 use crate::estimate::{Estimate, EstimateRow};
 use crate::particle::observer::SolvedStep;
@@ -25,12 +25,8 @@ pub(crate) fn simulate(
     for k in prepared.first..prepared.log.len() - 1 {
         particle.limit_pusher_lag(setup.most_pusher_lag());
         let outcome = advance(&dynamics, prepared, k, &mut particle, &mut work);
-        // a row that no step leads to touches what the row before did
-        let before = &estimate.rows[k];
-        let touch = match prepared.schedule.step(k).last() {
-            Some(step) => Some(touch_flags(setup, &work, step.h)),
-            None => before.contact_pusher.zip(before.contact_fixels.clone()),
-        };
+        let last = prepared.schedule.step(k).last();
+        let touch = touch(setup, &work, last, &estimate.rows[k]);
         estimate.rows[k + 1] = row(&particle, touch, outcome);
         progress(k + 1);
     }
@@ -67,12 +63,22 @@ fn advance(
     worst
 }
 
-/// Whether the first particle of a step of `h` seconds touches pusher and fixels: 1 or 0 each.
-pub(super) fn touch_flags<const W: usize>(
+/// Whether the first particle touches pusher and fixels in the `last` substep to a row: 1 or 0 each. A row that no step
+/// leads to touches what the row `before` did.
+pub(super) fn touch<const W: usize>(
     setup: &Setup,
     work: &StepWork<W>,
-    h: f64,
-) -> (f64, Vec<f64>) {
+    last: Option<&StepInput>,
+    before: &EstimateRow,
+) -> Option<(f64, Vec<f64>)> {
+    match last {
+        Some(step) => Some(touch_flags(setup, work, step.h)),
+        None => before.contact_pusher.zip(before.contact_fixels.clone()),
+    }
+}
+
+/// Whether the first particle of a step of `h` seconds touches pusher and fixels: 1 or 0 each.
+fn touch_flags<const W: usize>(setup: &Setup, work: &StepWork<W>, h: f64) -> (f64, Vec<f64>) {
     let flag = |touches: bool| f64::from(u8::from(touches));
     let fixels = 0..setup.scene.fixels.len();
     let touch_impulse = setup.tactile.touch_force * h;

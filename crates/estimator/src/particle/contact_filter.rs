@@ -84,8 +84,9 @@ pub(crate) struct ContactFilter<'o> {
     trust: CameraTrust,
     replay: Replay,
     steadiness: Steadiness,
-    /// The pusher's latest speed (m/s), and whether it moved by that.
+    /// The pusher's latest speed (m/s).
     pusher_speed: f64,
+    /// Whether it moved then, as far as its track can tell.
     pusher_moved: bool,
     resting: RestingPose,
     /// Whether a particle has touched anything.

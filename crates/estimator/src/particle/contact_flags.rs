@@ -38,7 +38,8 @@ impl Propagation {
         let pusher = presses(Body::Pusher).gt(Lanes::ZERO);
         let near = self.near(chunk, Body::Pusher);
         let goes_on = rests & near & flags.get(Columns::CONTACT_PUSHER);
-        let carried = self.is_carried(transition, chunk);
+        // also by one that is hidden and carries the object along
+        let carried = moving(&self.carried[chunk], rho);
         let touches = pusher | self.close(transition, chunk, Body::Pusher) | goes_on | carried;
         flags.set(Columns::CONTACT_PUSHER, touches);
         self.store_slip(flags, Columns::SLIP_PUSHER, touches, (chunk, Body::Pusher));

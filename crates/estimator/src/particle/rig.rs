@@ -314,14 +314,14 @@ impl Propagation {
         for chunk in 0..block.len().div_ceil(LANES) {
             let mut roughness = Lanes::ZERO;
             load_columns(block, columns.roughness(), chunk, [&mut roughness]);
-            let scale = registered(unsure, roughness) * unsure.pusher_offset;
+            let registered = registered(unsure, roughness);
+            let scale = registered * unsure.pusher_offset;
             let pusher = offset(columns.pusher_offset(), chunk, scale);
             self.pusher_offsets.push(pusher);
             if pusher_turn > 0.0 {
                 let mut turn = Lanes::ZERO;
                 load_columns(block, columns.pusher_turn(), chunk, [&mut turn]);
-                self.pusher_turn
-                    .push(turn * (registered(unsure, roughness) * pusher_turn));
+                self.pusher_turn.push(turn * (registered * pusher_turn));
             }
             let measured = measured(unsure, roughness);
             let scale = measured * unsure.fixel_position;

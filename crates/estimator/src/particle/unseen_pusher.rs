@@ -1,12 +1,12 @@
 //! A pusher that nobody sees and that may move the object on (docs/method.md (53)).
 
-use stickslip_dynamics::{Mask, Particles, Twist};
+use stickslip_dynamics::{Particles, Twist};
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::particle::chunk::{LANES, is_set};
 use crate::particle::columns::Columns;
 use crate::particle::contact_mode::UNSEEN_PAIR;
-use crate::particle::propagation::{Propagation, Transition, moving};
+use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::step_plan::StepPlan;
 
 /// Speed that an unseen pusher may have at least (m/s).
@@ -62,14 +62,5 @@ impl Propagation {
                 to.0[lane] = *velocity;
             }
         }
-    }
-
-    /// Particles whose object an unseen pusher carries along.
-    #[inline(always)]
-    pub(super) fn is_carried(&self, transition: &Transition<'_>, chunk: usize) -> Mask<LANES> {
-        moving(
-            &self.carried[chunk],
-            transition.setup.scene.object.gyration_radius(),
-        )
     }
 }
