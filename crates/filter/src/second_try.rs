@@ -57,11 +57,15 @@ impl Default for Pool {
     }
 }
 
+/// How far ln of a try's evidence may fall below that of the sets before it: 1 in 10²¹. A try that
+/// falls farther would have no particle, and makes no more steps.
+const GIVEN_UP: f64 = 50.0;
+
 /// What a second try was worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondTry {
     /// ln of the evidence of the steps since the checkpoint under the new particles; −∞ where they
-    /// explained some step not at all.
+    /// explained some step not at all, or the try was given up.
     pub log_evidence: f64,
     /// All sets so far, those whose particles are the present ones.
     pub pool: Pool,
@@ -101,6 +105,10 @@ impl<M: Model> ParticleFilter<M> {
     /// filters of the same observations, each weighed by its estimate of their likelihood, are one of
     /// as many particles as all have (Del Moral 2004, section 7.4). The weights become equal.
     ///
+    /// A new set is given up, and gets no share, as soon as its evidence is below e⁻⁵⁰ of the mean of the others': with a
+    /// model whose likelihoods are at most 1 that is exact but for one particle in 10²¹, with another a step whose
+    /// evidence would be above e⁵⁰ comes too late.
+    ///
     /// # Panics
     /// If the checkpoint is not as many steps old as there are `steps`, or of another number of
     /// particles or columns.
@@ -133,14 +141,21 @@ impl<M: Model> ParticleFilter<M> {
         let mut again = 0.0;
         let mut last = None;
         for (input, observation) in steps {
+            last = Some(input);
+            if again == f64::NEG_INFINITY {
+                continue;
+            }
             let report = self.make_step(input, observation, false);
             again += match report.weight_update {
                 WeightUpdate::Unobserved => 0.0,
                 WeightUpdate::Weighed { log_evidence } => log_evidence,
                 WeightUpdate::Collapsed { .. } => f64::NEG_INFINITY,
             };
-            last = Some(input);
+            if again < pool.log_evidence - GIVEN_UP {
+                again = f64::NEG_INFINITY;
+            }
         }
+        self.step = now;
         self.streams = Streams::new(self.settings.seed);
 
         // as many of each as their evidence is worth

@@ -158,3 +158,27 @@ fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
     assert!(places.iter().all(|place| *place == 1.0), "{places:?}");
     assert!(attempt > 0, "the first set had it: choose another seed");
 }
+
+#[test]
+fn a_try_is_given_up_where_its_evidence_falls_below_a_share_that_no_particle_would_get() {
+    // both rows together say nothing; a set whose first row falls too far makes no second one
+    let share_after = |fall: f64| {
+        let settings = Settings {
+            particles: 64,
+            ..Settings::default()
+        };
+        let mut filter = ParticleFilter::new(Fork, settings).expect("settings");
+        let checkpoint = filter.checkpoint();
+        let rows = [(&false, Some(&-fall)), (&false, Some(&fall))];
+        for (input, observation) in rows {
+            let _ = filter.step(input, observation);
+        }
+        let tried = filter.try_again(&checkpoint, rows.into_iter(), Pool::of_one(0.0), 1);
+        assert_eq!((filter.steps(), tried.pool.sets), (2, 2));
+        assert_eq!(filter.weights().weights(), [1.0 / 64.0; 64]);
+        (tried.share, tried.log_evidence)
+    };
+    let (share, log_evidence) = share_after(49.0);
+    assert!((share - 0.5).abs() < 1e-12 && log_evidence.abs() < 1e-12);
+    assert_eq!(share_after(51.0), (0.0, f64::NEG_INFINITY));
+}
