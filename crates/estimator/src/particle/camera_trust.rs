@@ -1,6 +1,10 @@
 //! Whether camera poses that no particle explains are wrong, or the particles are (contact mode): [`CameraTrust`].
 
+use stickslip_dynamics::Pose;
 use stickslip_filter::StepReport;
+
+use crate::particle::camera_likelihood::WRONG;
+use crate::particle::free_motion::{NormalPose, log_density};
 
 /// Camera poses in a row that nothing explains, after which they are believed.
 pub(crate) const BELIEVED_AFTER: u32 = 4;
@@ -8,26 +12,40 @@ pub(crate) const BELIEVED_AFTER: u32 = 4;
 /// ln of the mean likelihood of a camera pose below which no particle explains it.
 const UNEXPLAINED: f64 = -10.0;
 
+/// ln of how much wider a belief is than a camera pose, all axes together, from which on few of its particles are near one:
+/// some three times per axis.
+const WIDE: f64 = 3.0;
+
 /// Counts the camera poses in a row that no particle explains; after some, they are no outliers, until one is explained.
+/// Nor is one that a wide belief expects: that no particle is near it says nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CameraTrust {
     unexplained: u32,
+    /// Whether the pose that comes next is believed.
+    believed: bool,
 }
 
 impl CameraTrust {
-    /// Takes what a pose, on time or late, did to the particles; says whether poses are believed where that changes.
-    pub fn judge(&mut self, report: &StepReport) -> Option<bool> {
-        let log_evidence = report.resetting_log_evidence?;
-        let before = self.is_full();
+    /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief before it; says whether
+    /// it is believed, where that changes.
+    pub fn expect(&mut self, pose: &Pose, noise: [f64; 3], belief: &NormalPose) -> Option<bool> {
+        let of_pose = log_density(pose, noise, belief);
+        let at_best = log_density(&belief.mean, noise, belief);
+        let expected = at_best < -WIDE && of_pose > libm::log(WRONG);
+        let believed = expected || self.unexplained >= BELIEVED_AFTER;
+        let before = std::mem::replace(&mut self.believed, believed);
+        Some(believed).filter(|now| *now != before)
+    }
+
+    /// Takes what a pose, on time or late, did to the particles.
+    pub fn judge(&mut self, report: &StepReport) {
+        let Some(log_evidence) = report.resetting_log_evidence else {
+            return;
+        };
         self.unexplained = match log_evidence < UNEXPLAINED {
             _ if report.collapsed() => self.unexplained,
             true => self.unexplained + 1,
             false => 0,
         };
-        Some(self.is_full()).filter(|now| *now != before)
-    }
-
-    fn is_full(self) -> bool {
-        self.unexplained >= BELIEVED_AFTER
     }
 }

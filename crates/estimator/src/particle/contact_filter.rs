@@ -3,8 +3,8 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::{Friction, Pose, StepInput, Twist};
-use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
+use stickslip_dynamics::{Friction, Pose, StepInput};
+use stickslip_filter::{ParticleFilter, StepReport, WeightUpdate};
 
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
@@ -12,12 +12,14 @@ use crate::estimate::EstimateRow;
 use crate::mode::Mode;
 use crate::moves::Moves;
 use crate::particle::camera_trust::CameraTrust;
+use crate::particle::filter_options::FilterOptions;
+use crate::particle::free_motion::NormalPose;
+use crate::particle::hidden_pusher::HiddenPusher;
 use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
-use crate::particle::observer::Observer;
 use crate::particle::pose_clock::PoseClock;
 use crate::particle::replay::Replay;
 use crate::particle::resting_pose::RestingPose;
@@ -84,10 +86,7 @@ pub(crate) struct ContactFilter<'o> {
     trust: CameraTrust,
     replay: Replay,
     steadiness: Steadiness,
-    /// The pusher's latest speed (m/s).
-    pusher_speed: f64,
-    /// Whether it moved then, as far as its track can tell.
-    pusher_moved: bool,
+    pusher: HiddenPusher,
     resting: RestingPose,
     /// Whether a particle has touched anything.
     touched: bool,
@@ -102,37 +101,6 @@ pub(crate) struct Waiting {
     pub at: PoseAt,
     /// All that the camera has shown of it.
     resting: RestingPose,
-}
-
-/// What a contact filter is made with.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FilterOptions<'o> {
-    /// Rules of the filter.
-    pub mode: Mode,
-    /// Number of particles.
-    pub particles: usize,
-    /// Seed of all random numbers.
-    pub seed: u64,
-    /// How far before the latest row late poses may show the object (s).
-    pub late: f64,
-    /// What brings particles to where weighing would leave few (contact mode).
-    pub moves: Moves,
-    /// Share of a camera pose that moves particles at least, where it may move them (contact mode).
-    pub least_moved: f64,
-    /// Is shown every time step.
-    pub observer: Option<&'o dyn Observer>,
-}
-
-impl FilterOptions<'_> {
-    /// Settings of the particle filter.
-    pub fn settings(&self, setup: &Setup) -> Settings {
-        Settings {
-            particles: self.particles,
-            seed: self.seed,
-            resample_below: setup.filter.resample_below,
-            resampling: Resampling::Systematic,
-        }
-    }
 }
 
 impl<'o> ContactFilter<'o> {
@@ -174,9 +142,8 @@ impl<'o> ContactFilter<'o> {
             trust: CameraTrust::default(),
             replay: Replay::default(),
             steadiness: Steadiness::new(camera.latency + unknown),
-            pusher_speed: 0.0,
-            pusher_moved: false,
-            resting: RestingPose::new((pose, start.covariance), &camera, setup),
+            pusher: HiddenPusher::default(),
+            resting: RestingPose::new(time, (pose, start.covariance), &camera, setup),
             touched: false,
             moves: options.moves,
         };
@@ -205,6 +172,7 @@ impl<'o> ContactFilter<'o> {
         self.touched |= self.latest.any_contact();
         self.observation.moves = self.camera_moves();
 
+        self.expect_pose();
         let tries = self.moves.second_tries && self.plan.is_dark();
         self.replay.before(&self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
@@ -248,9 +216,29 @@ impl<'o> ContactFilter<'o> {
         count.expect("a particle set is numbered in u32 and never empty")
     }
 
-    /// Whether camera poses may move particles: the object no longer waits where it was first seen.
+    /// Whether camera poses may move particles: the object no longer waits where it was first seen, or never did.
     fn camera_moves(&self) -> bool {
-        self.mode() == Mode::Contact && self.moves.camera && self.touched
+        let moves = self.touched || self.resting.moves();
+        self.mode() == Mode::Contact && self.moves.camera && moves
+    }
+
+    /// Before a pose of the camera: whether it is believed also where no particle explains it.
+    fn expect_pose(&mut self) {
+        let Some(pose) = self.observation.pose else {
+            return;
+        };
+        let Some((mean, spread)) = self.latest.pose.zip(self.latest.spread) else {
+            return;
+        };
+        let belief = NormalPose {
+            mean,
+            variance: spread.pose.fields().map(|std| std * std),
+        };
+        let noise = self.resting.noise_of(self.observation.covariance);
+        if let Some(trusted) = self.trust.expect(&pose, noise, &belief) {
+            self.filter
+                .change_model(|model| model.trust_camera(trusted));
+        }
     }
 
     /// Keeps what weighed the particles last for them to learn of, in contact mode.
@@ -272,7 +260,7 @@ impl<'o> ContactFilter<'o> {
         let seen = (pose, self.observation.covariance);
         match self.collapsed {
             true => self.resting = self.resting.started_at(seen),
-            false => self.resting.see(seen),
+            false => self.resting.see(self.observation.time, seen),
         }
         self.plan.resting = self.where_it_rests();
     }
@@ -296,10 +284,7 @@ impl<'o> ContactFilter<'o> {
     fn take(&mut self, report: &StepReport) {
         self.collapsed = report.collapsed();
         self.collapses += u32::from(self.collapsed);
-        if let Some(trusted) = self.trust.judge(report) {
-            self.filter
-                .change_model(|model| model.trust_camera(trusted));
-        }
+        self.trust.judge(report);
         self.learn_where_it_rests();
     }
 
@@ -322,14 +307,18 @@ impl<'o> ContactFilter<'o> {
         plan.reference = self.reference;
         plan.steady = self.steadiness.velocity(measured.time, drive.substeps);
         plan.steady = plan.steady.filter(|_| self.moves.steady_push);
-        let pusher = drive.substeps.last().and_then(|step| step.pusher);
-        if let Some(Twist { vx, vy, .. }) = pusher.filter(|_| !drive.unseen).map(|p| p.twist) {
-            self.pusher_speed = libm::hypot(vx, vy);
-            self.pusher_moved = drive.moves;
-        }
-        // in the dark, one that stood when it was last seen has been lifted
-        let carries = drive.unseen && (self.pusher_moved || !plan.is_dark());
-        plan.unseen_pusher = Some(self.pusher_speed).filter(|_| carries);
+        let scene = &self.filter.model().setup().scene;
+        plan.pusher_is_back = false;
+        plan.unseen_pusher = match drive.substeps.last().filter(|_| !drive.unseen) {
+            Some(last) => {
+                plan.pusher_is_back = self.pusher.seen(plan.duration(), last, drive.moves);
+                None
+            }
+            None => {
+                let hidden_object = self.latest.pose.filter(|_| plan.is_dark());
+                self.pusher.unseen(scene, plan.duration(), hidden_object)
+            }
+        };
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
         if slots > self.filter.model().columns().history() {
@@ -348,6 +337,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         self.observation.moves = self.camera_moves();
+        self.expect_pose();
         let report = self.filter.observe(&self.plan, &self.observation);
         self.take(&report);
         self.camera.late_pose();

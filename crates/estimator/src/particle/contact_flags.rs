@@ -43,7 +43,7 @@ impl Propagation {
         let touches = pusher | self.close(transition, chunk, Body::Pusher) | goes_on | carried;
         flags.set(Columns::CONTACT_PUSHER, touches);
         self.store_slip(flags, Columns::SLIP_PUSHER, touches, (chunk, Body::Pusher));
-        flags.set(Columns::PUSHER_WAS_NEAR, pusher_was_near | near);
+        flags.set(Columns::PUSHER_WAS_NEAR, pusher_was_near | near | carried);
         let pressed = moves | pusher;
         flags.set(Columns::IDLE, !(pressed & Mask::splat(plan.driven)));
 

@@ -45,12 +45,12 @@ impl Propagation {
         );
         if let Some(resting) = &plan.resting {
             self.normals_of(draw, RESTING_PAIR, block);
-            self.draw_resting_pose(transition, resting, block);
+            self.draw_resting_pose(transition, (resting, plan.duration()), block);
         }
         self.carried.fill(Twist::default());
-        if let Some(speed) = plan.unseen_pusher {
+        if let Some(pusher) = plan.unseen_pusher {
             self.normals_of(draw, UNSEEN_PAIR, block);
-            self.carry(transition, plan, (speed, draw), block);
+            self.carry(transition, plan, (pusher, draw), block);
         }
         self.normals_of(draw, 0, block);
         on_widest(
@@ -278,7 +278,7 @@ impl Propagation {
         plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
-        self.read_pusher(transition, block);
+        self.read_pusher(transition, plan, block);
         on_widest(
             self.level,
             #[inline(always)]
@@ -287,14 +287,17 @@ impl Propagation {
     }
 
     /// Weighs how far behind its logged pose the pusher gave way in this step: a particle that jams
-    /// a pusher which goes on is contradicted by the log.
+    /// a pusher which goes on is contradicted by the log. Not by one that has just come back into view: where the object
+    /// went meanwhile, nobody knows.
     fn read_pusher(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
         let std = setup.uncertainty.pusher_lag;
-        let scale = Lanes::splat(-0.5 / (std * std));
+        let counts = if plan.pusher_is_back { 0.0 } else { 1.0 };
+        let scale = Lanes::splat(-0.5 * counts / (std * std));
         for chunk in 0..block.len().div_ceil(LANES) {
             let after = squared(self.particles[chunk].pusher_lag);
             let log_likelihood = (after - self.lag_before[chunk]) * scale;

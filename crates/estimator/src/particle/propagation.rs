@@ -356,6 +356,9 @@ impl Propagation {
             let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
             store_columns(block, Columns::POSE, chunk, particles.pose.fields());
             let mut twist = particles.twist;
+            if plan.pusher_is_back {
+                self.slow_down(transition, plan, &mut twist);
+            }
             for (twist, carried) in twist
                 .fields_mut()
                 .into_iter()

@@ -14,14 +14,14 @@ use crate::particle::step_plan::StepPlan;
 const SHAKE: f64 = 3e-6;
 
 impl Propagation {
-    /// Draws anew where an object rests that nothing has come near.
+    /// Draws anew where an object rests that nothing has come near, or is after `h` (s) if it moves all the same.
     pub(super) fn draw_resting_pose(
         &mut self,
         Transition { columns, .. }: &Transition<'_>,
-        resting: &RestingPose,
+        (resting, h): (&RestingPose, f64),
         block: &mut BlockMut<'_>,
     ) {
-        let belief = resting.belief();
+        let belief = resting.belief(h);
         for (i, _) in block.particles() {
             let (chunk, lane) = (i / LANES, i % LANES);
             if !self.untouched[chunk].lane(lane) {

@@ -3,10 +3,10 @@
 
 use stickslip_dynamics::{Lanes, Pose};
 
-use crate::angle::wrapped;
 use crate::covariance::PoseCovariance;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::camera_noise::{CameraNoise, MEMORY, NoisePrior};
+use crate::particle::free_motion::{FreeMotion, NormalPose, difference};
 use crate::particle::student_pose::StudentPose;
 use crate::setup::{Camera, Setup};
 
@@ -15,7 +15,8 @@ use crate::setup::{Camera, Setup};
 /// as the others, and how noisy they are is learned from all, so that the belief is Student's t.
 ///
 /// Particles that nothing has come near draw their pose anew from it, so that resampling cannot thin
-/// them out while the object waits for the pusher.
+/// them out while the object waits for the pusher. Where the poses say that it moves all the same, as one that is set
+/// down by hand, they draw it from its [`FreeMotion`]; where poses on end lie to one side, it has been moved a little.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestingPose {
     mean: Pose,
@@ -35,15 +36,40 @@ pub struct RestingPose {
     widened: f64,
     /// What is unknown of its noise.
     noise: Option<NoisePrior>,
+    /// Where it is if it moves.
+    free: FreeMotion,
+    /// Time of the latest pose (s).
+    time: f64,
+    /// Mean of how far the latest poses lay off, in standard deviations of what was expected of them.
+    aside: [f64; 3],
 }
+
+/// Number of the latest poses that this is a mean of.
+const LATEST: f64 = 30.0;
+
+/// The squares of such means over their variances, added up, above which the object was moved; chance has them there in
+/// 0.02 % of poses (χ² of three degrees of freedom).
+const MOVED: f64 = 20.0;
 
 /// Which of position and angle an axis belongs to.
 const GROUP: [usize; 3] = [0, 0, 1];
 
 impl RestingPose {
-    /// Around `start`, as well as that pose tells.
-    pub fn new(start: (Pose, Option<PoseCovariance>), camera: &Camera, setup: &Setup) -> Self {
+    /// Around a pose seen at a `time` (s), as well as that tells.
+    pub fn new(
+        time: f64,
+        start: (Pose, Option<PoseCovariance>),
+        camera: &Camera,
+        setup: &Setup,
+    ) -> Self {
+        let told = NormalPose {
+            mean: start.0,
+            variance: [1.0; 3],
+        };
         let unset = Self {
+            free: FreeMotion::new(&told, setup.scene.object.gyration_radius()),
+            time,
+            aside: [0.0; 3],
             mean: start.0,
             variance: [0.0; 3],
             poses: 0.0,
@@ -60,25 +86,57 @@ impl RestingPose {
     /// The same before anything but `start` is seen.
     pub fn started_at(self, (start, covariance): (Pose, Option<PoseCovariance>)) -> Self {
         let told = self.told(covariance);
-        Self {
+        let pose = NormalPose {
             mean: start,
             variance: told,
+        };
+        Self {
+            free: self.free.at_rest(&pose),
+            ..self.resting_at(&pose, told)
+        }
+    }
+
+    /// The same at another place, of which poses as noisy as `told` tell.
+    fn resting_at(self, pose: &NormalPose, told: [f64; 3]) -> Self {
+        Self {
+            mean: pose.mean,
+            variance: pose.variance,
             poses: 1.0,
             precision: told.map(f64::recip),
-            centre: start,
+            centre: pose.mean,
             squares: [0.0; 2],
+            aside: [0.0; 3],
             ..self
         }
     }
 
-    /// Bayes' rule with one more pose of the camera. By as much as the pose may be wrong, it counts less.
-    pub fn see(&mut self, (pose, covariance): (Pose, Option<PoseCovariance>)) {
+    /// Bayes' rule with one more pose of the camera, at a `time` (s). By as much as the pose may be wrong, it counts less.
+    pub fn see(&mut self, time: f64, (pose, covariance): (Pose, Option<PoseCovariance>)) {
         let told = self.told(covariance);
-        let measured = told.map(|variance| variance * self.widened * self.widened);
-        let right = self.is_right(&pose, told, measured);
+        let measured = self.noise_of(covariance);
+
+        // it may move
+        let h = (time - self.time).max(0.0);
+        self.time = self.time.max(time);
+        if self.free.moves() {
+            let here = NormalPose {
+                mean: self.mean,
+                variance: self.variance,
+            };
+            *self = self.resting_at(&self.free.stopped(&here, h), told);
+        }
+        let (levels, _) = self.noise_levels();
+        let noise = std::array::from_fn(|k| measured[k] * levels[GROUP[k]]);
+        let rest = NormalPose {
+            mean: self.mean,
+            variance: std::array::from_fn(|k| self.variance[k] * levels[GROUP[k]]),
+        };
+        self.free.see(h, &pose, noise, &rest);
 
         // the pose
+        let right = self.is_right(&pose, told, measured);
         let away = difference(&pose, &self.mean);
+        self.widen_where_moved(&away, right, measured, levels);
         let mean = self.mean.fields_mut().into_iter().zip(away.fields());
         for (k, (mean, away)) in mean.enumerate() {
             let evidence = self.variance[k] * right + measured[k];
@@ -105,8 +163,37 @@ impl RestingPose {
         }
     }
 
-    /// What all poses seen say together.
-    pub fn belief(&self) -> StudentPose {
+    /// Where the latest poses lie to one side by more than chance has them, the object has been moved: it is not
+    /// known better than that.
+    fn widen_where_moved(&mut self, away: &Pose, right: f64, measured: [f64; 3], levels: [f64; 2]) {
+        for (k, away) in away.fields().into_iter().enumerate() {
+            let expected = (self.variance[k] + measured[k]) * levels[GROUP[k]];
+            self.aside[k] += (right * away / expected.sqrt() - self.aside[k]) / LATEST;
+        }
+        let squares: f64 = self.aside.iter().map(|mean| mean * mean).sum();
+        if squares * (2.0 * LATEST - 1.0) > MOVED {
+            for k in 0..3 {
+                let moved = self.aside[k] * self.aside[k] * measured[k];
+                self.variance[k] = self.variance[k].max(moved);
+            }
+        }
+    }
+
+    /// Whether poses say that the object moves.
+    pub fn moves(&self) -> bool {
+        self.free.moves()
+    }
+
+    /// What all poses seen say together of where the object is after `h` (s).
+    pub fn belief(&self, h: f64) -> StudentPose {
+        if self.free.moves() {
+            let NormalPose { mean, variance } = self.free.after(h);
+            return StudentPose {
+                mean,
+                scale: variance.map(f64::sqrt),
+                freedom: [f64::INFINITY; 3],
+            };
+        }
         let (levels, freedoms) = self.noise_levels();
         StudentPose {
             mean: self.mean,
@@ -123,6 +210,12 @@ impl RestingPose {
         position += self.precision[0] * away.x * away.x + self.precision[1] * away.y * away.y;
         angle += self.precision[2] * away.theta * away.theta;
         [self.poses, position, angle]
+    }
+
+    /// Variances by which a pose counts, of x, y (m²) and θ (rad²).
+    pub fn noise_of(&self, covariance: Option<PoseCovariance>) -> [f64; 3] {
+        let wide = self.widened * self.widened;
+        self.told(covariance).map(|variance| variance * wide)
     }
 
     /// Variances of x, y and θ of a pose, by itself or as the camera's are told.
@@ -180,15 +273,6 @@ impl RestingPose {
     }
 }
 
-/// From `from` to `to`, θ on the circle.
-fn difference(to: &Pose, from: &Pose) -> Pose {
-    Pose {
-        x: to.x - from.x,
-        y: to.y - from.y,
-        theta: wrapped(to.theta - from.theta),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use stickslip_filter::Streams;
@@ -215,6 +299,15 @@ mod tests {
             camera: CAMERA,
             widened,
             noise: None,
+            free: FreeMotion::new(
+                &NormalPose {
+                    mean: start,
+                    variance: [1.0; 3],
+                },
+                0.02,
+            ),
+            time: 0.0,
+            aside: [0.0; 3],
         };
         unset.started_at((start, None))
     }
@@ -235,7 +328,7 @@ mod tests {
         let (start, widened) = (Pose::new(0.1, -0.2, 3.1), 1.5);
         let seen = poses(Pose::new(0.1003, -0.2002, 3.102), 40, 1.0);
         let mut resting = told_noise(start, widened);
-        seen.iter().for_each(|pose| resting.see((*pose, None)));
+        seen.iter().for_each(|pose| resting.see(0.0, (*pose, None)));
         // the start with weight 1, every pose with that of its wider noise
         let weight = 1.0 / (widened * widened);
         let total = 1.0 + 40.0 * weight;
@@ -255,12 +348,12 @@ mod tests {
         let mut resting = told_noise(Pose::default(), 1.0);
         let nudged = Pose::new(1e-3, 0.0, 0.0);
         for pose in poses(Pose::default(), 3000, 1.0) {
-            resting.see((pose, None));
+            resting.see(0.0, (pose, None));
         }
         let known = resting.variance[0].sqrt() / CAMERA.position_std;
         assert!((known * MEMORY.sqrt() - 1.0).abs() < 0.01, "{known}");
         for pose in poses(nudged, 1500, 1.0) {
-            resting.see((pose, None));
+            resting.see(0.0, (pose, None));
         }
         // e^-5 of the way is left, and noise
         let left = (resting.mean.x - nudged.x).abs();
@@ -272,10 +365,13 @@ mod tests {
         let start = Pose::new(0.0, 0.0, 3.1);
         let mut resting = told_noise(start, 1.0);
         let before = resting;
-        resting.see((Pose::new(0.05, 0.0, 3.1), None));
+        resting.see(0.0, (Pose::new(0.05, 0.0, 3.1), None));
         let moved = resting.mean.x - before.mean.x;
         assert!(moved.abs() < 1e-9, "{moved}");
-        resting.see((Pose::new(0.0, 0.0, 3.1 - std::f64::consts::TAU), None));
+        resting.see(
+            0.0,
+            (Pose::new(0.0, 0.0, 3.1 - std::f64::consts::TAU), None),
+        );
         assert!((resting.mean.theta - 3.1).abs() < 1e-9);
     }
 
@@ -288,7 +384,7 @@ mod tests {
         let particle = Pose::new(0.0203, 0.0099, -0.296);
         let (mut position, mut angle, mut count) = (0.0, 0.0, 0.0);
         let kept = 1.0 - 1.0 / MEMORY;
-        seen.iter().for_each(|pose| resting.see((*pose, None)));
+        seen.iter().for_each(|pose| resting.see(0.0, (*pose, None)));
         for pose in std::iter::once(&at).chain(&seen) {
             let (dx, dy) = (pose.x - particle.x, pose.y - particle.y);
             let turn = (pose.theta - particle.theta) / CAMERA.orientation_std;
@@ -322,8 +418,8 @@ mod tests {
             };
             let mut resting = told_noise(seen(0), 1.0);
             resting.noise = noise;
-            (1..20).for_each(|i| resting.see((seen(i), None)));
-            let [low, high] = [-1.645, 1.645].map(|z| resting.belief().at([z; 3]));
+            (1..20).for_each(|i| resting.see(0.0, (seen(i), None)));
+            let [low, high] = [-1.645, 1.645].map(|z| resting.belief(0.0).at([z; 3]));
             for ((held, low), high) in held.iter_mut().zip(low.fields()).zip(high.fields()) {
                 *held += u32::from((*low..=*high).contains(&0.0));
             }
@@ -346,7 +442,7 @@ mod tests {
         };
         let mut resting = told_noise(Pose::default(), 1.0);
         let seen = Pose::new(2e-4, -3e-4, 2e-3);
-        resting.see((seen, Some(covariance)));
+        resting.see(0.0, (seen, Some(covariance)));
         let prior = [
             CAMERA.position_std,
             CAMERA.position_std,

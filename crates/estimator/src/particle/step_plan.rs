@@ -1,6 +1,6 @@
 //! The step to one row, as the model gets it: [`StepPlan`].
 
-use stickslip_dynamics::StepInput;
+use stickslip_dynamics::{StepInput, Twist};
 
 use crate::particle::observation::Observation;
 use crate::particle::resting_pose::RestingPose;
@@ -13,6 +13,17 @@ pub enum ParameterNoise {
     Drawn,
     /// β̂ = β, while the camera is occluded.
     Frozen,
+}
+
+/// A pusher that nobody sees, and that may move the object (contact mode).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnseenPusher {
+    /// Its last twist.
+    pub twist: Twist,
+    /// Whether it would have reached an object that is hidden, too, had it gone on like that.
+    pub reached: bool,
+    /// Whether it does so in this step.
+    pub reaches: bool,
 }
 
 /// The step to one row.
@@ -29,8 +40,10 @@ pub struct StepPlan {
     /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag (contact
     /// mode).
     pub steady: Option<[f64; 2]>,
-    /// The pusher's last speed (m/s), where nobody knows where it is, and it may carry the object along (contact mode).
-    pub unseen_pusher: Option<f64>,
+    /// The pusher, where nobody knows where it is, and it may carry the object along (contact mode).
+    pub unseen_pusher: Option<UnseenPusher>,
+    /// Whether it has just come back into view (contact mode).
+    pub pusher_is_back: bool,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
     /// What weighed the particles at the row before, of which they learn how noisy the camera is;
@@ -57,6 +70,7 @@ impl StepPlan {
             noise_age,
             steady,
             unseen_pusher,
+            pusher_is_back,
             slot,
             seen,
             resting,
@@ -70,6 +84,7 @@ impl StepPlan {
         (self.driven, self.parameter_noise) = (*driven, *parameter_noise);
         (self.noise_age, self.steady) = (*noise_age, *steady);
         (self.unseen_pusher, self.slot) = (*unseen_pusher, *slot);
+        self.pusher_is_back = *pusher_is_back;
         (self.resting, self.reference) = (*resting, *reference);
         self.second_try = *second_try;
     }
@@ -106,6 +121,7 @@ impl StepPlan {
             noise_age: 0,
             steady: None,
             unseen_pusher: None,
+            pusher_is_back: false,
             slot: 0,
             seen: Observation::default(),
             resting: None,

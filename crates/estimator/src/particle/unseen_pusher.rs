@@ -3,11 +3,11 @@
 use stickslip_dynamics::{Particles, Twist};
 use stickslip_filter::{BlockMut, Draw};
 
-use crate::particle::chunk::{LANES, is_set};
+use crate::particle::chunk::{Column, LANES, is_set};
 use crate::particle::columns::Columns;
 use crate::particle::contact_mode::UNSEEN_PAIR;
 use crate::particle::propagation::{Propagation, Transition};
-use crate::particle::step_plan::StepPlan;
+use crate::particle::step_plan::{StepPlan, UnseenPusher};
 
 /// Speed that an unseen pusher may have at least (m/s).
 const UNSEEN_SPEED: f64 = 0.01;
@@ -18,19 +18,27 @@ const UNSEEN_LASTS: f64 = 0.15;
 /// The same where the object is not seen, either (s).
 const UNSEEN_LASTS_IN_THE_DARK: f64 = 1.0;
 
+/// Probability that a pusher which would have reached the object has not, having stopped or been lifted.
+const MISSES: f64 = 0.25;
+
+/// Spread of the velocity at which one that has reached it carries it on, beside its own, and of the turn, by the
+/// pusher's last speed.
+const AROUND: f64 = 0.5;
+
 impl Propagation {
     /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in each particle, which
-    /// is drawn anew now and then. In the dark it is one that touched the object when it was last seen, and that goes
-    /// on as it did for longer, since no pose of the camera corrects a guess.
+    /// is drawn anew now and then. In the dark it is one that touched the object when it was last seen, or would have
+    /// reached it since, and that goes on as it did for longer, since no pose of the camera corrects a guess.
     pub(super) fn carry(
         &mut self,
         transition: &Transition<'_>,
         plan: &StepPlan,
-        (speed, draw): (f64, Draw),
+        (pusher, draw): (UnseenPusher, Draw),
         block: &BlockMut<'_>,
     ) {
         let rho = transition.setup.scene.object.gyration_radius();
-        let (speed, h) = (speed.max(UNSEEN_SPEED), plan.duration());
+        let speed = libm::hypot(pusher.twist.vx, pusher.twist.vy).max(UNSEEN_SPEED);
+        let h = plan.duration();
         let lasts = if plan.is_dark() {
             UNSEEN_LASTS_IN_THE_DARK
         } else {
@@ -40,12 +48,22 @@ impl Propagation {
         for (i, particle) in block.particles() {
             let (chunk, lane) = (i / LANES, i % LANES);
             let touched = is_set(&block.as_block(), Columns::CONTACT_PUSHER, i);
-            if self.untouched[chunk].lane(lane) || (plan.is_dark() && !touched) {
+            let may_be_carried = match plan.is_dark() {
+                true => pusher.reached || (touched && !self.untouched[chunk].lane(lane)),
+                false => !self.untouched[chunk].lane(lane),
+            };
+            if !may_be_carried {
                 continue;
             }
             let [x, y, turn, _] = self.normals.each_ref().map(|column| speed * column[i]);
             let Particles { pose, twist, .. } = &mut self.particles[chunk];
             let carried = match draw.uniform(particle, UNSEEN_PAIR) {
+                chance if pusher.reaches && !touched => Twist {
+                    vx: pusher.twist.vx + AROUND * x,
+                    vy: pusher.twist.vy + AROUND * y,
+                    omega: AROUND * turn / rho,
+                }
+                .map(|v| if chance < MISSES { 0.0 } else { v }),
                 chance if chance < 0.5 * changes => Twist::default(),
                 chance if chance < changes => Twist {
                     vx: x,
@@ -61,6 +79,27 @@ impl Propagation {
                 twist.0[lane] = 0.0;
                 to.0[lane] = *velocity;
             }
+        }
+    }
+
+    /// A pusher that comes back into view inside an object pushes it out within a step. That is no speed of the object: it
+    /// has the pusher's at most.
+    #[inline(always)]
+    pub(super) fn slow_down(
+        &self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        twist: &mut Twist<Column>,
+    ) {
+        let rho = transition.setup.scene.object.gyration_radius();
+        let pusher = plan.substeps.last().and_then(|step| step.pusher);
+        let speed = pusher.map_or(0.0, |p| libm::hypot(p.twist.vx, p.twist.vy));
+        let most = Column::splat(speed.max(UNSEEN_SPEED));
+        let turn = twist.omega * rho;
+        let found = (twist.vx * twist.vx + twist.vy * twist.vy + turn * turn).sqrt();
+        let share = (most / found.max(most)).min(Column::splat(1.0));
+        for velocity in twist.fields_mut() {
+            *velocity = *velocity * share;
         }
     }
 }

@@ -9,6 +9,7 @@ mod fast_pusher;
 mod friction_parameters;
 mod jam;
 mod known_friction;
+mod moved_unseen;
 mod particle_view;
 mod pose_covariance;
 mod prior_sample;

@@ -164,3 +164,62 @@ fn while_nobody_sees_the_pusher_the_camera_says_whether_it_moves_the_object() {
         );
     }
 }
+
+#[test]
+fn a_pusher_that_was_on_its_way_when_all_went_dark_may_have_come() {
+    // it would touch the object 0.25 s after both are lost
+    let (from, lost) = (0.5, 0.25..1.75);
+    let reach = |time: f64| SPEED * (time - from).max(0.0);
+    let mut log = Log::default();
+    for k in 0..105 {
+        let time = k as f64 / 30.0;
+        let noise = |n: usize| 3e-4 * libm::sin(7.0 * ((k + n) * (k + n)) as f64);
+        let hidden = lost.contains(&time);
+        let object = Pose::new(reach(time), noise(77), 0.0);
+        let pusher = Pose::new(-BEHIND + SPEED * (time - from), 0.0, 0.0);
+        log.time.push(time);
+        log.object.push((!hidden).then_some(object));
+        log.pusher.push((!hidden).then_some(pusher));
+    }
+    let run = run(&setup(&[]), &log, &RunOptions::default(), &mut |_| ()).expect("a run");
+    for (row, time) in run.estimate.rows.iter().zip(&log.time) {
+        let error = row.pose.expect("a pose").x - reach(*time);
+        let std = row.spread.expect("a spread").pose.x;
+        assert!(error.abs() < 3.0 * std, "{time}: {error}, {std}");
+        let most = if lost.contains(time) { 0.03 } else { 2e-3 };
+        assert!(error.abs() < most, "{time}: {error}");
+    }
+}
+
+#[test]
+fn a_pusher_that_comes_back_inside_an_object_throws_it_nowhere() {
+    // it stood when all went dark, so that the object is believed to rest; then it pushed it by 30 mm
+    let way = |time: f64| 0.06 * (time - 1.0).clamp(0.0, 0.5);
+    let mut log = Log::default();
+    for k in 0..360 {
+        let time = k as f64 / 120.0;
+        let hidden = (0.5..1.6).contains(&time);
+        let noise = |n: usize| 3e-4 * libm::sin(7.0 * ((k + n) * (k + n)) as f64);
+        let object = Pose::new(way(time) + noise(5), noise(77), 0.0);
+        let pusher = Pose::new(-BEHIND - 1e-4 + way(time), 0.0, 0.0);
+        log.time.push(time);
+        log.object.push((!hidden).then_some(object));
+        log.pusher.push((!hidden).then_some(pusher));
+    }
+    let run = run(&setup(&[]), &log, &RunOptions::default(), &mut |_| ()).expect("a run");
+    for (row, time) in run.estimate.rows.iter().zip(&log.time) {
+        let error = row.pose.expect("a pose").x - way(*time);
+        let std = row.spread.expect("a spread").pose;
+        assert!(
+            std.x > 1e-6 && std.y > 1e-6 && std.theta > 1e-6,
+            "{time}: {std:?}"
+        );
+        // the camera is believed after four poses
+        let most = if *time < 1.6 + 5.0 / 120.0 {
+            0.035
+        } else {
+            1.5e-3
+        };
+        assert!(error.abs() < most, "{time}: {error}");
+    }
+}

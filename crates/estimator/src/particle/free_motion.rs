@@ -1,0 +1,174 @@
+//! Whether an object moves that nothing is known to be near, as one that a hand moves, or a pusher that nobody sees:
+//! [`FreeMotion`] (contact mode; docs/method.md (54)).
+
+use stickslip_dynamics::Pose;
+use stickslip_filter::{ConstantVelocity, Gaussian};
+
+use crate::angle::wrapped;
+use crate::particle::camera_likelihood::WRONG;
+
+/// Probability that an object which rests is moved from one pose of the camera to the next.
+const STARTS: f64 = 1e-8;
+
+/// How long it then goes on, in the mean (s).
+const LASTS: f64 = 0.3;
+
+/// Standard deviation of its speed (m/s), and for how long it keeps it (s).
+const SPEED: f64 = 0.05;
+const SPEED_LASTS: f64 = 1.0;
+
+/// A pose by means and variances of x, y (m²) and θ (rad²).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalPose {
+    pub mean: Pose,
+    pub variance: [f64; 3],
+}
+
+/// The belief that the object moves at nearly constant velocity, beside the one that it rests: two models that
+/// interact (Blom & Bar-Shalom 1988), of which the likelier one is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMotion {
+    /// Position and velocity of x, y and θ, whose windings are those of `rest`.
+    axes: [Gaussian<2>; 3],
+    /// ln of the odds that it moves.
+    log_odds: f64,
+    /// The object's radius of gyration (m).
+    radius: f64,
+}
+
+impl FreeMotion {
+    /// An object that rests at `start`.
+    pub fn new(start: &NormalPose, radius: f64) -> Self {
+        Self {
+            axes: starting_from(start, radius),
+            log_odds: f64::NEG_INFINITY,
+            radius,
+        }
+    }
+
+    /// The same object, at rest at `start`.
+    pub fn at_rest(self, start: &NormalPose) -> Self {
+        Self::new(start, self.radius)
+    }
+
+    /// Whether it moves, more likely than not.
+    pub fn moves(&self) -> bool {
+        self.log_odds > 0.0
+    }
+
+    /// Where it is after a time `h` (s) in which it goes on.
+    pub fn after(&self, h: f64) -> NormalPose {
+        let mut pose = NormalPose {
+            mean: Pose::default(),
+            variance: [0.0; 3],
+        };
+        let axes = self.axes.iter().enumerate();
+        for ((k, axis), mean) in axes.zip(pose.mean.fields_mut()) {
+            let then = model(k, self.radius, 1.0).predict(axis, h);
+            (*mean, pose.variance[k]) = (then.mean[0], then.covariance[(0, 0)]);
+        }
+        pose
+    }
+
+    /// Where it rests, if it may have come to rest after `h` (s): the mixture of `rest`, where it was if it did not
+    /// move, and of where it moved.
+    pub fn stopped(&self, rest: &NormalPose, h: f64) -> NormalPose {
+        let moves = self.probability();
+        let (from_rest, from_motion) = (1.0 - moves, moves * (1.0 - libm::exp(-h / LASTS)));
+        let share = from_motion / (from_rest + from_motion);
+        let mut stopped = *rest;
+        let axes = stopped.mean.fields_mut().into_iter().zip(&self.axes);
+        for (k, (mean, axis)) in axes.enumerate() {
+            let away = axis.mean[0] - *mean;
+            let within = rest.variance[k] + share * (axis.covariance[(0, 0)] - rest.variance[k]);
+            stopped.variance[k] = within + share * (1.0 - share) * away * away;
+            *mean += share * away;
+        }
+        stopped
+    }
+
+    /// Bayes' rule with a pose of the camera, `h` (s) after the one before: `noise` are its variances, `rest` where the
+    /// object is if it rests.
+    pub fn see(&mut self, h: f64, pose: &Pose, noise: [f64; 3], rest: &NormalPose) {
+        // it goes on, or starts
+        let moves = self.probability();
+        let stays = libm::exp(-h / LASTS);
+        let (goes_on, starts) = (moves * stays, (1.0 - moves) * STARTS);
+        let (now_moves, now_rests) = (
+            goes_on + starts,
+            (1.0 - moves) * (1.0 - STARTS) + moves * (1.0 - stays),
+        );
+        self.start_from(rest, starts / now_moves);
+        for k in 0..3 {
+            self.axes[k] = model(k, self.radius, 1.0).predict(&self.axes[k], h);
+        }
+
+        // by which of the two the pose is likelier
+        let moving = self.after(0.0);
+        let likely = |by: &NormalPose| WRONG + libm::exp(log_density(pose, noise, by));
+        let (if_moves, if_rests) = (likely(&moving), likely(rest));
+        self.log_odds = libm::log(now_moves * if_moves) - libm::log(now_rests * if_rests);
+
+        // where it is if it moves; by as much as the pose may be wrong, it counts less
+        let right = (1.0 - WRONG / if_moves).max(WRONG);
+        let away = difference(pose, &moving.mean);
+        for (k, away) in away.fields().into_iter().enumerate() {
+            let std = (noise[k] / right).sqrt();
+            let measured = self.axes[k].mean[0] + away;
+            self.axes[k] = model(k, self.radius, std).update(&self.axes[k], measured).0;
+        }
+    }
+
+    /// Each axis becomes the mixture of where it moves and, with this share, of one that starts from `rest`.
+    fn start_from(&mut self, rest: &NormalPose, share: f64) {
+        for (axis, start) in self.axes.iter_mut().zip(starting_from(rest, self.radius)) {
+            let away = start.mean - axis.mean;
+            let covariance = axis.covariance * (1.0 - share) + start.covariance * share;
+            *axis = Gaussian {
+                mean: axis.mean + away * share,
+                covariance: covariance + away * away.transpose() * (share * (1.0 - share)),
+            };
+        }
+    }
+
+    /// That it moves.
+    fn probability(&self) -> f64 {
+        1.0 / (1.0 + libm::exp(-self.log_odds))
+    }
+}
+
+/// Axes of an object at rest that is moved from now on.
+fn starting_from(rest: &NormalPose, radius: f64) -> [Gaussian<2>; 3] {
+    let means = rest.mean.fields();
+    std::array::from_fn(|k| model(k, radius, rest.variance[k].sqrt()).start(*means[k]))
+}
+
+/// How axis `k` moves, measured with this standard deviation.
+fn model(k: usize, radius: f64, measurement_std: f64) -> ConstantVelocity {
+    let speed = if k < 2 { SPEED } else { SPEED / radius };
+    ConstantVelocity {
+        process_noise: 2.0 * speed * speed / SPEED_LASTS,
+        measurement_std,
+        initial_velocity_std: speed,
+    }
+}
+
+/// ln of how likely a pose with this noise is by a belief, relative to a perfect one.
+pub fn log_density(pose: &Pose, noise: [f64; 3], by: &NormalPose) -> f64 {
+    let away = difference(pose, &by.mean);
+    let axes = away.fields().into_iter().enumerate();
+    let parts = axes.map(|(k, away)| {
+        let variance = by.variance[k] + noise[k];
+        away * away / variance + libm::log(variance / noise[k])
+    });
+    -0.5 * parts.sum::<f64>()
+}
+
+/// From `from` to `to`, θ on the circle.
+pub fn difference(to: &Pose, from: &Pose) -> Pose {
+    Pose {
+        x: to.x - from.x,
+        y: to.y - from.y,
+        theta: wrapped(to.theta - from.theta),
+    }
+}
