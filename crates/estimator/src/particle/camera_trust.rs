@@ -26,12 +26,18 @@ pub(crate) struct CameraTrust {
 }
 
 impl CameraTrust {
-    /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief before it; says whether
-    /// it is believed, where that changes.
-    pub fn expect(&mut self, pose: &Pose, noise: [f64; 3], belief: &NormalPose) -> Option<bool> {
-        let of_pose = log_density(pose, noise, belief);
-        let at_best = log_density(&belief.mean, noise, belief);
-        let expected = at_best < -WIDE && of_pose > libm::log(WRONG);
+    /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief before it, where that may
+    /// be wide; says whether the pose is believed, where that changes.
+    pub fn expect(
+        &mut self,
+        pose: &Pose,
+        noise: [f64; 3],
+        belief: Option<&NormalPose>,
+    ) -> Option<bool> {
+        let expected = belief.is_some_and(|belief| {
+            let at_best = log_density(&belief.mean, noise, belief);
+            at_best < -WIDE && log_density(pose, noise, belief) > libm::log(WRONG)
+        });
         let believed = expected || self.unexplained >= BELIEVED_AFTER;
         let before = std::mem::replace(&mut self.believed, believed);
         Some(believed).filter(|now| *now != before)

@@ -158,6 +158,7 @@ impl<'o> ContactFilter<'o> {
 
     /// One row: the step that leads to it, then what was measured there.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        let was_dark = self.plan.is_dark();
         self.plan_step(&measured, drive);
         self.remember_observation();
         self.observation.pose = measured.object;
@@ -169,10 +170,13 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.extend(tactile);
         let contact = self.mode() == Mode::Contact;
         self.observation.felt = contact;
-        self.touched |= self.latest.any_contact();
+        if self.latest.any_contact() {
+            self.touched = true;
+            self.resting.is_touched();
+        }
         self.observation.moves = self.camera_moves();
 
-        self.expect_pose();
+        self.expect_pose(was_dark);
         let tries = self.moves.second_tries && self.plan.is_dark();
         self.replay.before(&self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
@@ -222,20 +226,20 @@ impl<'o> ContactFilter<'o> {
         self.mode() == Mode::Contact && self.moves.camera && moves
     }
 
-    /// Before a pose of the camera: whether it is believed also where no particle explains it.
-    fn expect_pose(&mut self) {
+    /// Before a pose of the camera: whether it is believed also where no particle explains it, as the first one after a dark may
+    /// be.
+    fn expect_pose(&mut self, was_dark: bool) {
         let Some(pose) = self.observation.pose else {
             return;
         };
-        let Some((mean, spread)) = self.latest.pose.zip(self.latest.spread) else {
-            return;
-        };
-        let belief = NormalPose {
+        let belief = self.latest.pose.zip(self.latest.spread);
+        let belief = belief.map(|(mean, spread)| NormalPose {
             mean,
             variance: spread.pose.fields().map(|std| std * std),
-        };
+        });
+        let belief = belief.filter(|_| was_dark);
         let noise = self.resting.noise_of(self.observation.covariance);
-        if let Some(trusted) = self.trust.expect(&pose, noise, &belief) {
+        if let Some(trusted) = self.trust.expect(&pose, noise, belief.as_ref()) {
             self.filter
                 .change_model(|model| model.trust_camera(trusted));
         }
@@ -337,7 +341,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         self.observation.moves = self.camera_moves();
-        self.expect_pose();
+        self.expect_pose(false);
         let report = self.filter.observe(&self.plan, &self.observation);
         self.take(&report);
         self.camera.late_pose();

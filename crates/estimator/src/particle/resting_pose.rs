@@ -36,8 +36,8 @@ pub struct RestingPose {
     widened: f64,
     /// What is unknown of its noise.
     noise: Option<NoisePrior>,
-    /// Where it is if it moves.
-    free: FreeMotion,
+    /// Where it is if it moves; `None` once something has touched it.
+    free: Option<FreeMotion>,
     /// Time of the latest pose (s).
     time: f64,
     /// Mean of how far the latest poses lay off, in standard deviations of what was expected of them.
@@ -67,7 +67,7 @@ impl RestingPose {
             variance: [1.0; 3],
         };
         let unset = Self {
-            free: FreeMotion::new(&told, setup.scene.object.gyration_radius()),
+            free: Some(FreeMotion::new(&told, setup.scene.object.gyration_radius())),
             time,
             aside: [0.0; 3],
             mean: start.0,
@@ -91,7 +91,7 @@ impl RestingPose {
             variance: told,
         };
         Self {
-            free: self.free.at_rest(&pose),
+            free: self.free.map(|free| free.at_rest(&pose)),
             ..self.resting_at(&pose, told)
         }
     }
@@ -110,6 +110,11 @@ impl RestingPose {
         }
     }
 
+    /// Something touches the object: whether it moves, the particles tell from now on.
+    pub fn is_touched(&mut self) {
+        self.free = None;
+    }
+
     /// Bayes' rule with one more pose of the camera, at a `time` (s). By as much as the pose may be wrong, it counts less.
     pub fn see(&mut self, time: f64, (pose, covariance): (Pose, Option<PoseCovariance>)) {
         let told = self.told(covariance);
@@ -118,25 +123,29 @@ impl RestingPose {
         // it may move
         let h = (time - self.time).max(0.0);
         self.time = self.time.max(time);
-        if self.free.moves() {
+        if let Some(free) = self.free.filter(FreeMotion::moves) {
             let here = NormalPose {
                 mean: self.mean,
                 variance: self.variance,
             };
-            *self = self.resting_at(&self.free.stopped(&here, h), told);
+            *self = self.resting_at(&free.stopped(&here, h), told);
         }
         let (levels, _) = self.noise_levels();
-        let noise = std::array::from_fn(|k| measured[k] * levels[GROUP[k]]);
         let rest = NormalPose {
             mean: self.mean,
             variance: std::array::from_fn(|k| self.variance[k] * levels[GROUP[k]]),
         };
-        self.free.see(h, &pose, noise, &rest);
+        if let Some(free) = &mut self.free {
+            let noise = std::array::from_fn(|k| measured[k] * levels[GROUP[k]]);
+            free.see(h, &pose, noise, &rest);
+        }
 
         // the pose
         let right = self.is_right(&pose, told, measured);
         let away = difference(&pose, &self.mean);
-        self.widen_where_moved(&away, right, measured, levels);
+        if self.free.is_some() {
+            self.widen_where_moved(&away, right, measured, levels);
+        }
         let mean = self.mean.fields_mut().into_iter().zip(away.fields());
         for (k, (mean, away)) in mean.enumerate() {
             let evidence = self.variance[k] * right + measured[k];
@@ -181,13 +190,13 @@ impl RestingPose {
 
     /// Whether poses say that the object moves.
     pub fn moves(&self) -> bool {
-        self.free.moves()
+        self.free.as_ref().is_some_and(FreeMotion::moves)
     }
 
     /// What all poses seen say together of where the object is after `h` (s).
     pub fn belief(&self, h: f64) -> StudentPose {
-        if self.free.moves() {
-            let NormalPose { mean, variance } = self.free.after(h);
+        if let Some(free) = self.free.filter(FreeMotion::moves) {
+            let NormalPose { mean, variance } = free.after(h);
             return StudentPose {
                 mean,
                 scale: variance.map(f64::sqrt),
@@ -299,13 +308,13 @@ mod tests {
             camera: CAMERA,
             widened,
             noise: None,
-            free: FreeMotion::new(
+            free: Some(FreeMotion::new(
                 &NormalPose {
                     mean: start,
                     variance: [1.0; 3],
                 },
                 0.02,
-            ),
+            )),
             time: 0.0,
             aside: [0.0; 3],
         };

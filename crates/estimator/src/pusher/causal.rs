@@ -10,6 +10,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMult
 
 use crate::error::RunError;
 use crate::particle::pose_clock::PoseClock;
+use crate::pusher::jumps::JumpGate;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::setup::Camera;
 
@@ -29,6 +30,7 @@ pub(crate) struct CausalTrack {
     seen: Option<Seen>,
     /// How often there is a pose; `None` before the first one.
     clock: Option<PoseClock>,
+    gate: JumpGate,
 }
 
 /// The filter of one axis.
@@ -66,12 +68,14 @@ impl CausalTrack {
             filters: [x, x, theta],
             seen: None,
             clock: None,
+            gate: JumpGate::new(camera),
         })
     }
 
     /// Takes the pose measured at `time` (s), which rises; returns the tracked one, `None` while the
     /// pusher is off the plane.
     pub fn push(&mut self, time: f64, pose: Option<Pose>) -> Option<TrackedPose> {
+        let pose = self.gate.pass(time, pose);
         let filters = &self.filters;
         let interval = self.clock.as_ref().and_then(PoseClock::interval);
         let since = self.seen.take();

@@ -9,6 +9,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 use crate::error::RunError;
 use crate::log::Log;
 use crate::particle::pose_clock::TELLING;
+use crate::pusher::jumps::JumpGate;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
@@ -24,9 +25,12 @@ pub(crate) fn smoothed_track(
     log: &Log,
     camera: Option<&Camera>,
 ) -> Result<Vec<Option<TrackedPose>>, RunError> {
+    let mut gate = JumpGate::new(camera);
+    let seen = log.time.iter().zip(&log.pusher);
+    let seen: Vec<Option<Pose>> = seen.map(|(time, pose)| gate.pass(*time, *pose)).collect();
     let mut rows = vec![None; log.len()];
-    for span in spans(log) {
-        let poses = track_span(&log.time[span.clone()], &log.pusher[span.clone()], camera)?;
+    for span in spans(&log.time, &seen) {
+        let poses = track_span(&log.time[span.clone()], &seen[span.clone()], camera)?;
         for (row, pose) in rows[span].iter_mut().zip(poses) {
             *row = Some(pose);
         }
@@ -37,16 +41,14 @@ pub(crate) fn smoothed_track(
 /// Row ranges in which the pusher is on the plane: from a first pose to the last before a gap that
 /// is too long.
 /// A gap that runs to the end of the log is bridged like any other.
-fn spans(log: &Log) -> Vec<Range<usize>> {
-    let seen: Vec<usize> = (0..log.len())
-        .filter(|&row| log.pusher[row].is_some())
+fn spans(time: &[f64], poses: &[Option<Pose>]) -> Vec<Range<usize>> {
+    let seen: Vec<usize> = (0..poses.len())
+        .filter(|&row| poses[row].is_some())
         .collect();
-    let intervals = seen
-        .windows(2)
-        .map(|pair| log.time[pair[1]] - log.time[pair[0]]);
+    let intervals = seen.windows(2).map(|pair| time[pair[1]] - time[pair[0]]);
     let intervals: Vec<f64> = intervals.collect();
     let interval = quantile(&intervals, 0.5).filter(|_| intervals.len() >= TELLING);
-    let bridged = |from: usize, to: usize| bridged(log.time[from], log.time[to], interval);
+    let bridged = |from: usize, to: usize| bridged(time[from], time[to], interval);
     let mut spans: Vec<Range<usize>> = Vec::new();
     for row in seen {
         match spans.last_mut() {
@@ -56,10 +58,10 @@ fn spans(log: &Log) -> Vec<Range<usize>> {
     }
     for span in &mut spans {
         let last = span.end - 1;
-        let held = (span.end..log.len())
+        let held = (span.end..poses.len())
             .take_while(|&row| bridged(last, row))
             .count();
-        if span.end + held == log.len() {
+        if span.end + held == poses.len() {
             span.end += held;
         }
     }

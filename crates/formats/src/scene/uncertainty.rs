@@ -126,6 +126,20 @@ const TOUCH_GAP: Quantity = Quantity::new(
 pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> {
     let default = Uncertainty::default();
     let number = |quantity: &Quantity, default: f64| table.number_or(quantity, default);
+    let (fixel_position, outline, latency) = (
+        number(&FIXEL_POSITION, default.fixel_position)?,
+        number(&OUTLINE, default.outline)?,
+        number(&LATENCY, default.latency)?,
+    );
+    // who says that a rig is measured worse than most means all of it
+    let told_rough = fixel_position > default.fixel_position
+        || outline > default.outline
+        || latency > default.latency;
+    let well_measured = if told_rough {
+        1.0
+    } else {
+        default.well_measured
+    };
     Ok(Uncertainty {
         friction: Friction {
             mu_s: number(&MU_S, default.friction.mu_s)?,
@@ -141,12 +155,12 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
         creep: number(&CREEP, default.creep)?,
         pusher_offset: number(&PUSHER_OFFSET, default.pusher_offset)?,
         pusher_lag: number(&PUSHER_LAG, default.pusher_lag)?,
-        fixel_position: number(&FIXEL_POSITION, default.fixel_position)?,
-        outline: number(&OUTLINE, default.outline)?,
+        fixel_position,
+        outline,
         roughness: number(&ROUGHNESS, default.roughness)?,
-        well_measured: number(&WELL_MEASURED, default.well_measured)?,
+        well_measured: number(&WELL_MEASURED, well_measured)?,
         camera_noise: number(&CAMERA_NOISE, default.camera_noise)?,
-        latency: number(&LATENCY, default.latency)?,
+        latency,
         touch_gap: number(&TOUCH_GAP, default.touch_gap)?,
     })
 }

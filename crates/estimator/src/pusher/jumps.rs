@@ -1,0 +1,106 @@
+//! Wrong poses of the pusher, which are left out: [`JumpGate`].
+
+use stickslip_dynamics::Pose;
+
+use crate::angle::wrapped;
+use crate::setup::Camera;
+
+/// Acceleration that no pusher has (m/s²), and a distance of its parts from its centre (m).
+const ACCELERATION: f64 = 20.0;
+const RADIUS: f64 = 0.05;
+
+/// Jump that does little harm (m).
+const LEAST: f64 = 2e-3;
+
+/// Standard deviations by which no pose errs.
+const SIGMAS: f64 = 20.0;
+
+/// Tells poses that the pusher cannot have come to since the two before: wrong detections of its tag. Where they go on,
+/// the time to come there grows, and they are believed.
+#[derive(Clone, Debug)]
+pub(crate) struct JumpGate {
+    position_std: f64,
+    orientation_std: f64,
+    /// The latest two poses that were believed, the last one first, each with its time (s).
+    latest: [Option<(f64, Pose)>; 2],
+}
+
+impl JumpGate {
+    /// Before the first pose; without a `camera` poses count as exact.
+    pub fn new(camera: Option<&Camera>) -> Self {
+        let (position_std, orientation_std) = camera.map_or((0.0, 0.0), |camera| {
+            (camera.pusher_position_std, camera.pusher_orientation_std)
+        });
+        Self {
+            position_std,
+            orientation_std,
+            latest: [None; 2],
+        }
+    }
+
+    /// The pose measured at `time` (s), which rises; `None` where the pusher cannot be there.
+    pub fn pass(&mut self, time: f64, pose: Option<Pose>) -> Option<Pose> {
+        let pose = pose?;
+        if let [Some(last), Some(before)] = self.latest
+            && self.is_jump((time, pose), last, before)
+        {
+            return None;
+        }
+        self.latest = [Some((time, pose)), self.latest[0]];
+        Some(pose)
+    }
+
+    fn is_jump(
+        &self,
+        (time, pose): (f64, Pose),
+        (t1, last): (f64, Pose),
+        (t0, before): (f64, Pose),
+    ) -> bool {
+        let h = time - t1;
+        let ratio = h / (t1 - t0);
+        let off = |now: f64, last: f64, before: f64| now - last - ratio * (last - before);
+        let turn = wrapped(pose.theta - last.theta) - ratio * wrapped(last.theta - before.theta);
+        let away = off(pose.x, last.x, before.x).hypot(off(pose.y, last.y, before.y));
+        // in steps as uneven as these, noise passes for speed
+        let noise = SIGMAS * (1.0 + ratio);
+        let way = LEAST + 0.5 * ACCELERATION * h * h;
+        away > way + noise * self.position_std
+            || turn.abs() > way / RADIUS + noise * self.orientation_std
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Which of these x (m) at 60 Hz pass.
+    fn passed(poses: &[f64]) -> Vec<bool> {
+        let mut gate = JumpGate::new(None);
+        let rows = poses.iter().enumerate();
+        rows.map(|(k, x)| {
+            let pose = Pose::new(*x, 0.0, 0.0);
+            gate.pass(k as f64 / 60.0, Some(pose)).is_some()
+        })
+        .collect()
+    }
+
+    #[test]
+    fn a_pose_or_two_aside_are_left_out_and_a_pusher_that_is_elsewhere_is_believed() {
+        let [yes, no] = [true, false];
+        assert_eq!(
+            passed(&[0.0, 1e-3, 0.022, 3e-3, 4e-3]),
+            [yes, yes, no, yes, yes]
+        );
+        assert_eq!(
+            passed(&[0.0, 1e-3, 0.022, 0.022, 4e-3]),
+            [yes, yes, no, no, yes]
+        );
+        let [x, far] = [0.0, 0.05];
+        assert_eq!(
+            passed(&[x, x, far, far, far, far, far]),
+            [yes, yes, no, no, no, no, yes]
+        );
+        // it starts at 0.15 m/s, and stops
+        assert!(passed(&[0.0, 0.0, 2.5e-3, 5e-3, 5e-3]).iter().all(|p| *p));
+    }
+}
