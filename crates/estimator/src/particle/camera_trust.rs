@@ -3,7 +3,6 @@
 use stickslip_dynamics::Pose;
 use stickslip_filter::StepReport;
 
-use crate::particle::camera_likelihood::WRONG;
 use crate::particle::free_motion::{NormalPose, log_density};
 
 /// Camera poses in a row that nothing explains, after which they are believed.
@@ -13,8 +12,11 @@ pub(crate) const BELIEVED_AFTER: u32 = 4;
 const UNEXPLAINED: f64 = -10.0;
 
 /// ln of how much wider a belief is than a camera pose, all axes together, from which on few of its particles are near one:
-/// some three times per axis.
-const WIDE: f64 = 3.0;
+/// some seven times per axis.
+const WIDE: f64 = 6.0;
+
+/// Half the squared distance, in its standard deviations, up to which such a belief expects a pose: four of them.
+const WITHIN: f64 = 8.0;
 
 /// Counts the camera poses in a row that no particle explains; after some, they are no outliers, until one is explained.
 /// Nor is one that a wide belief expects: that no particle is near it says nothing.
@@ -36,7 +38,7 @@ impl CameraTrust {
     ) -> Option<bool> {
         let expected = belief.is_some_and(|belief| {
             let at_best = log_density(&belief.mean, noise, belief);
-            at_best < -WIDE && log_density(pose, noise, belief) > libm::log(WRONG)
+            at_best < -WIDE && log_density(pose, noise, belief) - at_best > -WITHIN
         });
         let believed = expected || self.unexplained >= BELIEVED_AFTER;
         let before = std::mem::replace(&mut self.believed, believed);

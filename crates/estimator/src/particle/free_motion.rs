@@ -7,8 +7,10 @@ use stickslip_filter::{ConstantVelocity, Gaussian};
 use crate::angle::wrapped;
 use crate::particle::camera_likelihood::WRONG;
 
-/// Probability that an object which rests is moved from one pose of the camera to the next.
+/// Probability that an object which rests is moved from one pose of the camera to the next, and of one that has just been
+/// moved a little.
 const STARTS: f64 = 1e-8;
+const STARTS_AGAIN: f64 = 1e-2;
 
 /// How long it then goes on, in the mean (s).
 const LASTS: f64 = 0.3;
@@ -88,15 +90,21 @@ impl FreeMotion {
     }
 
     /// Bayes' rule with a pose of the camera, `h` (s) after the one before: `noise` are its variances, `rest` where the
-    /// object is if it rests.
-    pub fn see(&mut self, h: f64, pose: &Pose, noise: [f64; 3], rest: &NormalPose) {
+    /// object is if it rests, and whether it has just been moved a little.
+    pub fn see(
+        &mut self,
+        h: f64,
+        (pose, noise): (&Pose, [f64; 3]),
+        (rest, was_moved): (&NormalPose, bool),
+    ) {
         // it goes on, or starts
+        let start = if was_moved { STARTS_AGAIN } else { STARTS };
         let moves = self.probability();
         let stays = libm::exp(-h / LASTS);
-        let (goes_on, starts) = (moves * stays, (1.0 - moves) * STARTS);
+        let (goes_on, starts) = (moves * stays, (1.0 - moves) * start);
         let (now_moves, now_rests) = (
             goes_on + starts,
-            (1.0 - moves) * (1.0 - STARTS) + moves * (1.0 - stays),
+            (1.0 - moves) * (1.0 - start) + moves * (1.0 - stays),
         );
         self.start_from(rest, starts / now_moves);
         for k in 0..3 {

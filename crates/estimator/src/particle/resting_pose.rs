@@ -135,9 +135,10 @@ impl RestingPose {
             mean: self.mean,
             variance: std::array::from_fn(|k| self.variance[k] * levels[GROUP[k]]),
         };
+        let was_moved = self.lies_aside();
         if let Some(free) = &mut self.free {
             let noise = std::array::from_fn(|k| measured[k] * levels[GROUP[k]]);
-            free.see(h, &pose, noise, &rest);
+            free.see(h, (&pose, noise), (&rest, was_moved));
         }
 
         // the pose
@@ -179,13 +180,18 @@ impl RestingPose {
             let expected = (self.variance[k] + measured[k]) * levels[GROUP[k]];
             self.aside[k] += (right * away / expected.sqrt() - self.aside[k]) / LATEST;
         }
-        let squares: f64 = self.aside.iter().map(|mean| mean * mean).sum();
-        if squares * (2.0 * LATEST - 1.0) > MOVED {
+        if self.lies_aside() {
             for k in 0..3 {
                 let moved = self.aside[k] * self.aside[k] * measured[k];
                 self.variance[k] = self.variance[k].max(moved);
             }
         }
+    }
+
+    /// Whether the latest poses lie to one side by more than chance has them.
+    fn lies_aside(&self) -> bool {
+        let squares: f64 = self.aside.iter().map(|mean| mean * mean).sum();
+        squares * (2.0 * LATEST - 1.0) > MOVED
     }
 
     /// Whether poses say that the object moves.
