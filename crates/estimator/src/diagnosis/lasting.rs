@@ -44,10 +44,15 @@ impl Lasting {
         let lasts = wander.position > WANDERS * noise.position
             && wander.position < MOTION * camera.position_std
             && wander.angle < MOTION * camera.orientation_std;
-        let wander = wander.max(noise);
+        let share = noise.position / wander.position;
+        let wander = PoseNoise {
+            // that few poses far apart differ by more than those of the positions do is chance
+            angle: wander.angle.min(noise.angle / share),
+            ..wander
+        };
         lasts.then(|| Self {
-            wander,
-            rows: rows(noise.position / wander.position),
+            wander: wander.max(noise),
+            rows: rows(share),
         })
     }
 }
