@@ -2,6 +2,8 @@
 
 use stickslip_dynamics::{Placed, Pose, Shape, narrow_phase};
 
+use super::lasting::Lasting;
+use super::pose_noise::PoseNoise;
 use crate::log::Log;
 use crate::pusher::tracked_pose::LONGEST_BRIDGE;
 use crate::setup::Setup;
@@ -12,40 +14,41 @@ const HALF_WINDOW: f64 = 0.15;
 /// Standard deviations above which a displacement is motion.
 const MOTION: f64 = 5.0;
 
+/// A row lies within a motion if before and after it the object is at least so many times as fast as over both together.
+const GOES_ON: f64 = 0.5;
+
+/// Least share of the time of a motion over which that is judged.
+const LEAST_SHARE: f64 = 0.25;
+
 /// A scene and a log with what is measured on them once.
 pub(super) struct Evidence<'a> {
     pub setup: &'a Setup,
     pub log: &'a Log,
     /// Noise of one object pose, estimated; `None` with too few poses.
     pub noise: Option<PoseNoise>,
+    /// Errors of the camera that last over several rows.
+    pub lasting: Option<Lasting>,
     /// Rows with an object pose; between them may be rows that other sensors brought.
     pub seen: Vec<usize>,
     /// Rows in which the object moves.
     pub moving: Vec<bool>,
 }
 
-/// Standard deviations of one pose.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PoseNoise {
-    /// Of x and y (m).
-    pub position: f64,
-    /// Of θ (rad).
-    pub angle: f64,
-}
-
 impl<'a> Evidence<'a> {
     pub fn new(setup: &'a Setup, log: &'a Log) -> Self {
-        let noise = pose_noise(&log.object);
+        let noise = PoseNoise::of(&log.time, &log.object);
         let mut evidence = Self {
             setup,
             log,
             noise,
+            lasting: None,
             seen: (0..log.len())
                 .filter(|&row| log.object[row].is_some())
                 .collect(),
             moving: Vec::new(),
         };
-        evidence.moving = (0..log.len()).map(|row| evidence.moves_at(row)).collect();
+        evidence.lasting = Lasting::of(&evidence);
+        evidence.moving = evidence.moving();
         evidence
     }
 
@@ -61,8 +64,17 @@ impl<'a> Evidence<'a> {
 
     /// Standard deviation of one position: the greater of the measured and the stated one (m).
     pub fn position_std(&self) -> f64 {
-        let stated = self.setup.camera.map_or(0.0, |camera| camera.position_std);
-        self.noise.map_or(0.0, |noise| noise.position).max(stated)
+        let measured = self.noise.map_or(0.0, |noise| noise.position);
+        measured.max(self.stated().position)
+    }
+
+    /// Standard deviation of a gap by the noise of the object's pose, with its turn at the radius of gyration (m).
+    pub fn gap_std(&self) -> f64 {
+        let gyration = self.setup.scene.object.gyration_radius();
+        let noise = self
+            .noise
+            .map_or(self.stated(), |noise| noise.max(self.stated()));
+        noise.position.hypot(gyration * noise.angle)
     }
 
     /// A length that is beyond noise and small on the object (m).
@@ -111,26 +123,36 @@ impl<'a> Evidence<'a> {
         gaps.iter().map(|gap| gap.gap).min_by(f64::total_cmp)
     }
 
-    /// How far the object moves about `row`, with its turn at the radius of gyration (m).
-    fn displacement(&self, row: usize) -> Option<f64> {
+    /// The object's way about a row with its pose: from before it to after it, and from before it to it.
+    fn way(&self, row: usize) -> Option<(Way, Way)> {
         let time = self.log.time[row];
         let first_from = |from: f64| self.seen.partition_point(|row| self.log.time[*row] < from);
         let before = self.mean_pose(first_from(time - HALF_WINDOW));
+        let here = self.mean_pose(first_from(time))?;
         let after = self.mean_pose(first_from(time + HALF_WINDOW + 1e-9).saturating_sub(1));
         // a pose from the other side of a gap tells nothing of this row
-        let (t0, before) = before.filter(|(t, _)| (t - time).abs() < 2.0 * HALF_WINDOW)?;
-        let (t1, after) = after.filter(|(t, _)| (t - time).abs() < 2.0 * HALF_WINDOW)?;
-        let turn = self.setup.scene.object.gyration_radius() * (after.theta - before.theta);
-        (t1 >= t0).then(|| (after.x - before.x).hypot(after.y - before.y).hypot(turn))
+        let before = before.filter(|(t, _)| (t - time).abs() < 2.0 * HALF_WINDOW)?;
+        let after = after.filter(|(t, _)| (t - time).abs() < 2.0 * HALF_WINDOW)?;
+        let gyration = self.setup.scene.object.gyration_radius();
+        let way = |to: (f64, Pose)| Way {
+            seconds: to.0 - before.0,
+            metres: [
+                to.1.x - before.1.x,
+                to.1.y - before.1.y,
+                gyration * (to.1.theta - before.1.theta),
+            ],
+        };
+        (after.0 >= before.0).then(|| (way(after), way(here)))
     }
 
-    /// Mean time and pose of up to three poses about the `index`-th.
+    /// Mean time and pose of up to three poses about the `index`-th, none of them from beyond a gap.
     fn mean_pose(&self, index: usize) -> Option<(f64, Pose)> {
+        let middle = self.log.time[*self.seen.get(index)?];
         let rows = index.saturating_sub(1)..(index + 2).min(self.seen.len());
-        let rows = self.seen.get(rows)?;
-        let poses: Vec<(f64, Pose)> = rows
+        let poses: Vec<(f64, Pose)> = self.seen[rows]
             .iter()
-            .filter_map(|&row| self.log.object[row].map(|pose| (self.log.time[row], pose)))
+            .filter_map(|&row| Some((self.log.time[row], self.log.object[row]?)))
+            .filter(|(time, _)| (time - middle).abs() < 2.0 * HALF_WINDOW)
             .collect();
         let mean = |pick: &dyn Fn(&(f64, Pose)) -> f64| {
             poses.iter().map(pick).sum::<f64>() / poses.len() as f64
@@ -139,38 +161,76 @@ impl<'a> Evidence<'a> {
         (!poses.is_empty()).then(|| (mean(&|p| p.0), pose))
     }
 
+    /// Rows in which the object moves; in a short gap it does where it moves on both sides of it.
+    fn moving(&self) -> Vec<bool> {
+        let mut moving = vec![false; self.log.len()];
+        for &row in &self.seen {
+            moving[row] = self.moves_at(row);
+        }
+        for &[from, to] in self.seen.array_windows() {
+            let is_short = self.log.time[to] - self.log.time[from] < 4.0 * HALF_WINDOW;
+            let moves = is_short && moving[from] && moving[to];
+            moving[from + 1..to].fill(moves);
+        }
+        moving
+    }
+
+    /// Whether the object's way about `row` is beyond noise, and `row` lies within it: an object that is touched a little
+    /// later, or stopped a little before, rests.
     fn moves_at(&self, row: usize) -> bool {
-        let Some(noise) = self.noise else {
+        let Some(std) = self.way_std() else {
             return false;
         };
+        let moves = |(whole, first): &(Way, Way)| {
+            let length = whole.dot(whole).sqrt();
+            length > MOTION * std && length > 1e-5 && first.is_within(whole)
+        };
+        self.way(row).as_ref().is_some_and(moves)
+    }
+
+    /// Standard deviation of a way that noise alone makes (m).
+    fn way_std(&self) -> Option<f64> {
+        // the difference of two means of three poses, which are no better than one where errors last
+        let (noise, poses) = match self.lasting {
+            Some(Lasting { wander, .. }) => (wander.max(self.stated()), 1.0),
+            None => (self.noise?, 3.0),
+        };
         let turn = self.setup.scene.object.gyration_radius() * noise.angle;
-        // the difference of two means of three poses
-        let std = (2.0 / 3.0 * (2.0 * noise.position * noise.position + turn * turn)).sqrt();
-        self.displacement(row)
-            .is_some_and(|way| way > MOTION * std && way > 1e-5)
+        Some((2.0 / poses * (2.0 * noise.position * noise.position + turn * turn)).sqrt())
+    }
+
+    /// The noise that the scene tells.
+    fn stated(&self) -> PoseNoise {
+        let camera = self.setup.camera.as_ref();
+        PoseNoise {
+            position: camera.map_or(0.0, |camera| camera.position_std),
+            angle: camera.map_or(0.0, |camera| camera.orientation_std),
+        }
     }
 }
 
-/// Noise from second differences, which a steady motion does not change; robust to jumps and stops. Rows
-/// without a pose are passed over: other sensors may bring many of them.
-pub(super) fn pose_noise(poses: &[Option<Pose>]) -> Option<PoseNoise> {
-    let seen: Vec<Pose> = poses.iter().flatten().copied().collect();
-    let triples = || {
-        let triples = seen.array_windows().map(|[a, b, c]| (*a, *b, *c));
-        triples.filter(|(a, b, c)| a != b && b != c)
-    };
-    let std = |pick: fn(&Pose) -> f64| {
-        let bends: Vec<f64> = triples()
-            .map(|(a, b, c)| (pick(&a) - 2.0 * pick(&b) + pick(&c)).abs())
-            .collect();
-        // 1.4826 turns a median of deviations into a standard deviation; a second difference has
-        // six times a pose's variance
-        (bends.len() >= 10).then(|| 1.4826 * median(bends) / 6.0_f64.sqrt())
-    };
-    Some(PoseNoise {
-        position: std(|p| p.x)?.max(std(|p| p.y)?),
-        angle: std(|p| p.theta)?,
-    })
+/// How far the object comes, and in which time.
+struct Way {
+    seconds: f64,
+    /// Along x and y, and the turn at the radius of gyration.
+    metres: [f64; 3],
+}
+
+impl Way {
+    fn dot(&self, other: &Self) -> f64 {
+        let pairs = self.metres.iter().zip(&other.metres);
+        pairs.map(|(a, b)| a * b).sum()
+    }
+
+    /// Whether this first part of `whole` neither only begins it nor all but ends it.
+    fn is_within(&self, whole: &Self) -> bool {
+        let (time, length) = (
+            self.seconds / whole.seconds,
+            self.dot(whole) / whole.dot(whole),
+        );
+        let goes_on = |time: f64, length: f64| time < LEAST_SHARE || length > GOES_ON * time;
+        goes_on(time, length) && goes_on(1.0 - time, 1.0 - length)
+    }
 }
 
 /// The median; NaN of nothing.

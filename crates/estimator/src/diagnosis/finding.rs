@@ -31,7 +31,7 @@ pub enum Subject {
     ObjectPoses,
     /// The pusher off the plane.
     PusherPoses,
-    /// Repeated camera frames.
+    /// Repeated poses: frames of the camera, samples of the pusher.
     RepeatedFrames,
     /// Noise of the camera.
     Noise,

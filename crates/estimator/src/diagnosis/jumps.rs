@@ -4,6 +4,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, mm, quantile};
 use super::finding::{Finding, Subject};
+use super::pose_noise::PoseNoise;
 use crate::log::Log;
 
 /// A step from pose to pose that is longer than this share of the object's radius may be a jump.
@@ -12,55 +13,137 @@ const FAR: f64 = 0.3;
 /// It is one where it is so many times longer than nine in ten others.
 const RARE: f64 = 8.0;
 
+/// A shorter one is a jump where it is so many times faster than all steps about it that do not lead back, those of the
+/// pusher among them.
+const SUDDEN: f64 = 4.0;
+
+/// And so many standard deviations of a position; from the greater number on it is a problem.
+const BEYOND_NOISE: [f64; 2] = [12.0, 40.0];
+
+/// Steps before and after one by which it is judged.
+const ABOUT: usize = 4;
+
 /// Longest time between two poses of which a jump is told (s); over a longer one a body can go far.
 const SOON: f64 = 0.15;
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let Log { object, pusher, .. } = evidence.log;
-    let bodies = [
-        (Subject::ObjectPoses, "object", object),
-        (Subject::PusherPoses, "pusher", pusher),
-    ];
-    let found = bodies.into_iter();
-    found
-        .filter_map(|(subject, body, poses)| {
-            let found = jumps(evidence, body, poses)?;
-            let advice = "leave the cells of a lost pose empty; where the body was moved by hand, cut the log there";
-            Some(Finding::problem(subject, found, advice))
-        })
-        .collect()
+/// The way of a body from one pose to the next that differs.
+struct Step {
+    rows: [usize; 2],
+    poses: [Pose; 2],
+    /// Length (m).
+    way: f64,
+    /// Duration (s).
+    time: f64,
 }
 
-/// The first jump of a body, in words, and how many there are.
-fn jumps(evidence: &Evidence<'_>, body: &str, poses: &[Option<Pose>]) -> Option<String> {
+pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let Log { object, pusher, .. } = evidence.log;
+    let (of_object, of_pusher) = (steps(evidence, object), steps(evidence, pusher));
+    let found = [
+        // what moves an object is the pusher, so it may come to move as fast as that one
+        jumps(
+            evidence,
+            (Subject::ObjectPoses, "object"),
+            &of_object,
+            &[&of_object, &of_pusher],
+        ),
+        jumps(
+            evidence,
+            (Subject::PusherPoses, "pusher"),
+            &of_pusher,
+            &[&of_pusher],
+        ),
+    ];
+    found.into_iter().flatten().collect()
+}
+
+fn steps(evidence: &Evidence<'_>, poses: &[Option<Pose>]) -> Vec<Step> {
     let time = &evidence.log.time;
-    let seen: Vec<(usize, Pose)> = (0..poses.len())
+    let mut seen: Vec<(usize, Pose)> = (0..poses.len())
         .filter_map(|row| Some((row, poses[row]?)))
         .collect();
-    let way = |[(_, a), (_, b)]: &[(usize, Pose); 2]| (b.x - a.x).hypot(b.y - a.y);
-    let usual = quantile(seen.array_windows().map(way), 0.9);
-    let limit = (FAR * evidence.size()).max(RARE * usual);
-    let limit = limit.max(3.0 * evidence.tolerance());
-    let far = |pair: &&[(usize, Pose); 2]| {
-        let [(from, _), (to, _)] = pair;
-        way(pair) > limit && time[*to] - time[*from] <= SOON
+    // a pose that is held is as old as its first row
+    seen.dedup_by_key(|(_, pose)| *pose);
+    let step = |[(from, a), (to, b)]: &[(usize, Pose); 2]| Step {
+        rows: [*from, *to],
+        poses: [*a, *b],
+        way: (b.x - a.x).hypot(b.y - a.y),
+        time: time[*to] - time[*from],
     };
-    let jumps: Vec<&[(usize, Pose); 2]> = seen.array_windows().filter(far).collect();
-    let first = *jumps.first()?;
-    let [(before, a), (row, b)] = first;
-    let is_origin = |pose: &Pose| [pose.x, pose.y, pose.theta] == [0.0; 3];
-    let first_words = match (is_origin(a), is_origin(b)) {
-        (true, false) => format!("the {body} is exactly at 0, 0, 0 in row {before}"),
-        (false, true) => format!("the {body} is exactly at 0, 0, 0 in row {row}"),
+    seen.array_windows().map(step).collect()
+}
+
+/// The jumps among the `steps` of a body, judged by the speeds of `movers`.
+fn jumps(
+    evidence: &Evidence<'_>,
+    (subject, body): (Subject, &str),
+    steps: &[Step],
+    movers: &[&[Step]],
+) -> Option<Finding> {
+    let usual = quantile(steps.iter().map(|step| step.way), 0.9);
+    let large = (FAR * evidence.size()).max(RARE * usual);
+    let large = large.max(3.0 * evidence.tolerance());
+    let [least, most] = BEYOND_NOISE.map(|count| count * position_std(evidence, subject));
+    let is_sudden = |step: &Step| {
+        let speeds = movers.iter().map(|steps| speed_about(steps, step));
+        step.way > least && step.way > SUDDEN * speeds.fold(0.0, f64::max) * step.time
+    };
+    let is_jump = |step: &&Step| step.time <= SOON && (step.way > large || is_sudden(step));
+    let jumps: Vec<&Step> = steps.iter().filter(is_jump).collect();
+    let first = jumps.first()?;
+    let farthest = jumps.iter().map(|step| step.way).fold(0.0, f64::max);
+    let found = told(body, first, jumps.len(), farthest);
+    let advice =
+        "leave the cells of a lost pose empty; where the body was moved by hand, cut the log there";
+    Some(match farthest > large.min(most) {
+        true => Finding::problem(subject, found, advice),
+        false => Finding::warning(subject, found, advice),
+    })
+}
+
+/// The first of `count` jumps, in words.
+fn told(body: &str, first: &Step, count: usize, farthest: f64) -> String {
+    let [before, row] = first.rows;
+    let is_origin = |pose: Pose| [pose.x, pose.y, pose.theta] == [0.0; 3];
+    let first_words = match first.poses.map(is_origin) {
+        [true, false] => format!("the {body} is exactly at 0, 0, 0 in row {before}"),
+        [false, true] => format!("the {body} is exactly at 0, 0, 0 in row {row}"),
         _ => format!("the {body} jumps at row {row}"),
     };
-    let count = jumps.len();
     let others = match count {
         1 => String::new(),
+        _ if farthest > first.way => {
+            format!(" (one of {count} jumps, the farthest {})", mm(farthest))
+        }
         _ => format!(" (one of {count} jumps)"),
     };
-    Some(format!(
+    format!(
         "{first_words}, {} from the pose before it{others}",
-        mm(way(first))
-    ))
+        mm(first.way)
+    )
+}
+
+/// The greatest speed of the few steps before and after `step` (m/s), those aside that lead back from where it led.
+fn speed_about(steps: &[Step], step: &Step) -> f64 {
+    let before = steps.partition_point(|other| other.rows[1] <= step.rows[0]);
+    let after = steps.partition_point(|other| other.rows[0] < step.rows[1]);
+    let near = steps[before.saturating_sub(ABOUT)..before]
+        .iter()
+        .chain(steps[after..].iter().take(ABOUT));
+    let onward = near.filter(|other| {
+        let ([a, b], [c, d]) = (step.poses, other.poses);
+        (b.x - a.x) * (d.x - c.x) + (b.y - a.y) * (d.y - c.y) >= 0.0
+    });
+    onward.map(|step| step.way / step.time).fold(0.0, f64::max)
+}
+
+/// Standard deviation of a position: the greater of the measured and the stated one (m).
+fn position_std(evidence: &Evidence<'_>, subject: Subject) -> f64 {
+    if subject == Subject::ObjectPoses {
+        return evidence.position_std();
+    }
+    let Log { time, pusher, .. } = evidence.log;
+    let measured = PoseNoise::of(time, pusher).map_or(0.0, |noise| noise.position);
+    let camera = evidence.setup.camera.as_ref();
+    camera.map_or(measured, |camera| camera.pusher_position_std.max(measured))
 }

@@ -1,12 +1,17 @@
 //! Noise of object and pusher poses against the scene's `[camera]`.
 
-use super::evidence::{Evidence, PoseNoise, pose_noise};
+use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
+use super::lasting::Lasting;
+use super::pose_noise::PoseNoise;
 
 /// Ratio of measured and stated noise that is worth a warning: of the object, which contact mode learns, and of the
 /// pusher.
 const FAR_OFF: f64 = 4.0;
 const PUSHER_OFF: f64 = 2.0;
+
+/// Errors that last are worth a warning where a belief is so many times surer than it may be.
+const TOO_SURE: f64 = 1.5;
 
 /// Noise that needs no statement: that of encoders and rounding.
 const NEGLIGIBLE: PoseNoise = PoseNoise {
@@ -35,6 +40,8 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         ),
         Some(noise) => compared(&noise, &stated),
     }];
+    let lasting = evidence.lasting.as_ref();
+    findings.extend(lasting.and_then(|errors| lasts(errors, &stated)));
     findings.extend(pusher(evidence));
     findings
 }
@@ -46,7 +53,7 @@ pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
         position: camera.pusher_position_std,
         angle: camera.pusher_orientation_std,
     };
-    let noise = pose_noise(&evidence.log.pusher)
+    let noise = PoseNoise::of(&evidence.log.time, &evidence.log.pusher)
         .filter(|noise| is_above(noise, &stated, PUSHER_OFF, &NEGLIGIBLE))?;
     let advice = "set pusher_position_std and pusher_orientation_std under [camera] to what is measured: a recorded log is tracked \
                   by noise as its poses have it, live and causally what is taken for exact jerks the object at every row";
@@ -68,6 +75,26 @@ fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
         ),
         false => Finding::ok(Subject::Noise, found),
     }
+}
+
+/// Errors that last, where a belief that takes each pose for a new one would be too sure.
+fn lasts(errors: &Lasting, stated: &PoseNoise) -> Option<Finding> {
+    let Lasting { wander, rows } = errors;
+    let worth = |std: f64| std * rows.sqrt();
+    if worth(wander.position) < TOO_SURE * stated.position {
+        return None;
+    }
+    let found = format!(
+        "the poses of the waiting object wander by {:.2} mm, more than they scatter from row to row: the camera's errors last over about {rows:.0} rows",
+        1e3 * wander.position
+    );
+    let advice = format!(
+        "beliefs are too sure while the camera looks: set position_std = {:.1e} and orientation_std = {:.1e} under [camera], by which \
+         {rows:.0} poses say as much as one with an error of its own",
+        worth(wander.position),
+        worth(wander.angle)
+    );
+    Some(Finding::warning(Subject::Noise, found, advice))
 }
 
 /// Whether a noise is above `ratio` times the stated one, and above what needs no statement.

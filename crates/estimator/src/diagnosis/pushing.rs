@@ -8,7 +8,8 @@ use super::latency;
 const FEWEST: usize = 10;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let delay = latency::estimate(evidence).map_or(evidence.latency(), |latency| latency.delay);
+    let stated = evidence.latency();
+    let delay = latency::estimate(evidence).map_or(stated, |latency| latency.believed(stated));
     let gaps = gaps(evidence, delay);
     if gaps.len() < FEWEST {
         return vec![Finding::ok(

@@ -1,7 +1,10 @@
-//! Repeated frames: object poses that are exactly the one before.
+//! Repeated frames: poses that are exactly the one before.
+
+use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, mm};
 use super::finding::{Finding, Subject};
+use super::pose_noise::PoseNoise;
 
 /// Share of repeated rows while the object moves that is worth a warning.
 const MANY: f64 = 0.1;
@@ -9,22 +12,36 @@ const MANY: f64 = 0.1;
 /// Poses that are the same, one after another, from which on the camera stands still.
 const FROZEN: usize = 10;
 
+/// Half the time over which the pusher's motion is judged (s).
+const HALF_WINDOW: f64 = 0.15;
+
+/// Standard deviations and metres above which its way over that time is motion.
+const MOTION: f64 = 10.0;
+const MOVES: f64 = 1e-3;
+
+/// Least share of that way before as after the row.
+const GOES_ON: f64 = 0.25;
+
+/// Fewest rows of a moving pusher that tell.
+const FEWEST: usize = 10;
+
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let mut findings = vec![object(evidence)];
+    findings.extend(pusher(evidence));
+    findings
+}
+
+fn object(evidence: &Evidence<'_>) -> Finding {
     let poses = &evidence.log.object;
-    let repeats = |[before, row]: &[usize; 2]| poses[*row] == poses[*before];
-    let share = |pairs: &mut dyn Iterator<Item = &[usize; 2]>| {
-        let pairs: Vec<&[usize; 2]> = pairs.collect();
-        pairs.iter().filter(|pair| repeats(pair)).count() as f64 / pairs.len().max(1) as f64
-    };
-    let all = share(&mut evidence.seen.array_windows());
+    let all = share(poses, evidence.seen.array_windows());
     let pairs = evidence.seen.array_windows();
-    let moving = share(&mut pairs.filter(|[_, row]| evidence.moving[*row]));
+    let moving = share(poses, pairs.filter(|[_, row]| evidence.moving[*row]));
     let found = format!(
         "{:.1} % of object poses repeat the one before, {:.1} % while it moves",
         1e2 * all,
         1e2 * moving
     );
-    vec![match frozen(evidence) {
+    match frozen(evidence) {
         Some(finding) => finding,
         None if moving > MANY => Finding::warning(
             Subject::RepeatedFrames,
@@ -32,7 +49,52 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
             "leave the cells of repeated frames empty: the camera is slower than the log",
         ),
         None => Finding::ok(Subject::RepeatedFrames, found),
-    }]
+    }
+}
+
+/// Poses of a moving pusher that are those of the row before: it is sampled more slowly than the log, and held.
+fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
+    let (time, poses) = (&evidence.log.time, &evidence.log.pusher);
+    let seen: Vec<usize> = (0..poses.len())
+        .filter(|&row| poses[row].is_some())
+        .collect();
+    let noise = PoseNoise::of(time, poses).map_or(0.0, |noise| noise.position);
+    // it comes on both before and after the row: beside a start or a stop it rests, and repeats what is true
+    let moves = |row: usize| {
+        let way = |from: f64, to: f64| {
+            let (a, b) = (evidence.pusher_at(from)?, evidence.pusher_at(to)?);
+            Some((b.x - a.x).hypot(b.y - a.y))
+        };
+        let (from, here, to) = (time[row] - HALF_WINDOW, time[row], time[row] + HALF_WINDOW);
+        let Some((first, second)) = way(from, here).zip(way(here, to)) else {
+            return false;
+        };
+        first + second > (MOTION * noise).max(MOVES)
+            && first.min(second) > GOES_ON * (first + second)
+    };
+    let moving: Vec<&[usize; 2]> = seen
+        .array_windows()
+        .filter(|[_, row]| moves(*row))
+        .collect();
+    let repeated = share(poses, moving.iter().copied());
+    (moving.len() >= FEWEST && repeated > MANY).then(|| {
+        let found = format!(
+            "{:.1} % of pusher poses repeat the one before while it moves",
+            1e2 * repeated
+        );
+        let advice = "leave the cells of repeated poses empty: the pusher is sampled more slowly than the log, and seems to stand and jump";
+        Finding::warning(Subject::RepeatedFrames, found, advice)
+    })
+}
+
+/// Share of `pairs` of rows that have one and the same pose.
+fn share<'p>(poses: &[Option<Pose>], pairs: impl Iterator<Item = &'p [usize; 2]>) -> f64 {
+    let (mut all, mut repeated) = (0_usize, 0_usize);
+    for [before, row] in pairs {
+        all += 1;
+        repeated += usize::from(poses[*row] == poses[*before]);
+    }
+    repeated as f64 / all.max(1) as f64
 }
 
 /// Many equal poses on end and then one far from them, from a camera whose poses scatter: it stood still

@@ -1,32 +1,32 @@
 //! The pusher's stall force, where the scene gives none: it decides how a jam goes on.
 
 use super::evidence::Evidence;
-use super::finding::{Finding, Severity, Subject};
+use super::finding::{Finding, Subject};
 use crate::setup::{ASSUMED_STALL, Setup};
 
 /// That the pusher's stall force is assumed, which one, and what to write instead; `None` where the
 /// scene gives it.
 ///
-/// It is a warning where there are fixels, since without them nothing jams.
+/// It is a warning where there are fixels. Without them nothing jams, and nothing is to be done.
 pub fn assumed_stall_force(setup: &Setup) -> Option<Finding> {
     let force = setup
         .scene
         .pusher
         .stall_force
         .filter(|_| setup.stall_force_assumed)?;
-    Some(Finding {
-        subject: Subject::StallForce,
-        severity: if setup.scene.fixels.is_empty() {
-            Severity::Ok
-        } else {
-            Severity::Warning
-        },
-        found: format!(
-            "pusher.stall_force is missing in the scene: {} N is assumed, {ASSUMED_STALL} times what slides the object",
-            three_digits(force)
+    let found = format!(
+        "pusher.stall_force is missing in the scene: {} N is assumed, {ASSUMED_STALL} times what slides the object",
+        three_digits(force)
+    );
+    Some(match setup.scene.fixels.is_empty() {
+        true => Finding::ok(
+            Subject::StallForce,
+            format!("{found}; without fixels nothing jams"),
         ),
-        advice: Some(
-            "write the force in N at which the drive gives way, or inf for a rigid one".to_owned(),
+        false => Finding::warning(
+            Subject::StallForce,
+            found,
+            "write the force in N at which the drive gives way, or inf for a rigid one",
         ),
     })
 }

@@ -4,6 +4,7 @@ mod belief;
 mod common;
 mod contact_mode;
 mod creep;
+mod diagnosis;
 mod extended_kalman;
 mod fast_pusher;
 mod friction_parameters;

@@ -1,0 +1,86 @@
+//! Errors of the camera that last over several rows: [`Lasting`].
+//!
+//! While the pusher is still on its way the object waits, so what its poses do is the camera's error. White noise differs
+//! from row to row by as much as between rows that are far apart; an error that lasts hardly differs from row to row, and
+//! by more and more over longer times.
+
+use stickslip_dynamics::Pose;
+
+use super::evidence::{Evidence, median};
+use super::pose_noise::{OF_MEDIAN, PoseNoise};
+
+/// Fewest poses of a waiting object that tell.
+const FEWEST: usize = 24;
+
+/// Errors last where poses far apart differ by so many times what rows next to each other do.
+const WANDERS: f64 = 1.8;
+
+/// A wander beyond so many told standard deviations is a motion.
+const MOTION: f64 = 3.0;
+
+/// Errors that last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lasting {
+    /// Standard deviations of one pose, with what lasts.
+    pub wander: PoseNoise,
+    /// Rows over which an error lasts: so many poses say as much as one with an error of its own.
+    pub rows: f64,
+}
+
+impl Lasting {
+    /// The errors of `evidence`'s camera, where they last.
+    pub fn of(evidence: &Evidence<'_>) -> Option<Self> {
+        let noise = evidence.noise?;
+        let camera = evidence.setup.camera.as_ref()?;
+        let waiting = waiting(evidence);
+        if waiting.len() < FEWEST {
+            return None;
+        }
+        let (x, y) = (wander(&waiting, |p| p.x), wander(&waiting, |p| p.y));
+        let wander = PoseNoise {
+            position: median(x.into_iter().chain(y)),
+            angle: median(wander(&waiting, |p| p.theta)),
+        };
+        let lasts = wander.position > WANDERS * noise.position
+            && wander.position < MOTION * camera.position_std
+            && wander.angle < MOTION * camera.orientation_std;
+        let share = noise.position / wander.position;
+        let wander = PoseNoise {
+            // that few poses far apart differ by more than those of the positions do is chance
+            angle: wander.angle.min(noise.angle / share),
+            ..wander
+        };
+        lasts.then(|| Self {
+            wander: wander.max(noise),
+            rows: rows(share),
+        })
+    }
+}
+
+/// Poses up to the first row at which the pusher may touch the object, or is not known.
+fn waiting(evidence: &Evidence<'_>) -> Vec<Pose> {
+    let apart = |row: &usize| {
+        let gap = evidence.pusher_gap(*row, evidence.latency());
+        gap.is_some_and(|gap| gap > evidence.tolerance())
+    };
+    let rows = evidence.seen.iter().copied().take_while(apart);
+    rows.filter_map(|row| evidence.log.object[row]).collect()
+}
+
+/// How far poses a quarter of `waiting` apart differ, each as an error of one pose.
+fn wander(waiting: &[Pose], pick: fn(&Pose) -> f64) -> Vec<f64> {
+    let later = &waiting[waiting.len() / 4..];
+    let pairs = waiting.iter().zip(later);
+    pairs
+        .map(|(a, b)| OF_MEDIAN * (pick(b) - pick(a)).abs() / 2.0_f64.sqrt())
+        .collect()
+}
+
+/// Rows over which an error lasts that scatters from row to row by `share` of what it wanders.
+///
+/// Errors that are forgotten by a factor ρ from row to row have second differences of variance 2 (1 − ρ) (3 − ρ), where
+/// those of white noise have 6; and n poses of them have a mean as good as n (1 − ρ) / (1 + ρ) poses of white noise.
+fn rows(share: f64) -> f64 {
+    let kept = 2.0 - (1.0 + 3.0 * share * share).sqrt();
+    (1.0 + kept) / (1.0 - kept)
+}
