@@ -1,5 +1,6 @@
 //! The particle filter over contact dynamics: the model, its columns, and what they amount to.
 
+mod aside;
 mod camera_likelihood;
 pub(crate) mod camera_noise;
 pub(crate) mod camera_trust;
@@ -22,6 +23,7 @@ pub(crate) mod noise_clock;
 pub(crate) mod observation;
 pub(crate) mod observer;
 pub(crate) mod pose_clock;
+mod pose_scatter;
 pub(crate) mod propagation;
 mod replay;
 mod rest;

@@ -4,9 +4,11 @@
 use stickslip_dynamics::{Lanes, Pose};
 
 use crate::covariance::PoseCovariance;
+use crate::particle::aside::Aside;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::camera_noise::{CameraNoise, MEMORY, NoisePrior};
 use crate::particle::free_motion::{FreeMotion, NormalPose, difference};
+use crate::particle::pose_scatter::{GROUP, PoseScatter};
 use crate::particle::student_pose::StudentPose;
 use crate::setup::{Camera, Setup};
 
@@ -22,15 +24,8 @@ pub struct RestingPose {
     mean: Pose,
     /// What the variances of x, y (m²) and θ (rad²) would be, were the camera as noisy as told.
     variance: [f64; 3],
-    /// Number of the poses seen, with the first one, each by how likely it is not wrong.
-    poses: f64,
-    /// Sums of their precisions as told, axis by axis.
-    precision: [f64; 3],
-    /// Their mean, each by its precision.
-    centre: Pose,
-    /// Sums of the squares of their distances from it, in told standard deviations: of the position, of
-    /// the angle.
-    squares: [f64; 2],
+    /// How far the poses seen scatter.
+    scatter: PoseScatter,
     camera: Camera,
     /// What the camera's standard deviations are widened by.
     widened: f64,
@@ -40,19 +35,9 @@ pub struct RestingPose {
     free: Option<FreeMotion>,
     /// Time of the latest pose (s).
     time: f64,
-    /// Mean of how far the latest poses lay off, in standard deviations of what was expected of them.
-    aside: [f64; 3],
+    /// How far to one side the latest poses lay.
+    aside: Aside,
 }
-
-/// Number of the latest poses that this is a mean of.
-const LATEST: f64 = 30.0;
-
-/// The squares of such means over their variances, added up, above which the object was moved; chance has them there in
-/// 0.02 % of poses (χ² of three degrees of freedom).
-const MOVED: f64 = 20.0;
-
-/// Which of position and angle an axis belongs to.
-const GROUP: [usize; 3] = [0, 0, 1];
 
 impl RestingPose {
     /// Around a pose seen at a `time` (s), as well as that tells.
@@ -69,13 +54,10 @@ impl RestingPose {
         let unset = Self {
             free: Some(FreeMotion::new(&told, setup.scene.object.gyration_radius())),
             time,
-            aside: [0.0; 3],
+            aside: Aside::default(),
             mean: start.0,
             variance: [0.0; 3],
-            poses: 0.0,
-            precision: [0.0; 3],
-            centre: start.0,
-            squares: [0.0; 2],
+            scatter: PoseScatter::of(start.0, [1.0; 3]),
             camera: *camera,
             widened: setup.filter.likelihood_scale,
             noise: NoisePrior::new(setup.uncertainty.camera_noise),
@@ -101,11 +83,8 @@ impl RestingPose {
         Self {
             mean: pose.mean,
             variance: pose.variance,
-            poses: 1.0,
-            precision: told.map(f64::recip),
-            centre: pose.mean,
-            squares: [0.0; 2],
-            aside: [0.0; 3],
+            scatter: PoseScatter::of(pose.mean, told),
+            aside: Aside::default(),
             ..self
         }
     }
@@ -135,7 +114,7 @@ impl RestingPose {
             mean: self.mean,
             variance: std::array::from_fn(|k| self.variance[k] * levels[GROUP[k]]),
         };
-        let was_moved = self.lies_aside();
+        let was_moved = self.aside.is_no_chance();
         if let Some(free) = &mut self.free {
             let noise = std::array::from_fn(|k| measured[k] * levels[GROUP[k]]);
             free.see(h, (&pose, noise), (&rest, was_moved));
@@ -145,7 +124,7 @@ impl RestingPose {
         let right = self.is_right(&pose, told, measured);
         let away = difference(&pose, &self.mean);
         if self.free.is_some() {
-            self.widen_where_moved(&away, right, measured, levels);
+            self.widen_where_moved((&away, right), measured, levels);
         }
         let mean = self.mean.fields_mut().into_iter().zip(away.fields());
         for (k, (mean, away)) in mean.enumerate() {
@@ -157,41 +136,28 @@ impl RestingPose {
             self.variance[k] = after.max(least);
         }
 
-        // the camera's noise
-        let kept = 1.0 - 1.0 / MEMORY;
-        self.poses = kept * self.poses + right;
-        self.squares = self.squares.map(|sum| kept * sum);
-        let away = difference(&pose, &self.centre);
-        let centre = self.centre.fields_mut().into_iter().zip(away.fields());
-        for (k, (centre, away)) in centre.enumerate() {
-            let (before, new) = (kept * self.precision[k], right / told[k]);
-            self.precision[k] = before + new;
-            if new > 0.0 {
-                self.squares[GROUP[k]] += before * new / (before + new) * away * away;
-                *centre += new / (before + new) * away;
-            }
-        }
+        self.scatter.see(&pose, told, right);
     }
 
     /// Where the latest poses lie to one side by more than chance has them, the object has been moved: it is not
     /// known better than that.
-    fn widen_where_moved(&mut self, away: &Pose, right: f64, measured: [f64; 3], levels: [f64; 2]) {
-        for (k, away) in away.fields().into_iter().enumerate() {
+    fn widen_where_moved(
+        &mut self,
+        (away, right): (&Pose, f64),
+        measured: [f64; 3],
+        levels: [f64; 2],
+    ) {
+        let away = away.fields();
+        self.aside.take(std::array::from_fn(|k| {
             let expected = (self.variance[k] + measured[k]) * levels[GROUP[k]];
-            self.aside[k] += (right * away / expected.sqrt() - self.aside[k]) / LATEST;
-        }
-        if self.lies_aside() {
+            right * away[k] / expected.sqrt()
+        }));
+        if self.aside.is_no_chance() {
+            let moved = self.aside.squares();
             for k in 0..3 {
-                let moved = self.aside[k] * self.aside[k] * measured[k];
-                self.variance[k] = self.variance[k].max(moved);
+                self.variance[k] = self.variance[k].max(moved[k] * measured[k]);
             }
         }
-    }
-
-    /// Whether the latest poses lie to one side by more than chance has them.
-    fn lies_aside(&self) -> bool {
-        let squares: f64 = self.aside.iter().map(|mean| mean * mean).sum();
-        squares * (2.0 * LATEST - 1.0) > MOVED
     }
 
     /// Whether poses say that the object moves.
@@ -220,11 +186,7 @@ impl RestingPose {
     /// What a particle that has rested at `pose` all the time knows of the camera's noise: the number
     /// of the poses seen, and the sums of the squares of their distances from it.
     pub fn noise_seen_at(&self, pose: &Pose) -> [f64; 3] {
-        let away = difference(&self.centre, pose);
-        let [mut position, mut angle] = self.squares;
-        position += self.precision[0] * away.x * away.x + self.precision[1] * away.y * away.y;
-        angle += self.precision[2] * away.theta * away.theta;
-        [self.poses, position, angle]
+        self.scatter.about(pose)
     }
 
     /// Variances by which a pose counts, of x, y (m²) and θ (rad²).
@@ -307,10 +269,7 @@ mod tests {
         let unset = RestingPose {
             mean: start,
             variance: [0.0; 3],
-            poses: 0.0,
-            precision: [0.0; 3],
-            centre: start,
-            squares: [0.0; 2],
+            scatter: PoseScatter::of(start, [1.0; 3]),
             camera: CAMERA,
             widened,
             noise: None,
@@ -322,7 +281,7 @@ mod tests {
                 0.02,
             )),
             time: 0.0,
-            aside: [0.0; 3],
+            aside: Aside::default(),
         };
         unset.started_at((start, None))
     }
