@@ -19,7 +19,8 @@ const WIDE: f64 = 6.0;
 const WITHIN: f64 = 8.0;
 
 /// Counts the camera poses in a row that no particle explains; after some, they are no outliers, until one is explained.
-/// Nor is one that a wide belief expects: that no particle is near it says nothing.
+/// Nor is one that a wide belief expects: that no particle is near it says nothing. After a time in which nobody saw object or
+/// pusher, the object has been moved more often than a pose is wrong.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CameraTrust {
     unexplained: u32,
@@ -29,18 +30,19 @@ pub(crate) struct CameraTrust {
 
 impl CameraTrust {
     /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief before it, where that may
-    /// be wide; says whether the pose is believed, where that changes.
+    /// be wide, and whether anything may have happened since the pose before; says whether the pose is believed, where that
+    /// changes.
     pub fn expect(
         &mut self,
-        pose: &Pose,
-        noise: [f64; 3],
+        (pose, noise): (&Pose, [f64; 3]),
         belief: Option<&NormalPose>,
+        was_unwatched: bool,
     ) -> Option<bool> {
         let expected = belief.is_some_and(|belief| {
             let at_best = log_density(&belief.mean, noise, belief);
             at_best < -WIDE && log_density(pose, noise, belief) - at_best > -WITHIN
         });
-        let believed = expected || self.unexplained >= BELIEVED_AFTER;
+        let believed = expected || was_unwatched || self.unexplained >= BELIEVED_AFTER;
         let before = std::mem::replace(&mut self.believed, believed);
         Some(believed).filter(|now| *now != before)
     }

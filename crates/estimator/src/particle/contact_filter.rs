@@ -159,6 +159,7 @@ impl<'o> ContactFilter<'o> {
     /// One row: the step that leads to it, then what was measured there.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
         let was_dark = self.plan.is_dark();
+        let was_unwatched = was_dark && self.pusher.is_hidden();
         self.plan_step(&measured, drive);
         self.remember_observation();
         self.observation.pose = measured.object;
@@ -176,7 +177,7 @@ impl<'o> ContactFilter<'o> {
         }
         self.observation.moves = self.camera_moves();
 
-        self.expect_pose(was_dark);
+        self.expect_pose(was_dark, was_unwatched);
         let tries = self.moves.second_tries && self.plan.is_dark();
         self.replay.before(&self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
@@ -227,8 +228,8 @@ impl<'o> ContactFilter<'o> {
     }
 
     /// Before a pose of the camera: whether it is believed also where no particle explains it, as the first one after a dark may
-    /// be.
-    fn expect_pose(&mut self, was_dark: bool) {
+    /// be, and is where nobody saw the pusher, either.
+    fn expect_pose(&mut self, was_dark: bool, was_unwatched: bool) {
         let Some(pose) = self.observation.pose else {
             return;
         };
@@ -239,7 +240,8 @@ impl<'o> ContactFilter<'o> {
         });
         let belief = belief.filter(|_| was_dark);
         let noise = self.resting.noise_of(self.observation.covariance);
-        if let Some(trusted) = self.trust.expect(&pose, noise, belief.as_ref()) {
+        let belief = belief.as_ref();
+        if let Some(trusted) = self.trust.expect((&pose, noise), belief, was_unwatched) {
             self.filter
                 .change_model(|model| model.trust_camera(trusted));
         }
@@ -341,7 +343,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         self.observation.moves = self.camera_moves();
-        self.expect_pose(false);
+        self.expect_pose(false, false);
         let report = self.filter.observe(&self.plan, &self.observation);
         self.take(&report);
         self.camera.late_pose();

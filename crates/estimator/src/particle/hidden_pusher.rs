@@ -35,6 +35,11 @@ impl Default for HiddenPusher {
 }
 
 impl HiddenPusher {
+    /// Whether nobody saw it at the latest row.
+    pub fn is_hidden(&self) -> bool {
+        self.back_for == 0.0
+    }
+
     /// A row at which somebody sees it, `h` (s) after the one before, that ends with this substep, and whether it moves; says
     /// whether it is just back.
     pub fn seen(&mut self, h: f64, last: &StepInput, moves: bool) -> bool {

@@ -214,12 +214,8 @@ fn a_pusher_that_comes_back_inside_an_object_throws_it_nowhere() {
             std.x > 1e-6 && std.y > 1e-6 && std.theta > 1e-6,
             "{time}: {std:?}"
         );
-        // the camera is believed after four poses
-        let most = if *time < 1.6 + 5.0 / 120.0 {
-            0.035
-        } else {
-            1.5e-3
-        };
+        // the first pose is believed
+        let most = if *time < 1.6 { 0.035 } else { 1.5e-3 };
         assert!(error.abs() < most, "{time}: {error}");
     }
 }
