@@ -77,7 +77,8 @@ impl FreeMotion {
     pub fn stopped(&self, rest: &NormalPose, h: f64) -> NormalPose {
         let moves = self.probability();
         let (from_rest, from_motion) = (1.0 - moves, moves * (1.0 - libm::exp(-h / LASTS)));
-        let share = from_motion / (from_rest + from_motion);
+        // at the time of the pose before nothing has stopped
+        let share = from_motion / (from_rest + from_motion).max(f64::MIN_POSITIVE);
         let mut stopped = *rest;
         let axes = stopped.mean.fields_mut().into_iter().zip(&self.axes);
         for (k, (mean, axis)) in axes.enumerate() {
@@ -178,5 +179,59 @@ pub fn difference(to: &Pose, from: &Pose) -> Pose {
         x: to.x - from.x,
         y: to.y - from.y,
         theta: wrapped(to.theta - from.theta),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOISE: [f64; 3] = [9e-8, 9e-8, 2.5e-5];
+
+    fn at(x: f64) -> NormalPose {
+        NormalPose {
+            mean: Pose::new(x, 0.0, 3.1),
+            variance: NOISE.map(|variance| 0.1 * variance),
+        }
+    }
+
+    #[test]
+    fn poses_that_move_on_are_taken_for_motion_within_three_and_two_at_rest_for_rest() {
+        let (mut free, mut rest) = (FreeMotion::new(&at(0.0), 0.02), at(0.0));
+        let mut moved = Vec::new();
+        // 60 mm/s at 30 Hz, from the third pose to the ninth, with half a turn of the circle in between
+        for k in 0..20 {
+            let x = 2e-3 * (f64::from(k) - 2.0).clamp(0.0, 7.0);
+            let turned = std::f64::consts::TAU * f64::from(k % 2);
+            if free.moves() {
+                rest = free.stopped(&rest, 1.0 / 30.0);
+            }
+            let pose = Pose::new(x, 0.0, 3.1 - turned);
+            free.see(1.0 / 30.0, (&pose, NOISE), (&rest, false));
+            moved.push(free.moves());
+        }
+        assert!(!moved[..3].contains(&true), "{moved:?}");
+        assert!(!moved[5..10].contains(&false), "{moved:?}");
+        assert!(!moved[12..].contains(&true), "{moved:?}");
+        let followed = free.after(0.0).mean;
+        assert!((followed.x - 0.014).abs() < 3e-4, "{followed:?}");
+        assert!((followed.theta - 3.1).abs() < 1e-6, "{followed:?}");
+    }
+
+    #[test]
+    fn poses_of_one_time_leave_numbers() {
+        let (mut free, mut rest) = (FreeMotion::new(&at(0.0), 0.02), at(0.0));
+        for k in 0..200 {
+            let h = if k < 20 { 0.02 } else { 0.0 };
+            let pose = Pose::new(2e-3 * f64::from(k.min(20)), 0.0, 3.1);
+            if free.moves() {
+                rest = free.stopped(&rest, h);
+            }
+            free.see(h, (&pose, NOISE), (&rest, false));
+            let after = free.after(0.1);
+            assert!(after.variance.iter().all(|v| *v > 0.0 && v.is_finite()));
+            assert!(rest.mean.x.is_finite() && after.mean.x.is_finite(), "{k}");
+        }
+        assert!(free.moves());
     }
 }

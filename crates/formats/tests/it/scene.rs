@@ -395,3 +395,21 @@ fn windows_line_endings_and_byte_order_mark_are_read() {
     read(&format!("\u{feff}{FULL}"));
     refused_text("\u{feff}gravity = 0", "1:11", &["positive"]);
 }
+
+#[test]
+fn who_tells_a_rig_worse_than_most_means_it_on_all_rigs() {
+    let well_measured = |lines: &str| {
+        let text = format!("{LEAST}\n[uncertainty]\n{lines}\n");
+        read(&text).uncertainty.well_measured
+    };
+    for rough in ["fixel_position = 1e-3", "outline = 1e-3", "latency = 0.1"] {
+        assert_eq!(well_measured(rough), 1.0, "{rough}");
+    }
+    for as_most in ["", "fixel_position = 1e-4", "pusher_offset = 1e-3"] {
+        assert_eq!(well_measured(as_most), 0.1, "{as_most}");
+    }
+    assert_eq!(
+        well_measured("fixel_position = 1e-3\nwell_measured = 0.5"),
+        0.5
+    );
+}
