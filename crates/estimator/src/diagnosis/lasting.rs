@@ -41,7 +41,9 @@ impl Lasting {
             position: median(x.into_iter().chain(y)),
             angle: median(wander(&waiting, |p| p.theta)),
         };
-        let lasts = wander.position > WANDERS * noise.position
+        // poses that are rounded may not scatter from row to row at all
+        let lasts = noise.position > 0.0
+            && wander.position > WANDERS * noise.position
             && wander.position < MOTION * camera.position_std
             && wander.angle < MOTION * camera.orientation_std;
         let share = noise.position / wander.position;
