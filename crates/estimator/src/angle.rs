@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stickslip_dynamics::Lanes;
+use stickslip_dynamics::{Lanes, Pose};
 
 /// The angle in [−π, π) that equals `angle` on the circle (rad).
 pub fn wrapped(angle: f64) -> f64 {
@@ -18,4 +18,13 @@ pub fn nearest_zero<const W: usize>(angles: Lanes<W>) -> Lanes<W> {
 /// The angle nearest to `near` that equals `angle` on the circle (rad).
 pub fn unwrapped(angle: f64, near: f64) -> f64 {
     near + wrapped(angle - near)
+}
+
+/// From `from` to `to`, θ on the circle.
+pub fn difference(to: &Pose, from: &Pose) -> Pose {
+    Pose {
+        x: to.x - from.x,
+        y: to.y - from.y,
+        theta: wrapped(to.theta - from.theta),
+    }
 }

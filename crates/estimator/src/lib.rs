@@ -11,6 +11,7 @@ mod covariance;
 pub mod diagnosis;
 mod error;
 mod estimate;
+mod gap;
 mod log;
 mod mode;
 mod moves;

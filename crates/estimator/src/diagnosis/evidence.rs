@@ -1,15 +1,16 @@
 //! What all checks share: [`Evidence`], gaps, motion and noise of a log.
 
-use stickslip_dynamics::{Placed, Pose, Shape, narrow_phase};
+use stickslip_dynamics::{Placed, Pose, Shape};
 
 use super::lasting::Lasting;
 use super::pose_noise::PoseNoise;
+use crate::gap::gap;
 use crate::log::Log;
 use crate::pusher::tracked_pose::LONGEST_BRIDGE;
 use crate::setup::Setup;
 
 /// Half the time over which an object's motion is judged (s).
-const HALF_WINDOW: f64 = 0.15;
+pub(super) const HALF_WINDOW: f64 = 0.15;
 
 /// Standard deviations above which a displacement is motion.
 const MOTION: f64 = 5.0;
@@ -26,6 +27,8 @@ pub(super) struct Evidence<'a> {
     pub log: &'a Log,
     /// Noise of one object pose, estimated; `None` with too few poses.
     pub noise: Option<PoseNoise>,
+    /// The same of the pusher.
+    pub pusher_noise: Option<PoseNoise>,
     /// Errors of the camera that last over several rows.
     pub lasting: Option<Lasting>,
     /// Rows with an object pose; between them may be rows that other sensors brought.
@@ -41,6 +44,7 @@ impl<'a> Evidence<'a> {
             setup,
             log,
             noise,
+            pusher_noise: PoseNoise::of(&log.time, &log.pusher),
             lasting: None,
             seen: (0..log.len())
                 .filter(|&row| log.object[row].is_some())
@@ -64,16 +68,13 @@ impl<'a> Evidence<'a> {
 
     /// Standard deviation of one position: the greater of the measured and the stated one (m).
     pub fn position_std(&self) -> f64 {
-        let measured = self.noise.map_or(0.0, |noise| noise.position);
-        measured.max(self.stated().position)
+        self.pose_std().position
     }
 
     /// Standard deviation of a gap by the noise of the object's pose, with its turn at the radius of gyration (m).
     pub fn gap_std(&self) -> f64 {
         let gyration = self.setup.scene.object.gyration_radius();
-        let noise = self
-            .noise
-            .map_or(self.stated(), |noise| noise.max(self.stated()));
+        let noise = self.pose_std();
         noise.position.hypot(gyration * noise.angle)
     }
 
@@ -117,10 +118,8 @@ impl<'a> Evidence<'a> {
 
     /// Gap of the object at `object` and a body (m); negative is overlap.
     pub fn gap_to(&self, object: Pose, other: &Shape, at: Pose) -> Option<f64> {
-        let mut gaps = Vec::new();
         let object = Placed::new(&self.setup.scene.object.shape, object);
-        narrow_phase(&object, &Placed::new(other, at), f64::INFINITY, &mut gaps);
-        gaps.iter().map(|gap| gap.gap).min_by(f64::total_cmp)
+        gap(&object, &Placed::new(other, at))
     }
 
     /// The object's way about a row with its pose: from before it to after it, and from before it to it.
@@ -197,6 +196,12 @@ impl<'a> Evidence<'a> {
         };
         let turn = self.setup.scene.object.gyration_radius() * noise.angle;
         Some((2.0 / poses * (2.0 * noise.position * noise.position + turn * turn)).sqrt())
+    }
+
+    /// Standard deviations of one pose: the greater of the measured and the stated one.
+    fn pose_std(&self) -> PoseNoise {
+        let stated = self.stated();
+        self.noise.map_or(stated, |noise| noise.max(stated))
     }
 
     /// The noise that the scene tells.

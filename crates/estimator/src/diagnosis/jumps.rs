@@ -4,7 +4,6 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, mm, quantile};
 use super::finding::{Finding, Subject};
-use super::pose_noise::PoseNoise;
 use crate::log::Log;
 
 /// A step from pose to pose that is longer than this share of the object's radius may be a jump.
@@ -142,8 +141,7 @@ fn position_std(evidence: &Evidence<'_>, subject: Subject) -> f64 {
     if subject == Subject::ObjectPoses {
         return evidence.position_std();
     }
-    let Log { time, pusher, .. } = evidence.log;
-    let measured = PoseNoise::of(time, pusher).map_or(0.0, |noise| noise.position);
+    let measured = evidence.pusher_noise.map_or(0.0, |noise| noise.position);
     let camera = evidence.setup.camera.as_ref();
     camera.map_or(measured, |camera| camera.pusher_position_std.max(measured))
 }

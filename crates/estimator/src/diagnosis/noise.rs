@@ -53,7 +53,8 @@ pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
         position: camera.pusher_position_std,
         angle: camera.pusher_orientation_std,
     };
-    let noise = PoseNoise::of(&evidence.log.time, &evidence.log.pusher)
+    let noise = evidence
+        .pusher_noise
         .filter(|noise| is_above(noise, &stated, PUSHER_OFF, &NEGLIGIBLE))?;
     let advice = "set pusher_position_std and pusher_orientation_std under [camera] to what is measured: a recorded log is tracked \
                   by noise as its poses have it, live and causally what is taken for exact jerks the object at every row";

@@ -2,18 +2,14 @@
 
 use stickslip_dynamics::Pose;
 
-use super::evidence::{Evidence, mm};
+use super::evidence::{Evidence, HALF_WINDOW, mm};
 use super::finding::{Finding, Subject};
-use super::pose_noise::PoseNoise;
 
 /// Share of repeated rows while the object moves that is worth a warning.
 const MANY: f64 = 0.1;
 
 /// Poses that are the same, one after another, from which on the camera stands still.
 const FROZEN: usize = 10;
-
-/// Half the time over which the pusher's motion is judged (s).
-const HALF_WINDOW: f64 = 0.15;
 
 /// Standard deviations and metres above which its way over that time is motion.
 const MOTION: f64 = 10.0;
@@ -58,7 +54,7 @@ fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     let seen: Vec<usize> = (0..poses.len())
         .filter(|&row| poses[row].is_some())
         .collect();
-    let noise = PoseNoise::of(time, poses).map_or(0.0, |noise| noise.position);
+    let noise = evidence.pusher_noise.map_or(0.0, |noise| noise.position);
     // it comes on both before and after the row: beside a start or a stop it rests, and repeats what is true
     let moves = |row: usize| {
         let way = |from: f64, to: f64| {

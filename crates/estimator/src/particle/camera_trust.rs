@@ -3,7 +3,7 @@
 use stickslip_dynamics::Pose;
 use stickslip_filter::StepReport;
 
-use crate::particle::free_motion::{NormalPose, log_density};
+use crate::particle::normal_pose::NormalPose;
 
 /// Camera poses in a row that nothing explains, after which they are believed.
 pub(crate) const BELIEVED_AFTER: u32 = 4;
@@ -39,8 +39,8 @@ impl CameraTrust {
         was_unwatched: bool,
     ) -> Option<bool> {
         let expected = belief.is_some_and(|belief| {
-            let at_best = log_density(&belief.mean, noise, belief);
-            at_best < -WIDE && log_density(pose, noise, belief) - at_best > -WITHIN
+            let at_best = belief.log_density(&belief.mean, noise);
+            at_best < -WIDE && belief.log_density(pose, noise) - at_best > -WITHIN
         });
         let believed = expected || was_unwatched || self.unexplained >= BELIEVED_AFTER;
         let before = std::mem::replace(&mut self.believed, believed);

@@ -13,12 +13,12 @@ use crate::mode::Mode;
 use crate::moves::Moves;
 use crate::particle::camera_trust::CameraTrust;
 use crate::particle::filter_options::FilterOptions;
-use crate::particle::free_motion::NormalPose;
 use crate::particle::hidden_pusher::HiddenPusher;
 use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
+use crate::particle::normal_pose::NormalPose;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::pose_clock::PoseClock;
 use crate::particle::replay::Replay;
@@ -88,8 +88,6 @@ pub(crate) struct ContactFilter<'o> {
     steadiness: Steadiness,
     pusher: HiddenPusher,
     resting: RestingPose,
-    /// Whether a particle has touched anything.
-    touched: bool,
     /// What brings particles to where weighing would leave few.
     moves: Moves,
 }
@@ -144,7 +142,6 @@ impl<'o> ContactFilter<'o> {
             steadiness: Steadiness::new(camera.latency + unknown),
             pusher: HiddenPusher::default(),
             resting: RestingPose::new(time, (pose, start.covariance), &camera, setup),
-            touched: false,
             moves: options.moves,
         };
         // a first pose that says how noisy it is is drawn as it says
@@ -172,8 +169,7 @@ impl<'o> ContactFilter<'o> {
         let contact = self.mode() == Mode::Contact;
         self.observation.felt = contact;
         if self.latest.any_contact() {
-            self.touched = true;
-            self.resting.is_touched();
+            self.resting.touch();
         }
         self.observation.moves = self.camera_moves();
 
@@ -223,8 +219,7 @@ impl<'o> ContactFilter<'o> {
 
     /// Whether camera poses may move particles: the object no longer waits where it was first seen, or never did.
     fn camera_moves(&self) -> bool {
-        let moves = self.touched || self.resting.moves();
-        self.mode() == Mode::Contact && self.moves.camera && moves
+        self.mode() == Mode::Contact && self.moves.camera && self.resting.waits_no_longer()
     }
 
     /// Before a pose of the camera: whether it is believed also where no particle explains it, as the first one after a dark may

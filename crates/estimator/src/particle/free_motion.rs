@@ -4,8 +4,9 @@
 use stickslip_dynamics::Pose;
 use stickslip_filter::{ConstantVelocity, Gaussian};
 
-use crate::angle::wrapped;
+use crate::angle::difference;
 use crate::particle::camera_likelihood::WRONG;
+use crate::particle::normal_pose::NormalPose;
 
 /// Probability that an object which rests is moved from one pose of the camera to the next, and of one that has just been
 /// moved a little.
@@ -18,13 +19,6 @@ const LASTS: f64 = 0.3;
 /// Standard deviation of its speed (m/s), and for how long it keeps it (s).
 const SPEED: f64 = 0.05;
 const SPEED_LASTS: f64 = 1.0;
-
-/// A pose by means and variances of x, y (m²) and θ (rad²).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NormalPose {
-    pub mean: Pose,
-    pub variance: [f64; 3],
-}
 
 /// The belief that the object moves at nearly constant velocity, beside the one that it rests: two models that
 /// interact (Blom & Bar-Shalom 1988), of which the likelier one is told.
@@ -80,12 +74,13 @@ impl FreeMotion {
         // at the time of the pose before nothing has stopped
         let share = from_motion / (from_rest + from_motion).max(f64::MIN_POSITIVE);
         let mut stopped = *rest;
-        let axes = stopped.mean.fields_mut().into_iter().zip(&self.axes);
+        let axes = stopped
+            .mean
+            .fields_mut()
+            .into_iter()
+            .zip(self.with(rest, 1.0 - share));
         for (k, (mean, axis)) in axes.enumerate() {
-            let away = axis.mean[0] - *mean;
-            let within = rest.variance[k] + share * (axis.covariance[(0, 0)] - rest.variance[k]);
-            stopped.variance[k] = within + share * (1.0 - share) * away * away;
-            *mean += share * away;
+            (*mean, stopped.variance[k]) = (axis.mean[0], axis.covariance[(0, 0)]);
         }
         stopped
     }
@@ -107,14 +102,12 @@ impl FreeMotion {
             goes_on + starts,
             (1.0 - moves) * (1.0 - start) + moves * (1.0 - stays),
         );
-        self.start_from(rest, starts / now_moves);
-        for k in 0..3 {
-            self.axes[k] = model(k, self.radius, 1.0).predict(&self.axes[k], h);
-        }
+        let now = self.with(rest, starts / now_moves);
+        self.axes = std::array::from_fn(|k| model(k, self.radius, 1.0).predict(&now[k], h));
 
         // by which of the two the pose is likelier
         let moving = self.after(0.0);
-        let likely = |by: &NormalPose| WRONG + libm::exp(log_density(pose, noise, by));
+        let likely = |by: &NormalPose| WRONG + libm::exp(by.log_density(pose, noise));
         let (if_moves, if_rests) = (likely(&moving), likely(rest));
         self.log_odds = libm::log(now_moves * if_moves) - libm::log(now_rests * if_rests);
 
@@ -128,16 +121,12 @@ impl FreeMotion {
         }
     }
 
-    /// Each axis becomes the mixture of where it moves and, with this share, of one that starts from `rest`.
-    fn start_from(&mut self, rest: &NormalPose, share: f64) {
-        for (axis, start) in self.axes.iter_mut().zip(starting_from(rest, self.radius)) {
-            let away = start.mean - axis.mean;
-            let covariance = axis.covariance * (1.0 - share) + start.covariance * share;
-            *axis = Gaussian {
-                mean: axis.mean + away * share,
-                covariance: covariance + away * away.transpose() * (share * (1.0 - share)),
-            };
-        }
+    /// The mixture of where it moves and, with this share, of one that starts from `rest`, axis by axis.
+    fn with(&self, rest: &NormalPose, share: f64) -> [Gaussian<2>; 3] {
+        let starts = starting_from(rest, self.radius);
+        std::array::from_fn(|k| {
+            Gaussian::mixture(&[(1.0 - share, self.axes[k]), (share, starts[k])], 1.0)
+        })
     }
 
     /// That it moves.
@@ -159,26 +148,6 @@ fn model(k: usize, radius: f64, measurement_std: f64) -> ConstantVelocity {
         process_noise: 2.0 * speed * speed / SPEED_LASTS,
         measurement_std,
         initial_velocity_std: speed,
-    }
-}
-
-/// ln of how likely a pose with this noise is by a belief, relative to a perfect one.
-pub fn log_density(pose: &Pose, noise: [f64; 3], by: &NormalPose) -> f64 {
-    let away = difference(pose, &by.mean);
-    let axes = away.fields().into_iter().enumerate();
-    let parts = axes.map(|(k, away)| {
-        let variance = by.variance[k] + noise[k];
-        away * away / variance + libm::log(variance / noise[k])
-    });
-    -0.5 * parts.sum::<f64>()
-}
-
-/// From `from` to `to`, θ on the circle.
-pub fn difference(to: &Pose, from: &Pose) -> Pose {
-    Pose {
-        x: to.x - from.x,
-        y: to.y - from.y,
-        theta: wrapped(to.theta - from.theta),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Where a pusher may be that nobody sees: [`HiddenPusher`] (contact mode; docs/method.md (53)).
 
-use stickslip_dynamics::{Placed, Pose, Scene, StepInput, Twist, narrow_phase};
+use stickslip_dynamics::{Placed, Pose, Scene, StepInput, Twist};
 
+use crate::gap::gap;
 use crate::particle::step_plan::UnseenPusher;
 
 /// Gap of object and a pusher that nobody sees, up to which it counts as having reached the object (m).
@@ -16,7 +17,7 @@ pub(crate) struct HiddenPusher {
     moved: bool,
     /// Whether it would have reached the object by now.
     reached: bool,
-    /// For how long it has been seen again (s); infinite where it was never hidden.
+    /// For how long it has been seen again (s); 0 while nobody sees it, infinite where it was never hidden.
     back_for: f64,
 }
 
@@ -57,8 +58,8 @@ impl HiddenPusher {
         just_back
     }
 
-    /// A row at which nobody sees it, `h` (s) after the one before; `object` is where the object is thought to be, where
-    /// nobody sees that, either. What the pusher may do to it: in the dark nothing if it stood when it was last seen, since
+    /// A row at which nobody sees it, `h` (s) after the one before; `hidden_object` is where the object is thought to
+    /// be, where nobody sees that, either. What the pusher may do to it: in the dark nothing if it stood when it was last seen, since
     /// it has been lifted then.
     pub fn unseen(
         &mut self,
@@ -71,7 +72,11 @@ impl HiddenPusher {
         if let Some((twist, at)) = &mut self.last {
             *at = at.advance(*twist, h);
             let hidden_object = hidden_object.filter(|_| self.moved && !reached_before);
-            self.reached |= hidden_object.is_some_and(|object| gap(scene, object, *at) < REACHED);
+            let pusher = Placed::new(&scene.pusher.shape, *at);
+            let gap_to = |object| gap(&Placed::new(&scene.object.shape, object), &pusher);
+            self.reached |= hidden_object
+                .and_then(gap_to)
+                .is_some_and(|gap| gap < REACHED);
         }
         (self.moved || hidden_object.is_none()).then_some(UnseenPusher {
             twist: self.last.map(|(twist, _)| twist).unwrap_or_default(),
@@ -79,14 +84,4 @@ impl HiddenPusher {
             reaches: self.reached && !reached_before,
         })
     }
-}
-
-/// Between object and pusher (m).
-fn gap(scene: &Scene, object: Pose, pusher: Pose) -> f64 {
-    let mut gaps = Vec::new();
-    let object = Placed::new(&scene.object.shape, object);
-    let pusher = Placed::new(&scene.pusher.shape, pusher);
-    narrow_phase(&object, &pusher, f64::INFINITY, &mut gaps);
-    let gaps = gaps.iter().map(|gap| gap.gap);
-    gaps.fold(f64::INFINITY, f64::min)
 }

@@ -20,6 +20,7 @@ mod mode_finder;
 mod model;
 mod moved;
 pub(crate) mod noise_clock;
+mod normal_pose;
 pub(crate) mod observation;
 pub(crate) mod observer;
 pub(crate) mod pose_clock;

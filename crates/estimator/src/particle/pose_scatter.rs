@@ -2,8 +2,8 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::angle::difference;
 use crate::particle::camera_noise::MEMORY;
-use crate::particle::free_motion::difference;
 
 /// Which of position and angle an axis belongs to.
 pub const GROUP: [usize; 3] = [0, 0, 1];

@@ -3,11 +3,13 @@
 
 use stickslip_dynamics::{Lanes, Pose};
 
+use crate::angle::difference;
 use crate::covariance::PoseCovariance;
 use crate::particle::aside::Aside;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::camera_noise::{CameraNoise, MEMORY, NoisePrior};
-use crate::particle::free_motion::{FreeMotion, NormalPose, difference};
+use crate::particle::free_motion::FreeMotion;
+use crate::particle::normal_pose::NormalPose;
 use crate::particle::pose_scatter::{GROUP, PoseScatter};
 use crate::particle::student_pose::StudentPose;
 use crate::setup::{Camera, Setup};
@@ -90,7 +92,7 @@ impl RestingPose {
     }
 
     /// Something touches the object: whether it moves, the particles tell from now on.
-    pub fn is_touched(&mut self) {
+    pub fn touch(&mut self) {
         self.free = None;
     }
 
@@ -160,9 +162,9 @@ impl RestingPose {
         }
     }
 
-    /// Whether poses say that the object moves.
-    pub fn moves(&self) -> bool {
-        self.free.as_ref().is_some_and(FreeMotion::moves)
+    /// Whether the object waits no longer: something has touched it, or poses say that it moves.
+    pub fn waits_no_longer(&self) -> bool {
+        self.free.as_ref().is_none_or(FreeMotion::moves)
     }
 
     /// What all poses seen say together of where the object is after `h` (s).

@@ -35,6 +35,25 @@ pub struct MeasurementUpdate<const N: usize, const M: usize> {
 }
 
 impl<const N: usize> Gaussian<N> {
+    /// The normal distribution with the mean and the covariance of a mixture of parts (weight, distribution), whose
+    /// weights sum to `total`.
+    #[must_use]
+    pub fn mixture(parts: &[(f64, Self)], total: f64) -> Self {
+        let mean: SVector<f64, N> = parts
+            .iter()
+            .map(|(weight, state)| state.mean * (weight / total))
+            .sum();
+        let about =
+            |state: &Self| state.covariance + (state.mean - mean) * (state.mean - mean).transpose();
+        Self {
+            mean,
+            covariance: parts
+                .iter()
+                .map(|(weight, state)| about(state) * (weight / total))
+                .sum(),
+        }
+    }
+
     /// The state one step later: `transition` is F, `noise` is Q.
     #[must_use]
     pub fn predict(&self, transition: &SMatrix<f64, N, N>, noise: &SMatrix<f64, N, N>) -> Self {

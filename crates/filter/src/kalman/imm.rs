@@ -15,8 +15,6 @@
 
 use std::array::from_fn;
 
-use nalgebra::Vector2;
-
 use crate::kalman::constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
 use crate::kalman::gaussian::Gaussian;
 use crate::kalman::series::{Series, SeriesError};
@@ -103,7 +101,7 @@ impl<const M: usize> InteractingMultipleModel<M> {
             let weight: f64 = parts.iter().map(|(weight, _)| weight).sum();
             // a mode of probability 0 keeps its state
             if weight > 0.0 {
-                (weight, mixture(&parts, weight))
+                (weight, Gaussian::mixture(&parts, weight))
             } else {
                 (0.0, state.modes[j].1)
             }
@@ -169,25 +167,6 @@ impl<const M: usize> ImmState<M> {
     /// Mean and variance over the modes.
     #[must_use]
     pub fn estimate(&self) -> AxisEstimate {
-        AxisEstimate::from(mixture(&self.modes, 1.0))
-    }
-}
-
-/// The normal distribution with the mean and the covariance of a mixture whose weights sum to
-/// `total`.
-fn mixture(parts: &[(f64, Gaussian<2>)], total: f64) -> Gaussian<2> {
-    let mean: Vector2<f64> = parts
-        .iter()
-        .map(|(weight, state)| state.mean * (weight / total))
-        .sum();
-    let about = |state: &Gaussian<2>| {
-        state.covariance + (state.mean - mean) * (state.mean - mean).transpose()
-    };
-    Gaussian {
-        mean,
-        covariance: parts
-            .iter()
-            .map(|(weight, state)| about(state) * (weight / total))
-            .sum(),
+        AxisEstimate::from(Gaussian::mixture(&self.modes, 1.0))
     }
 }
