@@ -14,7 +14,7 @@ use crate::input::{Body, PusherMotion};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
-use crate::prepared_scene::{PreparedScene, PusherContext, StepBodies, StepContext};
+use crate::prepared_scene::{PreparedScene, StepBodies, StepContext};
 use crate::scene::{Fixel, Scene};
 use crate::se2::{Twist, Wrench};
 
@@ -112,17 +112,14 @@ impl<const W: usize> Assembly<W> {
         ncp.clear();
         self.growth = bodies.growth;
         let object = Transform::from(particles.pose);
-        let StepBodies {
-            context, pusher, ..
-        } = bodies;
-        self.set_body(prepared, (context, pusher), (particles, &object), ncp);
+        self.set_body(prepared, &bodies, (particles, &object), ncp);
         let scene = &prepared.scene;
         let creep = bodies.creep.map(|shares| {
             let speed = speed(&particles.twist, prepared.rho);
             shares.map(|share| share * speed)
         });
 
-        let pusher = pusher.map(|pusher| Other {
+        let pusher = bodies.pusher.map(|pusher| Other {
             body: Body::Pusher,
             shape: &scene.pusher.shape,
             transform: pusher.transform,
@@ -233,7 +230,12 @@ impl<const W: usize> Assembly<W> {
             ref stance,
             ..
         }: &PreparedScene,
-        (&StepContext { h, rate, .. }, pusher): (&StepContext, Option<&PusherContext<W>>),
+        &StepBodies {
+            context: &StepContext { h, rate, .. },
+            pusher,
+            stance: frame,
+            ..
+        }: &StepBodies<'_, W>,
         (particles, object): (&Particles<W>, &Transform<Lanes<W>>),
         ncp: &mut Ncp<W>,
     ) {
@@ -259,7 +261,7 @@ impl<const W: usize> Assembly<W> {
             (omega + torque * inv_inertia) * rho,
         ];
         let Friction { mu_s, d_tri, .. } = particles.friction;
-        let arms = scene.foot_arms(stance, object, d_tri);
+        let arms = scene.foot_arms(stance, object, (d_tri, frame));
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
             *row = FootRow {

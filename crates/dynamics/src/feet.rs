@@ -27,18 +27,17 @@ impl Scene {
         &self,
         stance: &[[f64; 2]; 3],
         object: &Transform<Lanes<W>>,
-        d_tri: Lanes<W>,
+        (d_tri, frame): (Lanes<W>, Option<&Pose<Lanes<W>>>),
     ) -> [[Lanes<W>; 2]; 3] {
         let radius = match self.feet {
             Feet::Tripod { .. } => d_tri,
             Feet::Known { .. } => Lanes::splat(1.0),
         };
-        let mut arms = [[Lanes::ZERO; 2]; 3];
-        for (arm, place) in arms.iter_mut().zip(stance) {
-            let [x, y] = object.rotate(*place);
-            *arm = [radius * x, radius * y];
-        }
-        arms
+        let Some(frame) = frame else {
+            return stance.map(|place| object.rotate(place).map(|x| radius * x));
+        };
+        let frame = Transform::from(*frame);
+        stance.map(|place| object.rotate(frame.transform_point(place.map(|x| radius * x))))
     }
 
     /// Each foot's share of the weight.
@@ -54,7 +53,7 @@ impl Scene {
     pub fn feet_at(&self, theta: f64, friction: &Friction, h: f64) -> [Foot; 3] {
         let total = friction.mu_s * self.object.mass * self.gravity * h;
         let object = Transform::from(Pose::new(0.0, 0.0, theta).map(|x| Lanes([x])));
-        let arms = self.foot_arms(&self.stance(), &object, Lanes([friction.d_tri]));
+        let arms = self.foot_arms(&self.stance(), &object, (Lanes([friction.d_tri]), None));
         let loads = self.foot_loads();
         std::array::from_fn(|k| Foot {
             arm: arms[k].map(|x| x.0[0]),

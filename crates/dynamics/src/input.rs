@@ -29,7 +29,7 @@ impl PusherMotion {
     }
 }
 
-/// Where pusher and fixels stand beside the poses that the input and the scene give, how much larger the
+/// Where pusher, fixels and feet stand beside the poses that the input and the scene give, how much larger the
 /// object is than its shape, and how contacts creep, particle by particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
@@ -42,6 +42,8 @@ pub struct Offsets<'a, const W: usize> {
     /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
     /// smaller by that.
     pub growth: &'a [Lanes<W>],
+    /// The frame of the feet in the object's (m, m, rad), chunk by chunk; empty where it is the object's.
+    pub stance: &'a [Pose<Lanes<W>>],
     /// At which share of the object's speed contacts with pusher and fixels slip where friction comes to its
     /// bound (docs/method.md (50)), chunk by chunk; empty where none creeps.
     pub creep: &'a [[Lanes<W>; 2]],

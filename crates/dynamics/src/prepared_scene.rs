@@ -83,6 +83,8 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
     /// By how much the object is larger than its shape (m).
     pub growth: Lanes<W>,
+    /// The frame of the feet in the object's; `None` where it is the object's.
+    pub stance: Option<&'a Pose<Lanes<W>>>,
     /// How contacts with pusher and fixels creep; `None` where they do not.
     pub creep: Option<&'a [Lanes<W>; 2]>,
 }
@@ -182,6 +184,15 @@ impl<const W: usize> Pushers<'_, W> {
     pub fn creep(&self, chunk: usize) -> Option<&[Lanes<W>; 2]> {
         match self {
             Self::Offset { offsets, .. } => offsets.creep.get(chunk),
+            _ => None,
+        }
+    }
+
+    /// The frame of the feet in the object's, in one chunk; `None` where it is the object's.
+    #[inline(always)]
+    pub fn stance(&self, chunk: usize) -> Option<&Pose<Lanes<W>>> {
+        match self {
+            Self::Offset { offsets, .. } => offsets.stance.get(chunk),
             _ => None,
         }
     }

@@ -121,12 +121,12 @@ impl Dynamics {
         work.pushers = contexts;
     }
 
-    /// The same for particles whose pusher and fixels stand beside the given poses, whose object is larger
+    /// The same for particles whose pusher, fixels and feet stand beside the given poses, whose object is larger
     /// than its shape, and whose contacts creep, each by its own `offsets`.
     ///
     /// # Panics
     /// If there is not one offset of the pusher and one growth for each chunk of particles, and one offset of each
-    /// fixel; nor one turn of the pusher and one creep, or none at all.
+    /// fixel; nor one turn of the pusher, one frame of the feet and one creep, or none at all.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -142,6 +142,8 @@ impl Dynamics {
         assert_eq!(offsets.growth.len(), chunks, "a growth for each chunk");
         let turn = offsets.pusher_turn.len();
         assert!(turn == chunks || turn == 0, "a turn for each chunk");
+        let stance = offsets.stance.len();
+        assert!(stance == chunks || stance == 0, "feet for each chunk");
         let creep = offsets.creep.len();
         assert!(creep == chunks || creep == 0, "a creep for each chunk");
         let pushers = Pushers::Offset {

@@ -149,6 +149,11 @@ impl Setup {
         camera.map_or(0.0, |camera| camera.pusher_orientation_std)
     }
 
+    /// Whether particles differ by where their feet stand.
+    pub(crate) fn support_is_uncertain(&self) -> bool {
+        self.uncertainty.centre_of_friction > 0.0 || self.uncertainty.tripod_angle > 0.0
+    }
+
     /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`]
     /// standard deviations of that pose (docs/method.md (13)). What stood farther behind the log
     /// contradicts: it is dragged to that distance.

@@ -250,6 +250,7 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
         "uncertainty.d_tri",
     ];
     let plain = [
+        ("uncertainty.centre_of_friction", unknown.centre_of_friction),
         ("uncertainty.drift", unknown.drift),
         ("uncertainty.variation", unknown.variation),
         ("uncertainty.force_std", unknown.force_std),
@@ -276,6 +277,8 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
         .collect();
     numbers.extend(lengths.map(|(name, value)| (name, value, NotNegative, Unit::Metre)));
     numbers.extend(positive.map(|(name, value)| (name, value, Positive, Unit::Metre)));
+    let angle = unknown.tripod_angle;
+    numbers.push(("uncertainty.tripod_angle", angle, NotNegative, Unit::Radian));
     numbers.push(("uncertainty.latency", unknown.latency, Share, Unit::Second));
     let spread = unknown.force_spread;
     numbers.push(("uncertainty.force_spread", spread, Share, Unit::None));

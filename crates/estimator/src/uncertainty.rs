@@ -9,6 +9,11 @@ use stickslip_dynamics::{Friction, Lanes};
 pub struct Uncertainty {
     /// Standard deviations of ln β, the priors of the friction parameters: 0.45 is 45 %.
     pub friction: Friction,
+    /// Standard deviation of where the centre of friction lies beside the centre of mass, on each axis, as a share of
+    /// the radius of gyration.
+    pub centre_of_friction: f64,
+    /// Standard deviation of the angle of the feet (rad).
+    pub tripod_angle: f64,
     /// Random step of ln β per step of 1/30 s, while the camera looks or the pusher moves; it keeps the
     /// prior.
     pub drift: f64,
@@ -47,6 +52,9 @@ pub struct Uncertainty {
     pub touch_gap: f64,
 }
 
+/// Standard deviation of the angle of a tripod that may stand anyhow (rad): it is the same after a third of a turn.
+const ANY_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
+
 impl Default for Uncertainty {
     fn default() -> Self {
         Self {
@@ -56,6 +64,8 @@ impl Default for Uncertainty {
                 mu_f: 0.45,
                 d_tri: 0.25,
             },
+            centre_of_friction: 0.15,
+            tripod_angle: ANY_ANGLE,
             drift: 0.05,
             variation: 0.3,
             variation_length: 0.04,

@@ -100,6 +100,7 @@ fn lanes_step_as_alone(level: Level) {
             pusher_turn: &[],
             fixels: &places,
             growth: &[Lanes::ZERO],
+            stance: &[],
             creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
@@ -165,6 +166,7 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
             pusher_turn: &turns,
             fixels: &[[Lanes::ZERO; 2]; 2],
             growth: &[Lanes::ZERO],
+            stance: &[],
             creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
@@ -210,6 +212,7 @@ fn an_object_that_has_grown_meets_larger_discs() {
             pusher_turn: &[],
             fixels: &[[Lanes::ZERO; 2]; 2],
             growth: &grown,
+            stance: &[],
             creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
@@ -264,6 +267,7 @@ fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
             pusher_turn: &[],
             fixels: &[[Lanes::ZERO; 2]; 2],
             growth: &[Lanes::ZERO],
+            stance: &[],
             creep: &shares,
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
@@ -273,6 +277,7 @@ fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
                 pusher_turn: &[],
                 fixels: &[[Lanes::ZERO; 2]; 2],
                 growth: &[Lanes::ZERO],
+                stance: &[],
                 creep: &[[Lanes([share(i)]); 2]],
             };
             dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, particle, &mut own_work);

@@ -16,7 +16,7 @@ const SINGLE: usize = 11;
 const FLAGS_PER_FIXEL: usize = 5;
 
 /// Columns of contact mode that do not belong to a fixel.
-const UNKNOWNS: usize = 17;
+const UNKNOWNS: usize = 20;
 
 /// Columns of contact mode for each fixel.
 const PER_FIXEL: usize = BELIEF_LEN + 2;
@@ -193,6 +193,11 @@ impl Columns {
         self.unknowns() + 14
     }
 
+    /// The frame of the feet in the object's, in standard deviations: x, y, angle (contact mode).
+    pub fn support(&self) -> usize {
+        self.unknowns() + 17
+    }
+
     /// log-likelihood of what is known of the latest row without the camera: the pusher's place and
     /// tactile readings (contact mode).
     pub fn felt_log_likelihood(&self) -> usize {
@@ -277,6 +282,7 @@ mod tests {
             (columns.force(), 1),
             (columns.creep(), 2),
             (columns.pusher_turn(), 1),
+            (columns.support(), 3),
         ];
         for j in 0..FIXELS {
             numbers.push((columns.sensor(j), BELIEF_LEN));

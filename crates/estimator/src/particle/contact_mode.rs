@@ -25,6 +25,7 @@ const CREEP_PAIR: u32 = 1 << 21;
 pub(super) const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
 const SHAKEN_PAIR: u32 = UNSEEN_PAIR + 2;
 const TURN_PAIR: u32 = SHAKEN_PAIR + 2;
+const SUPPORT_PAIR: u32 = TURN_PAIR + 2;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -75,7 +76,10 @@ impl Propagation {
         on_widest(
             self.level,
             #[inline(always)]
-            || self.load_offsets(transition, block),
+            || {
+                self.load_offsets(transition, block);
+                self.load_support(transition, block);
+            },
         );
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
@@ -109,6 +113,10 @@ impl Propagation {
         if transition.setup.pusher_turn() > 0.0 {
             self.normals_of(draw, TURN_PAIR, block);
             self.draw_pusher_turn(transition, plan, block);
+        }
+        if transition.setup.support_is_uncertain() {
+            self.normals_of(draw, SUPPORT_PAIR, block);
+            self.draw_support(transition, plan, block);
         }
         self.normals_of(draw, LATENCY_PAIR, block);
         on_widest(
@@ -243,6 +251,7 @@ impl Propagation {
             fixels: &self.fixel_offsets,
             growth: &self.growth,
             creep: &self.creep,
+            stance: &self.stance,
         };
         let particles = &mut self.particles[..chunks];
         let dynamics = &transition.dynamics;

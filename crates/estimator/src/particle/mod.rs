@@ -35,6 +35,7 @@ mod step_plan;
 mod student_pose;
 mod summary;
 mod sums;
+mod support;
 mod tactile_likelihood;
 pub(crate) mod touch_channel;
 mod unseen_pusher;

@@ -29,6 +29,9 @@ const CREEP_NUMBER: u32 = 1 << 20;
 /// Number of a particle's first draw for how the pusher is turned.
 const TURN_NUMBER: u32 = CREEP_NUMBER + 2;
 
+/// Number of a particle's first draw for where its feet stand.
+const SUPPORT_NUMBER: u32 = TURN_NUMBER + 2;
+
 /// The model of one setup, started at one pose.
 ///
 /// A new sensor is one more field of [`Observation`] and one more term of
@@ -170,7 +173,9 @@ impl<'o> ContactModel<'o> {
         let [a, b] = [normals[12], normals[13]];
         block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
         block.column_mut(columns.pusher_turn())[i] = draw.normal(particle, TURN_NUMBER);
+        let support = draw.normals::<4>(particle, SUPPORT_NUMBER);
         for k in 0..3 {
+            block.column_mut(columns.support() + k)[i] = support[k];
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
         }
         let sensor = TouchChannel::new(&setup.tactile).start::<1>();

@@ -36,11 +36,13 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
         columns.creep(),
         columns.creep() + 1,
     ];
+    let support = columns.support()..columns.support() + 3;
     let fixels = (0..columns.fixels()).map(move |j| columns.fixel_offset(j));
     let linear = poses
         .flat_map(|first| first..first + 3)
         .chain(columns.variation()..columns.variation() + 4)
         .chain(rig)
+        .chain(support)
         .chain(fixels.flat_map(|first| first..first + 2));
     linear
         .map(|column| (column, Scale::Linear))

@@ -2,7 +2,7 @@
 //! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Twist, on_widest,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, Pose, StepWork, Twist, on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
@@ -55,6 +55,8 @@ pub struct Propagation {
     pub(super) growth: Vec<Column>,
     /// How contacts with pusher and fixels creep; empty where none does (contact mode).
     pub(super) creep: Vec<[Column; 2]>,
+    /// The frame of the feet in each particle's object; empty where it is known (contact mode).
+    pub(super) stance: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
     /// Velocities at which an unseen pusher carries objects along (contact mode).
@@ -111,6 +113,7 @@ impl Default for Propagation {
             fixel_offsets: Vec::new(),
             growth: Vec::new(),
             creep: Vec::new(),
+            stance: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             carried: [Twist::default(); CHUNKS],
             untouched: [Mask::splat(false); CHUNKS],

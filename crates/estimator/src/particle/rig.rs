@@ -107,7 +107,7 @@ impl Propagation {
     /// A chunk of an unknown, by the column `number` of normal numbers: drawn anew until what tells of it has been
     /// `near`; then a random `step` that keeps its prior, the standard normal distribution, where unknowns wander.
     #[inline(always)]
-    fn wander(
+    pub(super) fn wander(
         &self,
         plan: &StepPlan,
         (near, step): (Mask<LANES>, Column),

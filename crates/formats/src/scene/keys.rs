@@ -68,6 +68,8 @@ pub(super) const TABLES: [(&str, &[&str]); 11] = [
             "mu_p",
             "mu_f",
             "d_tri",
+            "centre_of_friction",
+            "tripod_angle",
             "drift",
             "variation",
             "variation_length",

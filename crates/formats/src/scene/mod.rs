@@ -204,6 +204,7 @@ fn syntax(source: Source<'_>, place: usize, message: &str) -> SceneError {
 fn setup(root: &Table<'_>) -> Result<Setup> {
     let scene = scene(root)?;
     let by_default = FilterSettings::around(&scene.nominal);
+    let unknown = uncertainty::with_support(&root.section("support")?);
     Ok(Setup {
         stall_force_assumed: root.section("pusher")?.optional(STALL_FORCE.key).is_none(),
         camera: root
@@ -223,12 +224,10 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
             .map(|table| sensing::filter(table, by_default))
             .transpose()?
             .unwrap_or(by_default),
-        uncertainty: root
-            .section_if("uncertainty")?
-            .as_ref()
-            .map(uncertainty::uncertainty)
-            .transpose()?
-            .unwrap_or_default(),
+        uncertainty: match root.section_if("uncertainty")? {
+            Some(table) => uncertainty::uncertainty(&table, unknown)?,
+            None => unknown,
+        },
         start: root
             .section_if("start")?
             .as_ref()

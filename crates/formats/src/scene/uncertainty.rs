@@ -31,6 +31,18 @@ const D_TRI: Quantity = Quantity::new(
     Unit::None,
     Rule::NotNegative,
 );
+const CENTRE_OF_FRICTION: Quantity = Quantity::new(
+    "centre_of_friction",
+    "the standard deviation of the centre of friction beside the centre of mass as a share of the radius of gyration",
+    Unit::None,
+    Rule::NotNegative,
+);
+const TRIPOD_ANGLE: Quantity = Quantity::new(
+    "tripod_angle",
+    "the standard deviation of the direction of the first foot",
+    Unit::Radian,
+    Rule::NotNegative,
+);
 const DRIFT: Quantity = Quantity::new(
     "drift",
     "the relative change of the friction parameters per step of 1/30 s",
@@ -122,9 +134,25 @@ const TOUCH_GAP: Quantity = Quantity::new(
     Rule::Positive,
 );
 
-/// `[uncertainty]`.
-pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> {
-    let default = Uncertainty::default();
+/// What is not known where the file does not say: where feet are given, they stand there, and so does a tripod
+/// whose angle is.
+pub(super) fn with_support(support: &Table<'_>) -> Uncertainty {
+    let given = |key: &str| support.optional(key).is_some();
+    let mut unknown = Uncertainty::default();
+    if given("feet") {
+        unknown.centre_of_friction = 0.0;
+    }
+    if given("feet") || given("tripod_angle") {
+        unknown.tripod_angle = 0.0;
+    }
+    unknown
+}
+
+/// `[uncertainty]`, beside what is not known by `default`.
+pub(super) fn uncertainty(
+    table: &Table<'_>,
+    default: Uncertainty,
+) -> Result<Uncertainty, SceneError> {
     let number = |quantity: &Quantity, default: f64| table.number_or(quantity, default);
     let (fixel_position, outline, latency) = (
         number(&FIXEL_POSITION, default.fixel_position)?,
@@ -147,6 +175,8 @@ pub(super) fn uncertainty(table: &Table<'_>) -> Result<Uncertainty, SceneError> 
             mu_f: number(&MU_F, default.friction.mu_f)?,
             d_tri: number(&D_TRI, default.friction.d_tri)?,
         },
+        centre_of_friction: number(&CENTRE_OF_FRICTION, default.centre_of_friction)?,
+        tripod_angle: number(&TRIPOD_ANGLE, default.tripod_angle)?,
         drift: number(&DRIFT, default.drift)?,
         variation: number(&VARIATION, default.variation)?,
         variation_length: number(&VARIATION_LENGTH, default.variation_length)?,

@@ -1,0 +1,61 @@
+//! What the particles do not know of how the object stands (contact mode; docs/method.md (55)): where its centre of
+//! friction lies, and in which directions its three feet.
+
+use stickslip_dynamics::{Lanes, Pose};
+use stickslip_filter::BlockMut;
+
+use crate::particle::chunk::{LANES, flag};
+use crate::particle::columns::Columns;
+use crate::particle::propagation::{Propagation, Transition, load_columns};
+use crate::particle::step_plan::StepPlan;
+
+/// Share of their spread by which centre and angle wander: copies of a particle are to differ.
+const SUPPORT_STEP: f64 = 0.1;
+
+/// μ_s, the parameter that takes part where the object moves: so do the feet.
+const MOVED: usize = 0;
+
+impl Propagation {
+    /// Where the feet stand in the object's frame: drawn anew until the object moves.
+    #[inline(always)]
+    pub(super) fn draw_support(
+        &self,
+        Transition { columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let step = Lanes::splat(SUPPORT_STEP);
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let moved = flag(&block.as_block(), Columns::felt(MOVED), chunk);
+            for number in 0..3 {
+                let column = columns.support() + number;
+                self.wander(plan, (moved, step), number, block.column_mut(column), chunk);
+            }
+        }
+    }
+
+    /// The frame of the feet in the object's, in all substeps.
+    #[inline(always)]
+    pub(super) fn load_support(
+        &mut self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        block: &BlockMut<'_>,
+    ) {
+        self.stance.clear();
+        if !setup.support_is_uncertain() {
+            return;
+        }
+        let centre = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
+        let angle = setup.uncertainty.tripod_angle;
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let mut frame = Pose::default();
+            load_columns(block, columns.support(), chunk, frame.fields_mut());
+            let Pose { x, y, theta } = frame;
+            self.stance.push(Pose {
+                x: x * centre,
+                y: y * centre,
+                theta: theta * angle,
+            });
+        }
+    }
+}
