@@ -8,6 +8,8 @@ use stickslip::{RunOptions, Setup, TactileUse};
 pub enum Ingredient {
     /// Priors of the friction parameters, and their drift.
     FrictionPriors,
+    /// A centre of friction that is not the centre of mass, and feet that are turned.
+    Support,
     /// Friction that differs from place to place.
     Variation,
     /// Four fifths of the random force: without any, particles would have one future.
@@ -42,8 +44,9 @@ pub enum Ingredient {
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::FrictionPriors,
+        Self::Support,
         Self::Variation,
         Self::Force,
         Self::PusherOffset,
@@ -66,6 +69,7 @@ impl Ingredient {
     pub fn left_out(self) -> &'static str {
         match self {
             Self::FrictionPriors => "friction as told, no drift",
+            Self::Support => "feet as told",
             Self::Variation => "no variation from place to place",
             Self::Force => "a fifth of the force",
             Self::PusherOffset => "pusher where logged",
@@ -91,6 +95,10 @@ impl Ingredient {
             Self::FrictionPriors => {
                 unknown.friction = Friction::default();
                 unknown.drift = 0.0;
+            }
+            Self::Support => {
+                unknown.centre_of_friction = 0.0;
+                unknown.tripod_angle = 0.0;
             }
             Self::Variation => unknown.variation = 0.0,
             Self::Force => unknown.force_std *= 0.2,

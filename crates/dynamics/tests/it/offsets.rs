@@ -194,6 +194,88 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
     );
 }
 
+/// Feet in a frame of their own are known feet at the same places.
+#[test]
+fn feet_in_a_frame_of_their_own_stand_where_known_feet_do() {
+    for level in [Level::new(), Level::baseline()] {
+        feet_stand_as_known(level);
+    }
+}
+
+fn feet_stand_as_known(level: Level) {
+    const LANES: usize = 8;
+    let frame = |i: usize| {
+        Pose::new(
+            1e-3 * (i as f64 - 4.0),
+            2e-3 - 5e-4 * i as f64,
+            0.2 * i as f64,
+        )
+    };
+    let dynamics = Dynamics::new(scene([[0.0; 2]; 2])).with_level(level);
+    let mut chunk = [Particles::<LANES>::default()];
+    (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
+    let column = |of: &dyn Fn(Pose) -> f64| Lanes(std::array::from_fn(|i| of(frame(i))));
+    let frames = [Pose {
+        x: column(&|frame| frame.x),
+        y: column(&|frame| frame.y),
+        theta: column(&|frame| frame.theta),
+    }];
+    let mut work = StepWork::default();
+    let mut alone: Vec<Particle> = vec![Particle::default(); LANES];
+    let mut own_work = StepWork::<1>::default();
+    for step in 0..30 {
+        let offsets = Offsets {
+            pusher: &[[Lanes::ZERO; 2]],
+            pusher_turn: &[],
+            fixels: &[[Lanes::ZERO; 2]; 2],
+            growth: &[Lanes::ZERO],
+            stance: &frames,
+            creep: &[],
+        };
+        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
+        for (i, particle) in alone.iter_mut().enumerate() {
+            let mut one = [*particle];
+            Dynamics::new(on_known_feet(frame(i))).step(
+                &push(step, [0.0; 2]),
+                &[FRICTION],
+                &mut one,
+                &mut own_work,
+            );
+            *particle = one[0];
+            let (found, expected) = (chunk[0].get(i).pose, particle.pose);
+            let apart = (found.x - expected.x).hypot(found.y - expected.y);
+            assert!(
+                apart + 0.02 * (found.theta - expected.theta).abs() < 1e-9,
+                "lane {i}, step {step}: {found:?}, {expected:?}"
+            );
+        }
+    }
+    let turned: Vec<f64> = alone.iter().map(|particle| particle.pose.theta).collect();
+    let apart = turned.windows(2).map(|pair| (pair[0] - pair[1]).abs());
+    assert!(apart.fold(0.0, f64::max) > 1e-3, "{turned:?}");
+}
+
+/// The scene on three known feet, where those of a tripod in `frame` stand.
+fn on_known_feet(frame: Pose) -> Scene {
+    let mut scene = scene([[0.0; 2]; 2]);
+    let Feet::Tripod { angle } = scene.feet else {
+        panic!("a tripod");
+    };
+    let positions = [0.0, 1.0, 2.0].map(|third: f64| {
+        let direction = frame.theta + angle + third * std::f64::consts::TAU / 3.0;
+        let (sin, cos) = libm::sincos(direction);
+        [
+            frame.x + FRICTION.d_tri * cos,
+            frame.y + FRICTION.d_tri * sin,
+        ]
+    });
+    scene.feet = Feet::Known {
+        positions,
+        loads: [1.0 / 3.0; 3],
+    };
+    scene
+}
+
 /// A larger object is one that meets discs which are larger by as much.
 #[test]
 fn an_object_that_has_grown_meets_larger_discs() {

@@ -2,7 +2,8 @@
 //! which keeps of the parameters what took part.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, Pose, StepWork, Twist, on_widest,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, Pose, StepWork, Twist,
+    on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
