@@ -1,6 +1,6 @@
 //! What a row says of the shape of the belief: modes, how contacts slip, and who descends from whom.
 
-use crate::common::{log, setup};
+use crate::common::{know_feet, log, setup};
 use stickslip::dynamics::{Part, Pose, Shape};
 use stickslip::{Estimate, EstimateRow, Log, Mode, Occlusion, RunOptions, Setup, run};
 
@@ -21,8 +21,10 @@ fn head_on_with(mode: Mode, seed: u64) -> (Setup, Estimate) {
     let mut setup = setup(&[[0.06, 0.0]]);
     let nominal = &mut setup.scene.nominal;
     (nominal.mu_p, nominal.mu_f) = (0.05, 0.05);
-    // on a rig that is measured well hardly anything would bring the disc off its balance
+    // on a rig that is measured well hardly anything would bring the disc off its balance; feet beside its middle would
+    // tell every particle from the start on which side it leaves
     setup.uncertainty.well_measured = 1.0;
+    know_feet(&mut setup);
     let stopped = |time: f64| time.min(3.5);
     let pusher = |time: f64| Some(Pose::new(-0.036 + SPEED * stopped(time), 0.0, 0.0));
     let log = log(140, frame, pusher);
@@ -236,7 +238,8 @@ fn a_face_that_lies_on_the_pusher_is_known_as_well_as_its_angle() {
         spread_of_a_flush_square(0.0),
         spread_of_a_flush_square(3e-3),
     );
-    assert!(known < 1e-4, "{known}");
+    // what disturbs its force tilts it by some tenths of a milliradian, until it lies on the bar again
+    assert!(known < 1e-3, "{known}");
     // on a rig as rough as told; some are smoother
     assert!((1.5e-3..8e-3).contains(&noisy), "{noisy}");
 }

@@ -59,6 +59,12 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
     }
 }
 
+/// The feet stand as told: no particle has its own.
+pub fn know_feet(setup: &mut Setup) {
+    setup.uncertainty.centre_of_friction = 0.0;
+    setup.uncertainty.tripod_angle = 0.0;
+}
+
 /// A log whose camera sees the object at `object(time)`, and the pusher at `pusher(time)`.
 pub fn log(
     rows: usize,
@@ -103,9 +109,10 @@ pub fn run_from_rest(setup: &Setup, seed: u64, seeing: bool, observer: &impl Obs
 }
 
 /// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
-/// else it slides round the fixel. Here it slides.
+/// else it slides round the fixel, if its feet stand about its middle. Here it slides.
 pub fn slippery() -> (Setup, Log) {
     let mut slippery = setup(&[[0.032, -0.022]]);
+    know_feet(&mut slippery);
     let nominal = &mut slippery.scene.nominal;
     (nominal.mu_p, nominal.mu_f) = (0.15, 0.15);
     let beside = |time: f64| Some(Pose::new(-0.0348 + 0.02 * time, 0.004, 0.0));
