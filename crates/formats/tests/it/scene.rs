@@ -413,3 +413,22 @@ fn who_tells_a_rig_worse_than_most_means_it_on_all_rigs() {
         0.5
     );
 }
+
+#[test]
+fn feet_are_unknown_as_far_as_no_scene_tells_them() {
+    let feet = "feet = [[-0.03, -0.04], [0.03, -0.04], [0.0, 0.02]]";
+    let turned = "tripod_radius = 0.02\ntripod_angle = 0.5";
+    let unknown = |support: &str, lines: &str| {
+        let text = replaced(LEAST, "tripod_radius = 0.02", support);
+        let found = read(&format!("{text}\n[uncertainty]\n{lines}\n")).uncertainty;
+        [found.centre_of_friction, found.tripod_angle]
+    };
+    let any_angle = std::f64::consts::FRAC_PI_3;
+    let told = "centre_of_friction = 0.1\ntripod_angle = 0.2";
+    assert_eq!(unknown("tripod_radius = 0.02", ""), [0.15, any_angle]);
+    assert_eq!(unknown(turned, ""), [0.15, 0.0]);
+    assert_eq!(unknown(feet, ""), [0.0, 0.0]);
+    for support in ["tripod_radius = 0.02", turned, feet] {
+        assert_eq!(unknown(support, told), [0.1, 0.2], "{support}");
+    }
+}
