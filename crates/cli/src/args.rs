@@ -232,7 +232,7 @@ pub enum MethodName {
 /// Rules of the particle filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModeName {
-    /// Friction, offsets and latency are unknown, sensors may fail for a while (`uncertainty` in the scene)
+    /// Friction, offsets, feet and latency are unknown, sensors may fail for a while (`uncertainty` in the scene)
     Contact,
     /// As published by Zhang & Trinkle (ICRA 2012)
     Paper,

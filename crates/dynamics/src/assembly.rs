@@ -233,7 +233,7 @@ impl<const W: usize> Assembly<W> {
         &StepBodies {
             context: &StepContext { h, rate, .. },
             pusher,
-            stance: frame,
+            foot_offset,
             ..
         }: &StepBodies<'_, W>,
         (particles, object): (&Particles<W>, &Transform<Lanes<W>>),
@@ -261,7 +261,7 @@ impl<const W: usize> Assembly<W> {
             (omega + torque * inv_inertia) * rho,
         ];
         let Friction { mu_s, d_tri, .. } = particles.friction;
-        let arms = scene.foot_arms(stance, object, (d_tri, frame));
+        let arms = scene.foot_arms(stance, object, (d_tri, foot_offset));
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
             *row = FootRow {

@@ -40,7 +40,7 @@ impl<const W: usize> Source<W> for BlockProblems<'_, W> {
                 pusher: self.pushers.of(self.first + chunk).as_ref(),
                 fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
                 growth: self.pushers.growth(self.first + chunk),
-                stance: self.pushers.stance(self.first + chunk),
+                foot_offset: self.pushers.foot_offset(self.first + chunk),
                 creep: self.pushers.creep(self.first + chunk),
             },
             &self.particles[chunk],

@@ -76,9 +76,9 @@ impl<const W: usize> Pushers<'_, W> {
             } => {
                 let beside: Vec<_> = self.fixel_offsets(chunk).iter().map(alone).collect();
                 let creep: Vec<_> = self.creep(chunk).into_iter().map(alone).collect();
-                let stance = self.stance(chunk).into_iter();
-                let stance: Vec<_> = stance
-                    .map(|frame| frame.map(|x| Lanes([x.0[lane]])))
+                let feet = self.foot_offset(chunk).into_iter();
+                let feet: Vec<_> = feet
+                    .map(|offset| offset.map(|x| Lanes([x.0[lane]])))
                     .collect();
                 let turn = offsets.pusher_turn.get(chunk);
                 let turn: Vec<_> = turn.map(|turn| Lanes([turn.0[lane]])).into_iter().collect();
@@ -87,7 +87,7 @@ impl<const W: usize> Pushers<'_, W> {
                     pusher_turn: &turn,
                     fixels: &beside,
                     growth: &[Lanes([offsets.growth[chunk].0[lane]])],
-                    stance: &stance,
+                    foot_offsets: &feet,
                     creep: &creep,
                 };
                 then(&Pushers::Offset {

@@ -21,23 +21,40 @@ impl Scene {
     }
 
     /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
-    /// (m).
+    /// (m). With an offset they stand beside the scene's, and are turned about their centre of friction.
     #[inline(always)]
     pub(crate) fn foot_arms<const W: usize>(
         &self,
         stance: &[[f64; 2]; 3],
         object: &Transform<Lanes<W>>,
-        (d_tri, frame): (Lanes<W>, Option<&Pose<Lanes<W>>>),
+        (d_tri, offset): (Lanes<W>, Option<&Pose<Lanes<W>>>),
     ) -> [[Lanes<W>; 2]; 3] {
         let radius = match self.feet {
             Feet::Tripod { .. } => d_tri,
             Feet::Known { .. } => Lanes::splat(1.0),
         };
-        let Some(frame) = frame else {
+        let Some(offset) = offset else {
             return stance.map(|place| object.rotate(place).map(|x| radius * x));
         };
-        let frame = Transform::from(*frame);
-        stance.map(|place| object.rotate(frame.transform_point(place.map(|x| radius * x))))
+        let (offset, centre) = (Transform::from(*offset), self.centre_of_friction());
+        stance.map(|place| {
+            let from_centre = std::array::from_fn(|k| radius * place[k] - centre[k]);
+            let turned = offset.transform_point(from_centre);
+            object.rotate(std::array::from_fn(|k| turned[k] + centre[k]))
+        })
+    }
+
+    /// Centre of friction in the object's frame (m): where the feet's friction acts on an object that slides without
+    /// turning.
+    fn centre_of_friction(&self) -> [f64; 2] {
+        match self.feet {
+            Feet::Tripod { .. } => [0.0; 2],
+            Feet::Known { positions, loads } => {
+                let sum =
+                    |axis: usize| (0..3).map(|foot| loads[foot] * positions[foot][axis]).sum();
+                [sum(0), sum(1)]
+            }
+        }
     }
 
     /// Each foot's share of the weight.

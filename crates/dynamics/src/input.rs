@@ -42,8 +42,9 @@ pub struct Offsets<'a, const W: usize> {
     /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
     /// smaller by that.
     pub growth: &'a [Lanes<W>],
-    /// The frame of the feet in the object's (m, m, rad), chunk by chunk; empty where it is the object's.
-    pub stance: &'a [Pose<Lanes<W>>],
+    /// By how far the feet stand beside the scene's (m, m), and are turned about their centre of friction (rad), in the
+    /// object's frame, chunk by chunk; empty where they stand as in the scene.
+    pub foot_offsets: &'a [Pose<Lanes<W>>],
     /// At which share of the object's speed contacts with pusher and fixels slip where friction comes to its
     /// bound (docs/method.md (50)), chunk by chunk; empty where none creeps.
     pub creep: &'a [[Lanes<W>; 2]],

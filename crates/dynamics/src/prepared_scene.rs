@@ -83,8 +83,8 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
     /// By how much the object is larger than its shape (m).
     pub growth: Lanes<W>,
-    /// The frame of the feet in the object's; `None` where it is the object's.
-    pub stance: Option<&'a Pose<Lanes<W>>>,
+    /// By how far the feet stand beside the scene's and are turned; `None` where they stand as there.
+    pub foot_offset: Option<&'a Pose<Lanes<W>>>,
     /// How contacts with pusher and fixels creep; `None` where they do not.
     pub creep: Option<&'a [Lanes<W>; 2]>,
 }
@@ -188,11 +188,11 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// The frame of the feet in the object's, in one chunk; `None` where it is the object's.
+    /// By how far the feet stand beside the scene's and are turned, in one chunk; `None` where they stand as there.
     #[inline(always)]
-    pub fn stance(&self, chunk: usize) -> Option<&Pose<Lanes<W>>> {
+    pub fn foot_offset(&self, chunk: usize) -> Option<&Pose<Lanes<W>>> {
         match self {
-            Self::Offset { offsets, .. } => offsets.stance.get(chunk),
+            Self::Offset { offsets, .. } => offsets.foot_offsets.get(chunk),
             _ => None,
         }
     }

@@ -142,8 +142,8 @@ impl Dynamics {
         assert_eq!(offsets.growth.len(), chunks, "a growth for each chunk");
         let turn = offsets.pusher_turn.len();
         assert!(turn == chunks || turn == 0, "a turn for each chunk");
-        let stance = offsets.stance.len();
-        assert!(stance == chunks || stance == 0, "feet for each chunk");
+        let feet = offsets.foot_offsets.len();
+        assert!(feet == chunks || feet == 0, "feet for each chunk");
         let creep = offsets.creep.len();
         assert!(creep == chunks || creep == 0, "a creep for each chunk");
         let pushers = Pushers::Offset {

@@ -9,10 +9,10 @@ use stickslip_dynamics::{Friction, Lanes};
 pub struct Uncertainty {
     /// Standard deviations of ln β, the priors of the friction parameters: 0.45 is 45 %.
     pub friction: Friction,
-    /// Standard deviation of where the centre of friction lies beside the centre of mass, on each axis, as a share of
-    /// the radius of gyration.
+    /// Standard deviation of where the centre of friction lies beside that of the scene's feet, which is the centre of
+    /// mass for a tripod, on each axis, as a share of the radius of gyration.
     pub centre_of_friction: f64,
-    /// Standard deviation of the angle of the feet (rad).
+    /// Standard deviation of the angle by which the feet are turned about that centre (rad).
     pub tripod_angle: f64,
     /// Random step of ln β per step of 1/30 s, while the camera looks or the pusher moves; it keeps the
     /// prior.
@@ -96,6 +96,16 @@ const CREEP_OF_LEARNERS: f64 = 0.1;
 const LATEST: f64 = 10.0;
 
 impl Uncertainty {
+    /// The same where the feet are known to stand as the scene says.
+    #[must_use]
+    pub fn with_known_feet(self) -> Self {
+        Self {
+            centre_of_friction: 0.0,
+            tripod_angle: 0.0,
+            ..self
+        }
+    }
+
     /// b of docs/method.md (36): the factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on a
     /// rig of logarithm `roughness`, beside its own; `well_measured` on the smoother half of rigs, 1 on the others.
     #[inline(always)]

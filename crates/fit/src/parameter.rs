@@ -7,9 +7,6 @@ use stickslip_formats::nearest;
 use crate::error::FitError;
 use crate::prior::Prior;
 
-/// How far the centre of friction may be from the origin, as a share of the radius of gyration.
-const CENTRE_STD: f64 = 0.15;
-
 /// How well the size of an outline is known.
 const SCALE_STD: f64 = 0.02;
 
@@ -176,7 +173,9 @@ impl Parameter {
             Self::MuP => log_normal(nominal.mu_p, open.friction.mu_p),
             Self::MuF => log_normal(nominal.mu_f, open.friction.mu_f),
             Self::TripodRadius => log_normal(nominal.d_tri, open.friction.d_tri),
-            Self::CentreX | Self::CentreY => normal(0.0, CENTRE_STD * setup.virtual_radius()),
+            Self::CentreX | Self::CentreY => {
+                normal(0.0, open.centre_of_friction * setup.virtual_radius())
+            }
             Self::OutlineScale => log_normal(1.0, SCALE_STD),
             Self::OutlineX | Self::OutlineY | Self::PusherX | Self::PusherY => {
                 normal(0.0, OFFSET_STD)

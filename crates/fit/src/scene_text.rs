@@ -1,5 +1,6 @@
 //! A scene file with what was learnt: [`Fit::scene_text`].
 
+use stickslip::Setup;
 use stickslip_dynamics::Feet;
 use stickslip_formats::{SceneEdit, read_scene};
 
@@ -62,11 +63,29 @@ impl Fit {
             is(|p| matches!(p, Parameter::CentreX | Parameter::CentreY)),
         ) {
             edit.set_feet(positions, loads);
+            // given feet would be known exactly
+            let unknown = |key| ["uncertainty", key];
+            edit.set(
+                &unknown("centre_of_friction"),
+                self.spread_of_centre(&setup),
+            );
+            edit.set(&unknown("tripod_angle"), setup.uncertainty.tripod_angle);
         }
         if let (Some(camera), true) = (setup.camera, is(|p| p == Parameter::Latency)) {
             edit.set(&["camera", "latency"], camera.latency);
         }
         Ok(edit.text())
+    }
+
+    /// How well the centre of friction is known, on one axis, as a share of the radius of gyration.
+    fn spread_of_centre(&self, setup: &Setup) -> f64 {
+        let is_centre = |p| matches!(p, Parameter::CentreX | Parameter::CentreY);
+        let centre = self
+            .parameters
+            .iter()
+            .filter(|fitted| is_centre(fitted.parameter));
+        let variance: f64 = centre.map(|fitted| fitted.std * fitted.std / 2.0).sum();
+        variance.sqrt() / setup.virtual_radius()
     }
 
     /// What was learnt, for people.

@@ -4,7 +4,7 @@
 //! It takes friction and the disturbing force for unknown as contact mode does, and moves by the same
 //! pusher track; its belief of them is normal and its transition linear, by differences. Tactile readings
 //! are not used: a reading is 0 or 1, and its derivative by the state, all that this filter could use of
-//! it, is 0 nearly everywhere. Offsets, outline and what is unknown of the latency are left out, too.
+//! it, is 0 nearly everywhere. Offsets, outline, feet and what is unknown of the latency are left out, too.
 
 use crate::baseline::belief::Belief;
 use crate::baseline::linearised_step::LinearisedStep;

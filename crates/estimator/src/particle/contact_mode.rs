@@ -1,5 +1,5 @@
 //! What contact mode adds to a step (docs/method.md, "Contact mode"): every particle has its own
-//! friction, offsets and latency, and its own view of the tactile sensors.
+//! friction, offsets, feet and latency, and its own view of the tactile sensors.
 
 use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
@@ -116,7 +116,11 @@ impl Propagation {
         }
         if transition.setup.support_is_uncertain() {
             self.normals_of(draw, SUPPORT_PAIR, block);
-            self.draw_support(transition, plan, block);
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || self.draw_support(transition, plan, block),
+            );
         }
         self.normals_of(draw, LATENCY_PAIR, block);
         on_widest(
@@ -251,7 +255,7 @@ impl Propagation {
             fixels: &self.fixel_offsets,
             growth: &self.growth,
             creep: &self.creep,
-            stance: &self.stance,
+            foot_offsets: &self.foot_offsets,
         };
         let particles = &mut self.particles[..chunks];
         let dynamics = &transition.dynamics;

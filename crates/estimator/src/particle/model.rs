@@ -173,9 +173,9 @@ impl<'o> ContactModel<'o> {
         let [a, b] = [normals[12], normals[13]];
         block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
         block.column_mut(columns.pusher_turn())[i] = draw.normal(particle, TURN_NUMBER);
-        let support = draw.normals::<4>(particle, SUPPORT_NUMBER);
+        let support = draw.normals::<3>(particle, SUPPORT_NUMBER);
+        write(block, columns.support(), i, support.each_ref());
         for k in 0..3 {
-            block.column_mut(columns.support() + k)[i] = support[k];
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
         }
         let sensor = TouchChannel::new(&setup.tactile).start::<1>();

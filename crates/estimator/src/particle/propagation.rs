@@ -56,8 +56,8 @@ pub struct Propagation {
     pub(super) growth: Vec<Column>,
     /// How contacts with pusher and fixels creep; empty where none does (contact mode).
     pub(super) creep: Vec<[Column; 2]>,
-    /// The frame of the feet in each particle's object; empty where it is known (contact mode).
-    pub(super) stance: Vec<Pose<Column>>,
+    /// By how far each particle's feet stand beside the scene's; empty where these are known (contact mode).
+    pub(super) foot_offsets: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
     /// Velocities at which an unseen pusher carries objects along (contact mode).
@@ -114,7 +114,7 @@ impl Default for Propagation {
             fixel_offsets: Vec::new(),
             growth: Vec::new(),
             creep: Vec::new(),
-            stance: Vec::new(),
+            foot_offsets: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             carried: [Twist::default(); CHUNKS],
             untouched: [Mask::splat(false); CHUNKS],

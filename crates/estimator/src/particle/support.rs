@@ -34,24 +34,24 @@ impl Propagation {
         }
     }
 
-    /// The frame of the feet in the object's, in all substeps.
+    /// By how far the feet stand beside the scene's and are turned, in all substeps.
     #[inline(always)]
     pub(super) fn load_support(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         block: &BlockMut<'_>,
     ) {
-        self.stance.clear();
+        self.foot_offsets.clear();
         if !setup.support_is_uncertain() {
             return;
         }
         let centre = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
         let angle = setup.uncertainty.tripod_angle;
         for chunk in 0..block.len().div_ceil(LANES) {
-            let mut frame = Pose::default();
-            load_columns(block, columns.support(), chunk, frame.fields_mut());
-            let Pose { x, y, theta } = frame;
-            self.stance.push(Pose {
+            let mut offset = Pose::default();
+            load_columns(block, columns.support(), chunk, offset.fields_mut());
+            let Pose { x, y, theta } = offset;
+            self.foot_offsets.push(Pose {
                 x: x * centre,
                 y: y * centre,
                 theta: theta * angle,

@@ -1,6 +1,6 @@
 //! A pusher whose poses are missing: what it does to the object meanwhile, and when it is back.
 
-use crate::common::setup;
+use crate::common::{know_feet, setup};
 use stickslip::dynamics::Pose;
 use stickslip::*;
 
@@ -33,11 +33,14 @@ fn push(rows: usize, rate: f64, hidden: impl Fn(f64) -> [bool; 2]) -> Log {
 
 /// Errors (m) and standard deviations (m) of x, row by row.
 fn tracked(log: &Log, tracking: Tracking) -> Vec<[f64; 2]> {
+    // a disc on unknown feet may come off to one side
+    let mut setup = setup(&[]);
+    know_feet(&mut setup);
     let options = RunOptions {
         tracking,
         ..RunOptions::default()
     };
-    let run = run(&setup(&[]), log, &options, &mut |_| ()).expect("a run");
+    let run = run(&setup, log, &options, &mut |_| ()).expect("a run");
     assert_eq!(run.collapses, 0, "{tracking:?}");
     let rows = run.estimate.rows.iter().zip(&log.time);
     rows.map(|(row, time)| {
@@ -112,7 +115,7 @@ fn a_pusher_that_is_seldom_seen_pushes_between_its_poses() {
         assert!(moves > 28, "{tracking:?}: {moves}");
         let [error, std] = tracked(&log, tracking)[39];
         assert!(
-            error.abs() < 2e-3 && std < 5e-3,
+            error.abs() < 2e-3 && std < 3e-3,
             "{tracking:?}: {error}, {std}"
         );
     }

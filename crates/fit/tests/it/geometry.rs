@@ -67,6 +67,14 @@ fn centre_of_friction_is_found_and_written() {
     for (foot, truly) in positions.as_flattened().iter().zip(truly.as_flattened()) {
         assert!((foot - truly).abs() < 1e-3, "{positions:?}");
     }
+
+    // known as well as it was found, at an angle that nobody knows more of than before
+    let std = written.uncertainty.centre_of_friction * written.virtual_radius();
+    let [least, most] =
+        [f64::min, f64::max].map(|of| of(fit.parameters[0].std, fit.parameters[1].std));
+    assert!((0.999 * least..1.001 * most).contains(&std), "{std}");
+    let before = truth.uncertainty.tripod_angle;
+    assert!((written.uncertainty.tripod_angle / before - 1.0).abs() < 1e-5);
 }
 
 /// As far as its noisy track allows, see below.

@@ -140,9 +140,9 @@ pub(super) fn with_support(support: &Table<'_>) -> Uncertainty {
     let given = |key: &str| support.optional(key).is_some();
     let mut unknown = Uncertainty::default();
     if given("feet") {
-        unknown.centre_of_friction = 0.0;
+        unknown = unknown.with_known_feet();
     }
-    if given("feet") || given("tripod_angle") {
+    if given("tripod_angle") {
         unknown.tripod_angle = 0.0;
     }
     unknown

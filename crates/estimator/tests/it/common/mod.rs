@@ -61,8 +61,7 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
 
 /// The feet stand as told: no particle has its own.
 pub fn know_feet(setup: &mut Setup) {
-    setup.uncertainty.centre_of_friction = 0.0;
-    setup.uncertainty.tripod_angle = 0.0;
+    setup.uncertainty = setup.uncertainty.with_known_feet();
 }
 
 /// A log whose camera sees the object at `object(time)`, and the pusher at `pusher(time)`.
