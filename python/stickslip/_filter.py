@@ -82,7 +82,7 @@ def particles(
     The friction of the estimate is learned by others in contact mode: ``friction_weight``, ``friction_mu_s``,
     ``friction_mu_p``, ``friction_mu_f``, ``friction_d_tri``, each (R, N), as they were when the camera last saw the
     object move; in paper mode, and where friction is told exactly, by the same. Weights of a row sum to 1. Rows
-    before the first object pose have none.
+    before the first object pose have none. Offsets of the rig and where each one's feet stand are not among them.
     """
     if options.get("method", "particle") != "particle":
         raise Error(f"method is `{options.get('method')}`; only `particle` has particles")
