@@ -126,7 +126,7 @@ impl Dynamics {
     ///
     /// # Panics
     /// If there is not one offset of the pusher and one growth for each chunk of particles, and one offset of each
-    /// fixel; nor one turn of the pusher, one frame of the feet and one creep, or none at all.
+    /// fixel; nor one turn of the pusher, one offset of the feet and one creep, or none at all.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,

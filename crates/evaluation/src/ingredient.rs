@@ -96,10 +96,7 @@ impl Ingredient {
                 unknown.friction = Friction::default();
                 unknown.drift = 0.0;
             }
-            Self::Support => {
-                unknown.centre_of_friction = 0.0;
-                unknown.tripod_angle = 0.0;
-            }
+            Self::Support => *unknown = unknown.with_known_feet(),
             Self::Variation => unknown.variation = 0.0,
             Self::Force => unknown.force_std *= 0.2,
             Self::PusherOffset => unknown.pusher_offset = 0.0,

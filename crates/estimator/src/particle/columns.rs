@@ -193,7 +193,7 @@ impl Columns {
         self.unknowns() + 14
     }
 
-    /// The frame of the feet in the object's, in standard deviations: x, y, angle (contact mode).
+    /// By how far the feet stand beside the scene's and are turned, in standard deviations: x, y, angle (contact mode).
     pub fn support(&self) -> usize {
         self.unknowns() + 17
     }
