@@ -18,6 +18,7 @@ mod random_force;
 mod refused;
 mod rivals;
 mod rows;
+mod support;
 mod tactile;
 mod track;
 mod tracker;
