@@ -23,12 +23,17 @@ impl Observer for Arms {
     }
 }
 
-/// Of each run, step and particle: the centre of its feet, in standard deviations, and the cosine of the first foot's
-/// direction from there.
-fn feet() -> Vec<Vec<Vec<([f64; 2], f64)>>> {
+/// The centre of a particle's feet, in standard deviations, and the cosine of the first foot's direction from there.
+type Stand = ([f64; 2], f64);
+
+/// How the particles stand in each step of a run.
+type Steps = Vec<Vec<Stand>>;
+
+/// How they stand in all runs.
+fn feet() -> Vec<Steps> {
     let setup = setup(&[]);
     let told = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
-    let stand = |arms: &[[f64; 2]; 3]| {
+    let stand = |arms: &[[f64; 2]; 3]| -> Stand {
         let centre = [0, 1].map(|axis| arms.iter().map(|arm| arm[axis]).sum::<f64>() / 3.0);
         let [x, y] = [0, 1].map(|axis| arms[0][axis] - centre[axis]);
         (centre.map(|x| x / told), x / x.hypot(y))
@@ -49,10 +54,7 @@ fn mean(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Mean square of the centre on an axis, and mean product with that of the step before; 1 is the prior's variance.
-fn square_and_product(
-    runs: &[Vec<Vec<([f64; 2], f64)>>],
-    steps: std::ops::Range<usize>,
-) -> [f64; 2] {
+fn square_and_product(runs: &[Steps], steps: std::ops::Range<usize>) -> [f64; 2] {
     let pairs: Vec<[[f64; 2]; 2]> = runs
         .iter()
         .flat_map(|run| run[steps.clone()].windows(2))
