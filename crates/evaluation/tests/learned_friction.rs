@@ -18,7 +18,7 @@ fn friction_of_smooth_pushes_is_observed_in_some_and_true_there() {
         variant: Variant::ParticleCameraOn,
         particles: 500,
     };
-    let runs = CalibrationRun::of_papers(32, &options);
+    let runs = CalibrationRun::of_papers(48, &options);
     let observed = runs
         .iter()
         .flat_map(|run| CONTACTS.map(|which| run.placed[which]));
@@ -31,6 +31,5 @@ fn friction_of_smooth_pushes_is_observed_in_some_and_true_there() {
 
     let sum = |distance: fn(&Placed) -> f64| observed.iter().map(distance).sum::<f64>();
     let nearer = sum(|placed| placed.error) / sum(|placed| placed.prior_error);
-    // half of it where many are counted (docs/decisions/007-contact-mode.md), these are few
-    assert!(nearer < 0.75, "{nearer} of the prior's error");
+    assert!(nearer < 0.6, "{nearer} of the prior's error");
 }

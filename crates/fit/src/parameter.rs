@@ -173,9 +173,10 @@ impl Parameter {
             Self::MuP => log_normal(nominal.mu_p, open.friction.mu_p),
             Self::MuF => log_normal(nominal.mu_f, open.friction.mu_f),
             Self::TripodRadius => log_normal(nominal.d_tri, open.friction.d_tri),
-            Self::CentreX | Self::CentreY => {
-                normal(0.0, open.centre_of_friction * setup.virtual_radius())
-            }
+            Self::CentreX | Self::CentreY => normal(
+                0.0,
+                open.centre_of_friction * setup.scene.object.gyration_radius(),
+            ),
             Self::OutlineScale => log_normal(1.0, SCALE_STD),
             Self::OutlineX | Self::OutlineY | Self::PusherX | Self::PusherY => {
                 normal(0.0, OFFSET_STD)

@@ -85,7 +85,7 @@ impl Fit {
             .iter()
             .filter(|fitted| is_centre(fitted.parameter));
         let variance: f64 = centre.map(|fitted| fitted.std * fitted.std / 2.0).sum();
-        variance.sqrt() / setup.virtual_radius()
+        variance.sqrt() / setup.scene.object.gyration_radius()
     }
 
     /// What was learnt, for people.

@@ -199,7 +199,7 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
 fn feet_in_a_frame_of_their_own_stand_where_known_feet_do() {
     for level in [Level::new(), Level::baseline()] {
         feet_stand_as_known(level, None);
-        feet_stand_as_known(level, Some(Pose::new(3e-3, -2e-3, 0.3)));
+        feet_stand_as_known(level, Some(Pose::new(-6e-3, 2e-3, 0.8)));
     }
 }
 
@@ -259,7 +259,7 @@ fn feet_stand_as_known(level: Level, about: Option<Pose>) {
     }
     let turned: Vec<f64> = alone.iter().map(|particle| particle.pose.theta).collect();
     let apart = turned.windows(2).map(|pair| (pair[0] - pair[1]).abs());
-    assert!(apart.fold(0.0, f64::max) > 1e-4, "{turned:?}");
+    assert!(apart.fold(0.0, f64::max) > 1e-3, "{turned:?}");
 }
 
 /// The scene on three known feet, where those of a tripod in `frame` stand.

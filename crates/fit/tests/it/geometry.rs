@@ -69,7 +69,7 @@ fn centre_of_friction_is_found_and_written() {
     }
 
     // known as well as it was found, at an angle that nobody knows more of than before
-    let std = written.uncertainty.centre_of_friction * written.virtual_radius();
+    let std = written.uncertainty.centre_of_friction * written.scene.object.gyration_radius();
     let [least, most] =
         [f64::min, f64::max].map(|of| of(fit.parameters[0].std, fit.parameters[1].std));
     assert!((0.999 * least..1.001 * most).contains(&std), "{std}");
