@@ -382,6 +382,12 @@ impl<'o> Tracker<'o> {
         self.filter.as_ref().map_or(0, LearningFilter::collapses)
     }
 
+    /// Poses of the pusher that counted as missing, since it could not have come there since the ones before
+    /// (docs/method.md, "The pusher's track").
+    pub fn pusher_poses_left_out(&self) -> u32 {
+        self.pusher.left_out()
+    }
+
     /// How often the steps since a blackout were made again, see
     /// [`Run::second_tries`](crate::Run::second_tries).
     pub fn second_tries(&self) -> u32 {

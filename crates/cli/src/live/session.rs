@@ -38,6 +38,8 @@ pub struct Session<'a> {
     refused: u64,
     restarts: u64,
     collapses: u64,
+    /// Pusher poses that counted as missing.
+    left_out: u64,
     latencies: Latencies,
     pacing: Option<Pacing>,
 }
@@ -82,6 +84,7 @@ impl<'a> Session<'a> {
             refused: 0,
             restarts: 0,
             collapses: 0,
+            left_out: 0,
             latencies: Latencies::new(deadline),
             pacing,
         })
@@ -151,7 +154,11 @@ impl<'a> Session<'a> {
             let (fewest, most) = (pacing.fewest, self.options.particles);
             format!("{fewest} to {most} particles, by what was in time")
         });
-        let lines = [Some(rows), self.latencies.summary(), pacing];
+        let left_out = self.left_out + u64::from(self.tracker.pusher_poses_left_out());
+        let left_out = (left_out > 0).then(|| {
+            format!("{left_out} pusher poses counted as missing, since the pusher cannot have come there")
+        });
+        let lines = [Some(rows), left_out, self.latencies.summary(), pacing];
         lines.into_iter().flatten().collect()
     }
 
@@ -216,6 +223,7 @@ impl<'a> Session<'a> {
         let mut tracker = Tracker::new(self.setup, self.options).map_err(|error| words(&error))?;
         tracker.push(row).map_err(|error| words(&error))?;
         self.collapses += u64::from(self.tracker.collapses());
+        self.left_out += u64::from(self.tracker.pusher_poses_left_out());
         self.tracker = tracker;
         self.recent.clear();
         self.restarts += 1;

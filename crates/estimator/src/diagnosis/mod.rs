@@ -13,6 +13,7 @@ mod frame;
 mod jumps;
 mod lasting;
 mod latency;
+mod left_out;
 mod limits;
 mod lost_poses;
 mod noise;
@@ -76,8 +77,9 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
 }
 
 /// The problems that show in a time that no filter notices: numbers in other units or by other clocks, bodies that
-/// overlap at the start. With them, an estimate and its scores mean nothing. And pusher poses that scatter by more than
-/// told: a recorded log is tracked by the noise that they have, not by the told one.
+/// overlap at the start. With them, an estimate and its scores mean nothing. And what a run does otherwise than the log and
+/// the scene say: pusher poses that it leaves out, and ones that scatter by more than told, which it tracks by the noise
+/// that they have.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
     let mut findings = plain(&evidence);
@@ -86,6 +88,7 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     }
     findings.retain(|finding| finding.severity == Severity::Problem);
     if !findings.iter().any(is_misread) {
+        findings.extend(left_out::check(&evidence));
         findings.extend(noise::pusher(&evidence));
     }
     findings
@@ -101,6 +104,7 @@ fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
         timing::check,
         lost_poses::check,
         jumps::check,
+        left_out::check,
         repeats::check,
         noise::check,
     ];

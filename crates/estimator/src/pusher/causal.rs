@@ -100,6 +100,11 @@ impl CausalTrack {
             ..TrackedPose::of(seen.axes.map(|axis| axis.estimate))
         })
     }
+
+    /// How many poses counted as missing, since the pusher could not have come there.
+    pub fn left_out(&self) -> u32 {
+        self.gate.left_out()
+    }
 }
 
 /// The filter of an axis that is measured with standard deviation `std`; `None` where that is 0.

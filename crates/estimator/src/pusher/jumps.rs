@@ -3,6 +3,7 @@
 use stickslip_dynamics::Pose;
 
 use crate::angle::wrapped;
+use crate::log::Log;
 use crate::setup::Camera;
 
 /// Acceleration that no pusher has (m/s²), and a distance of its parts from its centre (m).
@@ -23,6 +24,15 @@ pub(crate) struct JumpGate {
     orientation_std: f64,
     /// The latest two poses that were believed, the last one first, each with its time (s).
     latest: [Option<(f64, Pose)>; 2],
+    /// How many were not believed.
+    left_out: u32,
+}
+
+/// The pusher's poses in `log` that count, row by row; without a `camera` they are exact.
+pub(crate) fn believed(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
+    let mut gate = JumpGate::new(camera);
+    let rows = log.time.iter().zip(&log.pusher);
+    rows.map(|(time, pose)| gate.pass(*time, *pose)).collect()
 }
 
 impl JumpGate {
@@ -35,6 +45,7 @@ impl JumpGate {
             position_std,
             orientation_std,
             latest: [None; 2],
+            left_out: 0,
         }
     }
 
@@ -44,10 +55,16 @@ impl JumpGate {
         if let [Some(last), Some(before)] = self.latest
             && self.is_jump((time, pose), last, before)
         {
+            self.left_out += 1;
             return None;
         }
         self.latest = [Some((time, pose)), self.latest[0]];
         Some(pose)
+    }
+
+    /// How many poses the pusher could not have come to.
+    pub fn left_out(&self) -> u32 {
+        self.left_out
     }
 
     fn is_jump(

@@ -9,7 +9,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 use crate::error::RunError;
 use crate::log::Log;
 use crate::particle::pose_clock::TELLING;
-use crate::pusher::jumps::JumpGate;
+use crate::pusher::jumps::believed;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
@@ -25,9 +25,7 @@ pub(crate) fn smoothed_track(
     log: &Log,
     camera: Option<&Camera>,
 ) -> Result<Vec<Option<TrackedPose>>, RunError> {
-    let mut gate = JumpGate::new(camera);
-    let seen = log.time.iter().zip(&log.pusher);
-    let seen: Vec<Option<Pose>> = seen.map(|(time, pose)| gate.pass(*time, *pose)).collect();
+    let seen = believed(log, camera);
     let mut rows = vec![None; log.len()];
     for span in spans(&log.time, &seen) {
         let poses = track_span(&log.time[span.clone()], &seen[span.clone()], camera)?;

@@ -1,8 +1,8 @@
 //! What `diagnose` says of logs whose faults are known: a disc that a pusher comes to push along x, and stops.
 
-use stickslip::diagnosis::{Finding, Severity, Subject, diagnose};
+use stickslip::diagnosis::{Finding, Severity, Subject, diagnose, misread};
 use stickslip::dynamics::{Part, Pose, Shape};
-use stickslip::{Log, Setup};
+use stickslip::{Log, Row, Setup, Tracker, TrackerOptions};
 
 use crate::common::{disc, setup};
 
@@ -236,9 +236,12 @@ fn jumps_are_told_of_a_large_object_and_its_pusher() {
     };
     let mut log = push.log();
     moved(&mut log.pusher[45], 0.02);
-    let faults = push.faults(&log);
+    let mut faults = push.faults(&log);
+    let also = faults.pop().expect("a finding");
     let words = "the pusher jumps at row 45, 2";
     assert_only(&faults, Severity::Problem, Subject::PusherPoses, words);
+    let words = "cannot have come to its pose in row 45: that pose counts as missing";
+    assert_only(&[also], Severity::Warning, Subject::PusherPoses, words);
     let mut log = push.log();
     (20..25).for_each(|row| moved(&mut log.object[row], 0.025));
     let faults = push.faults(&log);
@@ -249,6 +252,33 @@ fn jumps_are_told_of_a_large_object_and_its_pusher() {
     let faults = push.faults(&log);
     let words = "the object jumps at row 1, 2";
     assert_only(&faults, Severity::Problem, Subject::ObjectPoses, words);
+}
+
+#[test]
+fn a_run_tells_which_poses_of_the_pusher_it_leaves_out() {
+    let mut log = FAST.log();
+    assert_eq!(misread(&FAST.setup(), &log), Vec::new());
+    for row in [20, 45, 60] {
+        moved(&mut log.pusher[row], 0.03);
+    }
+    let told = misread(&FAST.setup(), &log);
+    let told = told.last().expect("a finding");
+    assert_eq!(told.severity, Severity::Warning);
+    let words = "cannot have come to 3 of its poses, the first in row 20: these count as missing";
+    assert!(told.found.contains(words), "{told}");
+    // live, row by row, these are as many
+    let options = TrackerOptions::default();
+    let mut tracker = Tracker::new(&FAST.setup(), &options).expect("a tracker");
+    for ((time, object), pusher) in log.time.iter().zip(&log.object).zip(&log.pusher) {
+        let row = Row {
+            time: *time,
+            object: *object,
+            pusher: *pusher,
+            ..Row::default()
+        };
+        tracker.push(&row).expect("a row");
+    }
+    assert_eq!(tracker.pusher_poses_left_out(), 3);
 }
 
 #[test]
