@@ -36,6 +36,22 @@ pub struct ParticleFilter<M: Model> {
     sums: M::Sums,
 }
 
+/// What a step does beside moving and weighing the particles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepParts {
+    /// Whether it resamples them where the condition for that is met.
+    pub resampling: bool,
+    /// Whether it takes the sums over them.
+    pub sums: bool,
+}
+
+impl StepParts {
+    const ALL: Self = Self {
+        resampling: true,
+        sums: true,
+    };
+}
+
 impl<M: Model> ParticleFilter<M> {
     /// A filter whose particles are the model's initial draw, with equal weights.
     ///
@@ -92,20 +108,20 @@ impl<M: Model> ParticleFilter<M> {
     /// can improve, or all weights are zero, the particles are reinitialised around it. Where a model lets
     /// an observation move them, it does as far as weighing alone would leave few, or the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
-        self.make_step(input, observation, true)
+        self.make_step(input, observation, StepParts::ALL)
     }
 
-    /// The same; the sums over the particles are taken only where they are asked for.
+    /// The same, of these parts.
     pub(crate) fn make_step(
         &mut self,
         input: &M::Input,
         observation: Option<&M::Observation>,
-        sums: bool,
+        StepParts { resampling, sums }: StepParts,
     ) -> StepReport {
         self.step += 1;
         self.observed = 0;
         self.lineage.begin_step();
-        let resampled = self.satisfies_resample_condition();
+        let resampled = resampling && self.satisfies_resample_condition();
         if resampled {
             self.choose_ancestors(Purpose::Resample);
         }

@@ -1,7 +1,7 @@
 //! Going back: where the particles come to explain what they observe ever worse, the steps since a
 //! [`Checkpoint`] are made again with other random numbers, see [`ParticleFilter::try_again`].
 
-use crate::filter::ParticleFilter;
+use crate::filter::{ParticleFilter, StepParts};
 use crate::lineage::Lineage;
 use crate::model::Model;
 use crate::particles::{BLOCK, ParticleSet};
@@ -61,6 +61,17 @@ impl Default for Pool {
 /// falls farther would have no particle, and makes no more steps.
 const GIVEN_UP: f64 = 50.0;
 
+/// One of the times that steps are made again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attempt {
+    /// Which one since the checkpoint's observations, from 1 on: each has random numbers of its own.
+    pub number: u64,
+    /// Whether the particles are resampled on the way, as they were the first time. Where they are not, each
+    /// goes its way to the end and is judged by all observations there: one that early observations speak against
+    /// and later ones for is not lost, but few are left at the end.
+    pub resampling: bool,
+}
+
 /// What a second try was worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondTry {
@@ -99,8 +110,7 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.lineage.clone_from(&self.lineage);
     }
 
-    /// Makes all steps since `checkpoint` again, with the random numbers of attempt number `attempt`
-    /// (from 1 on), and draws as many particles from the new set as its evidence is worth beside
+    /// Makes all steps since `checkpoint` again, with the random numbers of this `attempt`, and draws as many particles from the new set as its evidence is worth beside
     /// that of the sets in `pool`, which the present particles are drawn from: independent particle
     /// filters of the same observations, each weighed by its estimate of their likelihood, are one of
     /// as many particles as all have (Del Moral 2004, section 7.4). The weights become equal.
@@ -117,7 +127,7 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint: &Checkpoint,
         steps: impl ExactSizeIterator<Item = (&'a M::Input, Option<&'a M::Observation>)>,
         pool: Pool,
-        attempt: u64,
+        attempt: Attempt,
     ) -> SecondTry
     where
         M::Input: 'a,
@@ -137,15 +147,19 @@ impl<M: Model> ParticleFilter<M> {
         std::mem::swap(&mut self.weights, &mut rivals.weights);
         std::mem::swap(&mut self.lineage, &mut rivals.lineage);
         self.step = checkpoint.step;
-        self.streams = Streams::new(self.settings.seed).attempt(attempt);
+        self.streams = Streams::new(self.settings.seed).attempt(attempt.number);
         let mut again = 0.0;
         let mut last = None;
-        for (input, observation) in steps {
+        for (made, (input, observation)) in steps.enumerate() {
             last = Some(input);
             if again == f64::NEG_INFINITY {
                 continue;
             }
-            let report = self.make_step(input, observation, false);
+            let parts = StepParts {
+                resampling: attempt.resampling || made == 0,
+                sums: false,
+            };
+            let report = self.make_step(input, observation, parts);
             again += match report.weight_update {
                 WeightUpdate::Unobserved => 0.0,
                 WeightUpdate::Weighed { log_evidence } => log_evidence,

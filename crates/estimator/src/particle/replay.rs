@@ -1,6 +1,6 @@
 //! Steps in the dark that can be made again: [`Replay`] (contact mode).
 
-use stickslip_filter::{Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
+use stickslip_filter::{Attempt, Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
 use crate::mode::Mode;
 use crate::particle::columns::Columns;
@@ -13,7 +13,8 @@ use crate::particle::step_plan::StepPlan;
 /// In the dark particles go different ways at a bifurcation, and nothing brings them back: where none
 /// went the way of the object, pusher and touch sensors go on contradicting all of them. Then the
 /// steps since the blackout are made again with other random numbers, and all sets share the
-/// particles by their evidence.
+/// particles by their evidence. Every other time they are made without resampling: at a fork that one way explains
+/// better at first and the other in the end, resampling leaves particles on the first.
 #[derive(Debug, Default)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
@@ -29,6 +30,8 @@ pub(crate) struct Replay {
     /// How often that was done since the blackout, and ever.
     attempts: u32,
     tries: u32,
+    /// How many more times they may be made, since few particles were left by a set that took over.
+    more: u32,
 }
 
 /// Steps that are made again at most: what a row can cost.
@@ -46,6 +49,12 @@ const EARLY: u32 = 16;
 /// And the other times. What a scene tells wrong, no try explains, and the evidence falls a little at every
 /// touch; at a fork that all particles took the wrong way it falls at every row, by hundreds in the end.
 const MUCH_WORSE: f64 = 32.0;
+
+/// Share of the particles from which on a set takes over; ancestors below which the particles of a set that took over are too few, and how many more times steps are made
+/// to find others that go their way.
+const TAKES_OVER: f64 = 0.9;
+const FEW: usize = 8;
+const MORE: u32 = 8;
 
 impl Replay {
     /// Before a step, in the dark or not: remembers the particles where it is the first one in the dark, or where
@@ -69,6 +78,7 @@ impl Replay {
             self.attempts = 0;
         }
         self.dark = true;
+        self.more = 0;
         self.made = 0;
         self.pool = Pool::default();
         self.limit = -self.fall();
@@ -93,7 +103,9 @@ impl Replay {
         if !plan.driven {
             self.limit -= log_share_beside(filter);
         }
-        if self.pool.log_evidence >= self.limit || self.attempts == ATTEMPTS {
+        let contradicted = self.pool.log_evidence < self.limit;
+        let few = self.more > 0 && filter.lineage().ancestors() < FEW;
+        if !(contradicted || few) || self.attempts == ATTEMPTS {
             return None;
         }
         let checkpoint = self.checkpoint.as_ref()?;
@@ -102,7 +114,15 @@ impl Replay {
         let steps = self.steps[..self.made].iter();
         let steps = steps.map(|(plan, observation)| (plan, Some(observation)));
         let before = self.pool;
-        let tried = filter.try_again(checkpoint, steps, before, u64::from(self.attempts));
+        let attempt = Attempt {
+            number: u64::from(self.attempts),
+            resampling: contradicted && self.attempts % 2 == 1,
+        };
+        let tried = filter.try_again(checkpoint, steps, before, attempt);
+        self.more = match contradicted && tried.share > TAKES_OVER {
+            true => MORE,
+            false => self.more.saturating_sub(1),
+        };
         self.pool = tried.pool;
         self.limit = self.pool.log_evidence - self.fall();
         Some(self.pool.log_evidence - before.log_evidence)
