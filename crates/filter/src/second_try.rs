@@ -64,7 +64,7 @@ const GIVEN_UP: f64 = 50.0;
 /// One of the times that steps are made again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attempt {
-    /// Which one since the checkpoint's observations, from 1 on: each has random numbers of its own.
+    /// Which one since the checkpoint, from 1 on: each has random numbers of its own.
     pub number: u64,
     /// Whether the particles are resampled on the way, as they were the first time. Where they are not, each
     /// goes its way to the end and is judged by all observations there: one that early observations speak against

@@ -50,10 +50,13 @@ const EARLY: u32 = 16;
 /// touch; at a fork that all particles took the wrong way it falls at every row, by hundreds in the end.
 const MUCH_WORSE: f64 = 32.0;
 
-/// Share of the particles from which on a set takes over; ancestors below which the particles of a set that took over are too few, and how many more times steps are made
-/// to find others that go their way.
+/// Share of the particles from which on a set takes over.
 const TAKES_OVER: f64 = 0.9;
+
+/// Ancestors below which the particles of a set that took over are too few.
 const FEW: usize = 8;
+
+/// How many more times steps are made again then, to find others that go their way.
 const MORE: u32 = 8;
 
 impl Replay {
