@@ -13,8 +13,8 @@ use crate::particle::step_plan::StepPlan;
 /// In the dark particles go different ways at a bifurcation, and nothing brings them back: where none
 /// went the way of the object, pusher and touch sensors go on contradicting all of them. Then the
 /// steps since the blackout are made again with other random numbers, and all sets share the
-/// particles by their evidence. Every other time they are made without resampling: at a fork that one way explains
-/// better at first and the other in the end, resampling leaves particles on the first.
+/// particles by their evidence. Where that does not help, every other time they are made without resampling: at a
+/// fork that one way explains better at first and the other in the end, resampling leaves particles on the first.
 #[derive(Debug, Default)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
@@ -50,7 +50,10 @@ const EARLY: u32 = 16;
 /// touch; at a fork that all particles took the wrong way it falls at every row, by hundreds in the end.
 const MUCH_WORSE: f64 = 32.0;
 
-/// Share of the particles from which on a set takes over.
+/// Attempt from which on every other one does not resample. It leaves few particles, too few where the evidence fell by chance.
+const DECEIVED: u32 = 6;
+
+/// Share of the particles from which on a set takes over that was made without resampling.
 const TAKES_OVER: f64 = 0.9;
 
 /// Ancestors below which the particles of a set that took over are too few.
@@ -119,10 +122,10 @@ impl Replay {
         let before = self.pool;
         let attempt = Attempt {
             number: u64::from(self.attempts),
-            resampling: contradicted && self.attempts % 2 == 1,
+            resampling: contradicted && (self.attempts < DECEIVED || self.attempts % 2 == 1),
         };
         let tried = filter.try_again(checkpoint, steps, before, attempt);
-        self.more = match contradicted && tried.share > TAKES_OVER {
+        self.more = match contradicted && !attempt.resampling && tried.share > TAKES_OVER {
             true => MORE,
             false => self.more.saturating_sub(1),
         };
