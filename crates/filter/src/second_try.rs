@@ -66,9 +66,9 @@ const GIVEN_UP: f64 = 50.0;
 pub struct Attempt {
     /// Which one since the checkpoint, from 1 on: each has random numbers of its own.
     pub number: u64,
-    /// Whether the particles are resampled on the way, as they were the first time. Where they are not, each
-    /// goes its way to the end and is judged by all observations there: one that early observations speak against
-    /// and later ones for is not lost, but few are left at the end.
+    /// Whether the particles are resampled on the way, as they were the first time. Where they are not, but before
+    /// the first step and the last one, each goes its way and is judged by all observations at the end: one that early
+    /// observations speak against and later ones for is not lost, but few are left, of which the last step makes many.
     pub resampling: bool,
 }
 
@@ -148,6 +148,7 @@ impl<M: Model> ParticleFilter<M> {
         std::mem::swap(&mut self.lineage, &mut rivals.lineage);
         self.step = checkpoint.step;
         self.streams = Streams::new(self.settings.seed).attempt(attempt.number);
+        let all = steps.len();
         let mut again = 0.0;
         let mut last = None;
         for (made, (input, observation)) in steps.enumerate() {
@@ -156,7 +157,7 @@ impl<M: Model> ParticleFilter<M> {
                 continue;
             }
             let parts = StepParts {
-                resampling: attempt.resampling || made == 0,
+                resampling: attempt.resampling || made == 0 || made + 1 == all,
                 sums: false,
             };
             let report = self.make_step(input, observation, parts);
