@@ -15,6 +15,11 @@ const DARK: usize = 303;
 fn the_way_is_found_by_steps_made_again_without_resampling() {
     let root = data_root().expect("the build script found the folder");
     let folder = root.join("../grasps/clean/slide-trapezoid-disc-312");
+    let required = std::env::var_os("STICKSLIP_REQUIRE_DATA").is_some_and(|value| value == "1");
+    if !required && !folder.is_dir() {
+        eprintln!("skipped: {} is no folder", folder.display());
+        return;
+    }
     let text = |name: &str| {
         let path = folder.join(name);
         fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))

@@ -67,8 +67,9 @@ pub struct Attempt {
     /// Which one since the checkpoint, from 1 on: each has random numbers of its own.
     pub number: u64,
     /// Whether the particles are resampled on the way, as they were the first time. Where they are not, but before
-    /// the first step and the last one, each goes its way and is judged by all observations at the end: one that early
-    /// observations speak against and later ones for is not lost, but few are left, of which the last step makes many.
+    /// the first step and the last one, each goes its way and is judged by all observations but the last at once: one that
+    /// early observations speak against and later ones for is not lost, but few are left, of which the last step makes
+    /// many.
     pub resampling: bool,
 }
 

@@ -175,7 +175,7 @@ impl<'o> ContactFilter<'o> {
 
         self.expect_pose(was_dark, was_unwatched);
         let tries = self.moves.second_tries && self.plan.is_dark();
-        self.replay.before(&self.filter, tries);
+        self.replay.before(&mut self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
         self.take(&report);

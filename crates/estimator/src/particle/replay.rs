@@ -30,7 +30,8 @@ pub(crate) struct Replay {
     /// How often that was done since the blackout, and ever.
     attempts: u32,
     tries: u32,
-    /// How many more times they may be made, since few particles were left by a set that took over.
+    /// Ancestors below which a set that takes over has too few, and at how many more rows others are looked for.
+    few: usize,
     more: u32,
 }
 
@@ -56,16 +57,16 @@ const DECEIVED: u32 = 6;
 /// Share of the particles from which on a set takes over that was made without resampling.
 const TAKES_OVER: f64 = 0.9;
 
-/// Ancestors below which the particles of a set that took over are too few.
+/// Ancestors below which its particles are too few, where the checkpoint has as many.
 const FEW: usize = 8;
 
-/// How many more times steps are made again then, to find others that go their way.
+/// At how many rows steps are made again then, to find others that go its way.
 const MORE: u32 = 8;
 
 impl Replay {
     /// Before a step, in the dark or not: remembers the particles where it is the first one in the dark, or where
     /// the memory is full.
-    pub fn before(&mut self, filter: &ParticleFilter<ContactModel<'_>>, dark: bool) {
+    pub fn before(&mut self, filter: &mut ParticleFilter<ContactModel<'_>>, dark: bool) {
         if !dark || filter.model().columns().mode() == Mode::Paper {
             self.dark = false;
             return;
@@ -84,6 +85,7 @@ impl Replay {
             self.attempts = 0;
         }
         self.dark = true;
+        self.few = FEW.min(filter.lineage().ancestors());
         self.more = 0;
         self.made = 0;
         self.pool = Pool::default();
@@ -110,7 +112,8 @@ impl Replay {
             self.limit -= log_share_beside(filter);
         }
         let contradicted = self.pool.log_evidence < self.limit;
-        let few = self.more > 0 && filter.lineage().ancestors() < FEW;
+        let few = self.more > 0 && filter.lineage().ancestors() < self.few;
+        self.more = if few { self.more - 1 } else { 0 };
         if !(contradicted || few) || self.attempts == ATTEMPTS {
             return None;
         }
@@ -125,12 +128,14 @@ impl Replay {
             resampling: contradicted && (self.attempts < DECEIVED || self.attempts % 2 == 1),
         };
         let tried = filter.try_again(checkpoint, steps, before, attempt);
-        self.more = match contradicted && !attempt.resampling && tried.share > TAKES_OVER {
-            true => MORE,
-            false => self.more.saturating_sub(1),
-        };
         self.pool = tried.pool;
-        self.limit = self.pool.log_evidence - self.fall();
+        if contradicted {
+            let leaves_few = !attempt.resampling && tried.share > TAKES_OVER;
+            self.more = if leaves_few { MORE } else { 0 };
+            self.limit = self.pool.log_evidence - self.fall();
+        } else {
+            self.limit += self.pool.log_evidence - before.log_evidence;
+        }
         Some(self.pool.log_evidence - before.log_evidence)
     }
 

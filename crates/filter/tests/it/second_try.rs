@@ -177,7 +177,12 @@ fn tried_at_a_deceptive_fork(resampling: bool) -> Vec<f64> {
     };
     let mut filter = ParticleFilter::new(Fork, settings).expect("settings");
     let checkpoint = filter.checkpoint();
-    let rows = [(&true, Some(&6.0)), (&false, Some(&-40.0))];
+    // nothing is observed of the last step, before which all resample
+    let rows = [
+        (&true, Some(&6.0)),
+        (&false, Some(&-40.0)),
+        (&false, Some(&0.0)),
+    ];
     for (input, observation) in rows {
         let _ = filter.step(input, observation);
     }
