@@ -111,8 +111,8 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.lineage.clone_from(&self.lineage);
     }
 
-    /// Makes all steps since `checkpoint` again, with the random numbers of this `attempt`, and draws as many particles from the new set as its evidence is worth beside
-    /// that of the sets in `pool`, which the present particles are drawn from: independent particle
+    /// Makes all steps since `checkpoint` again, with the random numbers of this `attempt`, and draws
+    /// as many particles from the new set as its evidence is worth beside that of the sets in `pool`, which the present particles are drawn from: independent particle
     /// filters of the same observations, each weighed by its estimate of their likelihood, are one of
     /// as many particles as all have (Del Moral 2004, section 7.4). The weights become equal.
     ///

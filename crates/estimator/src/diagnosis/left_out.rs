@@ -16,11 +16,9 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         1 => format!(
             "the pusher cannot have come to its pose in row {first}: that pose counts as missing"
         ),
-        count => {
-            format!(
-                "the pusher cannot have come to {count} of its poses, the first in row {first}: these count as missing"
-            )
-        }
+        count => format!(
+            "the pusher cannot have come to {count} of its poses, the first in row {first}: these count as missing"
+        ),
     };
     let advice = "see why they are wrong (a tag misread, a clock that jumps): where the pusher is seldom seen, what it did meanwhile is a guess";
     vec![Finding::warning(Subject::PusherPoses, found, advice)]
