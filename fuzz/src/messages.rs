@@ -1,5 +1,5 @@
-//! Messages of any bytes in recordings that are whole: the first byte says of which type, the second
-//! how long the first of two messages is.
+//! Messages of any bytes in recordings that are whole: the first byte says of which type, the
+//! second how long the first of two messages is.
 
 #![no_main]
 

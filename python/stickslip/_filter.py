@@ -26,7 +26,7 @@ class FilterOptions(TypedDict, total=False):
     #: ``with-pusher`` (moves with it), ``extended-kalman`` (knows contact, feels no touch) or ``nominal`` (looks once).
     method: Literal["particle", "kalman", "kalman-stops", "with-pusher", "extended-kalman", "nominal"]
     #: Rules of the particle filter: ``contact`` (default) or ``paper``.
-    mode: Literal["contact", "paper"]
+    model: Literal["robust", "paper"]
     #: Number of particles, 500 by default.
     particles: int
     #: Seed of all random numbers, 0 by default.
@@ -157,12 +157,14 @@ def _systematic(weights: NDArray[np.float64], draws: int | None, seed: tuple[int
 def arguments(options: FilterOptions) -> RunArguments:
     """The options with their defaults, as the library takes them."""
     unknown = sorted(set(options) - set(FilterOptions.__annotations__))
+    if "mode" in unknown:
+        raise TypeError("option `mode` is called `model`: `robust` (formerly contact) or `paper`")
     if unknown:
         known = ", ".join(FilterOptions.__annotations__)
         raise TypeError(f"there is no option `{unknown[0]}`; there are {known}")
     return {
         "method": options.get("method", "particle"),
-        "mode": options.get("mode", "contact"),
+        "model": options.get("model", "robust"),
         "particles": options.get("particles", 500),
         "seed": options.get("seed", 0),
         "tactile": options.get("tactile", True),

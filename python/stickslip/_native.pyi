@@ -38,7 +38,7 @@ class Scene:
 
 class RunArguments(TypedDict):
     method: str
-    mode: str
+    model: str
     particles: int
     seed: int
     tactile: bool

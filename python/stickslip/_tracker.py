@@ -56,7 +56,7 @@ class Tracker:
         self,
         scene: Scene | str | os.PathLike[str],
         *,
-        mode: Literal["contact", "paper"] = "contact",
+        model: Literal["robust", "paper"] = "robust",
         particles: int = 500,
         seed: int = 0,
         tactile: bool = True,
@@ -66,7 +66,7 @@ class Tracker:
         self._tracker = _native.Tracker(
             scene_of(scene),
             {
-                "mode": mode,
+                "model": model,
                 "particles": particles,
                 "seed": seed,
                 "tactile": tactile,

@@ -31,8 +31,8 @@ def _by_program(program: str, folder: Path, out: Path, *options: str) -> pd.Data
     ("flags", "options"),
     [
         (["--occlude", "200"], {"occlude": 200}),
-        (["--mode", "paper", "--seed", "7", "--particles", "96", "--no-tactile", "--occlude", "150:300"],
-         {"mode": "paper", "seed": 7, "particles": 96, "tactile": False, "occlude": (150, 300)}),
+        (["--model", "paper", "--seed", "7", "--particles", "96", "--no-tactile", "--occlude", "150:300"],
+         {"model": "paper", "seed": 7, "particles": 96, "tactile": False, "occlude": (150, 300)}),
         (["--causal", "--occlude-middle", "1"], {"causal": True, "occlude_middle": 1.0, "threads": 2}),
         (["--method", "kalman"], {"method": "kalman"}),
         (["--method", "extended-kalman", "--occlude", "200"], {"method": "extended-kalman", "occlude": 200}),
@@ -96,7 +96,7 @@ def test_logs_that_cannot_be_used_are_refused(demo, scene, change, words):
     ("options", "words"),
     [
         ({"particles": 0}, "0 particles"),
-        ({"mode": "fast"}, "mode is `fast`; it must be `contact` or `paper`"),
+        ({"model": "fast"}, "model is `fast`; it must be `robust` or `paper`"),
         ({"method": "ekf"}, "method is `ekf`"),
         ({"occlude": (9, 3)}, "occlude is (9, 3)"),
         ({"occlude": "10:20"}, "occlude is '10:20'"),
@@ -131,15 +131,15 @@ def test_scenes_are_refused_with_their_place(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("mode", "means"),
+    ("model", "means"),
     [
         ("paper", ("x", "y", "mu_s", "mu_p", "mu_f", "d_tri")),
         # whose pose is no mean, but the one that is nearest to the particles, and whose friction others learn
-        ("contact", ()),
+        ("robust", ()),
     ],
 )
-def test_particles_have_the_means_of_the_estimate(demo, scene, mode, means):
-    options = {"particles": 200, "occlude": 200, "mode": mode}
+def test_particles_have_the_means_of_the_estimate(demo, scene, model, means):
+    options = {"particles": 200, "occlude": 200, "model": model}
     estimate = stickslip.filter(demo / "log.csv", scene, **options)
     cloud = stickslip.particles(demo / "log.csv", scene, rows=[250, 10], **options)
     np.testing.assert_array_equal(cloud["row"], [10, 250])

@@ -35,8 +35,8 @@ def test_rows_that_cannot_be_used_are_refused_and_change_nothing(demo, scene):
         with pytest.raises(stickslip.Error, match=words):
             tracker.push(**row)
     np.testing.assert_equal(tracker.estimate, before)
-    with pytest.raises(stickslip.Error, match="mode is `x`"):
-        stickslip.Tracker(scene, mode="x")
+    with pytest.raises(stickslip.Error, match="model is `x`"):
+        stickslip.Tracker(scene, model="x")
 
 
 def test_a_reading_is_0_or_1_as_a_bool_an_int_or_a_numpy_number(scene):

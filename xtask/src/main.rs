@@ -10,6 +10,7 @@ mod documents;
 mod finding;
 mod layers;
 mod program;
+mod prose;
 mod rust_text;
 mod sizes;
 mod sources;
@@ -71,6 +72,7 @@ fn tidy(root: &Path) -> Result<String, String> {
     findings.extend(sources::check(&tree));
     findings.extend(documents::check(&tree));
     findings.extend(citations::check(&tree));
+    findings.extend(prose::check(&tree));
     if findings.is_empty() {
         return Ok(format!("tidy: {} files, nothing found", tree.len()));
     }

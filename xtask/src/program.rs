@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Builds the program; where it lies. The one of profile `dev` is built as that of the tests: with the features of the whole
-/// workspace, so that after `cargo test --workspace` nothing is compiled again.
+/// Builds the program; where it lies. The one of profile `dev` is built as that of the tests: with
+/// the features of the whole workspace, so that after `cargo test --workspace` nothing is compiled
+/// again.
 ///
 /// # Errors
 /// It does not build.

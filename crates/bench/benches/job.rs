@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Mode, Occlusion, RunOptions, keep_threads_awake, quantile, run};
+use stickslip::{FilterModel, Occlusion, RunOptions, keep_threads_awake, quantile, run};
 use stickslip_bench::Results;
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
 
@@ -33,9 +33,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             .iter()
             .find(|case| case.occlusion == Occlusion::None)
             .ok_or("no case without an occlusion")?;
-        for (mode, rules) in [(Mode::Paper, "paper"), (Mode::Contact, "contact")] {
+        for (model, rules) in [
+            (FilterModel::Paper, "paper"),
+            (FilterModel::Robust, "robust"),
+        ] {
             let options = RunOptions {
-                mode,
+                model,
                 ..RunOptions::default()
             };
             write(&format!("{rules} / {log}"), case, &options, &mut results)?;

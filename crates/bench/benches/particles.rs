@@ -7,7 +7,7 @@ mod common;
 use std::error::Error;
 use std::time::Instant;
 
-use stickslip::{Log, Mode, RunOptions, Setup, keep_threads_awake, run};
+use stickslip::{FilterModel, Log, RunOptions, Setup, keep_threads_awake, run};
 use stickslip_bench::Results;
 
 use common::recorded_case;
@@ -73,7 +73,7 @@ fn part(log: &Log) -> Log {
 /// thousand times the others, which a small set meets in few frames and a large one in all.
 fn frame_time(setup: &Setup, log: &Log, particles: usize) -> Result<f64, stickslip::RunError> {
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles,
         ..RunOptions::default()
     };

@@ -5,15 +5,15 @@
 //! log's `truth.json` says so. Only the solver's step is timed, one block of the filter at a
 //! time, on one thread; every step starts from what the filter had, noise and warm start included.
 //!
-//! A block hides what one particle costs, so each particle's step is also timed alone, as a chunk of
-//! one lane: that costs more than its share of a block. A thread that has to wait for a processor
-//! looks slow; so the shortest of [`ALONE_ROUNDS`] times counts.
+//! A block hides what one particle costs, so each particle's step is also timed alone, as a chunk
+//! of one lane: that costs more than its share of a block. A thread that has to wait for a
+//! processor looks slow; so the shortest of [`ALONE_ROUNDS`] times counts.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use stickslip::{Mode, Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
+use stickslip::{FilterModel, Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
 use stickslip_bench::{FilterBlock, LANES, Results, StepStatistics, instruction_sets};
 use stickslip_dynamics::{Dynamics, Particles, StepInput, StepWork};
 use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
@@ -117,7 +117,7 @@ fn is_wanted(case: &RecordedCase) -> bool {
 fn capture(case: &RecordedCase) -> Result<Vec<Captured>, Box<dyn Error>> {
     let capture = Capture::default();
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         occlusion: case.occlusion,
         ..RunOptions::default()
     };

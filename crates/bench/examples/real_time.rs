@@ -1,6 +1,6 @@
-//! `cargo run --release -p stickslip-bench --example real_time SEEDS FOLDER...`: how fast whole runs
-//! are, and whether one is much slower than the others. Both modes on all experiments below some
-//! folders, with the camera dark and on, 500 particles, one run after the other.
+//! `cargo run --release -p stickslip-bench --example real_time SEEDS FOLDER...`: how fast whole
+//! runs are, and whether one is much slower than the others. Both modes on all experiments below
+//! some folders, with the camera dark and on, 500 particles, one run after the other.
 //!
 //! A run's real-time factor is the length of the log over the time that its estimate takes, files
 //! not included. A log's time is that of the median of its seeds, for each second of the log.
@@ -12,7 +12,9 @@ use std::thread::available_parallelism;
 use std::time::Instant;
 
 use rayon::ThreadPoolBuilder;
-use stickslip::{Mode, Occlusion, RunOptions, keep_threads_awake, quantile, run, useful_threads};
+use stickslip::{
+    FilterModel, Occlusion, RunOptions, keep_threads_awake, quantile, run, useful_threads,
+};
 use stickslip_testkit::{RecordedCase, recorded_cases};
 
 /// What a run of one experiment cost.
@@ -44,14 +46,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         "", "runs", "median x", "slowest", "log", "< 100", "< 20", "unsolved", "failed"
     );
     let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-    for (mode, rules) in [(Mode::Paper, "paper"), (Mode::Contact, "contact")] {
+    for (model, rules) in [
+        (FilterModel::Paper, "paper"),
+        (FilterModel::Robust, "robust"),
+    ] {
         for (dark, camera) in [(true, "dark"), (false, "camera on")] {
             let cases = cases
                 .iter()
                 .filter(|case| dark == (case.occlusion != Occlusion::None));
             let logs = pool.install(|| {
                 cases
-                    .map(|case| timed_runs(case, mode, seeds))
+                    .map(|case| timed_runs(case, model, seeds))
                     .collect::<Result<Vec<_>, _>>()
             })?;
             println!("{:18} {}", format!("{rules}, {camera}"), summary(&logs));
@@ -63,14 +68,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// A run of each seed.
 fn timed_runs(
     case: &RecordedCase,
-    mode: Mode,
+    model: FilterModel,
     seeds: u64,
 ) -> Result<Vec<Timed>, stickslip::RunError> {
     let folder = case.folder.file_name().unwrap_or_default();
     (0..seeds)
         .map(|seed| {
             let options = RunOptions {
-                mode,
+                model,
                 seed,
                 occlusion: case.occlusion,
                 ..RunOptions::default()

@@ -1,8 +1,8 @@
 //! `cargo run --release -p stickslip-cli --example ablation SEEDS FOLDER...`: contact mode on all
-//! experiments in some folders (scene.toml, log.csv, truth.csv, truth.json), 500 particles, whole and with
-//! each of its ingredients left out: weighted RMSE once the camera is dark and over the same rows with the
-//! camera on, median and 90th percentile over the experiments of the median over seeds; the share of 90 %
-//! intervals that hold the truth and the CRPS, means.
+//! experiments in some folders (scene.toml, log.csv, truth.csv, truth.json), 500 particles, whole
+//! and with each of its ingredients left out: weighted RMSE once the camera is dark and over the
+//! same rows with the camera on, median and 90th percentile over the experiments of the median over
+//! seeds; the share of 90 % intervals that hold the truth and the CRPS, means.
 
 use std::error::Error;
 use std::fs;

@@ -8,8 +8,8 @@ use clap::Args;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip::useful_threads;
 
-/// Threads that are started for one processor, at most: more than one is never faster, and shows that
-/// results do not depend on it.
+/// Threads that are started for one processor, at most: more than one is never faster, and shows
+/// that results do not depend on it.
 const PER_PROCESSOR: usize = 4;
 
 /// How many threads to work on.

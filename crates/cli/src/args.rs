@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use stickslip::{Method, Mode, Occlusion, RunOptions, TactileUse, Tracking};
+use stickslip::{FilterModel, Method, Occlusion, RunOptions, TactileUse, Tracking};
 use stickslip_evaluation::Variant;
 
 use crate::arg_values::{Rows, ThreadArgs, particles, positive};
@@ -146,8 +146,8 @@ pub struct CompareArgs {
     /// Name of the scene file in each folder
     #[arg(long, value_name = "FILE", default_value = "scene.toml")]
     pub scene_name: String,
-    /// One scene for all logs, or a folder with scene.toml, instead of the scene in each folder; then DIR
-    /// may be a log by any name, too
+    /// One scene for all logs, or a folder with scene.toml, instead of the scene in each folder;
+    /// then DIR may be a log by any name, too
     #[arg(long, conflicts_with = "scene_name")]
     pub scene: Option<PathBuf>,
     /// Topics of the MCAP logs
@@ -198,9 +198,12 @@ pub struct SharedArgs {
     /// Hide the camera's object poses for SECONDS about the middle of the log
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub occlude_middle: Option<f64>,
-    /// Rules of the particle filter
-    #[arg(long, value_enum, default_value_t = ModeName::Contact)]
-    pub mode: ModeName,
+    /// Model of the particle filter
+    #[arg(long, value_enum, default_value_t = ModelName::Robust)]
+    pub model: ModelName,
+    /// The old name of `--model`
+    #[command(flatten)]
+    pub renamed: RenamedArgs,
     /// Track the pusher from the rows up to each one only, as live
     #[arg(long)]
     pub causal: bool,
@@ -229,30 +232,46 @@ pub enum MethodName {
     Nominal,
 }
 
-/// Rules of the particle filter.
+/// Refuses `--mode`, the old name of `--model`.
+#[derive(Debug, Args)]
+pub struct RenamedArgs {
+    /// The old name
+    #[arg(long, hide = true, value_name = "NAME", value_parser = refuse_mode)]
+    mode: Option<String>,
+}
+
+fn refuse_mode(_: &str) -> Result<String, String> {
+    Err(
+        "`--mode` is called `--model`: `--model robust` (formerly contact) or `--model paper`"
+            .to_owned(),
+    )
+}
+
+/// Model of the particle filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ModeName {
-    /// Friction, offsets, feet and latency are unknown, sensors may fail for a while (`uncertainty` in the scene)
-    Contact,
+pub enum ModelName {
+    /// Friction, frame offsets, support feet and latency are unknown; sensors may fail
+    /// (`[uncertainty]` in the scene)
+    Robust,
     /// As published by Zhang & Trinkle (ICRA 2012)
     Paper,
 }
 
-impl ModeName {
+impl ModelName {
     /// As on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Contact => "contact",
+            Self::Robust => "robust",
             Self::Paper => "paper",
         }
     }
 }
 
-impl From<ModeName> for Mode {
-    fn from(name: ModeName) -> Self {
+impl From<ModelName> for FilterModel {
+    fn from(name: ModelName) -> Self {
         match name {
-            ModeName::Contact => Self::Contact,
-            ModeName::Paper => Self::Paper,
+            ModelName::Robust => Self::Robust,
+            ModelName::Paper => Self::Paper,
         }
     }
 }
@@ -298,7 +317,7 @@ impl FilterArgs {
     pub fn run_options(&self) -> RunOptions {
         RunOptions {
             method: self.method.into(),
-            mode: self.shared.mode.into(),
+            model: self.shared.model.into(),
             particles: self.shared.particles,
             seed: self.seed,
             tactile: self.tactile(),

@@ -109,7 +109,8 @@ fn lens_and_table_of_bag(
     lens_and_table(args, board, flat.unwrap_or(0), frames.len(), load)
 }
 
-/// Finds the lens and the table from so many frames; in the one at `flat` the board lies on the table.
+/// Finds the lens and the table from so many frames; in the one at `flat` the board lies on the
+/// table.
 fn lens_and_table(
     args: &CalibrateArgs,
     board: &BoardOnTable,
@@ -134,8 +135,8 @@ fn lens_and_table(
     Ok(Verdict::Done)
 }
 
-/// Numbers, from 1, of images that a lens is found from: all, or [`FRAMES`] from the first to the last
-/// evenly, and the one that is `needed` if there is such an image.
+/// Numbers, from 1, of images that a lens is found from: all, or [`FRAMES`] from the first to the
+/// last evenly, and the one that is `needed` if there is such an image.
 fn spread(count: usize, needed: usize) -> Vec<usize> {
     let mut numbers: Vec<usize> = match count {
         0..=FRAMES => (1..=count).collect(),

@@ -11,8 +11,8 @@ use crate::arg_values::{Rows, ThreadArgs, positive};
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
     /// Folder with images of the board: lying on the table in one, held and tilted to all sides in
-    /// the others; or a bag of such images. Where its CameraInfo or --lens tells the lens, one image
-    /// of the board on the table is enough
+    /// the others; or a bag of such images. Where its CameraInfo or --lens tells the lens, one
+    /// image of the board on the table is enough
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
     /// Take the lens from this file, and find the table alone, from the image in which the board
@@ -52,8 +52,8 @@ pub struct TrackArgs {
     /// felt; may be repeated
     #[arg(long = "topic", value_name = "KEY=TOPIC")]
     pub topics: Vec<CameraMapping>,
-    /// The calibrated camera (calibration.toml); with the CameraInfo of a bag, [lens] may be left out
-    /// of it
+    /// The calibrated camera (calibration.toml); with the CameraInfo of a bag, [lens] may be left
+    /// out of it
     #[arg(long, value_name = "TOML")]
     pub calibration: PathBuf,
     /// Which tag is on which body, and where (tags.toml)

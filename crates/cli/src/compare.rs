@@ -77,7 +77,7 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     }
     if let Some(path) = &args.report {
         let played =
-            pool.install(|| played::played(&comparison, args.shared.mode.into(), &folders))?;
+            pool.install(|| played::played(&comparison, args.shared.model.into(), &folders))?;
         let path = write_report(path.clone(), &page::report(&comparison, played))?;
         talk(format_args!("wrote {}", path.display()));
     }
@@ -183,7 +183,7 @@ fn jobs(folders: &[Folder], seeds: u64) -> Vec<Job> {
 /// Runs one job; a panic in it is an error of its folder.
 fn run(args: &CompareArgs, folder: &Folder, job: Job) -> Result<ShownScores> {
     let conditions = RunConditions {
-        mode: args.shared.mode.into(),
+        model: args.shared.model.into(),
         particles: args.shared.particles,
         tracking: folder.tracking,
         occlusion: folder.occlusion,

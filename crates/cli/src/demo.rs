@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::{Estimate, Mode, Tracking};
+use stickslip::{Estimate, FilterModel, Tracking};
 use stickslip_evaluation::{LearnedParameter, RunConditions, Variant};
 use stickslip_formats::Experiment;
 use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Table};
@@ -54,7 +54,7 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
         let experiment = texts.parse()?;
         // the camera is dark from just before the first fixel contact on
         let conditions = RunConditions {
-            mode: Mode::default(),
+            model: FilterModel::default(),
             particles: args.particles,
             tracking: Tracking::Smoothed,
             occlusion: experiment.facts.occlusion(),

@@ -78,7 +78,8 @@ pub fn read_folder(folder: &Path, scene: &Path, topics: &Topics) -> Result<(Expe
     read_experiment(scene, &log_path(folder), topics, None)
 }
 
-/// An occlusion that hides no pose is a slip of the pen, and one that hides every pose leaves nothing to start from.
+/// An occlusion that hides no pose is a slip of the pen, and one that hides every pose leaves
+/// nothing to start from.
 pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
     if occlusion == Occlusion::None {
         return Ok(());

@@ -26,7 +26,8 @@ pub fn make_folder(folder: &Path) -> Result<()> {
     })
 }
 
-/// Refuses a folder named by `--out` that cannot be written to, before the work whose results go there.
+/// Refuses a folder named by `--out` that cannot be written to, before the work whose results go
+/// there.
 pub fn ready_folder(folder: &Path) -> Result<()> {
     let is_new = !folder.exists();
     make_folder(folder)?;
@@ -38,8 +39,8 @@ pub fn ready_folder(folder: &Path) -> Result<()> {
     tried.map_err(|error| unwritable(folder, &error, OTHER_OUT))
 }
 
-/// Refuses a file named on the command line that cannot be written or would take the place of one of
-/// `inputs`, before the work whose results go there.
+/// Refuses a file named on the command line that cannot be written or would take the place of one
+/// of `inputs`, before the work whose results go there.
 pub fn ready_file(path: &Path, inputs: &[&Path]) -> Result<()> {
     refuse_inputs(path, inputs)?;
     let tried = make_parent(path).and_then(|()| match path.is_dir() {
@@ -80,8 +81,9 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     written.map_err(|error| unwritable(path, &error, OTHER_FILE))
 }
 
-/// Writes a file whole or not at all: beside its place first, then in one move over what was there. Two
-/// programs that write one file leave the one or the other, and a full disk leaves what was there.
+/// Writes a file whole or not at all: beside its place first, then in one move over what was there.
+/// Two programs that write one file leave the one or the other, and a full disk leaves what was
+/// there.
 fn write_whole(
     path: &Path,
     content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,

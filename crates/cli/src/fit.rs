@@ -95,7 +95,8 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// The folders of `--test`, none of which may be among `folders`: what was seen is not predicted blind.
+/// The folders of `--test`, none of which may be among `folders`: what was seen is not predicted
+/// blind.
 fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if args.test.is_empty() {
         return Ok(Vec::new());
@@ -145,8 +146,8 @@ fn learn(
     })
 }
 
-/// All pushes, and whether all of their logs could be read. One that cannot be read is an error: left
-/// out, it would change what is learnt.
+/// All pushes, and whether all of their logs could be read. One that cannot be read is an error:
+/// left out, it would change what is learnt.
 fn read_pushes(
     args: &FitArgs,
     topics: &Topics,

@@ -11,8 +11,8 @@ use crate::topic_args::TopicArgs;
 /// Arguments of `stickslip fit`.
 #[derive(Debug, Args)]
 pub struct FitArgs {
-    /// Experiment folders (scene.toml, log.csv or log.mcap), or folders of such folders: pushes of one
-    /// object on one table
+    /// Experiment folders (scene.toml, log.csv or log.mcap), or folders of such folders: pushes of
+    /// one object on one table
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
     /// What to learn, of mu_s, mu_p, mu_f, tripod_radius, centre_of_friction, outline_scale,
@@ -30,8 +30,8 @@ pub struct FitArgs {
     /// Write a report into this HTML file
     #[arg(long, value_name = "HTML")]
     pub report: Option<PathBuf>,
-    /// Deal the pushes into K parts and predict each by a fit to the others; 0: do not [default: 4, 2 for
-    /// fewer than 8 pushes, 0 for fewer than 4]
+    /// Deal the pushes into K parts and predict each by a fit to the others; 0: do not [default: 4,
+    /// 2 for fewer than 8 pushes, 0 for fewer than 4]
     #[arg(long, value_name = "K")]
     pub folds: Option<usize>,
     /// Predict the pushes of these folders, too, blind by what the others taught

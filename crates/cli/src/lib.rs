@@ -1,5 +1,6 @@
 //! The program `stickslip`: arguments, files, progress and exit codes around the library of the
-//! same name. [`run`] is all of it; the binary calls it, and so does the command of the Python package.
+//! same name. [`run`] is all of it; the binary calls it, and so does the command of the Python
+//! package.
 
 #![warn(
     clippy::print_stdout,
@@ -51,9 +52,9 @@ use clap::Parser;
 
 use crate::args::{Command, Program};
 
-/// Runs the program with the words of a command line, those after its name, and returns its exit code: 0 done,
-/// 1 failed, 2 bad arguments, 3 done with input lost. Results go to the process's standard output, all
-/// else to its standard error.
+/// Runs the program with the words of a command line, those after its name, and returns its exit
+/// code: 0 done, 1 failed, 2 bad arguments, 3 done with input lost. Results go to the process's
+/// standard output, all else to its standard error.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words = origin::keep_words(words.into_iter().collect());
     let program = [OsString::from("stickslip")].into_iter();

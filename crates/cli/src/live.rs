@@ -29,7 +29,7 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     let scene = scene_file(&args.scene);
     let setup = read_scene_file(&scene)?;
     let options = TrackerOptions {
-        mode: args.mode.into(),
+        model: args.model.into(),
         particles: args.particles,
         seed: args.seed,
         tactile: args.tactile(),

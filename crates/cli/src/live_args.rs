@@ -6,7 +6,7 @@ use clap::Args;
 use stickslip::TactileUse;
 
 use crate::arg_values::{ThreadArgs, particles, positive};
-use crate::args::ModeName;
+use crate::args::{ModelName, RenamedArgs};
 
 /// Arguments of `stickslip live`.
 #[derive(Debug, Args)]
@@ -19,17 +19,20 @@ pub struct LiveArgs {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Rules of the particle filter
-    #[arg(long, value_enum, default_value_t = ModeName::Contact)]
-    pub mode: ModeName,
+    /// Model of the particle filter
+    #[arg(long, value_enum, default_value_t = ModelName::Robust)]
+    pub model: ModelName,
+    /// The old name of `--model`
+    #[command(flatten)]
+    pub renamed: RenamedArgs,
     /// Ignore the tactile readings
     #[arg(long)]
     pub no_tactile: bool,
     /// How far behind the latest row a row may come and still count
     #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
     pub late: f64,
-    /// When an answer is due after its row: fewer particles are used where all would be late, and late
-    /// answers are counted
+    /// When an answer is due after its row: fewer particles are used where all would be late, and
+    /// late answers are counted
     #[arg(long, value_name = "MS", value_parser = positive)]
     pub deadline_ms: Option<f64>,
     /// Keep the rows in a new file, .mcap or .csv

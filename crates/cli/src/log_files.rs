@@ -39,8 +39,8 @@ enum Kind {
     Other,
 }
 
-/// The log that a path stands for: a file itself; of a folder log.csv, log.mcap, the bag that the folder
-/// is, or the only bag in it.
+/// The log that a path stands for: a file itself; of a folder log.csv, log.mcap, the bag that the
+/// folder is, or the only bag in it.
 pub fn log_path(folder: &Path) -> PathBuf {
     if folder.is_file() {
         return folder.to_owned();

@@ -69,8 +69,8 @@ fn unwritable(error: &io::Error) -> anyhow::Error {
 /// Most characters of a line on standard error; what a damaged file says of itself may be longer.
 const LONGEST_LINE: usize = 2000;
 
-/// Writes a line to standard error, without what a terminal would obey; lost where nobody can read it, since there is no other place to
-/// say so.
+/// Writes a line to standard error, without what a terminal would obey; lost where nobody can read
+/// it, since there is no other place to say so.
 pub fn talk(text: impl Display) {
     let _ = write(&mut io::stderr().lock(), printable(&text.to_string()));
 }

@@ -35,7 +35,7 @@ struct Report {
     particles: usize,
     seeds: u64,
     /// Rules of the particle filter.
-    mode: &'static str,
+    model: &'static str,
     /// Whether no estimate uses a later row.
     causal: bool,
     /// The same, as runs take them.
@@ -90,7 +90,7 @@ fn report(args: &ReproduceArgs) -> Result<Report> {
     let report = Report {
         particles: args.particles,
         seeds,
-        mode: args.mode.name(),
+        model: args.model.name(),
         causal: args.causal,
         settings,
         tables: Results::new(&run_sets),

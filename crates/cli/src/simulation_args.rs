@@ -8,7 +8,7 @@ use stickslip_evaluation::Physics;
 use stickslip_evaluation::paper::{PaperExperiment, RunSettings};
 
 use crate::arg_values::{ThreadArgs, particles, positive};
-use crate::args::ModeName;
+use crate::args::{ModelName, RenamedArgs};
 
 /// Arguments of `stickslip simulate`.
 #[derive(Debug, Args)]
@@ -55,9 +55,12 @@ pub struct ReproduceArgs {
     /// Use no later row for any estimate, as live; else the thumb is tracked from the whole log
     #[arg(long)]
     pub causal: bool,
-    /// Rules of the particle filter
-    #[arg(long, value_enum, default_value_t = ModeName::Paper)]
-    pub mode: ModeName,
+    /// Model of the particle filter
+    #[arg(long, value_enum, default_value_t = ModelName::Paper)]
+    pub model: ModelName,
+    /// The old name of `--model`
+    #[command(flatten)]
+    pub renamed: RenamedArgs,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,
@@ -73,7 +76,7 @@ impl ReproduceArgs {
     /// How all methods run.
     pub fn settings(&self) -> RunSettings {
         RunSettings {
-            mode: self.mode.into(),
+            model: self.model.into(),
             particles: self.particles,
             tracking: if self.causal {
                 Tracking::Causal

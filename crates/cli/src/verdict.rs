@@ -14,7 +14,8 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// How two parts ended together, neither of which failed: input is lost where one of them lost some.
+    /// How two parts ended together, neither of which failed: input is lost where one of them lost
+    /// some.
     pub fn and(self, other: Self) -> Self {
         match self {
             Self::Done => other,

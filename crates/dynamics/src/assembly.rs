@@ -18,14 +18,14 @@ use crate::prepared_scene::{PreparedScene, StepBodies, StepContext};
 use crate::scene::{Fixel, Scene};
 use crate::se2::{Twist, Wrench};
 
-/// Gaps and overlaps up to this are closed (m): an object at rest is not to creep after the rounding
-/// of its contacts.
+/// Gaps and overlaps up to this are closed (m): an object at rest is not to creep after the
+/// rounding of its contacts.
 const CLOSED: f64 = 1e-8;
 
-/// Gaps and overlaps up to this at the end of a step, did the object stand, are none where the pusher
-/// is rigid (m): the tail of a smoothed track creeps on for seconds, and asks a wedged object to move
-/// by less than a nanometre a step. What it creeps adds up to an overlap that exceeds `CLOSED` and
-/// then moves the object.
+/// Gaps and overlaps up to this at the end of a step, did the object stand, are none where the
+/// pusher is rigid (m): the tail of a smoothed track creeps on for seconds, and asks a wedged
+/// object to move by less than a nanometre a step. What it creeps adds up to an overlap that
+/// exceeds `CLOSED` and then moves the object.
 const STILL: f64 = 1e-9;
 
 /// Cosine of the angle between the pusher's motion and a contact normal below which it is not the
@@ -162,9 +162,9 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// The direction in which the pusher gives way (docs/method.md (12)), written into its contacts:
-    /// along its motion where that presses on the object, else along the normal of its nearest
-    /// contact.
+    /// The direction in which the pusher gives way (docs/method.md (12)), written into its
+    /// contacts: along its motion where that presses on the object, else along the normal of its
+    /// nearest contact.
     #[inline(always)]
     fn let_pusher_yield(&mut self, particles: &Particles<W>, ncp: &mut Ncp<W>) {
         let rate = self.scaling.rate;
@@ -330,9 +330,9 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`] that
-    /// press, and where the pusher stands. What is unsolved would be a bad start: compliant impulses
-    /// are a million times too large; and so would be what grows from step to step.
+    /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`]
+    /// that press, and where the pusher stands. What is unsolved would be a bad start: compliant
+    /// impulses are a million times too large; and so would be what grows from step to step.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Unknowns<W>, solved: Mask<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;
@@ -415,7 +415,8 @@ fn row<const W: usize>(
     }
 }
 
-/// Normal and tangential impulse over m of the contact `key` in the step before; 0 where it did not press.
+/// Normal and tangential impulse over m of the contact `key` in the step before; 0 where it did not
+/// press.
 #[inline(always)]
 fn remembered<const W: usize>(particles: &Particles<W>, key: f64) -> [Lanes<W>; 2] {
     let (mut p_n, mut p_t) = (Lanes::ZERO, Lanes::ZERO);

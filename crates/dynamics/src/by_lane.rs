@@ -11,8 +11,8 @@ use crate::step::Dynamics;
 use crate::step_work::StepWork;
 
 impl<const W: usize> StepWork<W> {
-    /// Advances chunks of particles by `h` seconds, one particle after the other, each as the step of
-    /// one would; what the step tells of them comes from `by_lane`.
+    /// Advances chunks of particles by `h` seconds, one particle after the other, each as the step
+    /// of one would; what the step tells of them comes from `by_lane`.
     pub(crate) fn step_by_lane(
         &mut self,
         dynamics: &Dynamics,

@@ -34,8 +34,8 @@ impl<const W: usize> Assembly<W> {
         smallest
     }
 
-    /// Slip velocity (m/s) at one body: the mean of its contacts, each by what it presses; where none
-    /// presses, that of the nearest one, and 0 where there is none.
+    /// Slip velocity (m/s) at one body: the mean of its contacts, each by what it presses; where
+    /// none presses, that of the nearest one, and 0 where there is none.
     #[inline(always)]
     pub fn slips(&self, ncp: &Ncp<W>, p: &Unknowns<W>, body: Body) -> Lanes<W> {
         let (mut pressed, mut pressed_slip) = (Lanes::ZERO, Lanes::ZERO);

@@ -5,15 +5,15 @@ use stickslip_lanes::Lanes;
 use crate::ncp::rows::FootRow;
 use crate::se2::Twist;
 
-/// Share of the feet's friction with which a contact counts as pressed at least: what a new contact will carry is
-/// not known.
+/// Share of the feet's friction with which a contact counts as pressed at least: what a new contact
+/// will carry is not known.
 const LEAST_LOAD: f64 = 0.1;
 
 /// Least friction that a contact comes to (m/s), and feet: keeps quotients finite.
 const LEAST_BOUND: f64 = 1e-9;
 
-/// c of a contact that pressed with `p_n` in the step before: it comes to its bound at `slip`, below that where
-/// it is pressed harder than all `feet` resist (all m/s).
+/// c of a contact that pressed with `p_n` in the step before: it comes to its bound at `slip`,
+/// below that where it is pressed harder than all `feet` resist (all m/s).
 #[inline(always)]
 pub(crate) fn creep<const W: usize>(
     slip: Lanes<W>,

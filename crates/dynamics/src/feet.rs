@@ -21,7 +21,8 @@ impl Scene {
     }
 
     /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
-    /// (m). With an offset they stand beside the scene's, and are turned about their centre of friction.
+    /// (m). With an offset they stand beside the scene's, and are turned about their centre of
+    /// friction.
     #[inline(always)]
     pub(crate) fn foot_arms<const W: usize>(
         &self,
@@ -44,8 +45,8 @@ impl Scene {
         })
     }
 
-    /// Centre of friction in the object's frame (m): where the feet's friction acts on an object that slides without
-    /// turning.
+    /// Centre of friction in the object's frame (m): where the feet's friction acts on an object
+    /// that slides without turning.
     fn centre_of_friction(&self) -> [f64; 2] {
         match self.feet {
             Feet::Tripod { .. } => [0.0; 2],

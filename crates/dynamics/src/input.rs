@@ -29,24 +29,26 @@ impl PusherMotion {
     }
 }
 
-/// Where pusher, fixels and feet stand beside the poses that the input and the scene give, how much larger the
-/// object is than its shape, and how contacts creep, particle by particle.
+/// Where pusher, fixels and feet stand beside the poses that the input and the scene give, how much
+/// larger the object is than its shape, and how contacts creep, particle by particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
     /// Offset of the pusher (m), chunk by chunk.
     pub pusher: &'a [[Lanes<W>; 2]],
-    /// By how much the pusher is turned beside its pose (rad), chunk by chunk; empty where it is not.
+    /// By how much the pusher is turned beside its pose (rad), chunk by chunk; empty where it is
+    /// not.
     pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
     /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
     /// smaller by that.
     pub growth: &'a [Lanes<W>],
-    /// By how far the feet stand beside the scene's (m, m), and are turned about their centre of friction (rad), in the
-    /// object's frame, chunk by chunk; empty where they stand as in the scene.
+    /// By how far the feet stand beside the scene's (m, m), and are turned about their centre of
+    /// friction (rad), in the object's frame, chunk by chunk; empty where they stand as in the
+    /// scene.
     pub foot_offsets: &'a [Pose<Lanes<W>>],
-    /// At which share of the object's speed contacts with pusher and fixels slip where friction comes to its
-    /// bound (docs/method.md (50)), chunk by chunk; empty where none creeps.
+    /// At which share of the object's speed contacts with pusher and fixels slip where friction
+    /// comes to its bound (docs/method.md (50)), chunk by chunk; empty where none creeps.
     pub creep: &'a [[Lanes<W>; 2]],
 }
 

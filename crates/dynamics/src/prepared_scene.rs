@@ -83,7 +83,8 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
     /// By how much the object is larger than its shape (m).
     pub growth: Lanes<W>,
-    /// By how far the feet stand beside the scene's and are turned; `None` where they stand as there.
+    /// By how far the feet stand beside the scene's and are turned; `None` where they stand as
+    /// there.
     pub foot_offset: Option<&'a Pose<Lanes<W>>>,
     /// How contacts with pusher and fixels creep; `None` where they do not.
     pub creep: Option<&'a [Lanes<W>; 2]>,
@@ -188,7 +189,8 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// By how far the feet stand beside the scene's and are turned, in one chunk; `None` where they stand as there.
+    /// By how far the feet stand beside the scene's and are turned, in one chunk; `None` where they
+    /// stand as there.
     #[inline(always)]
     pub fn foot_offset(&self, chunk: usize) -> Option<&Pose<Lanes<W>>> {
         match self {

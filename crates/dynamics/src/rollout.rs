@@ -1,5 +1,5 @@
-//! Many pushes at once, each over many steps: [`Dynamics::rollout`], and [`Dynamics::rollout_into`] for
-//! callers who keep the numbers in arrays of their own.
+//! Many pushes at once, each over many steps: [`Dynamics::rollout`], and [`Dynamics::rollout_into`]
+//! for callers who keep the numbers in arrays of their own.
 
 use crate::friction::Friction;
 use crate::input::PusherMotion;
@@ -104,14 +104,15 @@ pub enum RolloutError {
 }
 
 impl Dynamics {
-    /// Simulates one trajectory per start: T steps of `h` seconds (docs/method.md (11)), driven by a
-    /// pusher of its own.
+    /// Simulates one trajectory per start: T steps of `h` seconds (docs/method.md (11)), driven by
+    /// a pusher of its own.
     ///
     /// `pushers` holds the pusher's poses where steps begin and end, (N, T + 1), trajectory after
-    /// trajectory: start i under pusher i. The pusher moves straight from one to the next; where the
-    /// scene gives it a stall force, it may fall behind, by as much as the object holds it back. A trajectory depends on nothing but its start and its pusher, and
-    /// is the same, bit for bit, as step by step with [`Dynamics::step`]. One thread runs; share the
-    /// starts among threads for more.
+    /// trajectory: start i under pusher i. The pusher moves straight from one to the next; where
+    /// the scene gives it a stall force, it may fall behind, by as much as the object holds it
+    /// back. A trajectory depends on nothing but its start and its pusher, and is the same, bit for
+    /// bit, as step by step with [`Dynamics::step`]. One thread runs; share the starts among
+    /// threads for more.
     ///
     /// Two starts, and two pushes that end 1 mm and 11 mm beyond the first touch:
     ///
@@ -162,7 +163,8 @@ impl Dynamics {
         Ok(columns.rollout)
     }
 
-    /// The same with T = `steps`, for trajectories in arrays of the caller's; `work` may be used again.
+    /// The same with T = `steps`, for trajectories in arrays of the caller's; `work` may be used
+    /// again.
     ///
     /// # Errors
     /// Where a number is out of range; nothing is kept then.

@@ -1,8 +1,8 @@
 //! Planar rigid-body quantities [`Pose`], [`Twist`] and [`Wrench`], in the world frame, SI units.
 //!
 //! Each is generic over its number: `f64` for one body, [`Lanes`](stickslip_lanes::Lanes) for
-//! several particles side by side. `map`, `fields` and `fields_mut` visit the numbers in the order in
-//! which they are declared, so that no caller has to know that order.
+//! several particles side by side. `map`, `fields` and `fields_mut` visit the numbers in the order
+//! in which they are declared, so that no caller has to know that order.
 
 use std::ops::{Add, Mul};
 

@@ -96,7 +96,8 @@ impl Dynamics {
     /// The same for particles of which each has a pusher of its own: `pushers` holds those of a
     /// chunk side by side, `None` off the plane; `h` is the step (s).
     ///
-    /// A particle's result is that of [`step_block`](Self::step_block) with its pusher, bit for bit.
+    /// A particle's result is that of [`step_block`](Self::step_block) with its pusher, bit for
+    /// bit.
     ///
     /// # Panics
     /// If there are not as many chunks of pushers as of particles.
@@ -121,12 +122,13 @@ impl Dynamics {
         work.pushers = contexts;
     }
 
-    /// The same for particles whose pusher, fixels and feet stand beside the given poses, whose object is larger
-    /// than its shape, and whose contacts creep, each by its own `offsets`.
+    /// The same for particles whose pusher, fixels and feet stand beside the given poses, whose
+    /// object is larger than its shape, and whose contacts creep, each by its own `offsets`.
     ///
     /// # Panics
-    /// If there is not one offset of the pusher and one growth for each chunk of particles, and one offset of each
-    /// fixel; nor one turn of the pusher, one offset of the feet and one creep, or none at all.
+    /// If there is not one offset of the pusher and one growth for each chunk of particles, and one
+    /// offset of each fixel; nor one turn of the pusher, one offset of the feet and one creep, or
+    /// none at all.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -195,7 +197,8 @@ impl Dynamics {
         }
     }
 
-    /// Solves the problems of some chunks, in lanes that are asked for; the others keep their answers.
+    /// Solves the problems of some chunks, in lanes that are asked for; the others keep their
+    /// answers.
     #[inline(always)]
     fn solve<const W: usize>(
         &self,
@@ -243,8 +246,8 @@ impl Dynamics {
         }
     }
 
-    /// The first chunk from `first` on in which some lanes' solutions move farther than their search
-    /// covered, and these lanes, to be solved again with a wider one.
+    /// The first chunk from `first` on in which some lanes' solutions move farther than their
+    /// search covered, and these lanes, to be solved again with a wider one.
     #[inline(always)]
     fn too_narrow<const W: usize>(
         &self,

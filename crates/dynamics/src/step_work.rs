@@ -14,8 +14,8 @@ use crate::prepared_scene::PusherContext;
 use crate::se2::Twist;
 use crate::solver::chain::Solver;
 
-/// Working memory of [`Dynamics::step_block`](crate::Dynamics::step_block), `W` particles to a chunk; nothing is allocated once
-/// it has grown, except where particles are stepped one by one.
+/// Working memory of [`Dynamics::step_block`](crate::Dynamics::step_block), `W` particles to a
+/// chunk; nothing is allocated once it has grown, except where particles are stepped one by one.
 #[derive(Clone, Debug, Default)]
 pub struct StepWork<const W: usize> {
     pub(crate) narrow: NarrowPhase<W>,
@@ -59,10 +59,10 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive where
-    /// the object's surface moves to the left of the contact normal, which points into the object: the
-    /// mean of its contacts, each by what it presses; where none presses, that of the nearest one, and 0
-    /// where there is none.
+    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive
+    /// where the object's surface moves to the left of the contact normal, which points into the
+    /// object: the mean of its contacts, each by what it presses; where none presses, that of the
+    /// nearest one, and 0 where there is none.
     #[inline(always)]
     pub fn slips(&self, chunk: usize, body: Body) -> Lanes<W> {
         if self.by_lane.is_empty() {

@@ -10,8 +10,9 @@ use stickslip_dynamics::Pose;
 pub struct BeliefMode {
     /// Share of the belief, from 0 to 1.
     pub weight: f64,
-    /// Pose (m, m, rad) of the particle nearest to the mean of the mode: one that the dynamics allows,
-    /// so that the object there overlaps nothing, given where that particle takes the bodies to be.
+    /// Pose (m, m, rad) of the particle nearest to the mean of the mode: one that the dynamics
+    /// allows, so that the object there overlaps nothing, given where that particle takes the
+    /// bodies to be.
     pub pose: Pose,
     /// Standard deviations about the mean of the mode (m, m, rad).
     pub std: Pose,

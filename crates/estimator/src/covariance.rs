@@ -4,8 +4,8 @@ use stickslip_dynamics::Pose;
 
 use crate::range::Unit;
 
-/// What is left of a variance once the other numbers are known is at least this share of it: less is
-/// rounding, or no covariance.
+/// What is left of a variance once the other numbers are known is at least this share of it: less
+/// is rounding, or no covariance.
 const LEAST_LEFT: f64 = 1e-12;
 
 /// The covariance of the errors of a measured pose, in the world's frame.
@@ -82,8 +82,8 @@ impl PoseCovariance {
 }
 
 impl Factor {
-    /// An error as independent numbers of variance 1, those of θ, then of x, then of y. Their squares sum
-    /// to the squared Mahalanobis distance.
+    /// An error as independent numbers of variance 1, those of θ, then of x, then of y. Their
+    /// squares sum to the squared Mahalanobis distance.
     #[inline(always)]
     pub(crate) fn whitened<T>(&self, error: Pose<T>) -> [T; 3]
     where

@@ -6,15 +6,17 @@ use crate::belief_mode::BeliefMode;
 use crate::contact_slip::ContactSlip;
 use crate::covariance::PoseCovariance;
 
-/// How far from an estimate row the object may be: standard deviations, and how the errors of its pose go
-/// together. Of the particle filter they are root mean square deviations from the row's pose.
+/// How far from an estimate row the object may be: standard deviations, and how the errors of its
+/// pose go together. Of the particle filter they are root mean square deviations from the row's
+/// pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Standard deviations of the pose (m, m, rad).
     pub pose: Pose,
     /// Covariances of the pose's numbers; `None` where they are not known.
     pub cross: Option<CrossCovariance>,
-    /// Standard deviations of the friction parameters; `None` for methods that do not estimate them.
+    /// Standard deviations of the friction parameters; `None` for methods that do not estimate
+    /// them.
     pub friction: Option<Friction>,
 }
 
@@ -66,13 +68,14 @@ impl Spread {
 /// A method's estimate at one log row. `None` is an empty cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EstimateRow {
-    /// Pose; theta is unwrapped from the row before. Of particles that of the least mean distance to them,
-    /// docs/method.md (51); in paper mode their mean.
+    /// Pose; theta is unwrapped from the row before. Of particles that of the least mean distance
+    /// to them, docs/method.md (51); in paper mode their mean.
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,
-    /// Friction parameters, in contact mode as known when the camera last saw the object, docs/method.md (52);
-    /// `d_tri` is NaN-free: it is ignored where the feet are known (see [`Estimate::has_tripod`]).
+    /// Friction parameters, in contact mode as known when the camera last saw the object,
+    /// docs/method.md (52); `d_tri` is NaN-free: it is ignored where the feet are known (see
+    /// [`Estimate::has_tripod`]).
     pub friction: Option<Friction>,
     /// Posterior probability of contact with the pusher.
     pub contact_pusher: Option<f64>,
@@ -96,7 +99,8 @@ pub struct EstimateRow {
     pub modes: Vec<BeliefMode>,
     /// Whether a camera pose was used.
     pub visual: bool,
-    /// Number of particles whose step has no certified solution, those that learn friction among them.
+    /// Number of particles whose step has no certified solution, those that learn friction among
+    /// them.
     pub unsolved: Option<u32>,
     /// Of those, the ones whose solver gave up; for the others it proved that there is no solution.
     pub failed: Option<u32>,
@@ -107,7 +111,8 @@ const MOVING: f64 = 1e-3;
 const TURNING: f64 = 0.03;
 
 impl EstimateRow {
-    /// Whether the object moves, faster than 1 mm/s or 0.03 rad/s: where it rests, nothing is learned of friction.
+    /// Whether the object moves, faster than 1 mm/s or 0.03 rad/s: where it rests, nothing is
+    /// learned of friction.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.twist
@@ -145,7 +150,8 @@ impl Estimate {
         }
     }
 
-    /// The pose's standard deviations at `time` (s), variances linear between rows; `None` outside the estimated rows.
+    /// The pose's standard deviations at `time` (s), variances linear between rows; `None` outside
+    /// the estimated rows.
     #[must_use]
     pub fn std_at(&self, time: f64) -> Option<Pose> {
         let (before, after, share) = self.rows_about(time)?;

@@ -14,8 +14,8 @@ pub struct Log {
     pub time: Vec<f64>,
     /// Measured object poses.
     pub object: Vec<Option<Pose>>,
-    /// How noisy each of them is, `None`: as the scene's camera says; empty where the log says it of
-    /// none.
+    /// How noisy each of them is, `None`: as the scene's camera says; empty where the log says it
+    /// of none.
     pub object_covariance: Vec<Option<PoseCovariance>>,
     /// Measured pusher poses.
     pub pusher: Vec<Option<Pose>>,
@@ -64,8 +64,8 @@ impl Log {
         }
     }
 
-    /// Refuses what no method can use: columns of unequal length, more sensors than `fixels`, times that
-    /// do not rise or pause too long, numbers that cannot be.
+    /// Refuses what no method can use: columns of unequal length, more sensors than `fixels`, times
+    /// that do not rise or pause too long, numbers that cannot be.
     pub(crate) fn check(&self, fixels: usize) -> Result<(), RunError> {
         self.check_columns()?;
         let sensors = self.tactile.len();

@@ -1,8 +1,8 @@
 //! What brings particles to where weighing alone would leave few: [`Moves`].
 
-/// What contact mode does with particles beside weighing and resampling (docs/method.md, (42) to (45)); by
-/// default all. Without any of it very many particles are needed for the same belief; paper mode has
-/// none.
+/// What contact mode does with particles beside weighing and resampling (docs/method.md, (42) to
+/// (45)); by default all. Without any of it very many particles are needed for the same belief;
+/// paper mode has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moves {
     /// Steps since a blackout that explain touch and pusher too badly are made again (42).

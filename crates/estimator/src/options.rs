@@ -1,6 +1,6 @@
 //! How a run is made: [`RunOptions`].
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::pusher::track::Tracking;
@@ -39,7 +39,7 @@ pub struct RunOptions {
     /// Method.
     pub method: Method,
     /// Rules of the particle filter.
-    pub mode: Mode,
+    pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all random numbers.
@@ -60,7 +60,7 @@ impl Default for RunOptions {
     fn default() -> Self {
         Self {
             method: Method::Particle,
-            mode: Mode::default(),
+            model: FilterModel::default(),
             particles: 500,
             seed: 0,
             tactile: TactileUse::Used,

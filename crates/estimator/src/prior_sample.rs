@@ -6,8 +6,8 @@ use stickslip_dynamics::{Body, Friction, Lanes, Mask, Pose};
 use stickslip_filter::{Purpose, Streams};
 
 use crate::error::RunError;
+use crate::filter_model::FilterModel;
 use crate::log::Log;
-use crate::mode::Mode;
 use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
@@ -18,23 +18,24 @@ use crate::particle::view::ParticleView;
 use crate::run::run_observed;
 use crate::setup::{Camera, Setup};
 
-/// One experiment drawn from what the particle filter believes before it: an object that moves under
-/// the logged pusher as a particle does, its friction, the rig's errors and the forces that disturb it
-/// drawn from their priors, and what camera and sensors then read, by the rules that the filter weighs
-/// by (docs/method.md, "Contact mode").
+/// One experiment drawn from what the particle filter believes before it: an object that moves
+/// under the logged pusher as a particle does, its friction, the rig's errors and the forces that
+/// disturb it drawn from their priors, and what camera and sensors then read, by the rules that the
+/// filter weighs by (docs/method.md, "Contact mode").
 ///
 /// The filter's beliefs of such experiments are true as far as its particles are enough
-/// (simulation-based calibration, Talts et al. 2018), and where real logs look unlike them, its model is
-/// wrong (prior predictive check). No camera pose is wrong, and `likelihood_scale` counts as 1.
+/// (simulation-based calibration, Talts et al. 2018), and where real logs look unlike them, its
+/// model is wrong (prior predictive check). No camera pose is wrong, and `likelihood_scale` counts
+/// as 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorSample {
-    /// What was measured: times, pusher and first object pose of the log given; further poses and readings
-    /// where that has some.
+    /// What was measured: times, pusher and first object pose of the log given; further poses and
+    /// readings where that has some.
     pub log: Log,
     /// What is true, by row from the first one with an object pose on.
     pub truth: Vec<SampledState>,
-    /// Probability, up to a constant, that a pusher which the object may hold up goes as the log says:
-    /// of samples, so many count.
+    /// Probability, up to a constant, that a pusher which the object may hold up goes as the log
+    /// says: of samples, so many count.
     pub chance: f64,
 }
 
@@ -48,13 +49,13 @@ pub struct SampledState {
 }
 
 impl PriorSample {
-    /// Draws one under the pusher of `log`, from around its first object pose on. That pose stays: the filter
-    /// knows nothing of where the object is before, so that what it believes first is a distribution around
-    /// what the camera shows first.
+    /// Draws one under the pusher of `log`, from around its first object pose on. That pose stays:
+    /// the filter knows nothing of where the object is before, so that what it believes first is a
+    /// distribution around what the camera shows first.
     ///
     /// # Errors
     /// Those of [`run`](crate::run).
-    pub fn draw(setup: &Setup, log: &Log, mode: Mode, seed: u64) -> Result<Self, RunError> {
+    pub fn draw(setup: &Setup, log: &Log, model: FilterModel, seed: u64) -> Result<Self, RunError> {
         let camera = setup.camera.ok_or(RunError::NoCamera)?;
         let streams = Streams::new(seed).of(Purpose::Measure);
         let mut log = log.clone();
@@ -65,7 +66,7 @@ impl PriorSample {
         // what happens: second tries would favour what the pusher agrees with, as `chance` does already, and
         // where the object waits is known as well as the first pose is
         let options = RunOptions {
-            mode,
+            model,
             particles: 1,
             seed,
             tactile: TactileUse::Ignored,
@@ -80,12 +81,12 @@ impl PriorSample {
             },
             ..RunOptions::default()
         };
-        let camera = with_noise_drawn(camera, setup, mode, streams);
+        let camera = with_noise_drawn(camera, setup, model, streams);
         let setup = Setup {
             camera: Some(camera),
             ..setup.clone()
         };
-        let witness = Witness::new(&setup, mode);
+        let witness = Witness::new(&setup, model);
         let run = run_observed(&setup, &log, &options, &witness, &mut |_| ())?;
         let rows = witness.state.into_inner();
         let rows = rows.expect("no thread panicked").rows;
@@ -94,7 +95,7 @@ impl PriorSample {
         let readings = Readings {
             setup: &setup,
             camera,
-            mode,
+            model,
             streams,
         };
         readings.write(&rows, &mut log);
@@ -107,9 +108,9 @@ impl PriorSample {
 }
 
 /// The camera, as noisy as nobody knows.
-fn with_noise_drawn(camera: Camera, setup: &Setup, mode: Mode, streams: Streams) -> Camera {
+fn with_noise_drawn(camera: Camera, setup: &Setup, model: FilterModel, streams: Streams) -> Camera {
     let prior = NoisePrior::new(setup.uncertainty.camera_noise);
-    let prior = prior.filter(|_| mode == Mode::Contact);
+    let prior = prior.filter(|_| model == FilterModel::Robust);
     let level = |sensor| prior.map_or(1.0, |prior| prior.drawn(streams.at(0), sensor).sqrt());
     Camera {
         position_std: level(NOISE_LEVELS) * camera.position_std,
@@ -132,7 +133,7 @@ struct Witnessed {
 #[derive(Debug)]
 struct Witness<'a> {
     setup: &'a Setup,
-    mode: Mode,
+    model: FilterModel,
     state: Mutex<WitnessState>,
 }
 
@@ -144,10 +145,10 @@ struct WitnessState {
 }
 
 impl<'a> Witness<'a> {
-    fn new(setup: &'a Setup, mode: Mode) -> Self {
+    fn new(setup: &'a Setup, model: FilterModel) -> Self {
         Self {
             setup,
-            mode,
+            model,
             state: Mutex::default(),
         }
     }
@@ -185,12 +186,12 @@ impl Observer for Witness<'_> {
     fn on_row(&self, _: usize, particles: &ParticleView<'_>) {
         let mut state = self.state.lock().expect("one thread");
         let idle = particles.is_idle(0);
-        let felt = |&(impulse, gap): &(f64, f64)| match self.mode {
-            Mode::Contact => {
+        let felt = |&(impulse, gap): &(f64, f64)| match self.model {
+            FilterModel::Robust => {
                 let idle = Mask::splat(idle);
                 felt_or_idle(Lanes([impulse]), Lanes([gap]), idle).0[0]
             }
-            Mode::Paper => f64::from(u8::from(impulse > 1.0)),
+            FilterModel::Paper => f64::from(u8::from(impulse > 1.0)),
         };
         let row = Witnessed {
             truth: SampledState {
@@ -210,12 +211,13 @@ struct Readings<'a> {
     setup: &'a Setup,
     /// With its true noise.
     camera: Camera,
-    mode: Mode,
+    model: FilterModel,
     streams: Streams,
 }
 
 impl Readings<'_> {
-    /// Writes what they read of a particle into `log`, where that has readings; its first object pose stays.
+    /// Writes what they read of a particle into `log`, where that has readings; its first object
+    /// pose stays.
     fn write(&self, rows: &[Witnessed], log: &mut Log) {
         let streams = self.streams;
         let first = log.len() - rows.len();
@@ -261,13 +263,13 @@ impl Readings<'_> {
             let h = time - before.replace(*time).unwrap_or(*time);
             let touch = row.touch.get(j).copied().unwrap_or(0.0);
             let uniform = std::array::from_fn(|n| streams.uniform(k as u64, particle, n as u32));
-            let drawn = match self.mode {
-                Mode::Contact => {
+            let drawn = match self.model {
+                FilterModel::Robust => {
                     let drawn = channel.drawn(sensor, h, touch, uniform);
                     sensor = drawn.0;
                     drawn.1
                 }
-                Mode::Paper => channel.drawn_working(touch, [uniform[1], uniform[2]]),
+                FilterModel::Paper => channel.drawn_working(touch, [uniform[1], uniform[2]]),
             };
             *reading = reading.map(|_| drawn);
         }

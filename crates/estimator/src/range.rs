@@ -1,7 +1,7 @@
 //! Which numbers can be: [`Rule`], within what is possible in a [`Unit`].
 //!
-//! Nothing on a table top is a billion metres wide or weighs a microgram. Numbers like these are slips,
-//! and with them arithmetic overflows or a step never ends.
+//! Nothing on a table top is a billion metres wide or weighs a microgram. Numbers like these are
+//! slips, and with them arithmetic overflows or a step never ends.
 
 use std::fmt;
 

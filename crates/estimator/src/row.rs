@@ -5,14 +5,15 @@ use stickslip_dynamics::Pose;
 use crate::covariance::PoseCovariance;
 use crate::range::Unit;
 
-/// Longest time between two rows (s): a log that pauses longer is in milliseconds, or mixes two clocks
-/// or two recordings, and its substeps would fill the memory.
+/// Longest time between two rows (s): a log that pauses longer is in milliseconds, or mixes two
+/// clocks or two recordings, and its substeps would fill the memory.
 pub(crate) const LONGEST_PAUSE: f64 = 5.0;
 
 /// Latest time (s): that of our day in nanoseconds is earlier, which is told better by other rules.
 const LATEST: f64 = 1e19;
 
-/// The unit that times seem to be in whose typical step from row to row is this; `None` for seconds.
+/// The unit that times seem to be in whose typical step from row to row is this; `None` for
+/// seconds.
 pub(crate) fn unit_of_times(step: f64) -> Option<&'static str> {
     match step {
         step if step > 5e5 => Some("nanoseconds"),

@@ -31,9 +31,9 @@ pub struct Run {
     /// How often the steps since a blackout were made again with other random numbers, since the
     /// particles explained pusher and touch ever worse (contact mode; docs/method.md (42)).
     pub second_tries: u32,
-    /// ln of the evidence of the log: of two scenes, or of two modes, the one with the higher evidence
-    /// expected the camera poses and tactile readings more. Up to a constant of the log; rows at which
-    /// the filter collapsed are left out. `None` for methods without particles.
+    /// ln of the evidence of the log: of two scenes, or of two modes, the one with the higher
+    /// evidence expected the camera poses and tactile readings more. Up to a constant of the log;
+    /// rows at which the filter collapsed are left out. `None` for methods without particles.
     pub log_evidence: Option<f64>,
 }
 
@@ -166,7 +166,7 @@ fn track_smoothed(
         ..
     } = prepared;
     let filter_options = FilterOptions {
-        mode: options.mode,
+        model: options.model,
         particles: options.particles,
         seed: options.seed,
         late: 0.0,
@@ -248,8 +248,8 @@ fn track_causal(
 }
 
 impl PreparedLog<'_> {
-    /// Shows the observer the particles after a row: those that have the friction of the estimate, and those that
-    /// say where the object is.
+    /// Shows the observer the particles after a row: those that have the friction of the estimate,
+    /// and those that say where the object is.
     fn show(
         &self,
         row: usize,

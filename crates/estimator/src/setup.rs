@@ -97,8 +97,8 @@ impl Default for FilterSettings {
 }
 
 impl FilterSettings {
-    /// The defaults for an object whose friction is near `nominal`: limits reach to half and twice of that at least, of
-    /// d_tri to 1.6 times, for objects larger than most.
+    /// The defaults for an object whose friction is near `nominal`: limits reach to half and twice
+    /// of that at least, of d_tri to 1.6 times, for objects larger than most.
     pub fn around(nominal: &Friction) -> Self {
         let mut settings = Self::default();
         let nominal = nominal.fields().into_iter();
@@ -140,8 +140,8 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Standard deviation of the angle (rad) by which the pusher may be turned beside its logged poses, on a rig as rough as
-    /// told; 0 where turning it changes nothing.
+    /// Standard deviation of the angle (rad) by which the pusher may be turned beside its logged
+    /// poses, on a rig as rough as told; 0 where turning it changes nothing.
     pub(crate) fn pusher_turn(&self) -> f64 {
         let parts = self.scene.pusher.shape.parts();
         let round = matches!(parts, [Part::Disc { centre, .. }] if *centre == [0.0, 0.0]);

@@ -6,7 +6,7 @@ use stickslip_dynamics::StepInput;
 
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::contact_filter::{Drive, Measured};
@@ -28,12 +28,12 @@ const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
 /// Most substeps from row to row.
 const MOST_SUBSTEPS: u32 = 10_000;
 
-/// Memory that a particle takes (bytes), with that of those that learn friction beside it, as measured with four
-/// bodies to touch; past poses are not counted.
-fn particle_bytes(mode: Mode) -> usize {
-    match mode {
-        Mode::Contact => 5200,
-        Mode::Paper => 600,
+/// Memory that a particle takes (bytes), with that of those that learn friction beside it, as
+/// measured with four bodies to touch; past poses are not counted.
+fn particle_bytes(model: FilterModel) -> usize {
+    match model {
+        FilterModel::Robust => 5200,
+        FilterModel::Paper => 600,
     }
 }
 
@@ -41,8 +41,9 @@ fn particle_bytes(mode: Mode) -> usize {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerOptions {
     /// Rules of the particle filter.
-    pub mode: Mode,
-    /// Number of particles that say where the object is; in contact mode as many learn its friction.
+    pub model: FilterModel,
+    /// Number of particles that say where the object is; in contact mode as many learn its
+    /// friction.
     pub particles: usize,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -70,7 +71,7 @@ impl TrackerOptions {
     /// Those of a run over a whole log, whose rows are never late.
     pub fn of(options: &RunOptions) -> Self {
         Self {
-            mode: options.mode,
+            model: options.model,
             particles: options.particles,
             seed: options.seed,
             tactile: options.tactile,
@@ -92,7 +93,7 @@ impl TrackerOptions {
         if !(0.0..=LONGEST_PAUSE).contains(&late) {
             return Err(RunError::Late { late });
         }
-        let bytes = particles.saturating_mul(particle_bytes(self.mode));
+        let bytes = particles.saturating_mul(particle_bytes(self.model));
         let given = Vec::<u8>::new().try_reserve_exact(bytes);
         given.map_err(|_| RunError::Memory {
             particles,
@@ -113,10 +114,10 @@ pub struct StepSize {
 /// The particle filter over contact dynamics, one row at a time.
 ///
 /// It gives what [`run`](crate::run) gives with [`Tracking::Causal`](crate::Tracking), bit for bit:
-/// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the first
-/// rows, on one thread, a row allocates nothing, but at the first contact, where the particles that learn
-/// friction are made, in the dark, whose rows are kept and may be made again, where the number of particles
-/// changes, and where a step needs the search over contact modes.
+/// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the
+/// first rows, on one thread, a row allocates nothing, but at the first contact, where the
+/// particles that learn friction are made, in the dark, whose rows are kept and may be made again,
+/// where the number of particles changes, and where a step needs the search over contact modes.
 ///
 /// ```
 /// use stickslip::{Row, Tracker, TrackerOptions};
@@ -209,7 +210,7 @@ impl<'o> Tracker<'o> {
 
     fn filter_options(&self) -> FilterOptions<'o> {
         FilterOptions {
-            mode: self.options.mode,
+            model: self.options.model,
             particles: self.options.particles,
             seed: self.options.seed,
             late: self.options.late,
@@ -219,8 +220,8 @@ impl<'o> Tracker<'o> {
         }
     }
 
-    /// Takes one row; returns the estimate at the latest row, whose cells are empty before the first
-    /// object pose.
+    /// Takes one row; returns the estimate at the latest row, whose cells are empty before the
+    /// first object pose.
     ///
     /// A row without an object pose is blacked out. A row that is not later than the latest one is
     /// late: its object pose is weighed against each particle's own pose at that time, up to
@@ -234,9 +235,9 @@ impl<'o> Tracker<'o> {
     }
 
     /// The same with as many particles as `particles` says once the size of the step to the row is
-    /// known, its number of particles being that of the row before; it is not asked at late rows and
-    /// before the first object pose. Where the number changes, the particles are resampled first, by
-    /// which the estimate of this row and later ones depends on when it changed.
+    /// known, its number of particles being that of the row before; it is not asked at late rows
+    /// and before the first object pose. Where the number changes, the particles are resampled
+    /// first, by which the estimate of this row and later ones depends on when it changed.
     ///
     /// # Errors
     /// Those of [`push`](Self::push).
@@ -303,8 +304,8 @@ impl<'o> Tracker<'o> {
         Ok(self.estimate())
     }
 
-    /// Writes the substeps from the latest step's end to `time`, at whose end the pusher is `next`: none where it is
-    /// too near.
+    /// Writes the substeps from the latest step's end to `time`, at whose end the pusher is `next`:
+    /// none where it is too near.
     fn plan_substeps(&mut self, time: f64, next: Option<TrackedPose>) {
         self.substeps.clear();
         let Some(from) = self.stepped else {
@@ -352,8 +353,8 @@ impl<'o> Tracker<'o> {
             .map_or(&self.nothing, LearningFilter::latest)
     }
 
-    /// The particles that say where the object is, after the latest row; `None` before the first object pose. The
-    /// friction of the estimate is learned by others, docs/method.md (52).
+    /// The particles that say where the object is, after the latest row; `None` before the first
+    /// object pose. The friction of the estimate is learned by others, docs/method.md (52).
     pub fn particles(&self) -> Option<ParticleView<'_>> {
         self.filter.as_ref().map(LearningFilter::particles)
     }
@@ -382,8 +383,8 @@ impl<'o> Tracker<'o> {
         self.filter.as_ref().map_or(0, LearningFilter::collapses)
     }
 
-    /// Poses of the pusher that counted as missing, since it could not have come there since the ones before
-    /// (docs/method.md, "The pusher's track").
+    /// Poses of the pusher that counted as missing, since it could not have come there since the
+    /// ones before (docs/method.md, "The pusher's track").
     pub fn pusher_poses_left_out(&self) -> u32 {
         self.pusher.left_out()
     }
@@ -394,8 +395,8 @@ impl<'o> Tracker<'o> {
         self.filter.as_ref().map_or(0, LearningFilter::second_tries)
     }
 
-    /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence); 0
-    /// before the first pose.
+    /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence);
+    /// 0 before the first pose.
     pub fn log_evidence(&self) -> f64 {
         self.filter
             .as_ref()

@@ -3,19 +3,20 @@
 
 use stickslip_dynamics::{Friction, Lanes};
 
-/// `[uncertainty]` of a scene file: what its other numbers leave open. Paper mode takes them as they
-/// are.
+/// `[uncertainty]` of a scene file: what its other numbers leave open. Paper mode takes them as
+/// they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Standard deviations of ln β, the priors of the friction parameters: 0.45 is 45 %.
     pub friction: Friction,
-    /// Standard deviation of where the centre of friction lies beside that of the scene's feet, which is the centre of
-    /// mass for a tripod, on each axis, as a share of the radius of gyration.
+    /// Standard deviation of where the centre of friction lies beside that of the scene's feet,
+    /// which is the centre of mass for a tripod, on each axis, as a share of the radius of
+    /// gyration.
     pub centre_of_friction: f64,
     /// Standard deviation of the angle by which the feet are turned about that centre (rad).
     pub tripod_angle: f64,
-    /// Random step of ln β per step of 1/30 s, while the camera looks or the pusher moves; it keeps the
-    /// prior.
+    /// Random step of ln β per step of 1/30 s, while the camera looks or the pusher moves; it keeps
+    /// the prior.
     pub drift: f64,
     /// Standard deviation of the logarithm by which friction differs from place to place.
     pub variation: f64,
@@ -24,35 +25,40 @@ pub struct Uncertainty {
     /// Disturbing force per step of 1/30 s, as a share of μ_s m g on each axis, times the radius of
     /// gyration for rotation.
     pub force_std: f64,
-    /// Standard deviation of the logarithm of a factor of that force: some pushes are smoother than others.
+    /// Standard deviation of the logarithm of a factor of that force: some pushes are smoother than
+    /// others.
     pub force_spread: f64,
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
-    /// Standard deviation of the way by which a pusher that a jam holds back is behind its logged pose
-    /// (m).
+    /// Standard deviation of the way by which a pusher that a jam holds back is behind its logged
+    /// pose (m).
     pub pusher_lag: f64,
     /// Standard deviation of the error of each fixel's position, on each axis (m).
     pub fixel_position: f64,
     /// Standard deviation of the distance by which the object's outline lies outside its shape (m).
     pub outline: f64,
-    /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs differ.
+    /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs
+    /// differ.
     pub roughness: f64,
-    /// Factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on the smoother half of rigs,
-    /// and its fourth root that of `pusher_offset`: below 1 where some rigs are measured much better than others.
+    /// Factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on the
+    /// smoother half of rigs, and its fourth root that of `pusher_offset`: below 1 where some rigs
+    /// are measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from what is told.
     pub camera_noise: f64,
     /// Mean time by which the camera lags more than the scene says (s).
     pub latency: f64,
-    /// Share of the object's speed at which a contact slips where friction comes to its bound, the median of a
-    /// log-normal prior (docs/method.md (50)); 0 is Coulomb's law.
+    /// Share of the object's speed at which a contact slips where friction comes to its bound, the
+    /// median of a log-normal prior (docs/method.md (50)); 0 is Coulomb's law.
     pub creep: f64,
-    /// Gap at which object and body may touch already, beside the errors of their poses and shapes (m).
+    /// Gap at which object and body may touch already, beside the errors of their poses and shapes
+    /// (m).
     pub touch_gap: f64,
 }
 
-/// Standard deviation of the angle of a tripod that may stand anyhow (rad): it is the same after a third of a turn.
+/// Standard deviation of the angle of a tripod that may stand anyhow (rad): it is the same after a
+/// third of a turn.
 const ANY_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
 
 impl Default for Uncertainty {
@@ -85,7 +91,8 @@ impl Default for Uncertainty {
     }
 }
 
-/// How steeply the factor of well measured rigs changes between the halves, per unit of ln of roughness.
+/// How steeply the factor of well measured rigs changes between the halves, per unit of ln of
+/// roughness.
 const BETWEEN_HALVES: f64 = 10.0;
 
 /// At least what particles that learn friction have of `force_spread` and `creep`.
@@ -106,8 +113,9 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/method.md (36): the factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on a
-    /// rig of logarithm `roughness`, beside its own; `well_measured` on the smoother half of rigs, 1 on the others.
+    /// b of docs/method.md (36): the factor of `fixel_position`, `outline`, `latency` and, in the
+    /// dark, `force_std` on a rig of logarithm `roughness`, beside its own; `well_measured` on the
+    /// smoother half of rigs, 1 on the others.
     #[inline(always)]
     pub(crate) fn well_measured_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         let one = Lanes::splat(1.0);
@@ -124,8 +132,8 @@ impl Uncertainty {
         self.well_measured_at(roughness).sqrt().sqrt()
     }
 
-    /// What particles that learn friction do not know, docs/method.md (52): pushes may be smoother than others, and
-    /// contacts may creep.
+    /// What particles that learn friction do not know, docs/method.md (52): pushes may be smoother
+    /// than others, and contacts may creep.
     pub(crate) fn of_learners(&self) -> Self {
         Self {
             force_spread: self.force_spread.max(FORCE_SPREAD_OF_LEARNERS),

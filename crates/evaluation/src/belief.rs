@@ -5,12 +5,12 @@ use stickslip::dynamics::Pose;
 /// Standard deviations on either side of the centre that hold 90 % of a normal distribution.
 pub(crate) const NINETY_PERCENT: f64 = 1.644_853_626_951_472_7;
 
-/// How an estimate's poses and standard deviations agree with a reference over some rows; `None` over
-/// no rows, and for methods without a spread.
+/// How an estimate's poses and standard deviations agree with a reference over some rows; `None`
+/// over no rows, and for methods without a spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Belief {
-    /// Share of the 90 % intervals of x, y and θ, estimate ± 1.645 standard deviations, that hold the
-    /// reference; 0.9 where the belief is true.
+    /// Share of the 90 % intervals of x, y and θ, estimate ± 1.645 standard deviations, that hold
+    /// the reference; 0.9 where the belief is true.
     pub covered: Option<f64>,
     /// Continuous ranked probability score of normal distributions with these centres and standard
     /// deviations, the mean over x, y and r_v θ (mm); the lower the better, an absolute error where

@@ -1,11 +1,11 @@
-//! Whether beliefs are true: simulated experiments whose friction is drawn from the prior, and where
-//! the truth then lies in the belief ([`CalibrationRun`], [`Tally`]); simulation-based calibration,
-//! Talts et al. 2018.
+//! Whether beliefs are true: simulated experiments whose friction is drawn from the prior, and
+//! where the truth then lies in the belief ([`CalibrationRun`], [`Tally`]); simulation-based
+//! calibration, Talts et al. 2018.
 
 use std::sync::Mutex;
 
 use stickslip::{
-    Mode, Observer, ParticleView, PriorSample, SampledState, Setup, SolvedStep, Tracking,
+    FilterModel, Observer, ParticleView, PriorSample, SampledState, Setup, SolvedStep, Tracking,
     Uncertainty, wrapped,
 };
 use stickslip_filter::{Purpose, Streams};
@@ -47,8 +47,8 @@ pub struct CalibrationRun {
 /// What moves the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TruthSource {
-    /// The filter's own model, noise and measurements included ([`PriorSample`]): of such truths, true
-    /// beliefs hold as much as they say.
+    /// The filter's own model, noise and measurements included ([`PriorSample`]): of such truths,
+    /// true beliefs hold as much as they say.
     Prior,
     /// A simulation by the filter's dynamics without noise, or by the testbed.
     Simulated(Physics),
@@ -60,11 +60,11 @@ pub struct CalibrationOptions {
     /// What moves the object.
     pub source: TruthSource,
     /// Rules of the particle filter.
-    pub mode: Mode,
+    pub model: FilterModel,
     /// What scenes leave open, of truths and in contact mode.
     pub uncertainty: Uncertainty,
-    /// Whether it feels and not only sees, and whether the camera stays on where it else goes dark before the
-    /// first contact with a fixel.
+    /// Whether it feels and not only sees, and whether the camera stays on where it else goes dark
+    /// before the first contact with a fixel.
     pub variant: Variant,
     /// Number of particles.
     pub particles: usize,
@@ -79,7 +79,8 @@ impl Placed {
 }
 
 impl CalibrationRun {
-    /// The paper's experiments in turn, by as many seeds from 0 on; those that [`CalibrationRun::new`] has.
+    /// The paper's experiments in turn, by as many seeds from 0 on; those that
+    /// [`CalibrationRun::new`] has.
     #[must_use]
     pub fn of_papers(seeds: usize, options: &CalibrationOptions) -> Vec<Self> {
         let papers = PaperExperiment::ALL.into_iter().cycle();
@@ -90,9 +91,10 @@ impl CalibrationRun {
     }
 
     /// Simulates `paper` with friction drawn from its scene's prior, and tracks it, through a
-    /// blackout that begins before the first contact with a fixel; where the filter's own model moves the object, that
-    /// is the contact of the simulation whose pusher it has, so that no blackout tells of the truth. `None`
-    /// where no fixel is met, or the drawn rig cannot be simulated.
+    /// blackout that begins before the first contact with a fixel; where the filter's own model
+    /// moves the object, that is the contact of the simulation whose pusher it has, so that no
+    /// blackout tells of the truth. `None` where no fixel is met, or the drawn rig cannot be
+    /// simulated.
     ///
     /// # Panics
     /// If an embedded scene cannot be run.
@@ -106,13 +108,13 @@ impl CalibrationRun {
             setup.filter.likelihood_scale = 1.0;
         }
         let known = match options.source {
-            TruthSource::Prior => sampled(&setup, seed, options.mode),
+            TruthSource::Prior => sampled(&setup, seed, options.model),
             TruthSource::Simulated(physics) => simulated(&setup, seed, physics),
         }?;
         let experiment = &known.experiment;
         experiment.facts.occlude_from?;
         let conditions = RunConditions {
-            mode: options.mode,
+            model: options.model,
             particles: options.particles,
             tracking: Tracking::Smoothed,
             occlusion: experiment.facts.occlusion(),
@@ -180,10 +182,10 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
 }
 
 /// An experiment drawn from what the filter believes before it, under the pusher of a simulation.
-fn sampled(setup: &Setup, seed: u64, mode: Mode) -> Option<KnownExperiment> {
+fn sampled(setup: &Setup, seed: u64, model: FilterModel) -> Option<KnownExperiment> {
     let mut experiment = simulated(setup, seed, Physics::Model)?.experiment;
     let seed = seed + OTHER_SEEDS;
-    let sample = PriorSample::draw(setup, &experiment.log, mode, seed).ok()?;
+    let sample = PriorSample::draw(setup, &experiment.log, model, seed).ok()?;
     // a motion that the logged pusher contradicts is as much rarer among truths
     let streams = Streams::new(seed).of(Purpose::General);
     if streams.uniform(0, 0, 0) > sample.chance {

@@ -1,12 +1,12 @@
 //! What a run knows of friction when it ends: [`LearnedParameter`].
 //!
-//! In paper mode particles get new friction values only where the camera sees the object and Φ keeps
-//! them (docs/method.md (20), (21)): at rest the set is resampled without new values, until all its particles are
-//! copies of a few, and its spread shrinks though nothing has been learnt. Contact mode keeps at rest and in the dark
-//! what was known before (52). So the
-//! last row that informs about a parameter has its estimate, and where there is none it was not
-//! observed. Where particles begin with a prior (contact mode), a parameter whose spread is not much
-//! narrower than that was not observed, either.
+//! In paper mode particles get new friction values only where the camera sees the object and Φ
+//! keeps them (docs/method.md (20), (21)): at rest the set is resampled without new values, until
+//! all its particles are copies of a few, and its spread shrinks though nothing has been learnt.
+//! Contact mode keeps at rest and in the dark what was known before (52). So the last row that
+//! informs about a parameter has its estimate, and where there is none it was not observed. Where
+//! particles begin with a prior (contact mode), a parameter whose spread is not much narrower than
+//! that was not observed, either.
 
 use serde::Serialize;
 use stickslip::dynamics::Friction;
@@ -15,8 +15,8 @@ use stickslip::{Estimate, EstimateRow};
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
 
-/// Share of the prior's spread below which a parameter was observed: what is known of it then is nearer the
-/// truth than the prior's mean by almost half (docs/decisions/007-contact-mode.md, "Friction that is learned beside").
+/// Share of the prior's spread below which a parameter was observed: what is known of it then is
+/// nearer the truth than the prior's mean by almost half (docs/log/2026-11-robust-model.md).
 const NARROWER: f64 = 0.6;
 
 /// One friction parameter at the end of a run.
@@ -27,7 +27,8 @@ pub struct LearnedParameter {
     pub name: &'static str,
     /// Posterior mean (SI), at the last row that informed; where none did, that of the prior.
     pub mean: f64,
-    /// Posterior standard deviation of the same row (SI); 0 in a prior of paper mode, which leaves nothing open.
+    /// Posterior standard deviation of the same row (SI); 0 in a prior of paper mode, which leaves
+    /// nothing open.
     pub std: f64,
     /// Whether the rows told enough of it.
     pub observed: bool,
@@ -70,8 +71,8 @@ const SOURCES: [Source; 4] = [
 ];
 
 impl LearnedParameter {
-    /// All parameters of a run; none for methods that do not estimate them, and no `d_tri` where the
-    /// feet are known.
+    /// All parameters of a run; none for methods that do not estimate them, and no `d_tri` where
+    /// the feet are known.
     #[must_use]
     pub fn all(estimate: &Estimate) -> Vec<Self> {
         SOURCES

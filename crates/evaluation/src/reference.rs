@@ -1,7 +1,10 @@
-//! How near few particles come to the belief that the model and the data amount to: [`Agreement`] with a
-//! reference of very many particles, which tells what an error is owed to, sampling or model.
+//! How near few particles come to the belief that the model and the data amount to: [`Agreement`]
+//! with a reference of very many particles, which tells what an error is owed to, sampling or
+//! model.
 
-use stickslip::{Estimate, Mode, Moves, RunError, RunOptions, Tracking, quantile, run, wrapped};
+use stickslip::{
+    Estimate, FilterModel, Moves, RunError, RunOptions, Tracking, quantile, run, wrapped,
+};
 
 use crate::paper::{Replicate, RunSettings};
 use crate::run::ScoredRun;
@@ -9,15 +12,16 @@ use crate::score::Scores;
 use crate::variant::Variant;
 
 /// Two runs over the same experiment with touch, its camera dark as the experiment says: of a few
-/// particles as the program does it, and the reference, which many particles reach by weighing alone.
+/// particles as the program does it, and the reference, which many particles reach by weighing
+/// alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
     /// Scores of the few.
     pub few: Scores,
     /// Scores of the reference.
     pub reference: Scores,
-    /// Root mean square over the dark rows and x, y, θ of (mean − the reference's mean) / its standard
-    /// deviation. What N independent particles would have is 1/√N.
+    /// Root mean square over the dark rows and x, y, θ of (mean − the reference's mean) / its
+    /// standard deviation. What N independent particles would have is 1/√N.
     pub distance: f64,
     /// Median over the same of the standard deviation over the reference's.
     pub spread: f64,
@@ -52,7 +56,7 @@ impl Agreement {
 fn scored(replicate: &Replicate, particles: usize, moves: Moves) -> Result<ScoredRun, RunError> {
     let Replicate { experiment, .. } = replicate;
     let conditions = replicate.conditions(RunSettings {
-        mode: Mode::Contact,
+        model: FilterModel::Robust,
         particles,
         tracking: Tracking::Smoothed,
     });
@@ -65,8 +69,8 @@ fn scored(replicate: &Replicate, particles: usize, moves: Moves) -> Result<Score
     Ok(ScoredRun::of(Variant::Particle, run, experiment, scored_on))
 }
 
-/// Of every number of the pose at the rows wanted: distance of the means in standard deviations of the
-/// reference, and the ratio of the standard deviations. Rows without a spread are left out.
+/// Of every number of the pose at the rows wanted: distance of the means in standard deviations of
+/// the reference, and the ratio of the standard deviations. Rows without a spread are left out.
 fn apart(few: &Estimate, many: &Estimate, wanted: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
     let rows = few.rows.iter().zip(&many.rows).enumerate();
     let rows = rows.filter(|(row, _)| wanted(*row));

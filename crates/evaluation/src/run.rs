@@ -1,7 +1,8 @@
 //! One run of a [`Variant`] on an experiment with its scores: [`ScoredRun`].
 
 use stickslip::{
-    Estimate, Mode, Observer, Occlusion, Run, RunError, RunOptions, Tracking, run, run_observed,
+    Estimate, FilterModel, Observer, Occlusion, Run, RunError, RunOptions, Tracking, run,
+    run_observed,
 };
 use stickslip_formats::Experiment;
 
@@ -12,7 +13,7 @@ use crate::variant::Variant;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunConditions {
     /// Rules of the particle filter.
-    pub mode: Mode,
+    pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
     /// How the pusher is tracked: from the whole log, or causally, as live.
@@ -72,7 +73,8 @@ impl ScoredRun {
         ))
     }
 
-    /// Scores a run that was made while `occlusion` hid the object, angles weighted by `radius` (m).
+    /// Scores a run that was made while `occlusion` hid the object, angles weighted by `radius`
+    /// (m).
     #[must_use]
     pub fn of(
         variant: Variant,
@@ -114,7 +116,7 @@ impl RunConditions {
     pub(crate) fn options(&self, variant: Variant) -> RunOptions {
         RunOptions {
             method: variant.method(),
-            mode: self.mode,
+            model: self.model,
             particles: self.particles,
             seed: self.seed,
             tactile: variant.tactile(),

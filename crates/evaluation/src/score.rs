@@ -1,7 +1,7 @@
 //! How far an estimate is from a reference: [`Scores`].
 //!
-//! The main score is the weighted root mean square error of the pose, √(mean(Δx² + Δy² + r_v² Δθ²)),
-//! which the paper, and the scores' names after it, call WMSE.
+//! The main score is the weighted root mean square error of the pose, √(mean(Δx² + Δy² + r_v²
+//! Δθ²)), which the paper, and the scores' names after it, call WMSE.
 
 use std::ops::Range;
 

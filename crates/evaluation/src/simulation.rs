@@ -10,8 +10,8 @@ use stickslip_testbed::{
 /// Share of frames that the paper's frame grabber repeats.
 pub const REPEATS: f64 = 0.02;
 
-/// Time over which the error of a tracked pusher forgets itself (s): that of a simple Kalman filter on
-/// a hundred sightings.
+/// Time over which the error of a tracked pusher forgets itself (s): that of a simple Kalman filter
+/// on a hundred sightings.
 pub const PUSHER_MEMORY: f64 = 0.15;
 
 /// Time from the blackout to the first contact with a fixel (s): five frames at 30 Hz.

@@ -1,6 +1,6 @@
 //! Friction that runs say they have observed, against truths that are drawn and known.
 
-use stickslip::{Mode, Uncertainty};
+use stickslip::{FilterModel, Uncertainty};
 use stickslip_evaluation::{
     CalibrationOptions, CalibrationRun, Physics, Placed, TruthSource, Variant,
 };
@@ -13,7 +13,7 @@ fn friction_of_smooth_pushes_is_observed_in_some_and_true_there() {
     // the testbed is another physics, and its pushes have none of the filter's random forces
     let options = CalibrationOptions {
         source: TruthSource::Simulated(Physics::Testbed),
-        mode: Mode::Contact,
+        model: FilterModel::Robust,
         uncertainty: Uncertainty::default(),
         variant: Variant::ParticleCameraOn,
         particles: 500,

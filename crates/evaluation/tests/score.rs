@@ -146,8 +146,8 @@ fn score_of_a_constant_error_is_its_size() {
     assert_eq!(scores.wmse_occluded_mm, None);
 }
 
-/// A camera that is 0.16 s late shows at row k where the object was then: the present is between two
-/// later rows, and beyond the last one it is not known.
+/// A camera that is 0.16 s late shows at row k where the object was then: the present is between
+/// two later rows, and beyond the last one it is not known.
 #[test]
 fn pose_at_a_time_is_that_of_the_rows_that_show_it() {
     let latency = 0.16;

@@ -1,5 +1,5 @@
-//! An object that stands on other feet than its scene says: the push that the camera sees tells where its centre of
-//! friction lies, and the belief in the dark goes by that.
+//! An object that stands on other feet than its scene says: the push that the camera sees tells
+//! where its centre of friction lies, and the belief in the dark goes by that.
 
 use stickslip::{Occlusion, RunOptions, run};
 use stickslip_evaluation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};
@@ -38,8 +38,8 @@ fn logged(seed: u64) -> Experiment {
     simulation.expect("it runs").into_experiment(setup)
 }
 
-/// In how many standard deviations the belief at the end of the dark is off (root mean square of x, y and θ), and how
-/// far (m), where the file says `more` of what it does not know.
+/// In how many standard deviations the belief at the end of the dark is off (root mean square of x,
+/// y and θ), and how far (m), where the file says `more` of what it does not know.
 fn off(experiment: &Experiment, more: &str, seed: u64) -> (f64, f64) {
     let scene = scene("tripod_radius = 0.022") + more;
     let setup = read_scene(&scene, "scene.toml").expect("a scene");

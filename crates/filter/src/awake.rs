@@ -9,21 +9,22 @@ use std::time::Duration;
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How often a thread looks for work before it sleeps: some 100 to 250 µs, longer than a filter mostly
-/// takes between two parallel loops, and than it takes to wake a thread.
+/// How often a thread looks for work before it sleeps: some 100 to 250 µs, longer than a filter
+/// mostly takes between two parallel loops, and than it takes to wake a thread.
 const LOOKS: u32 = 1 << 12;
 
-/// After so long a sleeping thread looks for work once, so that nothing that called nobody waits for
-/// ever.
+/// After so long a sleeping thread looks for work once, so that nothing that called nobody waits
+/// for ever.
 const NAP: Duration = Duration::from_millis(20);
 
-/// Runs `body` on the current pool while the pool's other threads wait for the parallel loops of its
-/// filter.
+/// Runs `body` on the current pool while the pool's other threads wait for the parallel loops of
+/// its filter.
 ///
-/// Waking a sleeping thread takes as long as a filter step of some hundred particles. So the threads
-/// stay awake for 0.1 to 0.3 ms after a loop that they were a help with, then they sleep until the next.
-/// No result depends on this. Other work than a filter's loops finds them only while they are awake
-/// or after some 20 ms, so `body` should have the pool to itself and be little else than a filter.
+/// Waking a sleeping thread takes as long as a filter step of some hundred particles. So the
+/// threads stay awake for 0.1 to 0.3 ms after a loop that they were a help with, then they sleep
+/// until the next. No result depends on this. Other work than a filter's loops finds them only
+/// while they are awake or after some 20 ms, so `body` should have the pool to itself and be little
+/// else than a filter.
 ///
 /// ```
 /// assert_eq!(stickslip_filter::keep_threads_awake(|| 6 * 7), 42);
@@ -129,7 +130,8 @@ impl Crew {
     }
 }
 
-/// While it lives, the loops of this thread call a crew; the crew finishes with it, also by a panic.
+/// While it lives, the loops of this thread call a crew; the crew finishes with it, also by a
+/// panic.
 struct Calling;
 
 impl Calling {

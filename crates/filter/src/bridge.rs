@@ -1,6 +1,7 @@
-//! From the particle filter to the ensemble Kalman filter and back (Frei & Künsch 2013, "Bridging the
-//! ensemble Kalman and particle filters"): where an observation would leave few particles, or a model asks for it, a
-//! part of it weighs them and the rest moves them. [`Bridge`]; docs/method.md (45), (52).
+//! From the particle filter to the ensemble Kalman filter and back (Frei & Künsch 2013, "Bridging
+//! the ensemble Kalman and particle filters"): where an observation would leave few particles, or a
+//! model asks for it, a part of it weighs them and the rest moves them. [`Bridge`]; docs/method.md
+//! (45), (52).
 
 use stickslip_lanes::exponentials;
 
@@ -11,12 +12,13 @@ use crate::particles::{BLOCK, ParticleSet};
 use crate::streams::Purpose;
 use crate::weights::LogWeights;
 
-/// Share of the effective sample size that weighing is to leave, as far as moving can prevent it: one that
-/// is left with a tenth less resamples once in some ten observations.
+/// Share of the effective sample size that weighing is to leave, as far as moving can prevent it:
+/// one that is left with a tenth less resamples once in some ten observations.
 const LEFT: f64 = 0.9;
 
-/// ln of the least likelihood, beside the mean one, of particles that an observation moves by which weighing alone
-/// would leave enough: few lie so far from it then, and the covariances of the others say nothing of them.
+/// ln of the least likelihood, beside the mean one, of particles that an observation moves by which
+/// weighing alone would leave enough: few lie so far from it then, and the covariances of the
+/// others say nothing of them.
 const FAR: f64 = -8.0;
 
 /// Weight of the particles near an observation below which it moves none.
@@ -31,7 +33,8 @@ pub(crate) struct Bridge {
     ensemble: Ensemble,
     /// Weights by a share of an observation, or weights of the particles that move, (N,).
     weights: Vec<f64>,
-    /// Whether the latest observation gave particles other weights than the pass over them did, or moved them.
+    /// Whether the latest observation gave particles other weights than the pass over them did, or
+    /// moved them.
     parted: bool,
 }
 
@@ -50,13 +53,14 @@ impl Bridge {
         }
     }
 
-    /// Whether sums of the pass over the particles hold no longer: the latest observation was parted into what
-    /// weighs them and what moves them.
+    /// Whether sums of the pass over the particles hold no longer: the latest observation was
+    /// parted into what weighs them and what moves them.
     pub fn parted(&self) -> bool {
         self.parted
     }
 
-    /// The effective sample size under likelihoods of which `share` of the part that moves is left out.
+    /// The effective sample size under likelihoods of which `share` of the part that moves is left
+    /// out.
     fn size_without(
         &mut self,
         share: f64,
@@ -80,8 +84,8 @@ impl Bridge {
         sum * sum / squares
     }
 
-    /// Weights of the particles that move, summing to 1; the others have none. Whether there are any to speak of: what
-    /// does not move can tell against all of them.
+    /// Weights of the particles that move, summing to 1; the others have none. Whether there are
+    /// any to speak of: what does not move can tell against all of them.
     fn weigh_near(&mut self, far: f64, weights: &LogWeights, moving: &[f64]) -> bool {
         self.weights.copy_from_slice(weights.weights());
         if moving.iter().all(|likelihood| *likelihood >= far) {
@@ -100,7 +104,8 @@ impl Bridge {
         true
     }
 
-    /// The smallest share of the part that moves, from `least` on, without which weighing leaves enough.
+    /// The smallest share of the part that moves, from `least` on, without which weighing leaves
+    /// enough.
     fn share(
         &mut self,
         least: f64,
@@ -127,8 +132,9 @@ impl Bridge {
 }
 
 impl<M: Model> ParticleFilter<M> {
-    /// Bayes' rule with the likelihoods of the pass: by weighing alone where nothing may move, or that leaves enough
-    /// particles and the model asks for no more, else by both. Returns ln of the evidence.
+    /// Bayes' rule with the likelihoods of the pass: by weighing alone where nothing may move, or
+    /// that leaves enough particles and the model asks for no more, else by both. Returns ln of the
+    /// evidence.
     ///
     /// `judged` is ln of the mean likelihood of the part that moves, where the model judges it.
     pub(crate) fn weigh_and_move(

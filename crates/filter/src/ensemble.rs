@@ -30,10 +30,10 @@ impl EnsembleShape {
     }
 }
 
-/// Groups of particles, each of which goes by what the others say: a particle that had a part in its own
-/// gain would go too near to the measurement, and all of them would end too close together (Houtekamer &
-/// Mitchell 1998). Descendants of one particle lie side by side, mostly in one group. Of fewer parts there
-/// are as many groups; one group goes by itself.
+/// Groups of particles, each of which goes by what the others say: a particle that had a part in
+/// its own gain would go too near to the measurement, and all of them would end too close together
+/// (Houtekamer & Mitchell 1998). Descendants of one particle lie side by side, mostly in one group.
+/// Of fewer parts there are as many groups; one group goes by itself.
 const GROUPS: usize = 8;
 
 /// Particles of one part of a block; a group is some parts.
@@ -70,8 +70,8 @@ struct Weight {
     ww: f64,
 }
 
-/// Of some particles: weighted sums of one column's distances x from its mean, with the distances e of one
-/// error from its own. Any point near them would do as the mean.
+/// Of some particles: weighted sums of one column's distances x from its mean, with the distances e
+/// of one error from its own. Any point near them would do as the mean.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     x: f64,
@@ -111,10 +111,10 @@ impl Ensemble {
         self.shape.columns() * BLOCK
     }
 
-    /// Bayes' rule for normal distributions, by the likelihood to the power `share` in (0, 1]: every
-    /// particle goes its own way to a measurement disturbed by its own error. The errors' noise is
-    /// independent, so that they can be taken one after the other. Particles without weight stay. The numbers of a
-    /// particle's draws begin at `first`.
+    /// Bayes' rule for normal distributions, by the likelihood to the power `share` in (0, 1]:
+    /// every particle goes its own way to a measurement disturbed by its own error. The errors'
+    /// noise is independent, so that they can be taken one after the other. Particles without
+    /// weight stay. The numbers of a particle's draws begin at `first`.
     pub fn update(&mut self, weights: &[f64], share: f64, (draw, first): (Draw, u32)) {
         on_widest(
             Level::new(),
@@ -288,8 +288,8 @@ fn group(part: usize, parts: usize) -> usize {
     part * parts.min(GROUPS) / parts
 }
 
-/// By how much a column moves where an error does by one that is observed under noise; a covariance that
-/// is not `certain` counts only by the share that is not chance.
+/// By how much a column moves where an error does by one that is observed under noise; a covariance
+/// that is not `certain` counts only by the share that is not chance.
 #[inline(always)]
 fn gain_by(weight: &Weight, of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
     let (x, e) = (of.x / weight.w, error.x / weight.w);
@@ -303,9 +303,9 @@ fn gain_by(weight: &Weight, of: &Sums, error: &Sums, noise_variance: f64, certai
     share * covariance / (observed + noise_variance)
 }
 
-/// Share of a covariance that is not chance: of `count` independent particles, two columns that have
-/// nothing to do with each other have a squared correlation of 1 / `count` (Anderson 2012). 0 to 1;
-/// `product` is that of their variances.
+/// Share of a covariance that is not chance: of `count` independent particles, two columns that
+/// have nothing to do with each other have a squared correlation of 1 / `count` (Anderson 2012). 0
+/// to 1; `product` is that of their variances.
 #[inline(always)]
 fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
     let square = covariance * covariance;
@@ -316,7 +316,8 @@ fn not_chance(covariance: f64, product: f64, count: f64) -> f64 {
     (1.0 - chance / square).max(0.0)
 }
 
-/// Every part of blocks of so many numbers: its group, its columns and the weights of its particles.
+/// Every part of blocks of so many numbers: its group, its columns and the weights of its
+/// particles.
 #[inline(always)]
 fn weighted<'a>(
     values: &'a [f64],
@@ -334,7 +335,8 @@ fn weighted<'a>(
     })
 }
 
-/// The weights of the part that begins with particle `first`; particles past the last one have none.
+/// The weights of the part that begins with particle `first`; particles past the last one have
+/// none.
 #[inline(always)]
 fn padded(weights: &[f64], first: usize) -> [f64; PART] {
     let weights = &weights[first.min(weights.len())..];

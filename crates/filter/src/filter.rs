@@ -102,11 +102,12 @@ impl<M: Model> ParticleFilter<M> {
     /// Calculate estimated mean using {g_i}            Model::sum, combine_sums
     /// ```
     ///
-    /// What concerns one block of particles happens in one parallel pass over the blocks; what needs
-    /// all of them comes before it (choosing ancestors) and after it (normalising the weights, adding
-    /// the blocks' sums). If no particle explains the part of the observation that a reinitialisation
-    /// can improve, or all weights are zero, the particles are reinitialised around it. Where a model lets
-    /// an observation move them, it does as far as weighing alone would leave few, or the model asks for.
+    /// What concerns one block of particles happens in one parallel pass over the blocks; what
+    /// needs all of them comes before it (choosing ancestors) and after it (normalising the
+    /// weights, adding the blocks' sums). If no particle explains the part of the observation that
+    /// a reinitialisation can improve, or all weights are zero, the particles are reinitialised
+    /// around it. Where a model lets an observation move them, it does as far as weighing alone
+    /// would leave few, or the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.make_step(input, observation, StepParts::ALL)
     }
@@ -172,8 +173,8 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.reset();
     }
 
-    /// Goes on with another number of particles: resamples by the weights, which become equal. What is
-    /// estimated stays that of the last step; where the number is the same, nothing changes.
+    /// Goes on with another number of particles: resamples by the weights, which become equal. What
+    /// is estimated stays that of the last step; where the number is the same, nothing changes.
     ///
     /// # Errors
     /// If the number is out of range; nothing changes then.
@@ -240,8 +241,9 @@ impl<M: Model> ParticleFilter<M> {
             });
     }
 
-    /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles. Also ln of the mean
-    /// likelihood of what reinitialising can improve, by the weights before, where the model judges it.
+    /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles.
+    /// Also ln of the mean likelihood of what reinitialising can improve, by the weights before,
+    /// where the model judges it.
     fn update_weights(&mut self, observation: &M::Observation) -> (WeightUpdate, Option<f64>) {
         let judged = self.model.judges_resetting(observation);
         let judged = judged.then(|| self.resetting_log_evidence(observation));
@@ -372,8 +374,8 @@ impl<M: Model> ParticleFilter<M> {
         &self.particles
     }
 
-    /// From which earlier particles they descend; [`count_ancestors_from_now`](Self::count_ancestors_from_now)
-    /// says how early.
+    /// From which earlier particles they descend;
+    /// [`count_ancestors_from_now`](Self::count_ancestors_from_now) says how early.
     pub fn lineage(&mut self) -> &mut Lineage {
         &mut self.lineage
     }

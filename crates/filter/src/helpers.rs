@@ -8,8 +8,8 @@ use std::time::Duration;
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How often the calling thread looks whether the others are done before it sleeps: some 100 to 250 µs,
-/// longer than the last piece of a loop mostly takes, and than it takes to wake a thread.
+/// How often the calling thread looks whether the others are done before it sleeps: some 100 to 250
+/// µs, longer than the last piece of a loop mostly takes, and than it takes to wake a thread.
 const LOOKS: u32 = 1 << 12;
 
 /// How often it waits on after the last has left the loop: the thread still has to report to the

@@ -12,9 +12,10 @@
 //!   [`WeightUpdate::Collapsed`];
 //! - after the first steps, a step on one thread allocates nothing.
 //!
-//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them (more than
-//! [`useful_threads`] bring nothing), and inside [`keep_threads_awake`] where one filter has them to
-//! itself. They help where the system runs them; a filter does not wait for those that it does not.
+//! Threads are the caller's choice: run inside `rayon::ThreadPool::install` to bound them (more
+//! than [`useful_threads`] bring nothing), and inside [`keep_threads_awake`] where one filter has
+//! them to itself. They help where the system runs them; a filter does not wait for those that it
+//! does not.
 
 mod awake;
 mod bridge;

@@ -2,8 +2,8 @@
 
 /// Counts ancestors: of the latest step, and of a generation further back.
 ///
-/// Few of either say that the particles, however many and however equal their weights, are copies of a
-/// few (Doucet & Johansen 2009, section 4.3, on path degeneracy).
+/// Few of either say that the particles, however many and however equal their weights, are copies
+/// of a few (Doucet & Johansen 2009, section 4.3, on path degeneracy).
 #[derive(Debug)]
 pub struct Lineage {
     /// For each particle the one of the generation that it descends from.

@@ -56,8 +56,8 @@ pub trait Model: Sync {
 
     /// Writes the log-likelihood of the observation given each particle: finite or -inf, never NaN.
     ///
-    /// A model whose proposal is not its transition adds the log-ratio of the two here (carried in a
-    /// column). A likelihood normalised as a density makes
+    /// A model whose proposal is not its transition adds the log-ratio of the two here (carried in
+    /// a column). A likelihood normalised as a density makes
     /// [`WeightUpdate::Weighed`](crate::WeightUpdate) an evidence.
     fn log_likelihood(&self, observation: &Self::Observation, block: &Block<'_>, out: &mut [f64]);
 
@@ -80,8 +80,8 @@ pub trait Model: Sync {
     /// [`reinitialise`](Self::reinitialise) draws the particles around, and that
     /// [`moves`](Self::moves) them; all of it by default.
     ///
-    /// Where the whole log-likelihood indicates a collapse and this part does not, the particles stay:
-    /// no reinitialising makes, say, a false alarm of another sensor likelier.
+    /// Where the whole log-likelihood indicates a collapse and this part does not, the particles
+    /// stay: no reinitialising makes, say, a false alarm of another sensor likelier.
     fn resetting_log_likelihood(
         &self,
         observation: &Self::Observation,
@@ -91,8 +91,8 @@ pub trait Model: Sync {
         self.log_likelihood(observation, block, out);
     }
 
-    /// Whether [`StepReport::resetting_log_evidence`](crate::StepReport::resetting_log_evidence) is to tell how well
-    /// the particles expected that part of an observation; by default not.
+    /// Whether [`StepReport::resetting_log_evidence`](crate::StepReport::resetting_log_evidence) is
+    /// to tell how well the particles expected that part of an observation; by default not.
     fn judges_resetting(&self, _observation: &Self::Observation) -> bool {
         false
     }
@@ -102,31 +102,34 @@ pub trait Model: Sync {
         EnsembleShape::default()
     }
 
-    /// Whether an observation may move what [`ensemble`](Self::ensemble) says. The part of it that moves
-    /// is that of [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about normal: ln of
-    /// its likelihood is −½ the sum of the squares of errors over their noise, up to a constant.
+    /// Whether an observation may move what [`ensemble`](Self::ensemble) says. The part of it that
+    /// moves is that of [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about
+    /// normal: ln of its likelihood is −½ the sum of the squares of errors over their noise, up to
+    /// a constant.
     fn moves(&self, _observation: &Self::Observation) -> bool {
         false
     }
 
-    /// Share, 0 to 1, of an observation that moves particles even where weighing by it would leave enough of them; by
-    /// default none. Particles that lie far from it stay then, and are weighed by all of it.
+    /// Share, 0 to 1, of an observation that moves particles even where weighing by it would leave
+    /// enough of them; by default none. Particles that lie far from it stay then, and are weighed
+    /// by all of it.
     ///
-    /// Weighing by many observations that each tell little leaves few particles all the same, and where nothing
-    /// disturbs them, those stay what they are.
+    /// Weighing by many observations that each tell little leaves few particles all the same, and
+    /// where nothing disturbs them, those stay what they are.
     fn least_moved(&self, _observation: &Self::Observation) -> f64 {
         0.0
     }
 
-    /// Probability that an observation is not wrong, given ln of the mean likelihood of the part that moves; by
-    /// default 1. As much of [`least_moved`](Self::least_moved) counts.
+    /// Probability that an observation is not wrong, given ln of the mean likelihood of the part
+    /// that moves; by default 1. As much of [`least_moved`](Self::least_moved) counts.
     fn plausibility(&self, _observation: &Self::Observation, _log_evidence: f64) -> f64 {
         1.0
     }
 
-    /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then each
-    /// error, what a particle expects less what was observed, then the standard deviation of each error's
-    /// noise that the particle believes in. Places past the block's last particle hold any finite number.
+    /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then
+    /// each error, what a particle expects less what was observed, then the standard deviation of
+    /// each error's noise that the particle believes in. Places past the block's last particle hold
+    /// any finite number.
     fn read_ensemble(&self, _observation: &Self::Observation, _block: &Block<'_>, _to: &mut [f64]) {
     }
 

@@ -1,17 +1,19 @@
 //! When a loop asks other threads for help: [`Pace`].
 //!
 //! Beside other busy processes the system may run a helping thread late, or in turn with the thread
-//! that it should help. Such help costs more than it brings: waking a thread takes as long as a block
-//! of particles, and a piece of the loop in the hands of a thread that the system does not run holds
-//! the whole loop up for a time slice. So where loops got no help, a thread goes on alone for a while
-//! before it asks again. Loops of one place in the program take about as long; what a short one teaches,
-//! which is over before another thread is awake, does not hold for a long one. No result depends on it.
+//! that it should help. Such help costs more than it brings: waking a thread takes as long as a
+//! block of particles, and a piece of the loop in the hands of a thread that the system does not
+//! run holds the whole loop up for a time slice. So where loops got no help, a thread goes on alone
+//! for a while before it asks again. Loops of one place in the program take about as long; what a
+//! short one teaches, which is over before another thread is awake, does not hold for a long one.
+//! No result depends on it.
 
 use std::cell::RefCell;
 use std::panic::Location;
 
-/// Pieces of loops after which a thread asks again at the latest. As many blocks of particles take one to two
-/// milliseconds, up to 10 where they jam: about a time slice of the system. A longer loop always asks.
+/// Pieces of loops after which a thread asks again at the latest. As many blocks of particles take
+/// one to two milliseconds, up to 10 where they jam: about a time slice of the system. A longer
+/// loop always asks.
 const LONGEST_REST: usize = 64;
 
 /// What the other threads brought to a loop.

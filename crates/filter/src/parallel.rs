@@ -1,9 +1,9 @@
 //! Parallel loops, and reductions over a fixed tree: the same bits on any number of threads.
 //!
 //! A loop is done by the thread that calls it; others help where they have time. Whoever is free
-//! takes the next piece, so that a thread which the system does not run delays the loop by the piece
-//! in its hands and by nothing else. The calling thread waits awake for about as long as a piece takes,
-//! then it sleeps. When it asks for help at all is [`pace`]'s affair.
+//! takes the next piece, so that a thread which the system does not run delays the loop by the
+//! piece in its hands and by nothing else. The calling thread waits awake for about as long as a
+//! piece takes, then it sleeps. When it asks for help at all is [`pace`]'s affair.
 
 use std::ops::Range;
 use std::panic::Location;

@@ -9,8 +9,8 @@ use crate::parallel;
 /// Particles in a block. Part of the determinism contract: never the number of threads.
 ///
 /// A model that works on several particles side by side has idle lanes at the end of a block: of 64
-/// particles, contact steps would take 2.5 % longer. Of more than 128 few filters would have one for
-/// each thread.
+/// particles, contact steps would take 2.5 % longer. Of more than 128 few filters would have one
+/// for each thread.
 pub const BLOCK: usize = 128;
 
 /// Threads that can do something for a filter of so many particles: one for every block.
@@ -89,7 +89,8 @@ impl ParticleSet {
         }
     }
 
-    /// Particle i becomes a copy of particle `ancestors[i]` of this set, or, counted on, of `other`.
+    /// Particle i becomes a copy of particle `ancestors[i]` of this set, or, counted on, of
+    /// `other`.
     ///
     /// # Panics
     /// If the sets are not of one size, there is not one ancestor for each particle, or one is in

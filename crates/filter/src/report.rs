@@ -34,7 +34,8 @@ pub enum WeightUpdate {
         /// ln p(observation | observations before), as the particles estimate it.
         log_evidence: f64,
     },
-    /// No particle explained the observation; the particles were reinitialised around it, with equal weights.
+    /// No particle explained the observation; the particles were reinitialised around it, with
+    /// equal weights.
     Collapsed {
         /// The largest log-likelihood that a particle gave to the part of the observation that
         /// reinitialising can explain.

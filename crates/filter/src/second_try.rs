@@ -66,10 +66,10 @@ const GIVEN_UP: f64 = 50.0;
 pub struct Attempt {
     /// Which one since the checkpoint, from 1 on: each has random numbers of its own.
     pub number: u64,
-    /// Whether the particles are resampled on the way, as they were the first time. Where they are not, but before
-    /// the first step and the last one, each goes its way and is judged by all observations but the last at once: one that
-    /// early observations speak against and later ones for is not lost, but few are left, of which the last step makes
-    /// many.
+    /// Whether the particles are resampled on the way, as they were the first time. Where they are
+    /// not, but before the first step and the last one, each goes its way and is judged by all
+    /// observations but the last at once: one that early observations speak against and later ones
+    /// for is not lost, but few are left, of which the last step makes many.
     pub resampling: bool,
 }
 
@@ -103,7 +103,8 @@ impl<M: Model> ParticleFilter<M> {
         }
     }
 
-    /// Keeps the particles as they are now in `checkpoint`; allocates nothing where as many were kept.
+    /// Keeps the particles as they are now in `checkpoint`; allocates nothing where as many were
+    /// kept.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
         checkpoint.step = self.step;
         checkpoint.particles.copy_from(&self.particles);
@@ -111,14 +112,15 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.lineage.clone_from(&self.lineage);
     }
 
-    /// Makes all steps since `checkpoint` again, with the random numbers of this `attempt`, and draws
-    /// as many particles from the new set as its evidence is worth beside that of the sets in `pool`, which the present particles are drawn from: independent particle
-    /// filters of the same observations, each weighed by its estimate of their likelihood, are one of
-    /// as many particles as all have (Del Moral 2004, section 7.4). The weights become equal.
+    /// Makes all steps since `checkpoint` again, with the random numbers of this `attempt`, and
+    /// draws as many particles from the new set as its evidence is worth beside that of the sets in
+    /// `pool`, which the present particles are drawn from: independent particle filters of the same
+    /// observations, each weighed by its estimate of their likelihood, are one of as many particles
+    /// as all have (Del Moral 2004, section 7.4). The weights become equal.
     ///
-    /// A new set is given up, and gets no share, as soon as its evidence is below e⁻⁵⁰ of the mean of the others': with a
-    /// model whose likelihoods are at most 1 that is exact but for one particle in 10²¹, with another a step whose
-    /// evidence would be above e⁵⁰ comes too late.
+    /// A new set is given up, and gets no share, as soon as its evidence is below e⁻⁵⁰ of the mean
+    /// of the others': with a model whose likelihoods are at most 1 that is exact but for one
+    /// particle in 10²¹, with another a step whose evidence would be above e⁵⁰ comes too late.
     ///
     /// # Panics
     /// If the checkpoint is not as many steps old as there are `steps`, or of another number of

@@ -4,9 +4,9 @@
 //! normalised: the linear weights `w_i = exp(log w_i)` sum to 1 up to rounding, at least one is
 //! positive, none is NaN. Sums run in a fixed order, so they do not depend on threads.
 //!
-//! The largest w L of all is known only after all blocks are weighed. So that a block can be weighed
-//! while it is in the cache, its unnormalised weights are relative to the block's own largest, and
-//! a block scale normalises them afterwards: [`UnnormalisedWeights`].
+//! The largest w L of all is known only after all blocks are weighed. So that a block can be
+//! weighed while it is in the cache, its unnormalised weights are relative to the block's own
+//! largest, and a block scale normalises them afterwards: [`UnnormalisedWeights`].
 
 use std::ops::Range;
 
@@ -100,8 +100,8 @@ impl LogWeights {
         self.effective_sample_size = n;
     }
 
-    /// Takes the weight of the other particles, unless nothing would be left; does nothing where all
-    /// are kept.
+    /// Takes the weight of the other particles, unless nothing would be left; does nothing where
+    /// all are kept.
     pub(crate) fn keep_only(&mut self, keep: impl Fn(usize) -> bool) {
         if (0..self.linear.len()).all(&keep) {
             return;
@@ -316,8 +316,8 @@ impl UnnormalisedWeights {
 }
 
 impl UnnormalisedBlock<'_> {
-    /// Bayes' rule on the particles `range` of the set, whose likelihoods have been written. Returns
-    /// their unnormalised weights.
+    /// Bayes' rule on the particles `range` of the set, whose likelihoods have been written.
+    /// Returns their unnormalised weights.
     ///
     /// # Panics
     /// If a likelihood is NaN or +inf: then the model is broken.
@@ -329,7 +329,8 @@ impl UnnormalisedBlock<'_> {
 }
 
 impl BlockWeights {
-    /// Writes the unnormalised weights of a block whose first particle is number `first` of its set.
+    /// Writes the unnormalised weights of a block whose first particle is number `first` of its
+    /// set.
     fn of(
         first: usize,
         log_prior: &[f64],

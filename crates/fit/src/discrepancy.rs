@@ -1,28 +1,30 @@
 //! What a model that is only nearly right cannot know: [`Constant`].
 //!
-//! No tripod slides as a face under uneven pressure does, and friction differs from place to place. The value
-//! that predicts best takes such differences up. They are the same in all pushes of a rig, so that more
-//! pushes do not average them out, and the posterior, which is about the value that predicts best, does not
-//! hold them. How large they are was learnt on random virtual rigs whose constants are known; what tells a
-//! rig on which the model is right from one on which it is not is the drift of its predictions
-//! (`crates/fit/examples/rigs`, docs/guide/fit.md).
+//! No tripod slides as a face under uneven pressure does, and friction differs from place to place.
+//! The value that predicts best takes such differences up. They are the same in all pushes of a
+//! rig, so that more pushes do not average them out, and the posterior, which is about the value
+//! that predicts best, does not hold them. How large they are was learnt on random virtual rigs
+//! whose constants are known; what tells a rig on which the model is right from one on which it is
+//! not is the drift of its predictions (`crates/fit/examples/rigs`, docs/guide/fit.md).
 
 use serde::Serialize;
 
 use crate::parameter::Parameter;
 use crate::prior::Prior;
 
-/// Factor of posterior spreads where the model is right: the tracked pusher's noise is no part of it.
+/// Factor of posterior spreads where the model is right: the tracked pusher's noise is no part of
+/// it.
 const OWN_FACTOR: f64 = 1.1;
 
 /// Drift at which half of the discrepancy counts (m/m).
 const HALF_DRIFT: f64 = 0.02;
 
-/// Half the width of a 90 % interval in standard deviations: Student's t with 6 degrees of freedom, since rigs
-/// differ in how far the model is off.
+/// Half the width of a 90 % interval in standard deviations: Student's t with 6 degrees of freedom,
+/// since rigs differ in how far the model is off.
 const NINETY_PERCENT: f64 = 1.943;
 
-/// Largest posterior over prior standard deviation that is taken for what it is; beyond, the pushes say nothing.
+/// Largest posterior over prior standard deviation that is taken for what it is; beyond, the pushes
+/// say nothing.
 const NOTHING: f64 = 0.97;
 
 /// The discrepancy of one parameter, of logarithms.
@@ -48,8 +50,8 @@ const TRIPOD_RADIUS: Discrepancy = Discrepancy {
     bias: 0.05,
 };
 
-/// The constant of a rig, as far as fitted values of the model tell of it: friction as one would measure it by
-/// itself, the radius of the tripod with the torque of the real support in pure spin.
+/// The constant of a rig, as far as fitted values of the model tell of it: friction as one would
+/// measure it by itself, the radius of the tripod with the torque of the real support in pure spin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Constant {
     /// Best guess, in the parameter's unit.
@@ -60,8 +62,8 @@ pub struct Constant {
     pub high_90: f64,
 }
 
-/// Whether a fit of these parameters is one whose discrepancy was learnt: of `mu_p` and `tripod_radius`, with no
-/// others that change how an object answers a push.
+/// Whether a fit of these parameters is one whose discrepancy was learnt: of `mu_p` and
+/// `tripod_radius`, with no others that change how an object answers a push.
 pub(crate) fn is_known(parameters: &[Parameter]) -> bool {
     use Parameter::{MuF, MuP, MuS, TripodRadius};
     [MuP, TripodRadius]
@@ -73,8 +75,9 @@ pub(crate) fn is_known(parameters: &[Parameter]) -> bool {
 }
 
 impl Constant {
-    /// The constant behind a whitened coordinate with its mean and standard deviation, where predictions drift
-    /// by `drift` (m/m); `None` for a parameter whose discrepancy was never learnt.
+    /// The constant behind a whitened coordinate with its mean and standard deviation, where
+    /// predictions drift by `drift` (m/m); `None` for a parameter whose discrepancy was never
+    /// learnt.
     pub(crate) fn behind(
         parameter: Parameter,
         prior: &Prior,
@@ -130,8 +133,8 @@ mod tests {
         logs(&Constant::behind(parameter, &PRIOR, coordinate, drift).expect("a constant"))
     }
 
-    /// Where nothing drifts the spread is the posterior's, up to the factor for the pusher's noise and the
-    /// heavier tails.
+    /// Where nothing drifts the spread is the posterior's, up to the factor for the pusher's noise
+    /// and the heavier tails.
     #[test]
     fn a_model_that_is_right_adds_little() {
         let [value, low, high] = behind(Parameter::MuP, [0.8, 0.1], 0.0);

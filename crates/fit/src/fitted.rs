@@ -19,8 +19,8 @@ use crate::sampler::sample;
 /// Posterior over prior standard deviation below which a parameter counts as determined.
 const DETERMINED: f64 = 0.5;
 
-/// The same up to which it takes the value that predicts best; above, the pushes say next to nothing, and it
-/// keeps its first guess.
+/// The same up to which it takes the value that predicts best; above, the pushes say next to
+/// nothing, and it keeps its first guess.
 const LEARNT: f64 = 0.8;
 
 /// Vectors drawn from the prior, the best of which start searches.
@@ -82,14 +82,16 @@ pub struct FittedParameter {
     pub prior_value: f64,
     /// Its standard deviation, at its centre.
     pub prior_std: f64,
-    /// Posterior over prior standard deviation: 0 where the pushes say all, 1 where they say nothing.
+    /// Posterior over prior standard deviation: 0 where the pushes say all, 1 where they say
+    /// nothing.
     pub std_ratio: f64,
     /// Whether `std_ratio` is below 0.5.
     pub determined: bool,
     /// Whether it is below 0.8, and `value` the fit's.
     pub learnt: bool,
-    /// What the constant of the rig is, which `value` imitates. It is known of `mu_p` and `tripod_radius` where both
-    /// are free and at most `mu_s` and `mu_f` beside them: for other fits nobody knows how far apart they are.
+    /// What the constant of the rig is, which `value` imitates. It is known of `mu_p` and
+    /// `tripod_radius` where both are free and at most `mu_s` and `mu_f` beside them: for other
+    /// fits nobody knows how far apart they are.
     pub constant: Option<Constant>,
 }
 
@@ -189,7 +191,8 @@ fn screen(posterior: &Posterior<'_>, streams: Streams) -> (Vec<Vec<f64>>, u64) {
     (best.collect(), SCREENED as u64)
 }
 
-/// Whitened values of all parameters, the noise that goes with them, and the number of vectors tried.
+/// Whitened values of all parameters, the noise that goes with them, and the number of vectors
+/// tried.
 fn settle(
     pushes: &[&PreparedPush],
     options: &FitOptions,
@@ -214,8 +217,8 @@ fn settle(
     Ok((values, smaller.noise(&best[0]), tried))
 }
 
-/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; what it says of the
-/// constant is left open.
+/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; what it says
+/// of the constant is left open.
 fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
     let learnt = std < LEARNT;
     let value = prior.value(z);
@@ -273,9 +276,9 @@ impl Fit {
         Parameter::apply(&values, setup)
     }
 
-    /// Samples of the posterior by name: 512 of each free parameter in its unit, also where the pushes do
-    /// not determine it, then of `camera_scale` and `drift` as [`Noise`] has them. The k-th numbers belong
-    /// together.
+    /// Samples of the posterior by name: 512 of each free parameter in its unit, also where the
+    /// pushes do not determine it, then of `camera_scale` and `drift` as [`Noise`] has them. The
+    /// k-th numbers belong together.
     #[must_use]
     pub fn draws(&self) -> Vec<(&'static str, Vec<f64>)> {
         let of_parameters = self.parameters.iter().enumerate().map(|(k, fitted)| {

@@ -3,12 +3,13 @@
 //! A prediction errs for two reasons. The camera adds noise to every pose, independent from row to
 //! row. The model drifts away from the truth on the way: its error grows by a share of the way that
 //! the pusher goes, and that share forgets itself over about one radius of gyration (an
-//! Ornstein–Uhlenbeck process over the way). Neither can be told in advance, so both are estimated. A
-//! model without drift would take a hundred rows of one push for a hundred independent witnesses.
+//! Ornstein–Uhlenbeck process over the way). Neither can be told in advance, so both are estimated.
+//! A model without drift would take a hundred rows of one push for a hundred independent witnesses.
 //!
-//! Per axis (x, y and the angle times the radius of gyration) that is a linear-Gaussian state of two
-//! numbers, drift and its rate, so a Kalman filter gives the likelihood in one pass. Innovations are
-//! taken for Student-t, for frames that are off; a tenth of the pushes may drift four times as much.
+//! Per axis (x, y and the angle times the radius of gyration) that is a linear-Gaussian state of
+//! two numbers, drift and its rate, so a Kalman filter gives the likelihood in one pass.
+//! Innovations are taken for Student-t, for frames that are off; a tenth of the pushes may drift
+//! four times as much.
 
 use serde::Serialize;
 
@@ -93,8 +94,8 @@ impl Axis {
     }
 }
 
-/// Noise of the three axes of a push: `camera` has the standard deviations that its scene gives (m),
-/// `memory` is the way over which drift forgets itself (m).
+/// Noise of the three axes of a push: `camera` has the standard deviations that its scene gives
+/// (m), `memory` is the way over which drift forgets itself (m).
 fn axes(noise: &Noise, camera: [f64; 2], memory: f64) -> [Axis; 3] {
     let [position, angle] = camera.map(|std| noise.camera_scale * std);
     [position, position, angle].map(|std| Axis {
@@ -104,8 +105,8 @@ fn axes(noise: &Noise, camera: [f64; 2], memory: f64) -> [Axis; 3] {
     })
 }
 
-/// Log-likelihood of the residuals of one push, up to a constant: measured minus predicted poses (m, m,
-/// and angles times the radius of gyration), each after `travelled` of the pusher (m).
+/// Log-likelihood of the residuals of one push, up to a constant: measured minus predicted poses
+/// (m, m, and angles times the radius of gyration), each after `travelled` of the pusher (m).
 pub(crate) fn log_likelihood(
     residuals: &[[f64; 3]],
     travelled: &[f64],
@@ -136,8 +137,8 @@ pub(crate) fn log_likelihood(
     most + libm::log1p(libm::exp(plain.min(stray) - most))
 }
 
-/// Standard deviations of how far each axis of a prediction (m) has drifted after `travelled` (m), the
-/// first pose's own error included.
+/// Standard deviations of how far each axis of a prediction (m) has drifted after `travelled` (m),
+/// the first pose's own error included.
 pub(crate) fn drift_std(travelled: f64, noise: &Noise, camera: [f64; 2], memory: f64) -> [f64; 3] {
     axes(noise, camera, memory).map(|axis| {
         let mut state = axis.start();

@@ -30,8 +30,8 @@ impl CostFunction for Cost<'_> {
     }
 }
 
-/// The best vectors that searches from `starts` find, the best one first; the number of vectors that
-/// they tried.
+/// The best vectors that searches from `starts` find, the best one first; the number of vectors
+/// that they tried.
 pub(crate) fn optima(posterior: &Posterior<'_>, starts: &[Vec<f64>]) -> (Vec<Vec<f64>>, u64) {
     let found: Vec<(f64, Vec<f64>, u64)> = starts
         .par_iter()

@@ -188,7 +188,8 @@ impl Parameter {
         }
     }
 
-    /// Writes the values of some parameters into `setup`, those of others as if they were not there.
+    /// Writes the values of some parameters into `setup`, those of others as if they were not
+    /// there.
     ///
     /// # Errors
     /// An outline that is scaled or moved to where it is none.

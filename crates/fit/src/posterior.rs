@@ -1,7 +1,7 @@
 //! How plausible a vector of parameters is after some pushes: [`Posterior`].
 //!
-//! A vector holds a whitened coordinate for each free parameter, then one for the camera's noise and
-//! one for the model's drift; all are standard normal before any push.
+//! A vector holds a whitened coordinate for each free parameter, then one for the camera's noise
+//! and one for the model's drift; all are standard normal before any push.
 
 use std::borrow::Cow;
 
@@ -189,7 +189,8 @@ pub(crate) fn noise_of(nuisances: &[f64]) -> Noise {
     }
 }
 
-/// Refuses a parameter that `push` does not have, has no open prior for, or another one than `first`.
+/// Refuses a parameter that `push` does not have, has no open prior for, or another one than
+/// `first`.
 fn check(parameter: Parameter, first: &PreparedPush, push: &PreparedPush) -> Result<(), FitError> {
     let (name, prior) = (push.push.name.clone(), parameter.prior(&push.push.setup));
     if parameter.needs_tripod() && !push.push.setup.has_tripod() {

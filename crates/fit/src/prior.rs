@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// Distribution of a parameter before any push. A whitened coordinate z is standard normal under it.
+/// Distribution of a parameter before any push. A whitened coordinate z is standard normal under
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Prior {
@@ -58,8 +59,8 @@ impl Prior {
         }
     }
 
-    /// Standard deviation at `value` for a standard deviation `z_std` of the whitened coordinate, to
-    /// first order, in the parameter's unit.
+    /// Standard deviation at `value` for a standard deviation `z_std` of the whitened coordinate,
+    /// to first order, in the parameter's unit.
     #[must_use]
     pub fn spread(&self, value: f64, z_std: f64) -> f64 {
         match *self {

@@ -5,8 +5,8 @@ use stickslip_dynamics::Pose;
 
 use crate::error::FitError;
 
-/// Most poses of one push that are compared with its prediction, evenly over those measured: more say
-/// the same again.
+/// Most poses of one push that are compared with its prediction, evenly over those measured: more
+/// say the same again.
 const MOST_POSES: usize = 60;
 
 /// Position noise of a camera that the scene does not describe (m).
@@ -74,8 +74,8 @@ impl PreparedPush {
         })
     }
 
-    /// Noise of one measured position (m) and, at the radius of gyration, of one measured angle (m), as
-    /// the scene says.
+    /// Noise of one measured position (m) and, at the radius of gyration, of one measured angle
+    /// (m), as the scene says.
     pub fn noise(&self) -> [f64; 2] {
         let camera = self.push.setup.camera;
         let [position, angle] = camera.map_or([POSITION_STD, ORIENTATION_STD], |camera| {

@@ -20,20 +20,22 @@ const FIRST_MOVE: u64 = 1 << 32;
 /// Draws of one walker in one move: its partner, its stretch, whether it is accepted.
 const DRAWS: [u32; 3] = [0, 1, 2];
 
-/// Moves of every walker between two looks at whether the chains have settled, and most rounds of them.
+/// Moves of every walker between two looks at whether the chains have settled, and most rounds of
+/// them.
 const ROUNDS: [usize; 2] = [200, 6];
 
-/// The same where every vector has a scene of its own: its pushes are predicted one by one then, which takes
-/// ten times as long.
+/// The same where every vector has a scene of its own: its pushes are predicted one by one then,
+/// which takes ten times as long.
 const COSTLY_ROUNDS: [usize; 2] = [80, 4];
 
-/// Walkers for vectors of `dimension` numbers: four for each, and a multiple of two blocks of lanes.
+/// Walkers for vectors of `dimension` numbers: four for each, and a multiple of two blocks of
+/// lanes.
 fn walkers(dimension: usize) -> usize {
     (4 * dimension).div_ceil(2 * LANES).max(2) * 2 * LANES
 }
 
-/// Samples `posterior` from around `start` until the second half of the chains has settled, by `settled`
-/// as split R̂, or for the most rounds; also the number of vectors tried.
+/// Samples `posterior` from around `start` until the second half of the chains has settled, by
+/// `settled` as split R̂, or for the most rounds; also the number of vectors tried.
 pub(crate) fn sample(
     posterior: &Posterior<'_>,
     start: &[f64],

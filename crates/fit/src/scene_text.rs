@@ -10,10 +10,10 @@ use crate::parameter::Parameter;
 use crate::validation::CrossValidation;
 
 impl Fit {
-    /// A scene file with the fitted values and their spreads in place; what nothing was learnt of stays as it
-    /// is, and so does all where `validation` says that fitting does not pay. Values without a key of their
-    /// own (an offset, a scale) are worked into the outlines and feet, and said in comments on top. `name` is
-    /// shown in errors.
+    /// A scene file with the fitted values and their spreads in place; what nothing was learnt of
+    /// stays as it is, and so does all where `validation` says that fitting does not pay. Values
+    /// without a key of their own (an offset, a scale) are worked into the outlines and feet, and
+    /// said in comments on top. `name` is shown in errors.
     ///
     /// # Errors
     /// The text is no scene, or its outline is none once it is changed.

@@ -34,8 +34,8 @@ pub struct CrossValidation {
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
-    /// By how much the fitted scene is better than the unfitted one, in the final position error plus the
-    /// WMSE (mm): mean over the pushes, and its standard error.
+    /// By how much the fitted scene is better than the unfitted one, in the final position error
+    /// plus the WMSE (mm): mean over the pushes, and its standard error.
     pub gain_mm: [f64; 2],
     /// Whether that mean is above 0. Where it is not, a scene keeps its first guesses.
     pub pays: bool,
@@ -56,7 +56,8 @@ pub struct HeldOut {
     pub covered: [bool; 3],
 }
 
-/// Parts that so many pushes are dealt into where nobody says how many: 0, none, for fewer than four.
+/// Parts that so many pushes are dealt into where nobody says how many: 0, none, for fewer than
+/// four.
 #[must_use]
 pub fn default_folds(pushes: usize) -> usize {
     match pushes {
@@ -99,8 +100,9 @@ pub fn cross_validate(
     Ok(summary(folds, pushes))
 }
 
-/// Predicts `pushes` blind by a fit to others, as one fold. Where `validation` of that fit says that fitting
-/// does not pay, the fitted scene is the unfitted one; intervals are those of the fit all the same.
+/// Predicts `pushes` blind by a fit to others, as one fold. Where `validation` of that fit says
+/// that fitting does not pay, the fitted scene is the unfitted one; intervals are those of the fit
+/// all the same.
 ///
 /// # Errors
 /// A push that cannot be simulated, or does not go with the fit.

@@ -174,7 +174,8 @@ impl CsvTable {
         Ok(())
     }
 
-    /// The first of the header's cells where all that are filled are numbers: no header then, but a row.
+    /// The first of the header's cells where all that are filled are numbers: no header then, but a
+    /// row.
     fn number_for_name(&self) -> Option<&str> {
         let mut filled = self.columns.iter().filter(|name| !name.is_empty());
         let first = filled.next()?;

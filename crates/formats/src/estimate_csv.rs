@@ -1,10 +1,9 @@
 //! `estimate.csv`, what a filter writes, one row per log row: [`write_estimate`],
 //! [`read_estimate`].
 //!
-//! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,
-//! std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta,collapsed,distinct,ancestors,modes,
-//! mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...`, in this order. A cell is empty where the method has no
-//! value; `d_tri` and `std_d_tri` are empty throughout where the feet are known.
+//! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f, std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta,collapsed,distinct,ancestors,modes, mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...`,
+//! in this order. A cell is empty where the method has no value; `d_tri` and `std_d_tri` are empty
+//! throughout where the feet are known.
 
 use std::io::{Read, Write};
 

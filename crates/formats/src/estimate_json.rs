@@ -15,8 +15,8 @@ pub struct Pace {
 }
 
 /// A row of an estimate as a JSON object on one line, its keys and numbers those of `estimate.csv`,
-/// `null` for an empty cell; every number reads back to the same bits. Where there is a deadline, the
-/// keys `particles` and `missed` come after them.
+/// `null` for an empty cell; every number reads back to the same bits. Where there is a deadline,
+/// the keys `particles` and `missed` come after them.
 ///
 /// # Panics
 /// If the row has not one contact probability per fixel of `setup`.

@@ -58,12 +58,12 @@ pub fn log_columns(log: &Log) -> Vec<(String, Vec<f64>)> {
     header(log).into_iter().zip(columns).collect()
 }
 
-/// The log that such columns hold; columns that the format does not have are named in a warning, with
-/// `name` for the file.
+/// The log that such columns hold; columns that the format does not have are named in a warning,
+/// with `name` for the file.
 ///
 /// # Errors
-/// A column is missing, time does not rise, sensors are not numbered from 1 on, a pose, force or covariance is given in part, or a
-/// reading is neither 0, 1 nor NaN.
+/// A column is missing, time does not rise, sensors are not numbered from 1 on, a pose, force or
+/// covariance is given in part, or a reading is neither 0, 1 nor NaN.
 ///
 /// ```
 /// # use stickslip_formats::{NamedColumns, log_of_columns};

@@ -9,8 +9,8 @@ use crate::number;
 
 const HEADER: &str = "time,mode,weight,x,y,theta,std_x,std_y,std_theta";
 
-/// Writes the modes of every row, the likeliest of a row first, `mode` from 1 on; nothing for methods
-/// without particles but the header. Every number reads back to the same bits.
+/// Writes the modes of every row, the likeliest of a row first, `mode` from 1 on; nothing for
+/// methods without particles but the header. Every number reads back to the same bits.
 ///
 /// ```
 /// # use stickslip::{BeliefMode, Estimate, EstimateRow, dynamics::Pose};

@@ -63,12 +63,12 @@ pub enum RowJsonError {
 struct Entries(Vec<(String, Value)>);
 
 /// Reads a row from a line of JSON: an object whose keys are named as the columns of `log.csv`
-/// (`time`, `object_x`, ..., `tactile_1`, ..., `pusher_force_y`), `null` or left out where nothing was
-/// measured; tactile values are 0, 1, `true` or `false`. Numbers keep their bits.
+/// (`time`, `object_x`, ..., `tactile_1`, ..., `pusher_force_y`), `null` or left out where nothing
+/// was measured; tactile values are 0, 1, `true` or `false`. Numbers keep their bits.
 ///
 /// # Errors
-/// No JSON object, an unknown key or one twice, a value of another type, a pose or force in part, no
-/// time.
+/// No JSON object, an unknown key or one twice, a value of another type, a pose or force in part,
+/// no time.
 ///
 /// ```
 /// let line = r#"{"time": 0.5, "pusher_x": 0.1, "pusher_y": 0, "pusher_theta": 0, "tactile_2": 1}"#;

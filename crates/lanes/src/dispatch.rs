@@ -40,8 +40,8 @@ pub fn on_vectors<R>(level: Level, work: impl FnOnce() -> R) -> Option<R> {
     Some(on_widest(level, work))
 }
 
-/// [`on_widest`] for a single particle: of wide instructions it needs the fused operation, a call without them, and
-/// no vectors. So it is compiled for AVX2 and for the baseline only.
+/// [`on_widest`] for a single particle: of wide instructions it needs the fused operation, a call
+/// without them, and no vectors. So it is compiled for AVX2 and for the baseline only.
 #[inline(always)]
 pub fn on_fused<R>(level: Level, work: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]

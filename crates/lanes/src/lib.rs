@@ -2,9 +2,9 @@
 //! instructions of the machine ([`on_widest`]).
 //!
 //! Every operation acts on each lane alone and is correctly rounded, so a result depends neither on
-//! the number of lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same code.
-//! The functions on plain f64 ([`exponentials`], [`box_muller`]) are written so that loops over them
-//! vectorise.
+//! the number of lanes nor on the instructions: `Lanes<1>` is the scalar reference of the same
+//! code. The functions on plain f64 ([`exponentials`], [`box_muller`]) are written so that loops
+//! over them vectorise.
 
 mod box_muller;
 mod dispatch;

@@ -26,8 +26,8 @@ pub struct Arguments {
 /// Name, scene and columns of the log.
 type PushArguments<'py> = (String, Bound<'py, Scene>, Bound<'py, PyDict>);
 
-/// The fit and its cross-validation as in fit.json, draws by name, and the first scene's text with the
-/// values in place.
+/// The fit and its cross-validation as in fit.json, draws by name, and the first scene's text with
+/// the values in place.
 type Fitted<'py> = (String, String, Bound<'py, PyDict>, String);
 
 /// Learns from pushes of one object on one table.

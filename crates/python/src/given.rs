@@ -1,4 +1,5 @@
-//! What Python gives as a dict, refused with its name and value where it is of a wrong type: [`Given`].
+//! What Python gives as a dict, refused with its name and value where it is of a wrong type:
+//! [`Given`].
 
 use pyo3::prelude::*;
 

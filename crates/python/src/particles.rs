@@ -14,8 +14,8 @@ use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
 
-/// What is kept of a particle: the weight, the pose and the friction, then weight and friction of one of those that
-/// have the estimate's.
+/// What is kept of a particle: the weight, the pose and the friction, then weight and friction of
+/// one of those that have the estimate's.
 const NAMES: [&str; 13] = [
     "weight",
     "x",
@@ -44,7 +44,8 @@ struct Keeper {
 struct Kept {
     rows: Vec<usize>,
     columns: [Vec<f64>; NAMES.len()],
-    /// The particles that have the estimate's friction, when the camera last saw the object: weight and friction.
+    /// The particles that have the estimate's friction, when the camera last saw the object: weight
+    /// and friction.
     known: Option<Vec<[f64; 5]>>,
 }
 
@@ -99,8 +100,8 @@ impl Observer for Keeper {
     }
 }
 
-/// Rows that have particles (R,), and weight, pose and friction of each, and of those that have the estimate's
-/// friction, (R * N,) row by row.
+/// Rows that have particles (R,), and weight, pose and friction of each, and of those that have the
+/// estimate's friction, (R * N,) row by row.
 #[pyfunction]
 #[pyo3(signature = (log, scene, options, rows = None))]
 pub fn particles<'py>(

@@ -1,7 +1,7 @@
 //! How a log is run, as Python says it: [`RunArguments`].
 
 use pyo3::prelude::*;
-use stickslip::{Method, Mode, Occlusion, RunOptions, TactileUse, Tracking};
+use stickslip::{FilterModel, Method, Occlusion, RunOptions, TactileUse, Tracking};
 
 use crate::error::refused;
 
@@ -10,7 +10,7 @@ use crate::error::refused;
 #[pyo3(from_item_all)]
 pub struct RunArguments {
     method: String,
-    mode: String,
+    model: String,
     particles: usize,
     seed: u64,
     tactile: bool,
@@ -29,7 +29,7 @@ impl RunArguments {
         }
         Ok(RunOptions {
             method: method(&self.method)?,
-            mode: mode(&self.mode)?,
+            model: model(&self.model)?,
             particles: self.particles,
             seed: self.seed,
             tactile: touch(self.tactile),
@@ -72,13 +72,13 @@ pub fn method(name: &str) -> PyResult<Method> {
     }
 }
 
-/// The mode of a name.
-pub fn mode(name: &str) -> PyResult<Mode> {
+/// The filter model of a name.
+pub fn model(name: &str) -> PyResult<FilterModel> {
     match name {
-        "contact" => Ok(Mode::Contact),
-        "paper" => Ok(Mode::Paper),
+        "robust" => Ok(FilterModel::Robust),
+        "paper" => Ok(FilterModel::Paper),
         _ => Err(refused(format!(
-            "mode is `{name}`; it must be `contact` or `paper`"
+            "model is `{name}`; it must be `robust` or `paper`"
         ))),
     }
 }

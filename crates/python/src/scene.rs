@@ -9,7 +9,8 @@ use stickslip_formats::read_scene;
 
 use crate::error::refused;
 
-/// What is known before an experiment: scene, sensors and filter settings, as scene.toml holds them.
+/// What is known before an experiment: scene, sensors and filter settings, as scene.toml holds
+/// them.
 #[pyclass(frozen, module = "stickslip")]
 pub struct Scene {
     pub setup: Setup,

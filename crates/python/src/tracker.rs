@@ -8,7 +8,7 @@ use stickslip_formats::estimate_columns;
 
 use crate::error::refused;
 use crate::given::{Given, Reading};
-use crate::run_options::{mode, touch};
+use crate::run_options::{model, touch};
 use crate::scene::Scene;
 
 /// Variances of x, y, θ, then the covariances of x with y, x with θ, y with θ.
@@ -35,7 +35,7 @@ pub struct Tracker {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Arguments {
-    mode: String,
+    model: String,
     particles: usize,
     seed: u64,
     tactile: bool,
@@ -64,7 +64,7 @@ impl Tracker {
         let setup = &scene.get().setup;
         let options = options.0;
         let options = TrackerOptions {
-            mode: mode(&options.mode)?,
+            model: model(&options.model)?,
             particles: options.particles,
             seed: options.seed,
             tactile: touch(options.tactile),

@@ -73,9 +73,9 @@ impl Hand {
 impl Appearance {
     /// Bodies 15 to 24 mm high on a plate of 0.5 m by 0.4 m.
     ///
-    /// The object's tag is in its middle, as large as fits a square of the object's bounding radius.
-    /// The pusher's tag is higher, and 40 mm behind the pusher against `push`, the direction of its
-    /// motion (rad) in its own frame.
+    /// The object's tag is in its middle, as large as fits a square of the object's bounding
+    /// radius. The pusher's tag is higher, and 40 mm behind the pusher against `push`, the
+    /// direction of its motion (rad) in its own frame.
     pub fn of(scene: &Scene, object_cells: TagCells, pusher_cells: TagCells, push: f64) -> Self {
         let object_tag = Tag {
             cells: object_cells,

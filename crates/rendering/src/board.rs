@@ -144,8 +144,8 @@ pub fn calibration_poses(
     [Ok(flat)].into_iter().chain(held).collect()
 }
 
-/// Axes of a board rotated by up to 0.3 rad about its normal, then tilted about an axis that rotates
-/// by the golden angle from pose to pose.
+/// Axes of a board rotated by up to 0.3 rad about its normal, then tilted about an axis that
+/// rotates by the golden angle from pose to pose.
 fn tilted_axes(k: f64) -> [[f64; 3]; 2] {
     const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
     let tilt = 0.35 + 0.13 * (1.0 + libm::sin(1.7 * k));

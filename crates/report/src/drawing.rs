@@ -59,8 +59,8 @@ impl Drawing {
         self.sized("", 1.0)
     }
 
-    /// The same for print: labels of 8 pt, so that 441 px are a column of 252 pt and 882 px a page of
-    /// two.
+    /// The same for print: labels of 8 pt, so that 441 px are a column of 252 pt and 882 px a page
+    /// of two.
     #[must_use]
     pub fn to_print_svg(&self) -> String {
         self.sized("pt", PRINT / LABEL)
@@ -136,8 +136,8 @@ impl Drawing {
     }
 }
 
-/// A title from `left` on, in lines of at most `room` (px) where words allow it, and the height that
-/// it takes (px).
+/// A title from `left` on, in lines of at most `room` (px) where words allow it, and the height
+/// that it takes (px).
 pub(crate) fn title_lines(title: &str, left: f64, room: f64) -> (Markup, f64) {
     let mut lines: Vec<String> = Vec::new();
     for word in title.split_whitespace() {
@@ -244,14 +244,14 @@ pub(crate) fn px(value: f64) -> String {
     }
 }
 
-/// The path through points (px), closed or open, to a tenth of a pixel; broken where a number is not
-/// finite.
+/// The path through points (px), closed or open, to a tenth of a pixel; broken where a number is
+/// not finite.
 pub(crate) fn path(points: impl IntoIterator<Item = [f64; 2]>, closed: bool) -> String {
     path_on_grid(points, closed, 10.0)
 }
 
-/// The path through points, closed or open, on a grid of `per_unit` lines; broken where a number is not
-/// finite. Its points are told by the way to them, which takes half of the letters.
+/// The path through points, closed or open, on a grid of `per_unit` lines; broken where a number is
+/// not finite. Its points are told by the way to them, which takes half of the letters.
 pub(crate) fn path_on_grid(
     points: impl IntoIterator<Item = [f64; 2]>,
     closed: bool,

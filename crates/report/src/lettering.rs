@@ -11,9 +11,9 @@ use crate::font::{self, Weight};
 
 /// An SVG with a path in the place of every `text`, in the fonts of every figure.
 ///
-/// Understood is what [`Drawing`](crate::Drawing) writes: one line with x, y, size, weight, anchor and
-/// transform, parts of it in another size and above or below the line (`tspan` with `dy`). Letters
-/// stand as far apart as [`font::width`] says; those that the fonts lack are left out.
+/// Understood is what [`Drawing`](crate::Drawing) writes: one line with x, y, size, weight, anchor
+/// and transform, parts of it in another size and above or below the line (`tspan` with `dy`).
+/// Letters stand as far apart as [`font::width`] says; those that the fonts lack are left out.
 ///
 /// # Errors
 /// The text is no XML.

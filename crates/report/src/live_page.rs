@@ -12,8 +12,8 @@ use crate::playback_data::body;
 
 const LIVE: &str = include_str!("../page/live.js");
 
-/// The page for a scene, as HTML text. It loads nothing; it opens a WebSocket at `/socket`, with the
-/// page's own query, and draws the newest message.
+/// The page for a scene, as HTML text. It loads nothing; it opens a WebSocket at `/socket`, with
+/// the page's own query, and draws the newest message.
 #[must_use]
 pub fn live_page(scene: &Scene, title: &str) -> String {
     let outline = |shape| Outline::new(shape, f64::INFINITY);

@@ -233,8 +233,8 @@ impl Overlay {
 }
 
 impl Body {
-    /// Draws the body with its outline in pixels; on an image with a light rim about its boundary, which
-    /// is seen whatever the image has there.
+    /// Draws the body with its outline in pixels; on an image with a light rim about its boundary,
+    /// which is seen whatever the image has there.
     fn draw(&self, outline: &Outline, on_image: bool) -> Markup {
         let area: String = outline
             .areas

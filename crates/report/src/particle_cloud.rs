@@ -90,8 +90,8 @@ impl ParticleCloud {
         }
     }
 
-    /// What holds 95 % of a normal distribution with the particles' mean and covariance (mm, from the
-    /// centre).
+    /// What holds 95 % of a normal distribution with the particles' mean and covariance (mm, from
+    /// the centre).
     fn ellipse(&self) -> Vec<[f64; 2]> {
         let count = self.particles.len() as f64;
         let points = || self.particles.iter().map(|pose| self.relative(pose));

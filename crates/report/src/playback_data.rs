@@ -182,7 +182,8 @@ fn contact(touch: &Touch, rows: Range<usize>) -> Value {
 }
 
 /// Left, low, width and height (mm) of what holds the object and the pusher on their way, and the
-/// fixels; where nobody knows the object's way, that of the run whose contacts are shown, or of the first.
+/// fixels; where nobody knows the object's way, that of the run whose contacts are shown, or of the
+/// first.
 fn view(playback: &Playback) -> [f64; 4] {
     let rows = playback.shown();
     let swept = |outline: &Outline, poses: &[Option<Pose>]| -> Vec<[f64; 2]> {

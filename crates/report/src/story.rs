@@ -1,7 +1,7 @@
 //! An experiment in a few plain sentences, made from numbers: [`Story`].
 
-/// Weighted RMSE up to which a method kept track of an object (mm): twice the resolution of the paper's
-/// camera.
+/// Weighted RMSE up to which a method kept track of an object (mm): twice the resolution of the
+/// paper's camera.
 pub const KEPT_MM: f64 = 2.0;
 
 /// Weighted RMSE from which it lost the object (mm).
@@ -148,8 +148,8 @@ impl Story {
         format!("At {from:.1} s{contact} the camera goes dark; it {end}.{lost}{late}")
     }
 
-    /// The methods by their fates, those whose camera stayed on left out: "particle filter (0.12 mm),
-    /// nominal simulation (0.30 mm)".
+    /// The methods by their fates, those whose camera stayed on left out: "particle filter (0.12
+    /// mm), nominal simulation (0.30 mm)".
     #[must_use]
     pub fn fates(&self) -> Vec<(Fate, String)> {
         let mut dark: Vec<&Outcome> = self

@@ -1,5 +1,5 @@
-//! Quantities against time, as errors and estimated parameters: [`TimeFigure`], any number of panels
-//! over one time axis.
+//! Quantities against time, as errors and estimated parameters: [`TimeFigure`], any number of
+//! panels over one time axis.
 
 use maud::{Markup, html};
 
@@ -58,8 +58,8 @@ pub struct Panel {
     pub least_span: f64,
     /// Times without a camera where they differ from the figure's.
     pub dark: Option<Vec<[f64; 2]>>,
-    /// Curves; where they cover each other, dotted ones lie on dashed ones, those on solid ones, and
-    /// of the same kind earlier ones on top.
+    /// Curves; where they cover each other, dotted ones lie on dashed ones, those on solid ones,
+    /// and of the same kind earlier ones on top.
     pub curves: Vec<Curve>,
     /// Values that do not change, as the truth.
     pub levels: Vec<Level>,

@@ -6,8 +6,8 @@ use stickslip_filter::Streams;
 /// Step of the random streams that nothing else in a testbed uses.
 const STEP: u64 = 1 << 20;
 
-/// A true friction for a nominal one: every value is uniform within ±`share` (0 to 1) of its nominal
-/// value.
+/// A true friction for a nominal one: every value is uniform within ±`share` (0 to 1) of its
+/// nominal value.
 ///
 /// ```
 /// # use stickslip_dynamics::Friction;

@@ -2,8 +2,8 @@
 //! spinning and pivoting on its tripod.
 //!
 //! The block stands on an equal tripod of radius d with support friction bound b = μ m g h in all
-//! (b/3 per foot) and has no contacts; nothing acts on it but what a function's arguments name. With
-//! h fixed, every step of the scheme is exact, so tests may ask for rounding accuracy.
+//! (b/3 per foot) and has no contacts; nothing acts on it but what a function's arguments name.
+//! With h fixed, every step of the scheme is exact, so tests may ask for rounding accuracy.
 
 use stickslip_dynamics::{Foot, StepProblem, StepSolution, Twist, Wrench};
 

@@ -60,8 +60,8 @@ impl ConicProgram {
         self.cones.push(cone);
     }
 
-    /// Optima to the accuracy of doubles, one for each step length with which Clarabel does not give
-    /// up; callers check them.
+    /// Optima to the accuracy of doubles, one for each step length with which Clarabel does not
+    /// give up; callers check them.
     ///
     /// On 4000 random steps Clarabel's defaults stalled at 86; with less regularisation, 0.9
     /// stalled at one, and no step at all three.

@@ -19,7 +19,8 @@ use crate::vector::left;
 pub enum Family {
     /// No contact; slides on or stops within the step.
     Sliding,
-    /// Remains at rest under load, with up to three contacts; impulses are not unique. Has a witness.
+    /// Remains at rest under load, with up to three contacts; impulses are not unique. Has a
+    /// witness.
     Resting,
     /// Turns about one stuck foot under load. Has a witness.
     Pivoting,

@@ -5,8 +5,8 @@ use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, StepSolution, T
 /// One step a line; its comments say what the numbers are.
 const TEXT: &str = include_str!("../data/hard_steps.txt");
 
-/// A step of a particle filter over a recorded experiment, scaled to mass 1, radius of gyration 1 and
-/// step length 1.
+/// A step of a particle filter over a recorded experiment, scaled to mass 1, radius of gyration 1
+/// and step length 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HardStep {
     /// What was hard about it.

@@ -5,7 +5,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
-use stickslip::{Mode, Observer, RunError, RunOptions, SolvedStep, run_observed};
+use stickslip::{FilterModel, Observer, RunError, RunOptions, SolvedStep, run_observed};
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution};
 
 use crate::recorded_case::RecordedCase;
@@ -67,7 +67,7 @@ pub fn harvest(case: &RecordedCase, options: &HarvestOptions) -> Result<Harvest,
         options.particles
     );
     let run_options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles: options.particles,
         occlusion: case.occlusion,
         ..RunOptions::default()
@@ -163,8 +163,8 @@ pub fn survey_steps(steps: &[HarvestedStep], seed: u64) -> [(&'static str, Tally
     ]
 }
 
-/// The step with twist, gaps and friction scaled by factors of up to two; twist and gaps are shifted
-/// a little besides.
+/// The step with twist, gaps and friction scaled by factors of up to two; twist and gaps are
+/// shifted a little besides.
 fn disturbed_step(step: &StepProblem, rng: &mut SplitMix64) -> StepProblem {
     let mut problem = step.clone();
     let gyration = (problem.inertia / problem.mass).sqrt();

@@ -5,12 +5,12 @@ use nalgebra::{DMatrix, DVector, SVD};
 /// Lean of a column on the rest, per its length, that is rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// The sum of the columns of `points`, weighted, and of `rays` that is nearest to the origin, weights
-/// not negative and those of the points summing to one.
+/// The sum of the columns of `points`, weighted, and of `rays` that is nearest to the origin,
+/// weights not negative and those of the points summing to one.
 ///
-/// By Haskell and Hanson (1981): least squares with weights that are not negative, for one more row,
-/// of ones in points and of zeros in rays, whose target is one. Those by the active set of Lawson and
-/// Hanson (1974), which ends at the optimum but for rounding.
+/// By Haskell and Hanson (1981): least squares with weights that are not negative, for one more
+/// row, of ones in points and of zeros in rays, whose target is one. Those by the active set of
+/// Lawson and Hanson (1974), which ends at the optimum but for rounding.
 pub(crate) fn nearest_in_hull<const N: usize>(points: &[[f64; N]], rays: &[[f64; N]]) -> [f64; N] {
     let count = points.len() + rays.len();
     let matrix = DMatrix::from_fn(N + 1, count, |row, j| match points.get(j) {
@@ -103,7 +103,8 @@ mod tests {
         nearest_is(&[[3.0, 1.0]], &[[1.0, 0.0]], [3.0, 1.0]);
     }
 
-    /// The plane through the nearest point, across it, has all points beyond it and no ray against it.
+    /// The plane through the nearest point, across it, has all points beyond it and no ray against
+    /// it.
     #[test]
     fn nearest_points_of_random_hulls_separate_them_from_the_origin() {
         let (mut rng, mut apart) = (SplitMix64::new(7), 0);

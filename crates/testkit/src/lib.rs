@@ -5,8 +5,10 @@
 //! - [`enumerate_modes`]: all solutions of a small step, by trying every contact mode.
 //! - [`cone_program_step`]: the solution where no contact has friction, by convex optimisation.
 //! - [`impulses_for_twist`]: whether a twist is a solution, and by which impulses.
-//! - [`gap_margin`], [`may_jam`], [`is_solvable`]: whether a step certainly has no solution, or certainly has one.
-//! - [`speed_limit`], [`is_sought`]: how fast a solution may be that is sought; [`judged_residual`]: both at once.
+//! - [`gap_margin`], [`may_jam`], [`is_solvable`]: whether a step certainly has no solution, or
+//!   certainly has one.
+//! - [`speed_limit`], [`is_sought`]: how fast a solution may be that is sought;
+//!   [`judged_residual`]: both at once.
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: how the solver does on it.

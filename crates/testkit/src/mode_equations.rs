@@ -46,8 +46,8 @@ enum Component {
     Foot(usize, usize),
 }
 
-/// One unknown impulse: its column in Newton's law, its projection on the drive's direction, and its
-/// share of each component of the solution.
+/// One unknown impulse: its column in Newton's law, its projection on the drive's direction, and
+/// its share of each component of the solution.
 struct Impulse {
     column: Column,
     drive: f64,

@@ -146,8 +146,8 @@ impl ProblemBuilder {
         [self.pusher.vx / speed, self.pusher.vy / speed]
     }
 
-    /// Lets the drive stall at between a twentieth and twenty times the force that pushing the object
-    /// alone takes.
+    /// Lets the drive stall at between a twentieth and twenty times the force that pushing the
+    /// object alone takes.
     pub fn limit_drive(&mut self) {
         let needed = self.bound + self.problem.mass * libm::hypot(self.pusher.vx, self.pusher.vy);
         self.problem.stall = Some(Stall {
@@ -269,8 +269,8 @@ impl ProblemBuilder {
         self.add(second);
     }
 
-    /// A random load: an impulse of `share` times the support's friction impulse, and a torque up to
-    /// that times ρ.
+    /// A random load: an impulse of `share` times the support's friction impulse, and a torque up
+    /// to that times ρ.
     pub fn load(&mut self, share: f64) {
         let (size, e) = (share * self.bound, self.rng.direction());
         let torque = share * self.bound * self.gyration * self.rng.within(-1.0, 1.0);

@@ -1,9 +1,9 @@
 //! The natural-map residual of one step, written from the model alone: [`residual_si`].
 //!
 //! A second route to the certificate of the solver. Everything stays in SI units (N s, and N m s
-//! about the centre of mass by cross products). Only at the very end each row is divided by the mass,
-//! the angular one by m ρ with ρ = sqrt(J/m), so that all rows are in m/s. Multiplying a natural map
-//! by the mass first changes nothing: min(p, m g)/m = min(p/m, g).
+//! about the centre of mass by cross products). Only at the very end each row is divided by the
+//! mass, the angular one by m ρ with ρ = sqrt(J/m), so that all rows are in m/s. Multiplying a
+//! natural map by the mass first changes nothing: min(p, m g)/m = min(p/m, g).
 //!
 //! ```text
 //! twist   m v⁺ − m v − Σ impulses − p_app,  (J ω⁺ − J ω − Σ torques − τ_app)/ρ

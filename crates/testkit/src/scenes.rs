@@ -35,7 +35,8 @@ pub fn fixels(shape: &Shape, positions: &[[f64; 2]]) -> Vec<Fixel> {
         .collect()
 }
 
-/// An object of 0.5 kg on three feet, as heavy to turn as a square of 50 mm, friction 0.3 everywhere.
+/// An object of 0.5 kg on three feet, as heavy to turn as a square of 50 mm, friction 0.3
+/// everywhere.
 #[must_use]
 pub fn pushed_scene(object: Shape, pusher: Shape, fixels: Vec<Fixel>) -> Scene {
     Scene {

@@ -1,11 +1,13 @@
-//! How fast a solution may be that the solver seeks: [`speed_limit`], [`is_sought`], [`judged_residual`].
+//! How fast a solution may be that the solver seeks: [`speed_limit`], [`is_sought`],
+//! [`judged_residual`].
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 
 use crate::residual::residual_si;
 use crate::scaled_problem::ScaledProblem;
 
-/// Largest speed, in terms of the fastest one that the problem asks for (docs/method.md, "The certificate").
+/// Largest speed, in terms of the fastest one that the problem asks for (docs/method.md, "The
+/// certificate").
 const LIMIT: f64 = 30.0;
 /// No problem's limit is less (m/s).
 const LEAST: f64 = 1.0;

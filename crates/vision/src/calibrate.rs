@@ -1,8 +1,8 @@
 //! From frames of a tag board to a calibrated camera: [`calibrate`].
 //!
 //! Homographies give a first focal length and first poses (Zhang 2000); bundle adjustment over all
-//! frames gives the rest. Corners are first fitted as if the lens had no distortion, then twice more
-//! in the image undistorted by the lens found so far.
+//! frames gives the rest. Corners are first fitted as if the lens had no distortion, then twice
+//! more in the image undistorted by the lens found so far.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -169,7 +169,8 @@ fn check(adjusted: &Adjusted) -> Result<(), CalibrationError> {
     Ok(())
 }
 
-/// Refuses copies of few views: each makes the numbers look better known, and none tells anything new.
+/// Refuses copies of few views: each makes the numbers look better known, and none tells anything
+/// new.
 fn check_distinct(views: &[BoardView<'_>]) -> Result<(), CalibrationError> {
     let mut distinct: Vec<&BoardView<'_>> = Vec::new();
     for view in views {

@@ -119,11 +119,12 @@ pub fn read_camera(text: &str, name: &str) -> Result<Camera, ConfigError> {
     camera(&document, lens, table)
 }
 
-/// Reads a calibration for images that come with a lens of their own: the file's may be left out, and
-/// must else be the same.
+/// Reads a calibration for images that come with a lens of their own: the file's may be left out,
+/// and must else be the same.
 ///
 /// # Errors
-/// Those of [`read_camera`]; the file's lens and `lens` see some direction more than half a pixel apart.
+/// Those of [`read_camera`]; the file's lens and `lens` see some direction more than half a pixel
+/// apart.
 pub fn read_camera_with(text: &str, name: &str, lens: &Lens) -> Result<Camera, ConfigError> {
     let document = Document { name, text };
     let CalibrationFile { lens: own, table } = document.parse(MAKE_IT)?;

@@ -21,8 +21,8 @@ pub struct CameraInfo {
     pub matrix: [f64; 9],
     /// Pixels of the sensor that are one of the image, along x and y; 0 is 1.
     pub binning: [u32; 2],
-    /// The part of the sensor that is read out: left, top, width, height (px); width and height 0 for
-    /// all of it.
+    /// The part of the sensor that is read out: left, top, width, height (px); width and height 0
+    /// for all of it.
     pub window: [u32; 4],
 }
 
@@ -77,12 +77,12 @@ pub enum CameraInfoError {
 }
 
 impl CameraInfo {
-    /// The lens; `None` where the camera was not calibrated, which ROS says by a focal length of 0. `of`
-    /// says in errors whose numbers they are.
+    /// The lens; `None` where the camera was not calibrated, which ROS says by a focal length of 0.
+    /// `of` says in errors whose numbers they are.
     ///
     /// # Errors
-    /// [`CameraInfoError`]: another model than Brown's, a matrix that is none, images of a part of the
-    /// sensor.
+    /// [`CameraInfoError`]: another model than Brown's, a matrix that is none, images of a part of
+    /// the sensor.
     pub fn lens(&self, of: &str) -> Result<Option<Lens>, CameraInfoError> {
         if self.matrix[0] == 0.0 {
             return Ok(None);
@@ -141,7 +141,8 @@ impl CameraInfo {
     }
 }
 
-/// The YAML files of ROS' `camera_calibration` and of OpenCV's calibration; other keys are not read.
+/// The YAML files of ROS' `camera_calibration` and of OpenCV's calibration; other keys are not
+/// read.
 #[derive(Deserialize)]
 struct CameraFile {
     #[serde(alias = "width")]
@@ -162,12 +163,12 @@ struct Matrix {
     data: Vec<f64>,
 }
 
-/// Reads the numbers of a camera from YAML, as ROS (`camera_info.yaml`) or as OpenCV's `FileStorage` writes
-/// it (`%YAML:1.0`); `name` is shown in errors.
+/// Reads the numbers of a camera from YAML, as ROS (`camera_info.yaml`) or as OpenCV's
+/// `FileStorage` writes it (`%YAML:1.0`); `name` is shown in errors.
 ///
 /// # Errors
-/// No YAML, a key that is missing or of another type, a camera matrix without nine numbers, each with file
-/// and line.
+/// No YAML, a key that is missing or of another type, a camera matrix without nine numbers, each
+/// with file and line.
 ///
 /// ```
 /// let yaml = "image_width: 640\nimage_height: 480\ndistortion_model: plumb_bob\n\

@@ -1,7 +1,8 @@
 //! Where tags are in an image, roughly: [`Detector`], of the library's parts.
 //!
-//! The library's own loop over them goes through a hash map and lets one candidate's grey levels into
-//! the next one's, so that its last digits differ from call to call; here every candidate is for itself.
+//! The library's own loop over them goes through a hash map and lets one candidate's grey levels
+//! into the next one's, so that its last digits differ from call to call; here every candidate is
+//! for itself.
 
 use std::cmp::Ordering::Equal;
 use std::collections::HashMap;
@@ -36,7 +37,8 @@ type Plane<T> = Image<T, 1, CpuAllocator>;
 pub struct Detector {
     config: DecodeTagsConfig,
     size: [u32; 2],
-    /// Copies of the configuration that are not at work: the library writes into one, and it is large.
+    /// Copies of the configuration that are not at work: the library writes into one, and it is
+    /// large.
     spare: Mutex<Vec<DecodeTagsConfig>>,
 }
 

@@ -81,8 +81,8 @@ pub(crate) struct Equations {
 
 impl Edge {
     /// Fits an edge to the samples near a rough one, which runs from corner to corner with its dark
-    /// side on the left in the image. Pixels more than `cell` (px) from it or beyond its ends belong
-    /// to other cells of the tag. `None` where there is no such edge.
+    /// side on the left in the image. Pixels more than `cell` (px) from it or beyond its ends
+    /// belong to other cells of the tag. `None` where there is no such edge.
     pub(crate) fn fit(samples: &[Sample], rough: [Vector2<f64>; 2], cell: f64) -> Option<Self> {
         let side = rough[1] - rough[0];
         let edge = Self {

@@ -8,9 +8,9 @@ pub(crate) const PARAMETERS: usize = 8;
 /// A pinhole with Brown–Conrady distortion, as OpenCV and ROS (`plumb_bob`) have it.
 ///
 /// A point with the direction (x, y, 1) in the camera's frame (x right, y down), r² = x² + y², is
-/// seen at x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2 r⁴ + k3 r⁶) +
-/// p1 (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy). Without distortion it
-/// would be at (fx x + cx, fy y + cy), its *ideal* pixel.
+/// seen at x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2
+/// r⁴ + k3 r⁶) + p1 (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy).
+/// Without distortion it would be at (fx x + cx, fy y + cy), its *ideal* pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Columns and rows of the image.
@@ -80,8 +80,8 @@ impl Lens {
         None
     }
 
-    /// How far apart this lens and another one see the same directions, at most over the image (px);
-    /// infinite for another size.
+    /// How far apart this lens and another one see the same directions, at most over the image
+    /// (px); infinite for another size.
     pub fn apart(&self, other: &Self) -> f64 {
         /// Pixels that are looked at, along each side.
         const SAMPLES: u32 = 9;

@@ -11,8 +11,8 @@ pub(crate) trait LeastSquares: Sized {
     /// Sum of squared residuals.
     fn squares(equations: &Self::Equations) -> f64;
 
-    /// The step that solves the equations with their diagonal raised by a share `damping` of itself;
-    /// `None` where they are singular.
+    /// The step that solves the equations with their diagonal raised by a share `damping` of
+    /// itself; `None` where they are singular.
     fn step(&self, equations: &Self::Equations, damping: f64) -> Option<Step<Self>>;
 }
 

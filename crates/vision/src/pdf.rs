@@ -1,5 +1,5 @@
-//! A sheet as PDF (ISO 32000-1): one page, filled rectangles, lines, and words in the Helvetica that
-//! every viewer has.
+//! A sheet as PDF (ISO 32000-1): one page, filled rectangles, lines, and words in the Helvetica
+//! that every viewer has.
 
 use std::fmt::Write as _;
 

@@ -4,7 +4,8 @@ use std::io::Cursor;
 
 use image::{DynamicImage, GrayImage, ImageDecoder, ImageFormat, ImageReader};
 
-/// Most pixels of an image: no camera on a table has more, and few bytes can say that they are more.
+/// Most pixels of an image: no camera on a table has more, and few bytes can say that they are
+/// more.
 const MOST_PIXELS: u64 = 1 << 26;
 
 /// Why an image was refused.
@@ -84,8 +85,8 @@ pub fn read_picture(bytes: &[u8], name: &str) -> Result<GrayImage, PictureError>
     decode(bytes, format).map_err(broken)
 }
 
-/// Reads a compressed image of a bag, JPEG or PNG whatever its `format` is called; `name` is shown in
-/// errors.
+/// Reads a compressed image of a bag, JPEG or PNG whatever its `format` is called; `name` is shown
+/// in errors.
 ///
 /// # Errors
 /// [`PictureError`], with the message's name and what is wrong with it.

@@ -1,8 +1,8 @@
 //! A pose on the table from the corners of a tag: [`Measurement`].
 //!
 //! The print of a tag lies in a plane of known height, at a known place on its body. So its four
-//! corners are functions of the body's planar pose and of the black square's size:
-//! x ↦ lens(camera(pose ∘ place(corner))). The size is left free: ink that spreads, exposure and blur
+//! corners are functions of the body's planar pose and of the black square's size: x ↦
+//! lens(camera(pose ∘ place(corner))). The size is left free: ink that spreads, exposure and blur
 //! move all four edges alike, and no pose must follow them.
 //!
 //! Gauss–Newton on the corners' ideal pixels, weighted by their covariance C, gives the pose, its

@@ -48,8 +48,8 @@ pub enum PrintError {
     },
 }
 
-/// Tags whose black squares have the edge `size` (m), each with its white margin and its number, side
-/// by side, over a ruler of 100 mm.
+/// Tags whose black squares have the edge `size` (m), each with its white margin and its number,
+/// side by side, over a ruler of 100 mm.
 ///
 /// # Errors
 /// A number that is none of the family, or tags that do not fit on the paper.

@@ -119,10 +119,12 @@ impl Pixels {
 
 impl RawPicture {
     /// Its grey levels, those of an image file with the same pixels; `name` is shown in errors. A
-    /// mosaic of colours (bayer) is taken for grey as it is, brightness of yuv422 without its colour.
+    /// mosaic of colours (bayer) is taken for grey as it is, brightness of yuv422 without its
+    /// colour.
     ///
     /// # Errors
-    /// [`RawPictureError`]: an encoding that is not known, no pixel, fewer bytes than there must be.
+    /// [`RawPictureError`]: an encoding that is not known, no pixel, fewer bytes than there must
+    /// be.
     pub fn grey(&self, name: &str) -> Result<GrayImage, RawPictureError> {
         let pixels = Pixels::of(&self.encoding).ok_or_else(|| RawPictureError::Encoding {
             name: name.to_owned(),

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use crate::print::Paper;
 
-/// A sheet of paper with what is drawn on it, to scale; all in mm from its upper left corner, y down.
+/// A sheet of paper with what is drawn on it, to scale; all in mm from its upper left corner, y
+/// down.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     pub(crate) paper: Paper,
@@ -14,8 +15,8 @@ pub struct Sheet {
 /// Something on a sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Mark {
-    /// A tag: a black square with white rectangles (left, top, width, height) in it, which no hairline
-    /// divides.
+    /// A tag: a black square with white rectangles (left, top, width, height) in it, which no
+    /// hairline divides.
     Tag {
         id: u16,
         corner: [f64; 2],

@@ -30,8 +30,8 @@ pub struct TableFit {
     pub translation_std: [f64; 3],
 }
 
-/// Finds the table from a frame of a board that lies on it, the first of `recording`, through a lens
-/// that is known.
+/// Finds the table from a frame of a board that lies on it, the first of `recording`, through a
+/// lens that is known.
 ///
 /// # Errors
 /// [`CalibrationError`]: no tags, those of another board, too few, a frame of another size than the

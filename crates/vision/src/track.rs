@@ -1,5 +1,5 @@
-//! From frames to the poses of object and pusher: [`track`], and [`FrameTracker`] for frames that come
-//! one after the other.
+//! From frames to the poses of object and pusher: [`track`], and [`FrameTracker`] for frames that
+//! come one after the other.
 
 use image::GrayImage;
 use rayon::prelude::*;
@@ -109,8 +109,8 @@ pub fn track<E: From<TrackError> + Send>(
     Ok(tracker.finish(0..count)?)
 }
 
-/// Tracks object and pusher through frames that come in parts, so that not all of them need to be in
-/// memory. However they are parted, the track is the same.
+/// Tracks object and pusher through frames that come in parts, so that not all of them need to be
+/// in memory. However they are parted, the track is the same.
 pub struct FrameTracker<'c> {
     camera: &'c Camera,
     tags: &'c Tags,

@@ -1,6 +1,6 @@
-//! `rollouts`: rollouts of the timing scene on one thread, beside which `bench/python/rollouts.py` sets
-//! Python's. Prints ns per trajectory and step, the best of several rounds: the
-//! time that the thread was on a processor, where Linux tells it.
+//! `rollouts`: rollouts of the timing scene on one thread, beside which `bench/python/rollouts.py`
+//! sets Python's. Prints ns per trajectory and step, the best of several rounds: the time that the
+//! thread was on a processor, where Linux tells it.
 
 use std::error::Error;
 use std::hint::black_box;

@@ -1,12 +1,13 @@
-//! `soak PROGRAM [SECONDS] [ARGUMENT...]`: rows at 100 Hz through `PROGRAM live` for so long (60 s),
-//! with dropouts, bursts, repeats, garbage, late rows and pauses. Further arguments are the program's.
+//! `soak PROGRAM [SECONDS] [ARGUMENT...]`: rows at 100 Hz through `PROGRAM live` for so long (60
+//! s), with dropouts, bursts, repeats, garbage, late rows and pauses. Further arguments are the
+//! program's.
 //!
 //! Prints how long answers took from the sending of a row to the reading of its answer, how many
-//! lines had none, the program's memory after the first tenth of the time and at the end, its time on
-//! processors per row, and how loaded the machine was before and after. With `--page` among the
-//! arguments, Chromium (`STICKSLIP_CHROMIUM`, default `chromium`) has the page open. The rows are those of
-//! a demonstration log, sent at 100 Hz where it was recorded at 30 Hz, over and over: each time round
-//! begins with a pause of the source.
+//! lines had none, the program's memory after the first tenth of the time and at the end, its time
+//! on processors per row, and how loaded the machine was before and after. With `--page` among the
+//! arguments, Chromium (`STICKSLIP_CHROMIUM`, default `chromium`) has the page open. The rows are
+//! those of a demonstration log, sent at 100 Hz where it was recorded at 30 Hz, over and over: each
+//! time round begins with a pause of the source.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -105,8 +106,8 @@ fn pass_on(told: impl BufRead, address: &Sender<String>) {
     }
 }
 
-/// Sends the rows for so many seconds, and when each was sent; returns the program's memory (MB), second
-/// by second.
+/// Sends the rows for so many seconds, and when each was sent; returns the program's memory (MB),
+/// second by second.
 fn send(
     ticks: &[Tick],
     seconds: f64,
@@ -214,7 +215,8 @@ fn open_page(address: &str) -> Result<Child, Box<dyn Error>> {
     Ok(browser)
 }
 
-/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux tells it.
+/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux tells
+/// it.
 fn load() -> String {
     let told = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     told.split(' ').take(3).collect::<Vec<_>>().join(" ")

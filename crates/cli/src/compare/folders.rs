@@ -29,8 +29,8 @@ impl Scenes<'_> {
 }
 
 /// The experiment folders among `given`: a folder that is none itself stands for those below it, in
-/// the order of their names, and a scene or log for the folder whose it is. With one scene for all, a
-/// log by another name is an experiment, too.
+/// the order of their names, and a scene or log for the folder whose it is. With one scene for all,
+/// a log by another name is an experiment, too.
 ///
 /// # Errors
 ///
@@ -103,7 +103,8 @@ fn stray_file(file: &Path, scene_name: &str) -> anyhow::Error {
     )
 }
 
-/// A folder with a log or a scene of its own means to be an experiment, even if the other is missing.
+/// A folder with a log or a scene of its own means to be an experiment, even if the other is
+/// missing.
 fn is_experiment(folder: &Path, scenes: Scenes<'_>) -> bool {
     let scene = matches!(scenes, Scenes::Named(name) if folder.join(name).is_file());
     scene || is_bag(folder) || log_path(folder).is_file()

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::Mode;
+use stickslip::FilterModel;
 use stickslip_evaluation::{RunConditions, Variant};
 use stickslip_report::{Block, ReportedExperiment, Section};
 
@@ -13,9 +13,13 @@ use crate::log_files::log_path;
 use crate::reported_run::reported_run;
 use crate::since_start::since_start;
 
-/// All of up to two experiments; of more, the one on which the particle filter fares as on the median
-/// one, and the one on which it fares worst.
-pub fn played(comparison: &Comparison, mode: Mode, folders: &[Folder]) -> Result<Vec<Section>> {
+/// All of up to two experiments; of more, the one on which the particle filter fares as on the
+/// median one, and the one on which it fares worst.
+pub fn played(
+    comparison: &Comparison,
+    model: FilterModel,
+    folders: &[Folder],
+) -> Result<Vec<Section>> {
     let mut ranked: Vec<(&FolderResult, f64)> = comparison
         .folders
         .iter()
@@ -30,7 +34,7 @@ pub fn played(comparison: &Comparison, mode: Mode, folders: &[Folder]) -> Result
     let section = |(rank, (result, _)): (usize, &(&FolderResult, f64))| {
         let path = |folder: &&Folder| folder.path.display().to_string() == result.folder;
         let folder = folders.iter().find(path).expect("a result has its folder");
-        let section = section(folder, mode, comparison.particles)?;
+        let section = section(folder, model, comparison.particles)?;
         let place = format!(
             "number {} of {count} by the particle filter's WMSE, seed 0",
             rank + 1
@@ -51,14 +55,14 @@ fn particle_score(result: &FolderResult) -> Option<f64> {
 }
 
 /// Every variant with the first seed.
-fn section(folder: &Folder, mode: Mode, particles: usize) -> Result<Section> {
+fn section(folder: &Folder, model: FilterModel, particles: usize) -> Result<Section> {
     let Folder {
         experiment,
         occlusion,
         ..
     } = folder;
     let conditions = RunConditions {
-        mode,
+        model,
         particles,
         tracking: folder.tracking,
         occlusion: *occlusion,

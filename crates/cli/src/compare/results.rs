@@ -24,7 +24,8 @@ pub struct ShownScores {
     pub final_error_mm: Option<f64>,
     /// Final angle error (degrees).
     pub final_error_deg: Option<f64>,
-    /// Share of the 90 % intervals of x, y and θ that hold the reference, over the rows of `wmse_mm`.
+    /// Share of the 90 % intervals of x, y and θ that hold the reference, over the rows of
+    /// `wmse_mm`.
     pub covered_90: Option<f64>,
     /// The same over the rows that were seen while the object moved.
     pub covered_90_seen: Option<f64>,

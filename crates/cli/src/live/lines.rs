@@ -25,7 +25,8 @@ pub struct Line {
 pub struct Lines(Receiver<Line>);
 
 impl Lines {
-    /// The lines of a source, read by a thread of their own, so that their time of arrival is known.
+    /// The lines of a source, read by a thread of their own, so that their time of arrival is
+    /// known.
     pub fn read(source: impl Read + Send + 'static) -> Self {
         let (sender, receiver) = sync_channel(WAITING);
         thread::spawn(move || {

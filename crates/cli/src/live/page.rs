@@ -91,8 +91,8 @@ impl PageServer {
         &self.address
     }
 
-    /// Whether a row should be shown now: the last one was some time ago. Without a page, too, so that
-    /// one that is opened while the source is silent has something to show.
+    /// Whether a row should be shown now: the last one was some time ago. Without a page, too, so
+    /// that one that is opened while the source is silent has something to show.
     pub fn wants(&self) -> bool {
         self.shown.is_none_or(|shown| shown.elapsed() >= PERIOD)
     }

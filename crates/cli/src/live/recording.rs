@@ -37,7 +37,8 @@ enum Recorder {
 }
 
 impl Recording {
-    /// Begins a recording, as CSV or MCAP by the ending of its name; a file that is there is refused.
+    /// Begins a recording, as CSV or MCAP by the ending of its name; a file that is there is
+    /// refused.
     pub fn create(path: &Path, sensors: usize, scene: &Path) -> Result<Self> {
         let help = "name a new file that ends in .mcap or .csv";
         if path.exists() {
@@ -80,8 +81,8 @@ impl Recording {
         })
     }
 
-    /// Writes a row, unless the file could not be read with it: a late one into CSV, a second pose of
-    /// a body at one time into MCAP.
+    /// Writes a row, unless the file could not be read with it: a late one into CSV, a second pose
+    /// of a body at one time into MCAP.
     pub fn write(&mut self, row: &Row) -> Result<()> {
         let failed = |error: &dyn std::fmt::Display| {
             let message = format!("{}: cannot be written: {error}", self.path.display());

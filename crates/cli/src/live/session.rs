@@ -61,7 +61,8 @@ struct Refusal {
 }
 
 impl<'a> Session<'a> {
-    /// A session that waits for its first row, whose answers are due `deadline` (s) after their line.
+    /// A session that waits for its first row, whose answers are due `deadline` (s) after their
+    /// line.
     pub fn new(
         setup: &'a Setup,
         options: &'a TrackerOptions,

@@ -1,5 +1,5 @@
-//! Replicates from camera frames: a [`CalibratedCamera`] films the testbed, calibrated from a board,
-//! and tracks the tags, all in memory.
+//! Replicates from camera frames: a [`CalibratedCamera`] films the testbed, calibrated from a
+//! board, and tracks the tags, all in memory.
 
 use anyhow::{Context, Result};
 use image::GrayImage;

@@ -70,7 +70,7 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
         origin: origin([
             ("seeds", made.seeds.to_string()),
             ("particles", made.particles.to_string()),
-            ("mode", made.mode.to_owned()),
+            ("model", made.model.to_owned()),
         ]),
         sections: plays
             .into_iter()

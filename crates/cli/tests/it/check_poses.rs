@@ -1,5 +1,5 @@
-//! `stickslip check` names poses that were lost, made up or frozen, and says nothing that is false of rows
-//! without poses.
+//! `stickslip check` names poses that were lost, made up or frozen, and says nothing that is false
+//! of rows without poses.
 
 use crate::common::{Experiment, SLIDE, STOP, stickslip};
 use stickslip_formats::{Topics, read_log, write_log_mcap};

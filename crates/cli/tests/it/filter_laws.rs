@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use stickslip::dynamics::{Outcome, Pose};
 use stickslip::{
-    Log, Method, Mode, Observer, Occlusion, Run, RunOptions, Setup, SolvedStep, Tracking, run,
-    run_observed,
+    FilterModel, Log, Method, Observer, Occlusion, Run, RunOptions, Setup, SolvedStep, Tracking,
+    run, run_observed,
 };
 use stickslip_formats::{Truth, read_log, read_scene, read_truth_csv};
 
@@ -181,9 +181,9 @@ fn filter_solves_every_step_of_the_experiment() {
         to: None,
     };
     for tracking in [Tracking::Smoothed, Tracking::Causal] {
-        for mode in [Mode::Paper, Mode::Contact] {
+        for model in [FilterModel::Paper, FilterModel::Robust] {
             let options = RunOptions {
-                mode,
+                model,
                 occlusion,
                 tracking,
                 particles: 200,
@@ -198,15 +198,18 @@ fn filter_solves_every_step_of_the_experiment() {
                 &mut |_| (),
             );
             let run = run.unwrap();
-            assert_eq!(open.0.into_inner(), 0, "{tracking:?}, {mode:?}");
+            assert_eq!(open.0.into_inner(), 0, "{tracking:?}, {model:?}");
             // with the friction that a particle which learns it may have, a step in ten thousand may have no solution
-            let unsolvable = match mode {
-                Mode::Paper => 0,
-                Mode::Contact => 2 * 200 * run.estimate.rows.len() as u64 / 10_000,
+            let unsolvable = match model {
+                FilterModel::Paper => 0,
+                FilterModel::Robust => 2 * 200 * run.estimate.rows.len() as u64 / 10_000,
             };
-            assert_eq!(run.failed, 0, "{tracking:?}, {mode:?}");
+            assert_eq!(run.failed, 0, "{tracking:?}, {model:?}");
             let unsolved = run.unsolved;
-            assert!(unsolved <= unsolvable, "{tracking:?}, {mode:?}: {unsolved}");
+            assert!(
+                unsolved <= unsolvable,
+                "{tracking:?}, {model:?}: {unsolved}"
+            );
         }
     }
 }

@@ -111,7 +111,8 @@ fn page_that_is_opened_while_the_source_is_silent_shows_what_came_before() {
     assert_eq!(session.end(), Some(0));
 }
 
-/// The first thing that the server says to a request, if it says something before this side hangs up.
+/// The first thing that the server says to a request, if it says something before this side hangs
+/// up.
 fn first_answer(session: &Session, request: &[u8]) -> String {
     let mut stream = TcpStream::connect(&session.host).unwrap();
     stream

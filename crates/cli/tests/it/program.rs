@@ -215,13 +215,18 @@ fn bad_arguments_exit_with_2() {
             "{arguments:?}"
         );
     }
-    let mode = stickslip()
-        .args(["filter", &log, "--scene", &scene, "--mode", "both"])
-        .output()
-        .unwrap();
-    assert_eq!(mode.status.code(), Some(2));
-    let told = String::from_utf8(mode.stderr).unwrap();
-    assert!(told.contains("contact, paper"), "{told}");
+    for (flag, value, answer) in [
+        ("--model", "both", "robust, paper"),
+        ("--mode", "contact", "`--mode` is called `--model`"),
+    ] {
+        let run = stickslip()
+            .args(["filter", &log, "--scene", &scene, flag, value])
+            .output()
+            .unwrap();
+        assert_eq!(run.status.code(), Some(2));
+        let error = String::from_utf8(run.stderr).unwrap();
+        assert!(error.contains(answer), "{error}");
+    }
 }
 
 #[test]

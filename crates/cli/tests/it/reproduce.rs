@@ -94,10 +94,10 @@ fn reproduce_writes_figures_tables_and_report() {
 }
 
 #[test]
-fn reproduce_runs_the_particle_filter_by_either_mode_and_no_other_method() {
-    let run = |mode: &[&str]| json(small("1").arg("--json").args(mode));
-    let [paper, contact] = [run(&[]), run(&["--mode", "contact"])];
-    assert_eq!([&paper["mode"], &contact["mode"]], ["paper", "contact"]);
+fn reproduce_runs_the_particle_filter_with_either_model_and_no_other_method() {
+    let run = |model: &[&str]| json(small("1").arg("--json").args(model));
+    let [paper, robust] = [run(&[]), run(&["--model", "robust"])];
+    assert_eq!([&paper["model"], &robust["model"]], ["paper", "robust"]);
     let cells = |of: &Value| {
         of["tables"][2]["rows"][0]["cells"]
             .as_array()
@@ -106,8 +106,8 @@ fn reproduce_runs_the_particle_filter_by_either_mode_and_no_other_method() {
     };
     let same: Vec<bool> = cells(&paper)
         .iter()
-        .zip(cells(&contact))
-        .map(|(paper, contact)| paper["wmse_mm"] == contact["wmse_mm"])
+        .zip(cells(&robust))
+        .map(|(paper, robust)| paper["wmse_mm"] == robust["wmse_mm"])
         .collect();
     // nominal simulation and Kalman filter, then three particle filters
     assert_eq!(same, [true, true, false, false, false]);

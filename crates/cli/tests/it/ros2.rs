@@ -1,7 +1,7 @@
 //! A bag of images that another program wrote, rosbags, is tracked as the same frames as files are.
 //!
-//! `cargo test -p stickslip-cli --test it -- --ignored ros2::`, with that Python package where `python3`
-//! finds it.
+//! `cargo test -p stickslip-cli --test it -- --ignored ros2::`, with that Python package where
+//! `python3` finds it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! The boundary of a union of convex parts as features that can touch: [`Outline`].
 //!
 //! Polygon edges are cut where another part covers them: at seams, where two parts share an edge,
-//! and at overlaps. What is left is chained, and collinear neighbours are merged, so that a straight
-//! seam has no vertex. A convex joint is a corner whose normal cone is that of the union; a reflex
-//! one is no feature, but both its edges know that their lines run on inside the body.
+//! and at overlaps. What is left is chained, and collinear neighbours are merged, so that a
+//! straight seam has no vertex. A convex joint is a corner whose normal cone is that of the union;
+//! a reflex one is no feature, but both its edges know that their lines run on inside the body.
 
 use crate::geometry::cluster::Cluster;
 use crate::geometry::convex_part::ConvexPart;

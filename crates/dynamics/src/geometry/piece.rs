@@ -19,8 +19,8 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// The straight boundary of a union; lengths below `tolerance` (m) are rounding. Marks the sides
-    /// of its polygons as exposed or seams.
+    /// The straight boundary of a union; lengths below `tolerance` (m) are rounding. Marks the
+    /// sides of its polygons as exposed or seams.
     pub fn boundary(parts: &mut [ConvexPart], tolerance: f64) -> Vec<Self> {
         let mut pieces = uncovered(parts, tolerance);
         chain(&mut pieces, tolerance);
@@ -94,8 +94,8 @@ fn open_stretches(edge: &Edge, i: usize, parts: &[ConvexPart], tolerance: f64) -
     open
 }
 
-/// Finds for each piece the one that goes on where it ends: that of its own part which starts at the
-/// same corner, else of those that start nearby the one that turns most to the left.
+/// Finds for each piece the one that goes on where it ends: that of its own part which starts at
+/// the same corner, else of those that start nearby the one that turns most to the left.
 fn chain(pieces: &mut [Piece], tolerance: f64) {
     for i in 0..pieces.len() {
         let follows_exactly = |j: &usize| {

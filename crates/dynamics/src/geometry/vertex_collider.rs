@@ -63,8 +63,8 @@ impl<const W: usize> VertexCollider<'_, W> {
         }
     }
 
-    /// The search for the edges under a vertex about `centre`, in the frame of `shape`, in the lanes
-    /// where the vertex comes near the shape's bounding disc.
+    /// The search for the edges under a vertex about `centre`, in the frame of `shape`, in the
+    /// lanes where the vertex comes near the shape's bounding disc.
     #[inline(always)]
     fn search<'s>(
         &self,

@@ -31,8 +31,8 @@ pub struct NaturalMap<const W: usize> {
 pub struct ContactVelocity<const W: usize> {
     /// Gap velocity γ + κ p_n.
     pub gap: Lanes<W>,
-    /// What friction resists: slip velocity s, or s + c p_t where the contact creeps; 0 where it is open
-    /// and carries nothing in every lane.
+    /// What friction resists: slip velocity s, or s + c p_t where the contact creeps; 0 where it is
+    /// open and carries nothing in every lane.
     pub slip: Lanes<W>,
 }
 

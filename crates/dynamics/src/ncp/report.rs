@@ -7,13 +7,14 @@ pub const TOLERANCE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Outcome {
-    /// The residual is at most [`TOLERANCE`], and no speed is more than 30 times the fastest one that the problem
-    /// asks for.
+    /// The residual is at most [`TOLERANCE`], and no speed is more than 30 times the fastest one
+    /// that the problem asks for.
     Solved,
-    /// It is proven that there is no such solution with impulses that come to at most 1e6 m/s times the mass; the velocity is
-    /// that of the compliant problem.
+    /// It is proven that there is no such solution with impulses that come to at most 1e6 m/s times
+    /// the mass; the velocity is that of the compliant problem.
     Infeasible,
-    /// Neither a solution nor a proof was found within the limit on work; the velocity is that of the compliant problem.
+    /// Neither a solution nor a proof was found within the limit on work; the velocity is that of
+    /// the compliant problem.
     Failed,
 }
 
@@ -24,8 +25,8 @@ pub enum Route {
     Newton,
     /// Path of smoothed solutions from the warm start.
     SmoothedPath,
-    /// Exhaustive search over contact modes; where that finds neither a solution nor a proof, the first two from
-    /// the free motion.
+    /// Exhaustive search over contact modes; where that finds neither a solution nor a proof, the
+    /// first two from the free motion.
     ModeSearch,
 }
 

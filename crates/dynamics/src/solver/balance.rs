@@ -1,8 +1,8 @@
 //! Whether impulses within their bounds balance a load: [`balance`].
 //!
-//! What the contacts have to balance is a convex set, a [`Load`]. Contacts balance Σ α_i g_i, α ≥ 0, a
-//! cone. Either set and cone meet, or a direction separates them; single directions that are chosen
-//! beforehand, as those of the dual basis are, need not.
+//! What the contacts have to balance is a convex set, a [`Load`]. Contacts balance Σ α_i g_i, α ≥
+//! 0, a cone. Either set and cone meet, or a direction separates them; single directions that are
+//! chosen beforehand, as those of the dual basis are, need not.
 
 use crate::solver::load::Load;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
@@ -13,8 +13,8 @@ const STEPS: u32 = 40;
 /// Most columns that are independent.
 const MOST: usize = 5;
 
-/// Distance between set and cone that rounding leaves, relative to the set's size, and part of a unit vector
-/// across another one that it leaves.
+/// Distance between set and cone that rounding leaves, relative to the set's size, and part of a
+/// unit vector across another one that it leaves.
 const ROUNDING: f64 = 1e-13;
 
 /// Progress below which the search ends.
@@ -36,8 +36,8 @@ pub enum Balance {
     Unknown,
 }
 
-/// Looks for impulses of `generators` that balance `load`, but for a distance of `tolerance` (m/s) or
-/// what rounding leaves; also tells the linear systems that it took.
+/// Looks for impulses of `generators` that balance `load`, but for a distance of `tolerance` (m/s)
+/// or what rounding leaves; also tells the linear systems that it took.
 ///
 /// The point of set less cone that is nearest to the origin, as least squares with weights that are
 /// not negative: the weights of the set's points sum to one as well as they can (Haskell and Hanson

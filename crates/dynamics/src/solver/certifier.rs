@@ -47,8 +47,8 @@ impl<'a> Certifier<'a> {
         }
     }
 
-    /// Whether the candidate refines to a certified solution; no more than so many are tried at the same
-    /// V.
+    /// Whether the candidate refines to a certified solution; no more than so many are tried at the
+    /// same V.
     pub fn certifies(&mut self, candidate: &Candidate) -> bool {
         let here = |(v, _): &&mut (Vector<4>, u32)| norm(&add_scaled(v, -1.0, &candidate.v)) < SAME;
         let failures = self.failed.iter_mut().find(here);

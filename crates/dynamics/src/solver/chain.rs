@@ -1,9 +1,9 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
 //! The semismooth Newton iteration answers almost always. What it leaves over of a whole block of
-//! particles goes along a path of smoothed solutions, from its warm start, then from its free motion,
-//! packed together, still side by side; then one by one to a search over contact modes. Whatever route
-//! an answer came by, it counts as solved only where [`Ncp::certifies`] says so.
+//! particles goes along a path of smoothed solutions, from its warm start, then from its free
+//! motion, packed together, still side by side; then one by one to a search over contact modes.
+//! Whatever route an answer came by, it counts as solved only where [`Ncp::certifies`] says so.
 
 use stickslip_lanes::{Lanes, Level, on_fused, on_widest};
 
@@ -28,9 +28,9 @@ pub(crate) const NEWTON: NewtonSettings = NewtonSettings {
     slip_weight: SLIP_WEIGHT_NEAR,
 };
 
-/// Of a step of a block: the longest takes one to two milliseconds. Jams at the edge of having a solution, whose
-/// contacts close together, take most: of 6.6 million steps in 1100 random scenes four failed with 3000 systems,
-/// 24 with 2000; of 305 million two with 5000, one with 6000.
+/// Of a step of a block: the longest takes one to two milliseconds. Jams at the edge of having a
+/// solution, whose contacts close together, take most: of 6.6 million steps in 1100 random scenes
+/// four failed with 3000 systems, 24 with 2000; of 305 million two with 5000, one with 6000.
 pub(crate) const STEP_LIMIT: WorkLimit = WorkLimit {
     search: 6_000,
     compliant: 300,
@@ -223,7 +223,8 @@ impl<const W: usize> Solver<W> {
 
     /// The unsolved problems: along the path, then one by one.
     ///
-    /// Compiled apart from the Newton iteration: of more code in one piece the compiler calls what it should inline.
+    /// Compiled apart from the Newton iteration: of more code in one piece the compiler calls what
+    /// it should inline.
     #[inline(never)]
     fn solve_unsolved(
         &mut self,
@@ -247,8 +248,8 @@ impl<const W: usize> Solver<W> {
         }
     }
 
-    /// The unsolved problems, packed together, from their warm starts; then what is left from the free
-    /// motion, since the last step's impulses may have led astray.
+    /// The unsolved problems, packed together, from their warm starts; then what is left from the
+    /// free motion, since the last step's impulses may have led astray.
     #[inline(always)]
     fn follow_paths(
         &mut self,

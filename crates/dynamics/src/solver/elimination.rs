@@ -128,7 +128,8 @@ pub fn solve_dense_sides<const N: usize, const M: usize>(
 mod tests {
     use super::*;
 
-    /// A matrix like those of the balances: the identity, and two directions of penalty stiffness k.
+    /// A matrix like those of the balances: the identity, and two directions of penalty stiffness
+    /// k.
     fn equations<const N: usize, const M: usize>(k: f64) -> [[f64; M]; N] {
         let stiff = |i: usize, j: usize| {
             libm::sin((i + 1) as f64) * libm::sin((j + 1) as f64) + 0.3 * libm::cos((i * j) as f64)

@@ -6,8 +6,8 @@ use crate::solver::vector::{Vector, add_scaled, dot, norm};
 /// Slip below which a foot is not taken to slip (m/s, relative to v where above 1).
 const STANDS: f64 = 1e-12;
 
-/// Slip at which a foot is not taken to resist (m/s): within the certificate's tolerance, a foot that
-/// slips as slowly may exert its impulse in another direction.
+/// Slip at which a foot is not taken to resist (m/s): within the certificate's tolerance, a foot
+/// that slips as slowly may exert its impulse in another direction.
 const ANY_WAY: f64 = 1e-8;
 
 /// Of a sum of products of a matrix and two vectors.
@@ -52,19 +52,19 @@ pub struct Enclosure {
 impl Between<'_> {
     /// A ball about the middle of both ends, of radius zero where the object rests at both.
     ///
-    /// T⁻¹ is firmly nonexpansive, |Δv|² ≤ Δload·Δv. Added for both ends, that leaves to every v between
-    /// them |v − v_a|² + |v − v_b|² ≤ power.
+    /// T⁻¹ is firmly nonexpansive, |Δv|² ≤ Δload·Δv. Added for both ends, that leaves to every v
+    /// between them |v − v_a|² + |v − v_b|² ≤ power.
     pub fn ball(&self) -> Enclosure {
         self.enclosure(&[identity(); 2])
     }
 
-    /// An ellipsoid, by how fast the feet slip in another enclosure at most: what slips slowly hardly
-    /// turns. `None` where nothing slips slowly.
+    /// An ellipsoid, by how fast the feet slip in another enclosure at most: what slips slowly
+    /// hardly turns. `None` where nothing slips slowly.
     ///
-    /// With f = −p, Δload·Δv is |Δv|² + Σ Δf_k·Δs_k, and no term of the sum is negative: it is
-    /// b (|s| + |s_a|)(1 − cos) where the foot slips at a, at least b (|s| + |s_a|)/(2 |s|²) times the
-    /// square of the part of s across s_a; where it stands there, at least (b − |p_a|)|s|. The enclosure
-    /// bounds |s|.
+    /// With f = −p, Δload·Δv is |Δv|² + Σ Δf_k·Δs_k, and no term of the sum is negative: it is b
+    /// (|s| + |s_a|)(1 − cos) where the foot slips at a, at least b (|s| + |s_a|)/(2 |s|²) times
+    /// the square of the part of s across s_a; where it stands there, at least (b − |p_a|)|s|. The
+    /// enclosure bounds |s|.
     pub fn narrower(&self, than: &Enclosure) -> Option<Enclosure> {
         let fastest = self.feet.each_ref().map(|foot| than.fastest(foot));
         let creeps = self
@@ -196,8 +196,8 @@ mod tests {
     use crate::solver::numbers::Numbers;
     use crate::solver::support_friction::SupportFriction;
 
-    /// Velocities at loads between two, by the solver of the feet: all within every enclosure, and where
-    /// the object creeps ellipsoids are far thinner than balls.
+    /// Velocities at loads between two, by the solver of the feet: all within every enclosure, and
+    /// where the object creeps ellipsoids are far thinner than balls.
     #[test]
     fn velocities_between_two_loads_are_within_balls_and_ellipsoids() {
         let (mut numbers, mut thinner, mut narrowed) = (Numbers(5), 0, 0);

@@ -53,8 +53,8 @@ impl Default for Fallback {
 }
 
 impl Fallback {
-    /// Solves one lane of `ncp`, none of whose contacts creeps, with at most so much work; the result is on the
-    /// lane's own contacts, without padding rows.
+    /// Solves one lane of `ncp`, none of whose contacts creeps, with at most so much work; the
+    /// result is on the lane's own contacts, without padding rows.
     #[inline(never)]
     pub fn solve<const W: usize>(
         &mut self,
@@ -143,8 +143,8 @@ impl Fallback {
         self.solution.copy_from(&self.refiner.z);
     }
 
-    /// What the search leaves open, from the free motion: the last step's impulses may have led the first solvers
-    /// astray. By the Newton iteration, else along the path.
+    /// What the search leaves open, from the free motion: the last step's impulses may have led the
+    /// first solvers astray. By the Newton iteration, else along the path.
     fn start_afresh(&mut self, report: &mut Report) {
         self.guess.cold_start(&self.ncp);
         let (ncp, start, end) = (&self.ncp, &self.guess, &mut self.solution);

@@ -47,8 +47,8 @@ impl<const W: usize> LaneQueue<W> {
         self.busy = Mask::splat(false);
     }
 
-    /// Copies the problem `index` from one `lane` of problems and points side by side into a free lane,
-    /// whose number it returns; there must be one.
+    /// Copies the problem `index` from one `lane` of problems and points side by side into a free
+    /// lane, whose number it returns; there must be one.
     #[inline(always)]
     pub fn load<const V: usize>(
         &mut self,

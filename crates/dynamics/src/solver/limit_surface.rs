@@ -1,9 +1,10 @@
 //! The friction that three feet can exert together: [`LimitSurface`].
 //!
-//! The total friction of an object that slips in direction e, F(e) = Σ bound_k J_kᵀ u_k with u_k the
-//! direction of foot k's slip J_k e, does not depend on the speed. It lies on the boundary of a convex
-//! body, whose outward normal there is e (Goyal, Ruina and Papadopoulos 1991). The boundary has a flat
-//! facet where the object pivots about a loaded foot, whose impulse may then be any within its bound.
+//! The total friction of an object that slips in direction e, F(e) = Σ bound_k J_kᵀ u_k with u_k
+//! the direction of foot k's slip J_k e, does not depend on the speed. It lies on the boundary of a
+//! convex body, whose outward normal there is e (Goyal, Ruina and Papadopoulos 1991). The boundary
+//! has a flat facet where the object pivots about a loaded foot, whose impulse may then be any
+//! within its bound.
 
 use crate::solver::scalar_ncp::ScalarFoot;
 use crate::solver::vector::{Vector, add_scaled, norm};
@@ -59,8 +60,8 @@ impl LimitSurface {
         friction
     }
 
-    /// The change of the friction with `e`, a symmetric matrix with e in its null space; the part of
-    /// feet that slip.
+    /// The change of the friction with `e`, a symmetric matrix with e in its null space; the part
+    /// of feet that slip.
     pub fn change(&self, e: &Vector<3>) -> [Vector<3>; 3] {
         let mut change = [[0.0; 3]; 3];
         let stands = STANDS * norm(e);

@@ -35,8 +35,8 @@ pub struct FootStep<const W: usize> {
 }
 
 impl<const W: usize> ContactStep<W> {
-    /// The same step where tt is −∂p_t/∂(s + c p_t), the slip that friction resists, and c is `creep`:
-    /// that slip itself grows by c dp_t.
+    /// The same step where tt is −∂p_t/∂(s + c p_t), the slip that friction resists, and c is
+    /// `creep`: that slip itself grows by c dp_t.
     #[inline(always)]
     pub fn creeping(self, creep: Lanes<W>) -> Self {
         // a division only where some contact creeps

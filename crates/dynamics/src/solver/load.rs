@@ -6,8 +6,8 @@ use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 /// Slip below which rounding may turn its direction (m/s, relative to V where above 1).
 const CREEPS: f64 = 1e-6;
 
-/// T(V) for all V of a convex set, with feet that slip in any direction there, or stand: the hull of
-/// some corners, plus Σ b_k J_kᵀ u_k with |u_k| ≤ 1.
+/// T(V) for all V of a convex set, with feet that slip in any direction there, or stand: the hull
+/// of some corners, plus Σ b_k J_kᵀ u_k with |u_k| ≤ 1.
 #[derive(Clone, Debug)]
 pub struct Load<'a> {
     /// Without the feet whose slip is not known.

@@ -16,8 +16,8 @@ const SLACK: f64 = 1e-9;
 /// Slip below which a foot stands (m/s): far below the tolerance of a solution.
 const STANDS: f64 = 1e-10;
 
-/// Solutions with larger impulses, of the drive or of all contacts together, are not sought (m/s): their rounding
-/// exceeds the certificate's tolerance.
+/// Solutions with larger impulses, of the drive or of all contacts together, are not sought (m/s):
+/// their rounding exceeds the certificate's tolerance.
 pub const LARGEST: f64 = 1e6;
 
 /// Speeds above this leave a balance too few digits (m/s).
@@ -120,8 +120,8 @@ impl ModeConditions {
         })
     }
 
-    /// What the open gaps, y ≥ 0 and the limit on speed leave of the plane of two generators; `None` where their equations
-    /// leave none.
+    /// What the open gaps, y ≥ 0 and the limit on speed leave of the plane of two generators;
+    /// `None` where their equations leave none.
     pub fn open_plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
         let mut region = PlaneRegion::new(&self.equations(chosen))?;
         for inequality in &self.open {
@@ -196,8 +196,8 @@ impl ModeConditions {
         Some(candidate)
     }
 
-    /// Whether V with the impulses `alpha` refines to a certified solution, or, where `stands` asks for it, with
-    /// those that balance the load.
+    /// Whether V with the impulses `alpha` refines to a certified solution, or, where `stands` asks
+    /// for it, with those that balance the load.
     pub fn solves(
         &self,
         chosen: &[Generator],
@@ -210,7 +210,8 @@ impl ModeConditions {
             || stands && self.stands(chosen, v, certifier)
     }
 
-    /// Whether V with impulses that balance the load where feet stand refines to a certified solution.
+    /// Whether V with impulses that balance the load where feet stand refines to a certified
+    /// solution.
     pub fn stands(
         &self,
         chosen: &[Generator],

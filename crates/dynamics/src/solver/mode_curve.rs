@@ -10,8 +10,8 @@ use crate::solver::subspace::Equation;
 use crate::solver::support_friction::SupportFriction;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 
-/// Error of a velocity from [`SupportFriction`] (m/s, relative where above 1), unless its residual is
-/// larger.
+/// Error of a velocity from [`SupportFriction`] (m/s, relative where above 1), unless its residual
+/// is larger.
 const ROUNDING: f64 = 1e-13;
 
 /// Times that an enclosure is made narrower by the slips that it leaves.
@@ -87,7 +87,8 @@ impl<'a> ModeCurve<'a> {
         })
     }
 
-    /// The λ for which both impulses are positive and not too large, and the feet's friction can balance the load.
+    /// The λ for which both impulses are positive and not too large, and the feet's friction can
+    /// balance the load.
     pub fn interval(&self) -> Interval {
         let conditions = self.conditions;
         let mut interval = Interval {

@@ -55,8 +55,8 @@ impl Line {
         interval
     }
 
-    /// The part of it where, too, the friction of the feet can balance along m, in which no generator
-    /// of the mode pushes.
+    /// The part of it where, too, the friction of the feet can balance along m, in which no
+    /// generator of the mode pushes.
     pub fn balanced_interval(
         &self,
         conditions: &ModeConditions,

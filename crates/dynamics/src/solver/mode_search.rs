@@ -8,9 +8,9 @@
 //! pair), so a subset of four leaves a point, of three a line, of two a curve v(λ) = T⁻¹(…), of one
 //! again a point. Parallel walls, and points of one face, ask the same of V twice: four generators
 //! then leave a line, three a plane. Most subsets are discarded by V alone: the half-spaces of open
-//! gaps, opposed slips, y ≥ 0 and the limit on speed leave nothing of the plane, line or point. The others are searched
-//! by halving, with bounds that hold rigorously on every piece: pieces without a solution are
-//! discarded, what remains is refined. Where nothing remains, there is no solution.
+//! gaps, opposed slips, y ≥ 0 and the limit on speed leave nothing of the plane, line or point. The
+//! others are searched by halving, with bounds that hold rigorously on every piece: pieces without
+//! a solution are discarded, what remains is refined. Where nothing remains, there is no solution.
 
 use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
@@ -154,8 +154,9 @@ impl ModeSearch {
         }
     }
 
-    /// Whether the object can stand still, held by all contacts that are closed then, while the pusher
-    /// yields as far as it must: of a wedged object nearly all subsets hold it, and each would be searched.
+    /// Whether the object can stand still, held by all contacts that are closed then, while the
+    /// pusher yields as far as it must: of a wedged object nearly all subsets hold it, and each
+    /// would be searched.
     fn rests(&self, certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
         let contacts = conditions.problem.contacts.iter();
@@ -345,8 +346,8 @@ impl ModeSearch {
     /// Rows that leave neither a line nor a plane: excluded where they contradict each other, else
     /// unclear.
     ///
-    /// What the best V misses is a combination of the rows that vanishes. So it bounds from below by
-    /// how much every V misses one of the equations.
+    /// What the best V misses is a combination of the rows that vanishes. So it bounds from below
+    /// by how much every V misses one of the equations.
     fn degenerate<const N: usize>(
         &self,
         chosen: &[Generator; N],

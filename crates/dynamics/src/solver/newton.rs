@@ -2,12 +2,12 @@
 //! [`Newton`].
 //!
 //! As in Alart & Curnier (1991), the natural map of the iterate chooses every row's mode: either
-//! the row is *active*, and its velocity is driven to zero (the gap of a closed contact, the slip of
-//! a sticking one or of a sticking foot), or its impulse follows from the other rows. Slips have
-//! weights of their own in that choice. An active row has a finite penalty stiffness k and keeps its
-//! impulse from one iteration to the next (a method of multipliers), so redundant contacts do no
-//! harm. Once the modes are right, the error shrinks by K/(K + k) an iteration, K the stiffness of
-//! what else resists. The start is the particle's last step. A stiff penalty converges sooner, a
+//! the row is *active*, and its velocity is driven to zero (the gap of a closed contact, the slip
+//! of a sticking one or of a sticking foot), or its impulse follows from the other rows. Slips have
+//! weights of their own in that choice. An active row has a finite penalty stiffness k and keeps
+//! its impulse from one iteration to the next (a method of multipliers), so redundant contacts do
+//! no harm. Once the modes are right, the error shrinks by K/(K + k) an iteration, K the stiffness
+//! of what else resists. The start is the particle's last step. A stiff penalty converges sooner, a
 //! soft one copes better with modes that contradict each other: the iterations alternate.
 
 use stickslip_lanes::{Lanes, Mask};

@@ -28,7 +28,8 @@ pub struct Iterated {
     pub iterations: u32,
 }
 
-/// Lanes that the last problems of a block go on in: where a vector holds four numbers, half the work.
+/// Lanes that the last problems of a block go on in: where a vector holds four numbers, half the
+/// work.
 const LAST: usize = 4;
 
 /// [`Newton`] on a block, with its working memory.

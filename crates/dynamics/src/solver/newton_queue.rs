@@ -7,12 +7,13 @@ use crate::ncp::unknowns::Unknowns;
 use crate::solver::lane_queue::{LaneIndex, LaneQueue};
 use crate::solver::newton::{Newton, NewtonSettings, Progress};
 
-/// Residual (m/s) above which an iterate is far from any solution: impulses have come near the penalty.
+/// Residual (m/s) above which an iterate is far from any solution: impulses have come near the
+/// penalty.
 const FAR: f64 = 10.0;
 
-/// Iterations after which what is far off is given up, no fewer than a chunk takes as a whole. Where active rows
-/// contradict each other, as in an object wedged between pusher and fixels, modes return in a cycle, and impulses
-/// with them.
+/// Iterations after which what is far off is given up, no fewer than a chunk takes as a whole.
+/// Where active rows contradict each other, as in an object wedged between pusher and fixels, modes
+/// return in a cycle, and impulses with them.
 const PATIENCE: f64 = 8.0;
 
 /// Problems under way: [`Newton`] at the point of a [`LaneQueue`].

@@ -4,8 +4,8 @@ use crate::solver::generator::Generator;
 use crate::solver::mode_conditions::ModeConditions;
 use crate::solver::plane_region::PlaneRegion;
 
-/// The open plane of each two contacts, or of a contact and the stall pair. Both edges of a contact ask
-/// for the same closed gap: their planes are the same.
+/// The open plane of each two contacts, or of a contact and the stall pair. Both edges of a contact
+/// ask for the same closed gap: their planes are the same.
 #[derive(Debug)]
 pub struct OpenPlanes {
     /// At [`index`].
@@ -14,7 +14,8 @@ pub struct OpenPlanes {
 }
 
 impl OpenPlanes {
-    /// Those of `generators`, of which the first one is one of `firsts` contacts, from the first one on.
+    /// Those of `generators`, of which the first one is one of `firsts` contacts, from the first
+    /// one on.
     pub fn new(conditions: &ModeConditions, generators: &[Generator], firsts: usize) -> Self {
         let contacts = conditions.problem.contacts.len();
         let mut planes = vec![None; (1 + contacts) * (1 + contacts)];
@@ -28,8 +29,8 @@ impl OpenPlanes {
         Self { planes, contacts }
     }
 
-    /// What a mode's inequalities leave of the plane of two generators; `None` where their equations
-    /// leave none.
+    /// What a mode's inequalities leave of the plane of two generators; `None` where their
+    /// equations leave none.
     pub fn of(&self, conditions: &ModeConditions, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
         let [a, b] = chosen;
         let mut region = if a.contact == b.contact {

@@ -37,8 +37,8 @@ pub struct Thoroughness {
     /// Roots that are refined, and middles of pieces at each width; neighbouring pieces differ
     /// little, so that more than some do not help.
     pub attempts: u32,
-    /// Candidates of all lines and curves that are refined at the same V: where all gaps close together,
-    /// most modes have the same.
+    /// Candidates of all lines and curves that are refined at the same V: where all gaps close
+    /// together, most modes have the same.
     pub patience: u32,
     /// Whether pieces are excluded by balances, too: some linear systems for each.
     pub separates: bool,

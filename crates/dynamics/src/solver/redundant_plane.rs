@@ -10,8 +10,8 @@ use crate::solver::plane_region::PlaneRegion;
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, dot, norm};
 
-/// The part of a plane on which impulses α ≥ 0 of three generators may balance the load, with nothing
-/// left along the fourth vector of the dual basis.
+/// The part of a plane on which impulses α ≥ 0 of three generators may balance the load, with
+/// nothing left along the fourth vector of the dual basis.
 pub struct RedundantPlane<'a> {
     conditions: &'a ModeConditions,
     chosen: &'a [Generator; 3],
@@ -44,8 +44,8 @@ impl<'a> RedundantPlane<'a> {
         })
     }
 
-    /// Halves the region until every part is excluded or a candidate is certified; gives up after so
-    /// many parts, or where no work is left.
+    /// Halves the region until every part is excluded or a candidate is certified; gives up after
+    /// so many parts, or where no work is left.
     pub fn search(self, thoroughness: Thoroughness, certifier: &mut Certifier<'_>) -> Finding {
         let mut finding = Finding::Excluded;
         let mut attempts = [thoroughness.attempts; WIDTHS.len()];

@@ -1,9 +1,9 @@
 //! Impulses that cancel each other: [`relieve`] finds smaller ones.
 //!
 //! Bodies that squeeze an object press on it with impulses that nothing determines, and iterations
-//! that raise an impulse as long as a gap is closed leave them as large as they happen to be. Of all
-//! impulses at the same V, those of [`balance`] belong to at most four independent generators, and so
-//! are no larger than the load and the wedge ask for.
+//! that raise an impulse as long as a gap is closed leave them as large as they happen to be. Of
+//! all impulses at the same V, those of [`balance`] belong to at most four independent generators,
+//! and so are no larger than the load and the wedge ask for.
 
 use crate::solver::balance::{Balance, balance};
 use crate::solver::generator::Generator;

@@ -1,9 +1,9 @@
 //! The smoothed NCP at one point, [`SmoothedMap`], and its linearisation.
 //!
-//! Every row depends smoothly on a speed ε, and at ε = 0 it is the NCP itself. Complementarity pairs
-//! a ⟂ b become a + b − sqrt((a − b)² + 4ε²) = 0 (Chen & Harker 1993); friction becomes bound·s + p
-//! σ = 0 with σ = sqrt(|s|² + ε²), linearised as it stands (the primal–dual form of Andersen,
-//! Christiansen, Conn & Overton 2000).
+//! Every row depends smoothly on a speed ε, and at ε = 0 it is the NCP itself. Complementarity
+//! pairs a ⟂ b become a + b − sqrt((a − b)² + 4ε²) = 0 (Chen & Harker 1993); friction becomes
+//! bound·s + p σ = 0 with σ = sqrt(|s|² + ε²), linearised as it stands (the primal–dual form of
+//! Andersen, Christiansen, Conn & Overton 2000).
 
 use stickslip_lanes::Lanes;
 
@@ -162,8 +162,8 @@ struct LinearPair<const W: usize> {
 }
 
 impl<const W: usize> Linearised<W> {
-    /// The smoothed rows at `z`, where they are `map`, linearised in the unknowns and ε, towards ε =
-    /// `target`.
+    /// The smoothed rows at `z`, where they are `map`, linearised in the unknowns and ε, towards ε
+    /// = `target`.
     #[inline(always)]
     pub fn linearise_smoothed_map(
         &mut self,

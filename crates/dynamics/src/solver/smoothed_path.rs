@@ -1,8 +1,8 @@
 //! The path of smoothed solutions, followed to ε = 0, `W` particles side by side: [`SmoothedPath`].
 //!
 //! Where an object jams or rests among redundant contacts, the natural map jumps between modes;
-//! smoothed rows do not. There is no line search: ε falls while the smoothed residual stays within a
-//! multiple of it, so that every particle does the same arithmetic. Long before ε is small the
+//! smoothed rows do not. There is no line search: ε falls while the smoothed residual stays within
+//! a multiple of it, so that every particle does the same arithmetic. Long before ε is small the
 //! modes show, and Newton's method in fixed modes ends it. A lane that finishes takes the next
 //! problem. Lanes in which fixed modes are due wait until half of all lanes are, so that neither
 //! kind of step runs for few.
@@ -274,8 +274,8 @@ impl<const W: usize> Progress<W> {
 }
 
 impl SmoothedPath<1> {
-    /// Follows `schedule` in a single problem and leaves its end in `z`; its residual, infinite where
-    /// fixed modes were never tried, and the Newton steps.
+    /// Follows `schedule` in a single problem and leaves its end in `z`; its residual, infinite
+    /// where fixed modes were never tried, and the Newton steps.
     pub fn solve_one(
         &mut self,
         level: Level,

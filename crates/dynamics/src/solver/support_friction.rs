@@ -26,9 +26,9 @@ const REGULAR: f64 = 1e-13;
 ///
 /// A load within the friction body of the feet moves nothing; one outside moves the object by what
 /// separates it from the nearest point of the body, load = F(e) + ε e. Newton's method in the
-/// direction e of slip and the speed ε serves objects that creep as well as those that slide, since F
-/// does not depend on the speed. The problem is convex, and smooth but for rest and the pivots about
-/// a foot: those are tried first, and descent from the best of them meets none of them again.
+/// direction e of slip and the speed ε serves objects that creep as well as those that slide, since
+/// F does not depend on the speed. The problem is convex, and smooth but for rest and the pivots
+/// about a foot: those are tried first, and descent from the best of them meets none of them again.
 pub struct SupportFriction {
     surface: LimitSurface,
     pivots: [Pivot; 6],
@@ -133,8 +133,9 @@ impl SupportFriction {
         Motion::Slips(Slip::of(&leave(cost, &v, &off)))
     }
 
-    /// Rest where friction balances the load, or a slip that costs less: the friction in the direction
-    /// of the load is F(e) = h load, with e the minimum of the convex h(e) = F(e)·e, e·load = 1.
+    /// Rest where friction balances the load, or a slip that costs less: the friction in the
+    /// direction of the load is F(e) = h load, with e the minimum of the convex h(e) = F(e)·e,
+    /// e·load = 1.
     fn rest(&mut self, load: &Vector<3>, systems: &mut u32) -> Motion {
         let size = norm(load);
         if size == 0.0 {
@@ -264,8 +265,8 @@ impl SupportFriction {
         }
     }
 
-    /// Changes of direction and speed, as e' + speed' e, to where the linearised friction balances the
-    /// load.
+    /// Changes of direction and speed, as e' + speed' e, to where the linearised friction balances
+    /// the load.
     fn newton_step(&self, load: &Vector<3>, slip: &Slip) -> Option<Vector<3>> {
         let Slip { e, speed } = slip;
         let left = add_scaled(

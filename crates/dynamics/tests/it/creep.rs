@@ -1,4 +1,5 @@
-//! Contacts that creep: below its bound, friction is proportional to the slip (docs/method.md (50)).
+//! Contacts that creep: below its bound, friction is proportional to the slip (docs/method.md
+//! (50)).
 
 use stickslip_dynamics::{ContactPoint, Outcome, Route, StepProblem, TOLERANCE, Twist, solve};
 use stickslip_testkit::{Corpus, residual_si};
@@ -28,8 +29,8 @@ fn along_a_wall(vy: f64, creep: f64) -> StepProblem {
     }
 }
 
-/// p_n = m vx stops the block. Friction takes p_t from m vy and leaves a slip of c p_t, so p_t = vy / (1/m + c); at
-/// most it takes μ p_n.
+/// p_n = m vx stops the block. Friction takes p_t from m vy and leaves a slip of c p_t, so p_t = vy
+/// / (1/m + c); at most it takes μ p_n.
 #[test]
 fn a_block_along_a_wall_slips_at_c_p_t_or_loses_mu_p_n() {
     for creep in [0.0, 0.1, 1.0, 10.0, 1e3] {
@@ -51,8 +52,9 @@ fn a_block_along_a_wall_slips_at_c_p_t_or_loses_mu_p_n() {
     }
 }
 
-/// The residual written from the model alone finds no fault with what the solvers make of hard problems whose
-/// contacts creep. What only the search over modes answers, it answers without creep.
+/// The residual written from the model alone finds no fault with what the solvers make of hard
+/// problems whose contacts creep. What only the search over modes answers, it answers without
+/// creep.
 #[test]
 fn hard_problems_with_creep_are_solved_to_the_tolerance() {
     let corpus = Corpus { seed: 47 };

@@ -384,8 +384,8 @@ fn impulses_that_cancel_each_other_are_not_kept() {
     }
 }
 
-/// An object between a fixel's face and that of a pusher that closes at `u`, the two at an angle, without
-/// friction: it leaves at u/tan(angle).
+/// An object between a fixel's face and that of a pusher that closes at `u`, the two at an angle,
+/// without friction: it leaves at u/tan(angle).
 fn squeezed(u: f64, angle: f64) -> (StepProblem, f64) {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
     let contact = |normal: [f64; 2], surface_velocity, on_pusher| ContactPoint {

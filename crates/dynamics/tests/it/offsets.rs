@@ -203,8 +203,8 @@ fn feet_in_a_frame_of_their_own_stand_where_known_feet_do() {
     }
 }
 
-/// Beside the scene's tripod, or three known feet that stand as its tripod in the frame `about`: these turn about their
-/// own centre.
+/// Beside the scene's tripod, or three known feet that stand as its tripod in the frame `about`:
+/// these turn about their own centre.
 fn feet_stand_as_known(level: Level, about: Option<Pose>) {
     const LANES: usize = 8;
     let frame = |i: usize| {
@@ -322,8 +322,8 @@ fn an_object_that_has_grown_meets_larger_discs() {
     assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
 }
 
-/// c = share · ‖v‖ B/max(p_n, B) / (μ p_n) of the step before, B what the feet resist (docs/method.md (50)); eight
-/// lanes of shares of their own do as each alone.
+/// c = share · ‖v‖ B/max(p_n, B) / (μ p_n) of the step before, B what the feet resist
+/// (docs/method.md (50)); eight lanes of shares of their own do as each alone.
 #[test]
 fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
     const LANES: usize = 8;

@@ -1,5 +1,5 @@
-//! What the extended Kalman filter believes: [`Belief`], a normal distribution of the object's pose and
-//! twist, its friction and the force that disturbs it (docs/method.md (46)).
+//! What the extended Kalman filter believes: [`Belief`], a normal distribution of the object's pose
+//! and twist, its friction and the force that disturbs it (docs/method.md (46)).
 
 use nalgebra::{SMatrix, SVector};
 use stickslip_dynamics::{Friction, Particle, Pose, Twist, Wrench};
@@ -8,8 +8,8 @@ use stickslip_filter::Gaussian;
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
 use crate::setup::{Limits, Setup};
 
-/// Numbers of a state: x, y, θ (m, m, rad), v_x, v_y, ω (m/s, m/s, rad/s), ln β/β_nominal of the four
-/// friction parameters, and w_app in units of its standard deviations.
+/// Numbers of a state: x, y, θ (m, m, rad), v_x, v_y, ω (m/s, m/s, rad/s), ln β/β_nominal of the
+/// four friction parameters, and w_app in units of its standard deviations.
 pub(super) const STATES: usize = 13;
 
 /// Where the twist begins.
@@ -91,8 +91,8 @@ impl Belief {
         belief
     }
 
-    /// The object at rest at a measured `pose` with its covariance, whatever was believed of it before;
-    /// friction stays.
+    /// The object at rest at a measured `pose` with its covariance, whatever was believed of it
+    /// before; friction stays.
     pub fn begin_anew(&mut self, pose: &SVector<f64, 3>, covariance: &SMatrix<f64, 3, 3>) {
         let Gaussian {
             mean,
@@ -118,8 +118,8 @@ impl Belief {
         }
     }
 
-    /// The random step of the friction parameters that `took_part`, over `steps` steps of 1/30 s: it
-    /// keeps their priors (docs/method.md (34)).
+    /// The random step of the friction parameters that `took_part`, over `steps` steps of 1/30 s:
+    /// it keeps their priors (docs/method.md (34)).
     pub fn drift(&mut self, took_part: &Friction<bool>, drift: f64, steps: f64) {
         let Gaussian { mean, covariance } = &mut self.normal;
         for (k, took_part) in took_part.fields().into_iter().enumerate() {
@@ -148,8 +148,8 @@ impl Belief {
         }
     }
 
-    /// A state as Γ takes it, its force lasting as an impulse of `share` times μ_s (N s) on an axis, times
-    /// `rho` (m) about it; what is no part of the state is that of `like`.
+    /// A state as Γ takes it, its force lasting as an impulse of `share` times μ_s (N s) on an
+    /// axis, times `rho` (m) about it; what is no part of the state is that of `like`.
     pub fn particle(
         &self,
         state: &State,

@@ -1,5 +1,5 @@
-//! Two rules for the dark that need no model of contact; while the camera looks, both are the Kalman
-//! filter: [`stopping`] and [`with_pusher`]. Dark are the rows that an occlusion hides.
+//! Two rules for the dark that need no model of contact; while the camera looks, both are the
+//! Kalman filter: [`stopping`] and [`with_pusher`]. Dark are the rows that an occlusion hides.
 
 use stickslip_dynamics::{Pose, Twist};
 

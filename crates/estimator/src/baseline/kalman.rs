@@ -3,8 +3,8 @@
 //!
 //! Each of x, y, θ follows a white-noise acceleration whose level is the one of greatest likelihood
 //! on the visible part of the log, so that it is a fair rival. While the camera is dark it goes on
-//! at its last velocity. Poses that say themselves how noisy they are count with their own variances, axis
-//! by axis.
+//! at its last velocity. Poses that say themselves how noisy they are count with their own
+//! variances, axis by axis.
 
 use stickslip_dynamics::{Pose, Twist};
 use stickslip_filter::{AxisEstimate, ConstantVelocity};

@@ -1,5 +1,5 @@
-//! Γ for a normal distribution of states: [`LinearisedStep`], by differences as wide as the distribution
-//! (docs/method.md (47)).
+//! Γ for a normal distribution of states: [`LinearisedStep`], by differences as wide as the
+//! distribution (docs/method.md (47)).
 
 use stickslip_dynamics::{
     Body, Dynamics, Friction, Outcome, Particle, Particles, StepInput, StepWork, Twist,
@@ -19,12 +19,12 @@ const LANES: usize = 8;
 /// covariance's root.
 const POINTS: usize = 1 + 2 * STATES;
 
-/// How far from the mean its neighbours are, in standard deviations: √3, by which the difference over
-/// an odd cubic has the mean slope that it has under a normal distribution.
+/// How far from the mean its neighbours are, in standard deviations: √3, by which the difference
+/// over an odd cubic has the mean slope that it has under a normal distribution.
 const REACH: f64 = 1.732_050_807_568_877_2;
 
-/// What is left of a variance once the numbers before it are known is at least this share of it: less is
-/// rounding.
+/// What is left of a variance once the numbers before it are known is at least this share of it:
+/// less is rounding.
 const LEAST_LEFT: f64 = 1e-12;
 
 /// Γ of one scene, with what it leaves from one step to the next.
@@ -34,7 +34,8 @@ pub(super) struct LinearisedStep<'a> {
     observer: Option<&'a dyn Observer>,
     work: StepWork<LANES>,
     points: [Particles<LANES>; POINTS.div_ceil(LANES)],
-    /// The mean's particle: its impulses, and how far its pusher gave way, begin every point's next step.
+    /// The mean's particle: its impulses, and how far its pusher gave way, begin every point's next
+    /// step.
     mean: Particle,
     /// How long the force has lasted (s).
     lasted: f64,
@@ -47,13 +48,15 @@ pub(super) struct LinearisedStep<'a> {
 pub(super) struct Since {
     /// Parameters that took part in the mean's steps (Φ, docs/method.md (21)).
     pub took_part: Friction<bool>,
-    /// Points with a step that has no certified solution, and those whose solver gave up, one bit each.
+    /// Points with a step that has no certified solution, and those whose solver gave up, one bit
+    /// each.
     unsolved: u32,
     failed: u32,
 }
 
 impl Since {
-    /// The number of points with a step that has no certified solution, and of those whose solver gave up.
+    /// The number of points with a step that has no certified solution, and of those whose solver
+    /// gave up.
     pub fn counts(&self) -> [u32; 2] {
         [self.unsolved.count_ones(), self.failed.count_ones()]
     }
@@ -115,8 +118,8 @@ impl<'a> LinearisedStep<'a> {
         }
     }
 
-    /// The belief after the step: Γ of the mean, and half of how far its neighbours end apart, in units of
-    /// [`REACH`], as the root of the covariance.
+    /// The belief after the step: Γ of the mean, and half of how far its neighbours end apart, in
+    /// units of [`REACH`], as the root of the covariance.
     fn gathered(&self, mean: &State, root: StateMatrix) -> Gaussian<STATES> {
         let after = |point: usize| -> [f64; FRICTION] {
             let Particle { pose, twist, .. } = self.points[point / LANES].get(point % LANES);
@@ -186,8 +189,8 @@ impl<'a> LinearisedStep<'a> {
     }
 }
 
-/// The column along which a point is displaced, and to which side; `None` for the mean and for lanes
-/// past the last point.
+/// The column along which a point is displaced, and to which side; `None` for the mean and for
+/// lanes past the last point.
 fn column_of(point: usize) -> Option<(usize, f64)> {
     let side = if point % 2 == 1 { 1.0 } else { -1.0 };
     (1..POINTS)
@@ -195,8 +198,8 @@ fn column_of(point: usize) -> Option<(usize, f64)> {
         .then(|| ((point - 1) / 2, side))
 }
 
-/// The lower triangular L with L Lᵀ = `covariance` (Cholesky); a column is 0 where what comes before it
-/// tells the number.
+/// The lower triangular L with L Lᵀ = `covariance` (Cholesky); a column is 0 where what comes
+/// before it tells the number.
 fn root(covariance: &StateMatrix) -> StateMatrix {
     let mut root = StateMatrix::zeros();
     for j in 0..STATES {

@@ -9,8 +9,8 @@ use crate::covariance::PoseCovariance;
 use crate::particle::camera_trust::BELIEVED_AFTER;
 use crate::setup::Camera;
 
-/// A squared innovation that one right pose in 10,000 exceeds, in units of what was expected of it: χ² of
-/// three degrees of freedom.
+/// A squared innovation that one right pose in 10,000 exceeds, in units of what was expected of it:
+/// χ² of three degrees of freedom.
 const UNLIKELY: f64 = 21.108;
 
 /// Covariance of x, y and θ (m, m, rad).

@@ -68,8 +68,8 @@ impl NominalPredictor {
         &self.schedule
     }
 
-    /// Predicts the log once with each of `frictions`, as [`run`](crate::run) with the nominal simulation
-    /// does with that of the scene, bit for bit. One thread runs.
+    /// Predicts the log once with each of `frictions`, as [`run`](crate::run) with the nominal
+    /// simulation does with that of the scene, bit for bit. One thread runs.
     pub fn predict(&self, frictions: &[Friction]) -> Vec<NominalPrediction> {
         let chunks = frictions.chunks(LANES).map(|chunk| match chunk {
             [one] => Vec::from(self.predict_lanes(&[*one])),

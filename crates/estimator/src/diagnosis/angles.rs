@@ -43,8 +43,8 @@ fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
         .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
-/// A jump by about a full turn from one row to the next, or by about half of one; after a gap an angle
-/// may start anew.
+/// A jump by about a full turn from one row to the next, or by about half of one; after a gap an
+/// angle may start anew.
 fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
     let about = |turn: f64| {
         let jumps = |row: &usize| {

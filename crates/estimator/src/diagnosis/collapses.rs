@@ -8,11 +8,12 @@ const MANY: f64 = 0.02;
 /// Share from which on nothing was explained.
 const MOST: f64 = 0.2;
 
-/// What `collapses` among `seen` rows with a camera pose mean; `None` where they are too few to mean
-/// anything.
+/// What `collapses` among `seen` rows with a camera pose mean; `None` where they are too few to
+/// mean anything.
 ///
-/// At a collapse all particles are drawn anew around the camera's pose, or an extended Kalman filter begins
-/// anew at it: where there are many, an estimate is near the camera because it was put there.
+/// At a collapse all particles are drawn anew around the camera's pose, or an extended Kalman
+/// filter begins anew at it: where there are many, an estimate is near the camera because it was
+/// put there.
 pub fn collapsed(collapses: u32, seen: usize) -> Option<Finding> {
     let share = f64::from(collapses) / seen.max(1) as f64;
     let found = format!(

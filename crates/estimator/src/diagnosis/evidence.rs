@@ -15,7 +15,8 @@ pub(super) const HALF_WINDOW: f64 = 0.15;
 /// Standard deviations above which a displacement is motion.
 const MOTION: f64 = 5.0;
 
-/// A row lies within a motion if before and after it the object is at least so many times as fast as over both together.
+/// A row lies within a motion if before and after it the object is at least so many times as fast
+/// as over both together.
 const GOES_ON: f64 = 0.5;
 
 /// Least share of the time of a motion over which that is judged.
@@ -71,7 +72,8 @@ impl<'a> Evidence<'a> {
         self.pose_std().position
     }
 
-    /// Standard deviation of a gap by the noise of the object's pose, with its turn at the radius of gyration (m).
+    /// Standard deviation of a gap by the noise of the object's pose, with its turn at the radius
+    /// of gyration (m).
     pub fn gap_std(&self) -> f64 {
         let gyration = self.setup.scene.object.gyration_radius();
         let noise = self.pose_std();
@@ -122,7 +124,8 @@ impl<'a> Evidence<'a> {
         gap(&object, &Placed::new(other, at))
     }
 
-    /// The object's way about a row with its pose: from before it to after it, and from before it to it.
+    /// The object's way about a row with its pose: from before it to after it, and from before it
+    /// to it.
     fn way(&self, row: usize) -> Option<(Way, Way)> {
         let time = self.log.time[row];
         let first_from = |from: f64| self.seen.partition_point(|row| self.log.time[*row] < from);
@@ -144,7 +147,8 @@ impl<'a> Evidence<'a> {
         (after.0 >= before.0).then(|| (way(after), way(here)))
     }
 
-    /// Mean time and pose of up to three poses about the `index`-th, none of them from beyond a gap.
+    /// Mean time and pose of up to three poses about the `index`-th, none of them from beyond a
+    /// gap.
     fn mean_pose(&self, index: usize) -> Option<(f64, Pose)> {
         let middle = self.log.time[*self.seen.get(index)?];
         let rows = index.saturating_sub(1)..(index + 2).min(self.seen.len());
@@ -174,8 +178,8 @@ impl<'a> Evidence<'a> {
         moving
     }
 
-    /// Whether the object's way about `row` is beyond noise, and `row` lies within it: an object that is touched a little
-    /// later, or stopped a little before, rests.
+    /// Whether the object's way about `row` is beyond noise, and `row` lies within it: an object
+    /// that is touched a little later, or stopped a little before, rests.
     fn moves_at(&self, row: usize) -> bool {
         let Some(std) = self.way_std() else {
             return false;

@@ -12,8 +12,8 @@ const FAR: f64 = 0.3;
 /// It is one where it is so many times longer than nine in ten others.
 const RARE: f64 = 8.0;
 
-/// A shorter one is a jump where it is so many times faster than all steps about it that do not lead back, those of the
-/// pusher among them.
+/// A shorter one is a jump where it is so many times faster than all steps about it that do not
+/// lead back, those of the pusher among them.
 const SUDDEN: f64 = 4.0;
 
 /// And so many standard deviations of a position; from the greater number on it is a problem.
@@ -122,7 +122,8 @@ fn told(body: &str, first: &Step, count: usize, farthest: f64) -> String {
     )
 }
 
-/// The greatest speed of the few steps before and after `step` (m/s), those aside that lead back from where it led.
+/// The greatest speed of the few steps before and after `step` (m/s), those aside that lead back
+/// from where it led.
 fn speed_about(steps: &[Step], step: &Step) -> f64 {
     let before = steps.partition_point(|other| other.rows[1] <= step.rows[0]);
     let after = steps.partition_point(|other| other.rows[0] < step.rows[1]);

@@ -1,8 +1,8 @@
 //! Errors of the camera that last over several rows: [`Lasting`].
 //!
-//! While the pusher is still on its way the object waits, so what its poses do is the camera's error. White noise differs
-//! from row to row by as much as between rows that are far apart; an error that lasts hardly differs from row to row, and
-//! by more and more over longer times.
+//! While the pusher is still on its way the object waits, so what its poses do is the camera's
+//! error. White noise differs from row to row by as much as between rows that are far apart; an
+//! error that lasts hardly differs from row to row, and by more and more over longer times.
 
 use stickslip_dynamics::Pose;
 
@@ -80,8 +80,9 @@ fn wander(waiting: &[Pose], pick: fn(&Pose) -> f64) -> Vec<f64> {
 
 /// Rows over which an error lasts that scatters from row to row by `share` of what it wanders.
 ///
-/// Errors that are forgotten by a factor ρ from row to row have second differences of variance 2 (1 − ρ) (3 − ρ), where
-/// those of white noise have 6; and n poses of them have a mean as good as n (1 − ρ) / (1 + ρ) poses of white noise.
+/// Errors that are forgotten by a factor ρ from row to row have second differences of variance 2 (1
+/// − ρ) (3 − ρ), where those of white noise have 6; and n poses of them have a mean as good as n (1
+/// − ρ) / (1 + ρ) poses of white noise.
 fn rows(share: f64) -> f64 {
     let kept = 2.0 - (1.0 + 3.0 * share * share).sqrt();
     (1.0 + kept) / (1.0 - kept)

@@ -3,9 +3,9 @@
 //! While the pusher pushes and then stands, it touches, so the gap stays what it is. An object pose
 //! that is late shows the object still coming when the pusher stands: the gap then bends. The delay
 //! of a stop is the one that keeps the gap most constant from a quarter of a second before it to
-//! half a second after; the log's delay is the median over its stops. Where the pusher is slow, or slides along the object,
-//! many delays do so about as well: a delay counts against the stated one only where noise does not explain the gaps that
-//! the stated one leaves.
+//! half a second after; the log's delay is the median over its stops. Where the pusher is slow, or
+//! slides along the object, many delays do so about as well: a delay counts against the stated one
+//! only where noise does not explain the gaps that the stated one leaves.
 
 use super::evidence::{Evidence, median, quantile};
 use super::finding::{Finding, Subject};
@@ -25,8 +25,8 @@ const OFF: [f64; 2] = [0.035, 0.06];
 /// A delay matters where the pusher moves on by this many standard deviations of a position in it.
 const MATTERS: f64 = 1.5;
 
-/// Twice the log-likelihood by which a delay has to explain the gaps better than the stated one does: of the best of all
-/// that are tried, noise alone makes as much in one log of a thousand.
+/// Twice the log-likelihood by which a delay has to explain the gaps better than the stated one
+/// does: of the best of all that are tried, noise alone makes as much in one log of a thousand.
 const CLEARLY: f64 = 14.0;
 
 /// The delay of a log.
@@ -38,7 +38,8 @@ pub(super) struct Latency {
     pub stops: usize,
     /// Speed of the pusher when it moves (m/s).
     pub speed: f64,
-    /// Twice the log-likelihood by which the delays of the stops explain their gaps better than the stated one does.
+    /// Twice the log-likelihood by which the delays of the stops explain their gaps better than the
+    /// stated one does.
     pub better: f64,
 }
 
@@ -186,7 +187,8 @@ fn told_at(evidence: &Evidence<'_>, stop: usize) -> Option<Told> {
     })
 }
 
-/// Twice the log-likelihood of a delay at which the gaps over `rows` scatter by `scatter`, less that of the stated delay.
+/// Twice the log-likelihood of a delay at which the gaps over `rows` scatter by `scatter`, less
+/// that of the stated delay.
 fn better(evidence: &Evidence<'_>, rows: &[usize], scatter: f64) -> f64 {
     // errors that last make fewer poses of many
     let poses = rows.len() as f64 / evidence.lasting.map_or(1.0, |errors| errors.rows);

@@ -76,10 +76,10 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// The problems that show in a time that no filter notices: numbers in other units or by other clocks, bodies that
-/// overlap at the start. With them, an estimate and its scores mean nothing. And what a run does otherwise than the log and
-/// the scene say: pusher poses that it leaves out, and ones that scatter by more than told, which it tracks by the noise
-/// that they have.
+/// The problems that show in a time that no filter notices: numbers in other units or by other
+/// clocks, bodies that overlap at the start. With them, an estimate and its scores mean nothing.
+/// And what a run does otherwise than the log and the scene say: pusher poses that it leaves out,
+/// and ones that scatter by more than told, which it tracks by the noise that they have.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
     let mut findings = plain(&evidence);

@@ -5,8 +5,8 @@ use super::finding::{Finding, Subject};
 use super::lasting::Lasting;
 use super::pose_noise::PoseNoise;
 
-/// Ratio of measured and stated noise that is worth a warning: of the object, which contact mode learns, and of the
-/// pusher.
+/// Ratio of measured and stated noise that is worth a warning: of the object, which contact mode
+/// learns, and of the pusher.
 const FAR_OFF: f64 = 4.0;
 const PUSHER_OFF: f64 = 2.0;
 

@@ -10,7 +10,8 @@ pub(super) const OF_MEDIAN: f64 = 1.4826;
 /// Fewest bends that tell.
 const FEWEST: usize = 10;
 
-/// Least share of the time between its neighbours by which a pose is apart from either: beside a gap nothing is steady.
+/// Least share of the time between its neighbours by which a pose is apart from either: beside a
+/// gap nothing is steady.
 const APART: f64 = 0.2;
 
 /// Standard deviations of one pose.
@@ -23,8 +24,9 @@ pub(super) struct PoseNoise {
 }
 
 impl PoseNoise {
-    /// The noise of poses at `time` (s), from how far each lies off the line through its neighbours: a steady motion does
-    /// not change that, and a median does not heed jumps and stops.
+    /// The noise of poses at `time` (s), from how far each lies off the line through its
+    /// neighbours: a steady motion does not change that, and a median does not heed jumps and
+    /// stops.
     ///
     /// Rows without a pose are passed over: other sensors may bring many of them.
     pub fn of(time: &[f64], poses: &[Option<Pose>]) -> Option<Self> {

@@ -48,7 +48,8 @@ fn object(evidence: &Evidence<'_>) -> Finding {
     }
 }
 
-/// Poses of a moving pusher that are those of the row before: it is sampled more slowly than the log, and held.
+/// Poses of a moving pusher that are those of the row before: it is sampled more slowly than the
+/// log, and held.
 fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     let (time, poses) = (&evidence.log.time, &evidence.log.pusher);
     let seen: Vec<usize> = (0..poses.len())
@@ -93,8 +94,8 @@ fn share<'p>(poses: &[Option<Pose>], pairs: impl Iterator<Item = &'p [usize; 2]>
     repeated as f64 / all.max(1) as f64
 }
 
-/// Many equal poses on end and then one far from them, from a camera whose poses scatter: it stood still
-/// while the object went on.
+/// Many equal poses on end and then one far from them, from a camera whose poses scatter: it stood
+/// still while the object went on.
 fn frozen(evidence: &Evidence<'_>) -> Option<Finding> {
     let (object, seen) = (&evidence.log.object, &evidence.seen);
     if evidence.noise.is_none_or(|noise| noise.position < 1e-6) {

@@ -89,7 +89,8 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     }
 }
 
-/// What a sensor seems to be that reads 1 where nothing is near, and what to do: one that hardly ever reads 0, or another.
+/// What a sensor seems to be that reads 1 where nothing is near, and what to do: one that hardly
+/// ever reads 0, or another.
 fn inverted(always: bool) -> (&'static str, &'static str) {
     match always {
         true => (

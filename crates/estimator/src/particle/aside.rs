@@ -1,13 +1,15 @@
-//! Whether poses of an object that rests lie to one side of where it is believed: [`Aside`] (docs/method.md (54)).
+//! Whether poses of an object that rests lie to one side of where it is believed: [`Aside`]
+//! (docs/method.md (54)).
 
 /// Number of the latest poses that tell.
 const LATEST: f64 = 30.0;
 
-/// The squares of such means over their variances, added up, above which it is no chance; chance has them there in
-/// 0.02 % of poses (χ² of three degrees of freedom).
+/// The squares of such means over their variances, added up, above which it is no chance; chance
+/// has them there in 0.02 % of poses (χ² of three degrees of freedom).
 const NO_CHANCE: f64 = 20.0;
 
-/// Mean of how far the latest poses lay off, axis by axis, in standard deviations of what was expected of each.
+/// Mean of how far the latest poses lay off, axis by axis, in standard deviations of what was
+/// expected of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Aside([f64; 3]);
 

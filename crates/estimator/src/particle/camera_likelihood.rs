@@ -4,7 +4,7 @@ use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::{Block, BlockMut};
 
 use crate::angle::nearest_zero;
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::camera_noise::{CameraNoise, NoisePrior};
 use crate::particle::chunk::{Column, load_chunk, load_pose};
 use crate::particle::columns::Columns;
@@ -13,7 +13,8 @@ use crate::setup::{Camera, Setup};
 use crate::uncertainty::Uncertainty;
 
 /// Likelihood of a camera pose: normal, with the row's own covariance or the camera's, the standard
-/// deviations widened by `likelihood_scale`; in contact mode with a noise that is learned, and a floor.
+/// deviations widened by `likelihood_scale`; in contact mode with a noise that is learned, and a
+/// floor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraLikelihood {
     /// 1 / (scaled standard deviation): per m of position, per rad of angle.
@@ -25,8 +26,8 @@ pub(crate) struct CameraLikelihood {
     latency: Latency,
     /// What is unknown of the noise (contact mode).
     noise: Option<NoisePrior>,
-    /// Likelihood of a pose that is wrong, of which there are some in contact mode; that of a perfect
-    /// one is 1.
+    /// Likelihood of a pose that is wrong, of which there are some in contact mode; that of a
+    /// perfect one is 1.
     wrong: Option<f64>,
 }
 
@@ -44,7 +45,7 @@ struct Residual {
 impl CameraLikelihood {
     pub fn new(camera: &Camera, setup: &Setup, columns: Columns) -> Self {
         let settings = &setup.filter;
-        let contact = columns.mode() == Mode::Contact;
+        let contact = columns.model() == FilterModel::Robust;
         let noise = NoisePrior::new(setup.uncertainty.camera_noise);
         Self {
             per_metre: 1.0 / (settings.likelihood_scale * camera.position_std),
@@ -62,7 +63,7 @@ impl CameraLikelihood {
 
     /// From now on no pose is taken to be wrong, or some are again (contact mode).
     pub fn set_trust(&mut self, trusted: bool) {
-        self.wrong = (self.columns.mode() == Mode::Contact && !trusted).then_some(WRONG);
+        self.wrong = (self.columns.model() == FilterModel::Robust && !trusted).then_some(WRONG);
     }
 
     /// Whether no pose is taken to be wrong, as always in paper mode.
@@ -116,8 +117,8 @@ impl CameraLikelihood {
         noise.store(self.columns, block, chunk);
     }
 
-    /// The noise of [`errors`](Self::errors) that one chunk's particles believe in: standard deviations
-    /// in units of the told ones.
+    /// The noise of [`errors`](Self::errors) that one chunk's particles believe in: standard
+    /// deviations in units of the told ones.
     #[inline(always)]
     pub fn believed_noise(&self, block: &Block<'_>, chunk: usize) -> [Column; 3] {
         let Some(prior) = self.noise else {
@@ -128,8 +129,8 @@ impl CameraLikelihood {
         [position, position, angle]
     }
 
-    /// What one chunk's particles show less the measured pose, as independent numbers in units of the told
-    /// noise.
+    /// What one chunk's particles show less the measured pose, as independent numbers in units of
+    /// the told noise.
     #[inline(always)]
     pub fn errors(
         &self,
@@ -197,7 +198,7 @@ impl CameraLikelihood {
         chunk: usize,
     ) -> Pose<Column> {
         let columns = self.columns;
-        if columns.mode() == Mode::Contact {
+        if columns.model() == FilterModel::Robust {
             return self.shown_with_own_latency(observation, block, chunk);
         }
         let Some(latency) = observation.latency else {
@@ -212,8 +213,8 @@ impl CameraLikelihood {
         shown
     }
 
-    /// The same where every particle has a latency of its own: its way through the kept poses, up to
-    /// the time that the camera shows.
+    /// The same where every particle has a latency of its own: its way through the kept poses, up
+    /// to the time that the camera shows.
     #[inline(always)]
     fn shown_with_own_latency(
         &self,

@@ -6,8 +6,8 @@ use stickslip_filter::{Block, BlockMut, Draw};
 use crate::particle::chunk::{Column, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 
-/// What is known of the camera's noise before the first pose: its variance, in units of the told one,
-/// is ν₀ over a χ² number of ν₀ degrees of freedom (docs/method.md (41)).
+/// What is known of the camera's noise before the first pose: its variance, in units of the told
+/// one, is ν₀ over a χ² number of ν₀ degrees of freedom (docs/method.md (41)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NoisePrior {
     /// ν₀.
@@ -38,8 +38,8 @@ impl NoisePrior {
         unreachable!("19 attempts out of 20 are accepted")
     }
 
-    /// Variances of position and angle, in units of the told ones, after so many poses with these sums
-    /// of squared residuals.
+    /// Variances of position and angle, in units of the told ones, after so many poses with these
+    /// sums of squared residuals.
     pub fn variances(&self, poses: f64, position: f64, angle: f64) -> [f64; 2] {
         let [of_position, of_angle] = self.freedoms(poses);
         [

@@ -1,4 +1,5 @@
-//! Whether camera poses that no particle explains are wrong, or the particles are (contact mode): [`CameraTrust`].
+//! Whether camera poses that no particle explains are wrong, or the particles are (contact mode):
+//! [`CameraTrust`].
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::StepReport;
@@ -11,16 +12,18 @@ pub(crate) const BELIEVED_AFTER: u32 = 4;
 /// ln of the mean likelihood of a camera pose below which no particle explains it.
 const UNEXPLAINED: f64 = -10.0;
 
-/// ln of how much wider a belief is than a camera pose, all axes together, from which on few of its particles are near one:
-/// some seven times per axis.
+/// ln of how much wider a belief is than a camera pose, all axes together, from which on few of its
+/// particles are near one: some seven times per axis.
 const WIDE: f64 = 6.0;
 
-/// Half the squared distance, in its standard deviations, up to which such a belief expects a pose: four of them.
+/// Half the squared distance, in its standard deviations, up to which such a belief expects a pose:
+/// four of them.
 const WITHIN: f64 = 8.0;
 
-/// Counts the camera poses in a row that no particle explains; after some, they are no outliers, until one is explained.
-/// Nor is one that a wide belief expects: that no particle is near it says nothing. After a time in which nobody saw object or
-/// pusher, the object has been moved more often than a pose is wrong.
+/// Counts the camera poses in a row that no particle explains; after some, they are no outliers,
+/// until one is explained. Nor is one that a wide belief expects: that no particle is near it says
+/// nothing. After a time in which nobody saw object or pusher, the object has been moved more often
+/// than a pose is wrong.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CameraTrust {
     unexplained: u32,
@@ -29,9 +32,9 @@ pub(crate) struct CameraTrust {
 }
 
 impl CameraTrust {
-    /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief before it, where that may
-    /// be wide, and whether anything may have happened since the pose before; says whether the pose is believed, where that
-    /// changes.
+    /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief
+    /// before it, where that may be wide, and whether anything may have happened since the pose
+    /// before; says whether the pose is believed, where that changes.
     pub fn expect(
         &mut self,
         (pose, noise): (&Pose, [f64; 3]),

@@ -126,8 +126,8 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
     }
 }
 
-/// Out of line: copying a tail of run-time length compiles to memcpy, and every live vector register
-/// is spilled around the call; so full chunks take a separate branch.
+/// Out of line: copying a tail of run-time length compiles to memcpy, and every live vector
+/// register is spilled around the call; so full chunks take a separate branch.
 #[cold]
 #[inline(never)]
 fn last_chunk(rest: &[f64], past: f64) -> Column {

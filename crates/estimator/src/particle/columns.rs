@@ -1,6 +1,6 @@
 //! Which column of the particle set holds what: [`Columns`].
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::touch_channel::BELIEF_LEN;
 
 /// Columns of a warm start.
@@ -30,8 +30,8 @@ pub struct Flag {
     pub bit: u32,
 }
 
-/// How a particle's object slips on a body that it touches: to the right where neither is set. Where it
-/// does not touch, they mean nothing.
+/// How a particle's object slips on a body that it touches: to the right where neither is set.
+/// Where it does not touch, they mean nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlipFlags {
     /// Whether it sticks.
@@ -40,11 +40,11 @@ pub struct SlipFlags {
     pub left: Flag,
 }
 
-/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, in contact mode
-/// what else is unknown, past poses.
+/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, in contact
+/// mode what else is unknown, past poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    mode: Mode,
+    model: FilterModel,
     fixels: usize,
     history: usize,
 }
@@ -68,8 +68,8 @@ impl Columns {
     pub const UNSOLVED: Flag = Self::flag(1);
     /// Whether it had neither a solution nor a proof that there is none.
     pub const FAILED: Flag = Self::flag(3);
-    /// Whether nothing drove the particle in its last step: the pusher stood, or the particle rested
-    /// out of its way.
+    /// Whether nothing drove the particle in its last step: the pusher stood, or the particle
+    /// rested out of its way.
     pub const IDLE: Flag = Self::flag(2);
 
     /// Whether the pusher ever was so near that contacts with it were sought (contact mode).
@@ -82,9 +82,9 @@ impl Columns {
     };
 
     /// For `fixels` fixels and `history` past poses.
-    pub fn new(mode: Mode, fixels: usize, history: usize) -> Self {
+    pub fn new(model: FilterModel, fixels: usize, history: usize) -> Self {
         Self {
-            mode,
+            model,
             fixels,
             history,
         }
@@ -96,8 +96,8 @@ impl Columns {
     }
 
     /// Rules of the filter.
-    pub fn mode(&self) -> Mode {
-        self.mode
+    pub fn model(&self) -> FilterModel {
+        self.model
     }
 
     /// Number of fixels.
@@ -161,7 +161,8 @@ impl Columns {
         self.unknowns() + 4
     }
 
-    /// By how much the pusher is turned beside its logged poses, in standard deviations (contact mode).
+    /// By how much the pusher is turned beside its logged poses, in standard deviations (contact
+    /// mode).
     pub fn pusher_turn(&self) -> usize {
         self.unknowns() + 16
     }
@@ -171,7 +172,8 @@ impl Columns {
         self.unknowns() + 9
     }
 
-    /// By how much the object's outline lies outside its shape, in standard deviations (contact mode).
+    /// By how much the object's outline lies outside its shape, in standard deviations (contact
+    /// mode).
     pub fn growth(&self) -> usize {
         self.unknowns() + 6
     }
@@ -187,13 +189,14 @@ impl Columns {
         self.unknowns() + 13
     }
 
-    /// Logarithms, in spreads, by which contacts creep more than told: with the pusher, with fixels (contact
-    /// mode).
+    /// Logarithms, in spreads, by which contacts creep more than told: with the pusher, with fixels
+    /// (contact mode).
     pub fn creep(&self) -> usize {
         self.unknowns() + 14
     }
 
-    /// By how far the feet stand beside the scene's and are turned, in standard deviations: x, y, angle (contact mode).
+    /// By how far the feet stand beside the scene's and are turned, in standard deviations: x, y,
+    /// angle (contact mode).
     pub fn support(&self) -> usize {
         self.unknowns() + 17
     }
@@ -204,7 +207,8 @@ impl Columns {
         self.unknowns() + 7
     }
 
-    /// What is believed of sensor `fixel`, the numbers of a [`SensorBelief`](super::touch_channel::SensorBelief) (contact mode).
+    /// What is believed of sensor `fixel`, the numbers of a
+    /// [`SensorBelief`](super::touch_channel::SensorBelief) (contact mode).
     pub fn sensor(&self, fixel: usize) -> usize {
         self.unknowns() + UNKNOWNS + PER_FIXEL * fixel
     }
@@ -216,9 +220,9 @@ impl Columns {
 
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
-        let unknowns = match self.mode {
-            Mode::Contact => UNKNOWNS + PER_FIXEL * self.fixels,
-            Mode::Paper => 0,
+        let unknowns = match self.model {
+            FilterModel::Robust => UNKNOWNS + PER_FIXEL * self.fixels,
+            FilterModel::Paper => 0,
         };
         self.unknowns() + unknowns + 3 * slot
     }
@@ -294,7 +298,7 @@ mod tests {
 
     #[test]
     fn everything_has_a_place_of_its_own_and_every_column_is_used() {
-        let columns = Columns::new(Mode::Contact, FIXELS, 3);
+        let columns = Columns::new(FilterModel::Robust, FIXELS, 3);
         let flags = flags(&columns);
         let places: HashSet<Flag> = flags.iter().copied().collect();
         assert_eq!(flags.len(), SINGLE + FLAGS_PER_FIXEL * FIXELS);

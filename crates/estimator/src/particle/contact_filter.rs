@@ -9,7 +9,7 @@ use stickslip_filter::{ParticleFilter, StepReport, WeightUpdate};
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::particle::camera_trust::CameraTrust;
 use crate::particle::filter_options::FilterOptions;
@@ -112,13 +112,13 @@ impl<'o> ContactFilter<'o> {
         start: PoseAt,
         options: &FilterOptions<'o>,
     ) -> Result<Self, RunError> {
-        let unknown = match options.mode {
-            Mode::Contact => setup.uncertainty.most_latency(),
-            Mode::Paper => 0.0,
+        let unknown = match options.model {
+            FilterModel::Robust => setup.uncertainty.most_latency(),
+            FilterModel::Paper => 0.0,
         };
         let PoseAt { time, pose, .. } = start;
         let history = PoseHistory::new(camera.latency + unknown + options.late, time);
-        let model = ContactModel::new(options.mode, setup, camera, start, history.slots());
+        let model = ContactModel::new(options.model, setup, camera, start, history.slots());
         let model = model
             .observed(options.observer)
             .moved_by(options.least_moved);
@@ -166,7 +166,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         let tactile = measured.tactile.iter().copied();
         self.observation.tactile.extend(tactile);
-        let contact = self.mode() == Mode::Contact;
+        let contact = self.model() == FilterModel::Robust;
         self.observation.felt = contact;
         if self.latest.any_contact() {
             self.resting.touch();
@@ -206,8 +206,8 @@ impl<'o> ContactFilter<'o> {
     }
 
     /// Rules of the filter.
-    pub fn mode(&self) -> Mode {
-        self.filter.model().columns().mode()
+    pub fn model(&self) -> FilterModel {
+        self.filter.model().columns().model()
     }
 
     /// The number of particles.
@@ -217,13 +217,14 @@ impl<'o> ContactFilter<'o> {
         count.expect("a particle set is numbered in u32 and never empty")
     }
 
-    /// Whether camera poses may move particles: the object no longer waits where it was first seen, or never did.
+    /// Whether camera poses may move particles: the object no longer waits where it was first seen,
+    /// or never did.
     fn camera_moves(&self) -> bool {
-        self.mode() == Mode::Contact && self.moves.camera && self.resting.waits_no_longer()
+        self.model() == FilterModel::Robust && self.moves.camera && self.resting.waits_no_longer()
     }
 
-    /// Before a pose of the camera: whether it is believed also where no particle explains it, as the first one after a dark may
-    /// be, and is where nobody saw the pusher, either.
+    /// Before a pose of the camera: whether it is believed also where no particle explains it, as
+    /// the first one after a dark may be, and is where nobody saw the pusher, either.
     fn expect_pose(&mut self, was_dark: bool, was_unwatched: bool) {
         let Some(pose) = self.observation.pose else {
             return;
@@ -245,14 +246,14 @@ impl<'o> ContactFilter<'o> {
     /// Keeps what weighed the particles last for them to learn of, in contact mode.
     fn remember_observation(&mut self) {
         std::mem::swap(&mut self.plan.seen, &mut self.observation);
-        let contact = self.mode() == Mode::Contact;
+        let contact = self.model() == FilterModel::Robust;
         if !contact || self.collapsed {
             self.plan.seen.pose = None;
         }
     }
 
-    /// Takes the camera's latest pose for one of an object that has not moved yet; where the particles
-    /// were drawn anew around it, it is the first one.
+    /// Takes the camera's latest pose for one of an object that has not moved yet; where the
+    /// particles were drawn anew around it, it is the first one.
     fn learn_where_it_rests(&mut self) {
         self.plan.resting = None;
         let Some(pose) = self.observation.pose else {
@@ -268,7 +269,7 @@ impl<'o> ContactFilter<'o> {
 
     /// What particles that nothing has moved yet are drawn anew from, in contact mode.
     fn where_it_rests(&self) -> Option<RestingPose> {
-        let contact = self.mode() == Mode::Contact;
+        let contact = self.model() == FilterModel::Robust;
         (contact && self.moves.waiting).then_some(self.resting)
     }
 
@@ -276,7 +277,7 @@ impl<'o> ContactFilter<'o> {
     fn look_back(&mut self, time: f64) {
         self.observation.time = time;
         self.observation.past.clear();
-        if self.mode() == Mode::Contact {
+        if self.model() == FilterModel::Robust {
             self.observation.past.extend(self.history.kept());
         }
     }
@@ -394,7 +395,8 @@ impl<'o> ContactFilter<'o> {
         self.plan.resting = self.where_it_rests();
     }
 
-    /// Writes what another filter knows of friction into the latest row, in place of what the particles have.
+    /// Writes what another filter knows of friction into the latest row, in place of what the
+    /// particles have.
     pub fn tell_friction(&mut self, mean: Friction, std: Friction) {
         self.latest.friction = Some(mean);
         if let Some(spread) = &mut self.latest.spread {
@@ -433,8 +435,8 @@ impl<'o> ContactFilter<'o> {
         self.replay.tries()
     }
 
-    /// ln of the evidence of the rows so far: what the particles expected of them, up to a constant of
-    /// the sensors. Rows at which they collapsed are left out.
+    /// ln of the evidence of the rows so far: what the particles expected of them, up to a constant
+    /// of the sensors. Rows at which they collapsed are left out.
     pub fn log_evidence(&self) -> f64 {
         self.log_evidence
     }

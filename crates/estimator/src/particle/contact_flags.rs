@@ -2,14 +2,14 @@
 
 use stickslip_dynamics::{Body, Lanes, Mask};
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::chunk::{FlagsMut, LANES};
 use crate::particle::columns::{Columns, SlipFlags};
 use crate::particle::propagation::{Propagation, Transition, moving};
 use crate::particle::step_plan::StepPlan;
 
-/// Slip velocity (m/s) above which a contact slides: by less a pusher that stands seems to creep, since its
-/// track is smoothed from noisy poses.
+/// Slip velocity (m/s) above which a contact slides: by less a pusher that stands seems to creep,
+/// since its track is smoothed from noisy poses.
 const SLIDING: f64 = 1e-4;
 
 impl Propagation {
@@ -29,9 +29,9 @@ impl Propagation {
 
         // what touches while nothing moves goes on touching: the pusher's track is noisy
         let pusher_was_near = flags.get(Columns::PUSHER_WAS_NEAR);
-        let rests = match columns.mode() {
-            Mode::Contact => pusher_was_near & !(moves | Mask::splat(plan.driven)),
-            Mode::Paper => Mask::splat(false),
+        let rests = match columns.model() {
+            FilterModel::Robust => pusher_was_near & !(moves | Mask::splat(plan.driven)),
+            FilterModel::Paper => Mask::splat(false),
         };
 
         // the pusher

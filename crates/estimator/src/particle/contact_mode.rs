@@ -4,7 +4,7 @@
 use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::chunk::{Column, FlagsMut, LANES, flag, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::noise_clock::NOISE_STEP;
@@ -211,8 +211,8 @@ impl Propagation {
         }
     }
 
-    /// Friction at this place: it differs from the object's by a logarithm that forgets itself along
-    /// the way.
+    /// Friction at this place: it differs from the object's by a logarithm that forgets itself
+    /// along the way.
     #[inline(always)]
     fn vary_friction(
         &mut self,
@@ -270,9 +270,9 @@ impl Propagation {
         chunk: usize,
         body: Body,
     ) -> Mask<LANES> {
-        match transition.columns.mode() {
-            Mode::Contact => !self.work.gaps(chunk, body).gt(Lanes::splat(TOUCHING)),
-            Mode::Paper => Mask::splat(false),
+        match transition.columns.model() {
+            FilterModel::Robust => !self.work.gaps(chunk, body).gt(Lanes::splat(TOUCHING)),
+            FilterModel::Paper => Mask::splat(false),
         }
     }
 
@@ -283,8 +283,8 @@ impl Propagation {
         self.work.gaps(chunk, body).lt(far)
     }
 
-    /// Weighs what is known without the camera at the end of the step: where the pusher is, and what
-    /// the sensors read.
+    /// Weighs what is known without the camera at the end of the step: where the pusher is, and
+    /// what the sensors read.
     pub(super) fn feel(
         &mut self,
         transition: &Transition<'_>,
@@ -300,8 +300,8 @@ impl Propagation {
     }
 
     /// Weighs how far behind its logged pose the pusher gave way in this step: a particle that jams
-    /// a pusher which goes on is contradicted by the log. Not by one that has just come back into view: where the object
-    /// went meanwhile, nobody knows.
+    /// a pusher which goes on is contradicted by the log. Not by one that has just come back into
+    /// view: where the object went meanwhile, nobody knows.
     fn read_pusher(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -373,8 +373,8 @@ fn squared([x, y]: [Column; 2]) -> Column {
     x * x + y * y
 }
 
-/// Notes in a chunk's flags which parameters took part, and keeps besides them those that never did:
-/// they are drawn anew.
+/// Notes in a chunk's flags which parameters took part, and keeps besides them those that never
+/// did: they are drawn anew.
 #[inline(always)]
 pub(super) fn note_felt(phi: &mut Friction<Mask<LANES>>, block: &mut BlockMut<'_>, chunk: usize) {
     let mut flags = FlagsMut::new(block, chunk);

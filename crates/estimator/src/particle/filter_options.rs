@@ -2,7 +2,7 @@
 
 use stickslip_filter::{Resampling, Settings};
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::particle::observer::Observer;
 use crate::setup::Setup;
@@ -11,7 +11,7 @@ use crate::setup::Setup;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterOptions<'o> {
     /// Rules of the filter.
-    pub mode: Mode,
+    pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all random numbers.

@@ -1,5 +1,5 @@
-//! Whether an object moves that nothing is known to be near, as one that a hand moves, or a pusher that nobody sees:
-//! [`FreeMotion`] (contact mode; docs/method.md (54)).
+//! Whether an object moves that nothing is known to be near, as one that a hand moves, or a pusher
+//! that nobody sees: [`FreeMotion`] (contact mode; docs/method.md (54)).
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::{ConstantVelocity, Gaussian};
@@ -8,8 +8,8 @@ use crate::angle::difference;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::normal_pose::NormalPose;
 
-/// Probability that an object which rests is moved from one pose of the camera to the next, and of one that has just been
-/// moved a little.
+/// Probability that an object which rests is moved from one pose of the camera to the next, and of
+/// one that has just been moved a little.
 const STARTS: f64 = 1e-8;
 const STARTS_AGAIN: f64 = 1e-2;
 
@@ -20,8 +20,8 @@ const LASTS: f64 = 0.3;
 const SPEED: f64 = 0.05;
 const SPEED_LASTS: f64 = 1.0;
 
-/// The belief that the object moves at nearly constant velocity, beside the one that it rests: two models that
-/// interact (Blom & Bar-Shalom 1988), of which the likelier one is told.
+/// The belief that the object moves at nearly constant velocity, beside the one that it rests: two
+/// models that interact (Blom & Bar-Shalom 1988), of which the likelier one is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeMotion {
     /// Position and velocity of x, y and θ, whose windings are those of `rest`.
@@ -66,8 +66,8 @@ impl FreeMotion {
         pose
     }
 
-    /// Where it rests, if it may have come to rest after `h` (s): the mixture of `rest`, where it was if it did not
-    /// move, and of where it moved.
+    /// Where it rests, if it may have come to rest after `h` (s): the mixture of `rest`, where it
+    /// was if it did not move, and of where it moved.
     pub fn stopped(&self, rest: &NormalPose, h: f64) -> NormalPose {
         let moves = self.probability();
         let (from_rest, from_motion) = (1.0 - moves, moves * (1.0 - libm::exp(-h / LASTS)));
@@ -85,8 +85,9 @@ impl FreeMotion {
         stopped
     }
 
-    /// Bayes' rule with a pose of the camera, `h` (s) after the one before: `noise` are its variances, `rest` where the
-    /// object is if it rests, and whether it has just been moved a little.
+    /// Bayes' rule with a pose of the camera, `h` (s) after the one before: `noise` are its
+    /// variances, `rest` where the object is if it rests, and whether it has just been moved a
+    /// little.
     pub fn see(
         &mut self,
         h: f64,
@@ -121,7 +122,8 @@ impl FreeMotion {
         }
     }
 
-    /// The mixture of where it moves and, with this share, of one that starts from `rest`, axis by axis.
+    /// The mixture of where it moves and, with this share, of one that starts from `rest`, axis by
+    /// axis.
     fn with(&self, rest: &NormalPose, share: f64) -> [Gaussian<2>; 3] {
         let starts = starting_from(rest, self.radius);
         std::array::from_fn(|k| {

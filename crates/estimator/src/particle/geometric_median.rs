@@ -133,7 +133,8 @@ mod tests {
         assert_near(median(&corners.map(|corner| (0.25, corner))), crossing);
     }
 
-    /// Where one place has more than half of the weight, it is that place, however far the others are.
+    /// Where one place has more than half of the weight, it is that place, however far the others
+    /// are.
     #[test]
     fn it_stays_with_the_greater_part() {
         let here = [0.001, 0.002, -0.001];

@@ -5,7 +5,8 @@ use stickslip_dynamics::{Placed, Pose, Scene, StepInput, Twist};
 use crate::gap::gap;
 use crate::particle::step_plan::UnseenPusher;
 
-/// Gap of object and a pusher that nobody sees, up to which it counts as having reached the object (m).
+/// Gap of object and a pusher that nobody sees, up to which it counts as having reached the object
+/// (m).
 const REACHED: f64 = 1e-3;
 
 /// The pusher as it was when it was last seen, and what has become of it since.
@@ -17,11 +18,13 @@ pub(crate) struct HiddenPusher {
     moved: bool,
     /// Whether it would have reached the object by now.
     reached: bool,
-    /// For how long it has been seen again (s); 0 while nobody sees it, infinite where it was never hidden.
+    /// For how long it has been seen again (s); 0 while nobody sees it, infinite where it was never
+    /// hidden.
     back_for: f64,
 }
 
-/// How long a pusher that is seen again counts as just back: bodies that have come to overlap meanwhile part (s).
+/// How long a pusher that is seen again counts as just back: bodies that have come to overlap
+/// meanwhile part (s).
 const JUST_BACK: f64 = 0.2;
 
 impl Default for HiddenPusher {
@@ -41,8 +44,8 @@ impl HiddenPusher {
         self.back_for == 0.0
     }
 
-    /// A row at which somebody sees it, `h` (s) after the one before, that ends with this substep, and whether it moves; says
-    /// whether it is just back.
+    /// A row at which somebody sees it, `h` (s) after the one before, that ends with this substep,
+    /// and whether it moves; says whether it is just back.
     pub fn seen(&mut self, h: f64, last: &StepInput, moves: bool) -> bool {
         let Some(motion) = last.pusher else {
             return false;
@@ -58,9 +61,9 @@ impl HiddenPusher {
         just_back
     }
 
-    /// A row at which nobody sees it, `h` (s) after the one before; `hidden_object` is where the object is thought to
-    /// be, where nobody sees that, either. What the pusher may do to it: in the dark nothing if it stood when it was last seen, since
-    /// it has been lifted then.
+    /// A row at which nobody sees it, `h` (s) after the one before; `hidden_object` is where the
+    /// object is thought to be, where nobody sees that, either. What the pusher may do to it: in
+    /// the dark nothing if it stood when it was last seen, since it has been lifted then.
     pub fn unseen(
         &mut self,
         scene: &Scene,

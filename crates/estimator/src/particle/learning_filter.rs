@@ -1,5 +1,5 @@
-//! The particles that say where the object is, and beside them, in contact mode, those that learn its
-//! friction: [`LearningFilter`], docs/method.md (52).
+//! The particles that say where the object is, and beside them, in contact mode, those that learn
+//! its friction: [`LearningFilter`], docs/method.md (52).
 
 use std::num::NonZero;
 
@@ -7,7 +7,7 @@ use stickslip_dynamics::{Friction, Pose};
 
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::particle::contact_filter::{ContactFilter, Drive, Measured, Waiting};
 use crate::particle::filter_options::FilterOptions;
@@ -23,9 +23,10 @@ const LEARNING_SEEDS: u64 = 1 << 48;
 
 /// The filter that says where the object is, with the friction that another one learns.
 ///
-/// What serves the pose is not what serves the friction. Pushes that are smoother than the model's teach a
-/// wrong friction, unless particles know that pushes may be smooth and contacts may creep; where the object
-/// goes is then told too surely. So there are two sets of particles, each with its own model.
+/// What serves the pose is not what serves the friction. Pushes that are smoother than the model's
+/// teach a wrong friction, unless particles know that pushes may be smooth and contacts may creep;
+/// where the object goes is then told too surely. So there are two sets of particles, each with its
+/// own model.
 pub(crate) struct LearningFilter<'o> {
     poses: ContactFilter<'o>,
     learning: Learning<'o>,
@@ -73,8 +74,8 @@ impl<'o> LearningFilter<'o> {
         start: PoseAt,
         options: &FilterOptions<'o>,
     ) -> Result<Self, RunError> {
-        let learns =
-            options.mode == Mode::Contact && setup.uncertainty.friction != Friction::default();
+        let learns = options.model == FilterModel::Robust
+            && setup.uncertainty.friction != Friction::default();
         let poses = ContactFilter::new(setup, camera, start, options)?;
         Ok(Self {
             learning: match learns {
@@ -123,7 +124,8 @@ impl<'o> LearningFilter<'o> {
         self.latest()
     }
 
-    /// A row that comes so soon after the latest step that none leads to it: its pose is weighed as one of the past.
+    /// A row that comes so soon after the latest step that none leads to it: its pose is weighed as
+    /// one of the past.
     pub fn look(&mut self, measured: Measured<'_>) -> &EstimateRow {
         let seen = measured.object.is_some_and(|pose| {
             self.weigh(PoseAt {
@@ -136,7 +138,8 @@ impl<'o> LearningFilter<'o> {
         self.latest()
     }
 
-    /// Weighs the particles by a pose that arrives late; those that learn, where the object has not come to rest since.
+    /// Weighs the particles by a pose that arrives late; those that learn, where the object has not
+    /// come to rest since.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         self.weigh(late);
         self.latest()
@@ -157,11 +160,11 @@ impl<'o> LearningFilter<'o> {
         true
     }
 
-    /// Whether a camera pose is a new measurement: in contact mode, one that equals the one before is that frame
-    /// again.
+    /// Whether a camera pose is a new measurement: in contact mode, one that equals the one before
+    /// is that frame again.
     fn is_new(&mut self, pose: Pose) -> bool {
         let before = std::mem::replace(&mut self.shown, pose);
-        pose != before || self.poses.mode() == Mode::Paper
+        pose != before || self.poses.model() == FilterModel::Paper
     }
 
     /// The camera will show no more: what is known of friction stays as it is.
@@ -199,8 +202,8 @@ impl<'o> LearningFilter<'o> {
         self.poses.particles()
     }
 
-    /// Those that have its friction, where the latest row taught any: the ones that learn it, and before contact the
-    /// same.
+    /// Those that have its friction, where the latest row taught any: the ones that learn it, and
+    /// before contact the same.
     pub fn friction_particles(&self) -> Option<ParticleView<'_>> {
         let taught = match &self.learning {
             Learning::Underway(learner) => &**learner,
@@ -226,7 +229,8 @@ impl<'o> LearningFilter<'o> {
     }
 }
 
-/// What the particles that learn friction are made with: a setup that leaves more open, and seeds of their own.
+/// What the particles that learn friction are made with: a setup that leaves more open, and seeds
+/// of their own.
 struct LearnerOptions<'o> {
     setup: Setup,
     camera: Camera,

@@ -44,8 +44,8 @@ impl ModeFinder {
         }
     }
 
-    /// Writes the modes of the particles, the heaviest first, one at least; `centre` and `std` are pose and
-    /// spread of the row.
+    /// Writes the modes of the particles, the heaviest first, one at least; `centre` and `std` are
+    /// pose and spread of the row.
     pub fn find(
         &mut self,
         filter: &ParticleFilter<ContactModel<'_>>,
@@ -280,7 +280,8 @@ mod tests {
     use super::*;
     use stickslip_filter::{Purpose, Streams};
 
-    /// Clouds of normal numbers about these x (m), so many particles each, of standard deviation 1 mm.
+    /// Clouds of normal numbers about these x (m), so many particles each, of standard deviation 1
+    /// mm.
     fn groups_of(clouds: &[(usize, f64)], least: f64) -> Vec<usize> {
         let draw = Streams::new(7).of(Purpose::Initialise).at(0);
         let mut finder = ModeFinder::new(0.02, least);

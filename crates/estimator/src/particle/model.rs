@@ -5,7 +5,7 @@ use stickslip_dynamics::{Dynamics, Level, Pose, on_widest};
 use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model};
 
 use crate::covariance::PoseCovariance;
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::camera_likelihood::CameraLikelihood;
 use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
@@ -50,8 +50,14 @@ pub struct ContactModel<'o> {
 
 impl<'o> ContactModel<'o> {
     /// A model whose particles start around `start`, with `history` past poses per particle.
-    pub fn new(mode: Mode, setup: &Setup, camera: Camera, start: PoseAt, history: usize) -> Self {
-        let columns = Columns::new(mode, setup.scene.fixels.len(), history);
+    pub fn new(
+        model: FilterModel,
+        setup: &Setup,
+        camera: Camera,
+        start: PoseAt,
+        history: usize,
+    ) -> Self {
+        let columns = Columns::new(model, setup.scene.fixels.len(), history);
         Self {
             transition: Transition {
                 dynamics: Dynamics::new(setup.scene.clone()),
@@ -214,7 +220,7 @@ impl Model for ContactModel<'_> {
                 i,
                 self.transition.setup.scene.nominal.fields(),
             );
-            if self.columns().mode() == Mode::Contact {
+            if self.columns().model() == FilterModel::Robust {
                 self.draw_unknowns(draw, particle, block, i);
             }
             for slot in 0..self.columns().history() {
@@ -242,13 +248,13 @@ impl Model for ContactModel<'_> {
             #[inline(always)]
             |chunk| {
                 let camera = &self.camera_likelihood;
-                let felt = match self.columns().mode() {
-                    Mode::Paper => {
+                let felt = match self.columns().model() {
+                    FilterModel::Paper => {
                         let tactile = &self.tactile_likelihood;
                         tactile.log_likelihood(&observation.tactile, block, chunk)
                     }
-                    Mode::Contact if !observation.felt => Column::ZERO,
-                    Mode::Contact => {
+                    FilterModel::Robust if !observation.felt => Column::ZERO,
+                    FilterModel::Robust => {
                         let column = self.columns().felt_log_likelihood();
                         load_chunk(block.column(column), chunk, 0.0)
                     }
@@ -284,13 +290,13 @@ impl Model for ContactModel<'_> {
     }
 
     fn judges_resetting(&self, observation: &Observation) -> bool {
-        self.columns().mode() == Mode::Contact && observation.pose.is_some()
+        self.columns().model() == FilterModel::Robust && observation.pose.is_some()
     }
 
     fn ensemble(&self) -> EnsembleShape {
-        match self.columns().mode() {
-            Mode::Paper => EnsembleShape::default(),
-            Mode::Contact => EnsembleShape {
+        match self.columns().model() {
+            FilterModel::Paper => EnsembleShape::default(),
+            FilterModel::Robust => EnsembleShape {
                 quantities: moved::count(self.columns()),
                 errors: 3,
             },

@@ -1,5 +1,5 @@
-//! What of a particle the camera's pose may move (contact mode; docs/method.md (45)): all that is continuous and not
-//! drawn anew.
+//! What of a particle the camera's pose may move (contact mode; docs/method.md (45)): all that is
+//! continuous and not drawn anew.
 
 use stickslip_filter::{BLOCK, Block, BlockMut};
 
@@ -84,7 +84,7 @@ pub(super) fn write(columns: Columns, from: &[f64], block: &mut BlockMut<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mode::Mode;
+    use crate::filter_model::FilterModel;
     use stickslip_filter::{ParticleSet, Streams};
 
     const PARTICLES: usize = 64 * BLOCK;
@@ -101,11 +101,12 @@ mod tests {
         particles
     }
 
-    /// A normal number has skewness 0 and excess kurtosis 0; what moves the latency as if it were one
-    /// comes near (Weibull's distribution of shape 4: −0.087 and −0.252; its root has 0.631 and 0.245).
+    /// A normal number has skewness 0 and excess kurtosis 0; what moves the latency as if it were
+    /// one comes near (Weibull's distribution of shape 4: −0.087 and −0.252; its root has 0.631 and
+    /// 0.245).
     #[test]
     fn latencies_as_likely_as_the_prior_says_are_moved_as_about_normal_numbers() {
-        let columns = Columns::new(Mode::Contact, 0, 0);
+        let columns = Columns::new(FilterModel::Robust, 0, 0);
         let which = moved(columns).position(|(column, _)| column == columns.latency());
         let which = which.expect("latency is moved");
         let mut numbers = Vec::new();
@@ -129,7 +130,7 @@ mod tests {
 
     #[test]
     fn what_is_not_moved_comes_back() {
-        let columns = Columns::new(Mode::Contact, 0, 0);
+        let columns = Columns::new(FilterModel::Robust, 0, 0);
         let mut particles = drawn(columns);
         let before: Vec<f64> = particles.column(columns.latency()).collect();
         particles.for_each_block(|block| {

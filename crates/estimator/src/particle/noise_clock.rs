@@ -6,7 +6,8 @@ pub(crate) const NOISE_STEP: f64 = 1.0 / 30.0;
 /// By how much a step's length may be off for its times being rounded.
 pub(crate) const ROUNDED: f64 = 1e-4;
 
-/// Steps of `h` seconds that share one draw of the noise: those that fit into [`NOISE_STEP`], or one.
+/// Steps of `h` seconds that share one draw of the noise: those that fit into [`NOISE_STEP`], or
+/// one.
 pub(crate) fn sharing(h: f64) -> u32 {
     let fitting = NOISE_STEP / h * (1.0 + ROUNDED);
     // a cast saturates
@@ -15,9 +16,9 @@ pub(crate) fn sharing(h: f64) -> u32 {
 
 /// Which rows share their noise with the one before.
 ///
-/// What disturbs an object lasts for about a frame of the camera. Noise drawn anew for every row would
-/// be other physics where rows are shorter, as those of a faster pusher: friction holds an object
-/// against a small force, and no longer against one that is larger for being short.
+/// What disturbs an object lasts for about a frame of the camera. Noise drawn anew for every row
+/// would be other physics where rows are shorter, as those of a faster pusher: friction holds an
+/// object against a small force, and no longer against one that is larger for being short.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NoiseClock {
     /// How long the noise has lasted (s), and for how many rows.

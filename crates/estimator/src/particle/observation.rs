@@ -45,8 +45,8 @@ pub struct Observation {
     pub tactile: Vec<Option<bool>>,
     /// Whether what the step itself says of pusher and sensors counts (contact mode).
     pub felt: bool,
-    /// Whether the camera's pose may move particles: the object no longer waits where it was first seen
-    /// (contact mode).
+    /// Whether the camera's pose may move particles: the object no longer waits where it was first
+    /// seen (contact mode).
     pub moves: bool,
 }
 

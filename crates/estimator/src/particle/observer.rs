@@ -21,8 +21,8 @@ pub struct SolvedStep<'a> {
     pub report: Report,
 }
 
-/// Is shown the time steps of a run, substeps and steps that are made again included, with all contacts that
-/// could act. Steps of the particles that learn friction are not shown.
+/// Is shown the time steps of a run, substeps and steps that are made again included, with all
+/// contacts that could act. Steps of the particles that learn friction are not shown.
 ///
 /// The steps of a block of 128 particles come in order from one thread; those of a
 /// larger set come from several threads at once, in no fixed order.
@@ -43,9 +43,9 @@ pub trait Observer: Debug + Sync {
         let _ = (row, particles);
     }
 
-    /// The particles that have the friction of the estimate (contact mode, docs/method.md (52)): after each row in which
-    /// the camera sees the object, and it moves or nothing has touched it yet, before [`on_row`](Self::on_row). In rows
-    /// between, the friction stays as they have it.
+    /// The particles that have the friction of the estimate (contact mode, docs/method.md (52)):
+    /// after each row in which the camera sees the object, and it moves or nothing has touched it
+    /// yet, before [`on_row`](Self::on_row). In rows between, the friction stays as they have it.
     fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
         let _ = (row, particles);
     }

@@ -11,9 +11,9 @@ const DARK_AFTER: f64 = 2.5;
 
 /// How often there is a pose of object or pusher, from the rows so far.
 ///
-/// Where every row has a pose, a row without one is dark. Where other sensors bring rows between the
-/// camera's, as a pusher does that is tracked faster, or the camera's poses come after their rows, a row without a
-/// pose is none until one is clearly overdue.
+/// Where every row has a pose, a row without one is dark. Where other sensors bring rows between
+/// the camera's, as a pusher does that is tracked faster, or the camera's poses come after their
+/// rows, a row without a pose is none until one is clearly overdue.
 #[derive(Clone, Debug)]
 pub(crate) struct PoseClock {
     /// Time of the latest row (s).

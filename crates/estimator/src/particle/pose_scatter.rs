@@ -1,4 +1,5 @@
-//! How far the camera's poses of an object at rest scatter: [`PoseScatter`] (docs/method.md (41), (44)).
+//! How far the camera's poses of an object at rest scatter: [`PoseScatter`] (docs/method.md (41),
+//! (44)).
 
 use stickslip_dynamics::Pose;
 
@@ -17,8 +18,8 @@ pub struct PoseScatter {
     precision: [f64; 3],
     /// Their mean, each by its precision.
     centre: Pose,
-    /// Sums of the squares of their distances from it, in told standard deviations: of the position, of
-    /// the angle.
+    /// Sums of the squares of their distances from it, in told standard deviations: of the
+    /// position, of the angle.
     squares: [f64; 2],
 }
 
@@ -50,7 +51,8 @@ impl PoseScatter {
         }
     }
 
-    /// The number of the poses, and the sums of the squares of their distances from `pose`, of position and angle.
+    /// The number of the poses, and the sums of the squares of their distances from `pose`, of
+    /// position and angle.
     pub fn about(&self, pose: &Pose) -> [f64; 3] {
         let away = difference(&self.centre, pose);
         let [mut position, mut angle] = self.squares;

@@ -7,7 +7,7 @@ use stickslip_dynamics::{
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::contact_mode::note_felt;
@@ -56,7 +56,8 @@ pub struct Propagation {
     pub(super) growth: Vec<Column>,
     /// How contacts with pusher and fixels creep; empty where none does (contact mode).
     pub(super) creep: Vec<[Column; 2]>,
-    /// By how far each particle's feet stand beside the scene's; empty where these are known (contact mode).
+    /// By how far each particle's feet stand beside the scene's; empty where these are known
+    /// (contact mode).
     pub(super) foot_offsets: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (contact mode).
     pub(super) lag_before: [Column; CHUNKS],
@@ -140,8 +141,8 @@ impl Propagation {
             #[inline(always)]
             || self.load(transition, plan, draw, block),
         );
-        let mode = transition.columns.mode();
-        if mode == Mode::Contact {
+        let model = transition.columns.model();
+        if model == FilterModel::Robust {
             self.draw_unknowns(transition, plan, draw, block);
         }
         let of_force = draw.before(plan.noise_age);
@@ -155,13 +156,13 @@ impl Propagation {
             if let Some(observer) = transition.observer {
                 observer.before_step(input, &self.particles[..chunks]);
             }
-            match mode {
-                Mode::Paper => transition.dynamics.step_block(
+            match model {
+                FilterModel::Paper => transition.dynamics.step_block(
                     input,
                     &mut self.particles[..chunks],
                     &mut self.work,
                 ),
-                Mode::Contact => self.step_with_offsets(transition, input, chunks),
+                FilterModel::Robust => self.step_with_offsets(transition, input, chunks),
             }
             on_widest(
                 level,
@@ -177,7 +178,7 @@ impl Propagation {
             #[inline(always)]
             || self.store(transition, plan, block),
         );
-        if mode == Mode::Contact {
+        if model == FilterModel::Robust {
             self.feel(transition, plan, block);
         }
     }
@@ -192,7 +193,7 @@ impl Propagation {
         draw: Draw,
         block: &BlockMut<'_>,
     ) {
-        let paper = transition.columns.mode() == Mode::Paper;
+        let paper = transition.columns.model() == FilterModel::Paper;
         let drawn = paper && plan.parameter_noise == ParameterNoise::Drawn;
         if drawn {
             self.draw_normals(draw, 0, block);
@@ -265,8 +266,8 @@ impl Propagation {
         draw.normal_columns(first, pair, &mut a[..len], &mut b[..len]);
     }
 
-    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, the variance of
-    /// what it adds up to proportional to the time that it lasts (docs/method.md (19)).
+    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, the
+    /// variance of what it adds up to proportional to the time that it lasts (docs/method.md (19)).
     #[inline(always)]
     fn apply_force(
         &mut self,
@@ -279,9 +280,9 @@ impl Propagation {
         self.draw_normals(draw, pair, block);
         let Transition { setup, columns, .. } = transition;
         let scene = &setup.scene;
-        let per_step = match columns.mode() {
-            Mode::Contact => setup.uncertainty.force_std,
-            Mode::Paper => setup.filter.force_std,
+        let per_step = match columns.model() {
+            FilterModel::Robust => setup.uncertainty.force_std,
+            FilterModel::Paper => setup.filter.force_std,
         };
         let sharing = f64::from(sharing(h));
         let lasts = h * sharing;
@@ -296,9 +297,9 @@ impl Propagation {
             .take(block.len().div_ceil(LANES))
         {
             let disturbed = !self.untouched[chunk];
-            let factor = match columns.mode() {
-                Mode::Contact => Self::force_factor(transition, plan, block, chunk),
-                Mode::Paper => Lanes::splat(1.0),
+            let factor = match columns.model() {
+                FilterModel::Robust => Self::force_factor(transition, plan, block, chunk),
+                FilterModel::Paper => Lanes::splat(1.0),
             };
             let std = disturbed.zero_unless(particles.friction.mu_s * share * factor);
             for (k, (impulse, arm)) in particles
@@ -378,7 +379,7 @@ impl Propagation {
             load_columns(block, Columns::FRICTION, chunk, friction.fields_mut());
             let proposed = self.proposed[chunk].fields().into_iter();
             let mut phi = involved.phi();
-            if transition.columns.mode() == Mode::Contact {
+            if transition.columns.model() == FilterModel::Robust {
                 note_felt(&mut phi, block, chunk);
             }
             for ((kept, proposed), took_part) in friction

@@ -2,7 +2,7 @@
 
 use stickslip_filter::{Attempt, Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::columns::Columns;
 use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
@@ -10,11 +10,12 @@ use crate::particle::step_plan::StepPlan;
 
 /// What happened since the camera last saw the object, so that it can be tried again.
 ///
-/// In the dark particles go different ways at a bifurcation, and nothing brings them back: where none
-/// went the way of the object, pusher and touch sensors go on contradicting all of them. Then the
-/// steps since the blackout are made again with other random numbers, and all sets share the
-/// particles by their evidence. Where that does not help, every other time they are made without resampling: at a
-/// fork that one way explains better at first and the other in the end, resampling leaves particles on the first.
+/// In the dark particles go different ways at a bifurcation, and nothing brings them back: where
+/// none went the way of the object, pusher and touch sensors go on contradicting all of them. Then
+/// the steps since the blackout are made again with other random numbers, and all sets share the
+/// particles by their evidence. Where that does not help, every other time they are made without
+/// resampling: at a fork that one way explains better at first and the other in the end, resampling
+/// leaves particles on the first.
 #[derive(Debug, Default)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
@@ -30,7 +31,8 @@ pub(crate) struct Replay {
     /// How often that was done since the blackout, and ever.
     attempts: u32,
     tries: u32,
-    /// Ancestors below which a set that takes over has too few, and at how many more rows others are looked for.
+    /// Ancestors below which a set that takes over has too few, and at how many more rows others
+    /// are looked for.
     few: usize,
     more: u32,
 }
@@ -47,11 +49,13 @@ const WORSE: f64 = 8.0;
 /// The first times: what can be found is mostly found by them.
 const EARLY: u32 = 16;
 
-/// And the other times. What a scene tells wrong, no try explains, and the evidence falls a little at every
-/// touch; at a fork that all particles took the wrong way it falls at every row, by hundreds in the end.
+/// And the other times. What a scene tells wrong, no try explains, and the evidence falls a little
+/// at every touch; at a fork that all particles took the wrong way it falls at every row, by
+/// hundreds in the end.
 const MUCH_WORSE: f64 = 32.0;
 
-/// Attempt from which on every other one does not resample. It leaves few particles, too few where the evidence fell by chance.
+/// Attempt from which on every other one does not resample. It leaves few particles, too few where
+/// the evidence fell by chance.
 const DECEIVED: u32 = 6;
 
 /// Share of the particles from which on a set takes over that was made without resampling.
@@ -64,10 +68,10 @@ const FEW: usize = 8;
 const MORE: u32 = 8;
 
 impl Replay {
-    /// Before a step, in the dark or not: remembers the particles where it is the first one in the dark, or where
-    /// the memory is full.
+    /// Before a step, in the dark or not: remembers the particles where it is the first one in the
+    /// dark, or where the memory is full.
     pub fn before(&mut self, filter: &mut ParticleFilter<ContactModel<'_>>, dark: bool) {
-        if !dark || filter.model().columns().mode() == Mode::Paper {
+        if !dark || filter.model().columns().model() == FilterModel::Paper {
             self.dark = false;
             return;
         }
@@ -148,7 +152,8 @@ impl Replay {
         }
     }
 
-    /// Steps made so far are not made again: something else was learnt since, or there are other particles.
+    /// Steps made so far are not made again: something else was learnt since, or there are other
+    /// particles.
     pub fn forget(&mut self) {
         self.made = LONGEST;
     }
@@ -171,7 +176,8 @@ impl Replay {
     }
 }
 
-/// ln of the share of particles whose pusher stands within the bound of (13), each by how far it is beyond that, (40).
+/// ln of the share of particles whose pusher stands within the bound of (13), each by how far it is
+/// beyond that, (40).
 fn log_share_beside(filter: &ParticleFilter<ContactModel<'_>>) -> f64 {
     let setup = filter.model().setup();
     let (bound, std) = (setup.most_pusher_lag(), setup.uncertainty.pusher_lag);

@@ -1,5 +1,5 @@
-//! Objects that rest: where one waits that nothing has come near (docs/method.md (44)), and how little one stays
-//! in place that the camera sees rest, (36).
+//! Objects that rest: where one waits that nothing has come near (docs/method.md (44)), and how
+//! little one stays in place that the camera sees rest, (36).
 
 use stickslip_filter::BlockMut;
 
@@ -10,11 +10,13 @@ use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::step_plan::StepPlan;
 
-/// Standard deviation (m) per axis by which an object that the camera sees rest is displaced within [`NOISE_STEP`].
+/// Standard deviation (m) per axis by which an object that the camera sees rest is displaced within
+/// [`NOISE_STEP`].
 const SHAKE: f64 = 3e-6;
 
 impl Propagation {
-    /// Draws anew where an object rests that nothing has come near, or is after `h` (s) if it moves all the same.
+    /// Draws anew where an object rests that nothing has come near, or is after `h` (s) if it moves
+    /// all the same.
     pub(super) fn draw_resting_pose(
         &mut self,
         Transition { columns, .. }: &Transition<'_>,
@@ -41,8 +43,9 @@ impl Propagation {
         }
     }
 
-    /// Displaces objects that the camera sees rest. What a camera pose moves into a body that touches, the next step
-    /// takes out again, and what it moves away stays; and no rig is still to the last micrometre.
+    /// Displaces objects that the camera sees rest. What a camera pose moves into a body that
+    /// touches, the next step takes out again, and what it moves away stays; and no rig is still to
+    /// the last micrometre.
     pub(super) fn shake(
         &mut self,
         transition: &Transition<'_>,

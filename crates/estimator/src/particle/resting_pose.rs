@@ -15,12 +15,14 @@ use crate::particle::student_pose::StudentPose;
 use crate::setup::{Camera, Setup};
 
 /// The belief about the pose of an object at rest, axis by axis: the camera's poses are all that is
-/// known of it, and no particle filter is needed to say what they add up to. The first of them is as noisy
-/// as the others, and how noisy they are is learned from all, so that the belief is Student's t.
+/// known of it, and no particle filter is needed to say what they add up to. The first of them is
+/// as noisy as the others, and how noisy they are is learned from all, so that the belief is
+/// Student's t.
 ///
-/// Particles that nothing has come near draw their pose anew from it, so that resampling cannot thin
-/// them out while the object waits for the pusher. Where the poses say that it moves all the same, as one that is set
-/// down by hand, they draw it from its [`FreeMotion`]; where poses on end lie to one side, it has been moved a little.
+/// Particles that nothing has come near draw their pose anew from it, so that resampling cannot
+/// thin them out while the object waits for the pusher. Where the poses say that it moves all the
+/// same, as one that is set down by hand, they draw it from its [`FreeMotion`]; where poses on end
+/// lie to one side, it has been moved a little.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestingPose {
     mean: Pose,
@@ -96,7 +98,8 @@ impl RestingPose {
         self.free = None;
     }
 
-    /// Bayes' rule with one more pose of the camera, at a `time` (s). By as much as the pose may be wrong, it counts less.
+    /// Bayes' rule with one more pose of the camera, at a `time` (s). By as much as the pose may be
+    /// wrong, it counts less.
     pub fn see(&mut self, time: f64, (pose, covariance): (Pose, Option<PoseCovariance>)) {
         let told = self.told(covariance);
         let measured = self.noise_of(covariance);
@@ -141,8 +144,8 @@ impl RestingPose {
         self.scatter.see(&pose, told, right);
     }
 
-    /// Where the latest poses lie to one side by more than chance has them, the object has been moved: it is not
-    /// known better than that.
+    /// Where the latest poses lie to one side by more than chance has them, the object has been
+    /// moved: it is not known better than that.
     fn widen_where_moved(
         &mut self,
         (away, right): (&Pose, f64),
@@ -185,8 +188,8 @@ impl RestingPose {
         }
     }
 
-    /// What a particle that has rested at `pose` all the time knows of the camera's noise: the number
-    /// of the poses seen, and the sums of the squares of their distances from it.
+    /// What a particle that has rested at `pose` all the time knows of the camera's noise: the
+    /// number of the poses seen, and the sums of the squares of their distances from it.
     pub fn noise_seen_at(&self, pose: &Pose) -> [f64; 3] {
         self.scatter.about(pose)
     }
@@ -212,8 +215,9 @@ impl RestingPose {
         }
     }
 
-    /// Variances of the camera's noise, in units of the told ones, of positions and of angles, and the degrees
-    /// of freedom by which they are known. One pose was needed to know where the object is.
+    /// Variances of the camera's noise, in units of the told ones, of positions and of angles, and
+    /// the degrees of freedom by which they are known. One pose was needed to know where the object
+    /// is.
     fn noise_levels(&self) -> ([f64; 2], [f64; 2]) {
         let Some(prior) = self.noise else {
             return ([1.0; 2], [f64::INFINITY; 2]);
@@ -226,7 +230,8 @@ impl RestingPose {
         )
     }
 
-    /// Probability that a pose is not wrong, by its distance from the mean; `measured` are its variances.
+    /// Probability that a pose is not wrong, by its distance from the mean; `measured` are its
+    /// variances.
     fn is_right(&self, pose: &Pose, told: [f64; 3], measured: [f64; 3]) -> f64 {
         let away = difference(pose, &self.mean);
         let wide = self.widened * self.widened;

@@ -1,5 +1,5 @@
-//! What the particles do not know of the rig (contact mode): where pusher and fixels stand, how large
-//! the object is, how late the camera (docs/method.md (36), (43)).
+//! What the particles do not know of the rig (contact mode): where pusher and fixels stand, how
+//! large the object is, how late the camera (docs/method.md (36), (43)).
 
 use stickslip_dynamics::{Lanes, Mask, Particles};
 use stickslip_filter::{Block, BlockMut};
@@ -11,8 +11,8 @@ use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
 use crate::uncertainty::Uncertainty;
 
-/// Share of their spread by which offsets wander from one draw of the noise to the next where the rig is
-/// as told: copies of a particle are to differ.
+/// Share of their spread by which offsets wander from one draw of the noise to the next where the
+/// rig is as told: copies of a particle are to differ.
 const OFFSET_STEP: f64 = 0.1;
 
 /// Share of its spread by which the logarithm of a rig's roughness wanders at rest.
@@ -27,7 +27,8 @@ const CREEP_SPREAD: f64 = 1.2;
 /// Spreads within which that logarithm lies: what moves it knows no bounds.
 const MOST_CREEP: f64 = 3.0;
 
-/// Spreads of its logarithm within which the factor of the random force lies: what moves it knows no bounds.
+/// Spreads of its logarithm within which the factor of the random force lies: what moves it knows
+/// no bounds.
 const MOST_SPREADS: f64 = 3.0;
 
 /// Share of its mean by which the camera's latency wanders.
@@ -56,8 +57,9 @@ impl Propagation {
     }
 
     /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
-    /// pusher comes near. After that the rig stays as rough as it is while the object moves, since a particle whose
-    /// offsets wander less would be favoured for that. Where the camera sees it rest, it may turn out to be another.
+    /// pusher comes near. After that the rig stays as rough as it is while the object moves, since
+    /// a particle whose offsets wander less would be favoured for that. Where the camera sees it
+    /// rest, it may turn out to be another.
     #[inline(always)]
     pub(super) fn draw_offsets(
         &self,
@@ -104,8 +106,9 @@ impl Propagation {
         }
     }
 
-    /// A chunk of an unknown, by the column `number` of normal numbers: drawn anew until what tells of it has been
-    /// `near`; then a random `step` that keeps its prior, the standard normal distribution, where unknowns wander.
+    /// A chunk of an unknown, by the column `number` of normal numbers: drawn anew until what tells
+    /// of it has been `near`; then a random `step` that keeps its prior, the standard normal
+    /// distribution, where unknowns wander.
     #[inline(always)]
     pub(super) fn wander(
         &self,
@@ -124,7 +127,8 @@ impl Propagation {
         store_chunk(unknown, chunk, &near.select(known, fresh));
     }
 
-    /// How smooth the push is, by the number that the latency leaves: drawn anew until the pusher comes near.
+    /// How smooth the push is, by the number that the latency leaves: drawn anew until the pusher
+    /// comes near.
     #[inline(always)]
     pub(super) fn draw_force_factor(
         &self,
@@ -141,9 +145,9 @@ impl Propagation {
         }
     }
 
-    /// Factor of each particle's random force: that of its push, and in the dark that of its rig. While the camera
-    /// looks, what the force does not allow for would pass for friction; where a step is made again, the rig may not
-    /// be what it looked like.
+    /// Factor of each particle's random force: that of its push, and in the dark that of its rig.
+    /// While the camera looks, what the force does not allow for would pass for friction; where a
+    /// step is made again, the rig may not be what it looked like.
     #[inline(always)]
     pub(super) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -188,8 +192,8 @@ impl Propagation {
         }
     }
 
-    /// How late the camera is: drawn anew until the pusher comes near; then a random walk that keeps
-    /// the prior (Metropolis).
+    /// How late the camera is: drawn anew until the pusher comes near; then a random walk that
+    /// keeps the prior (Metropolis).
     #[inline(always)]
     pub(super) fn draw_latency(
         &self,
@@ -214,9 +218,9 @@ impl Propagation {
         }
     }
 
-    /// Exchanges latency for pusher offset: a pusher that is ahead by v τ under a steady push is one
-    /// that is early by τ, and so is all that touches nothing else; seen later by τ it shows the
-    /// camera the same. Metropolis' rule decides by the priors alone.
+    /// Exchanges latency for pusher offset: a pusher that is ahead by v τ under a steady push is
+    /// one that is early by τ, and so is all that touches nothing else; seen later by τ it shows
+    /// the camera the same. Metropolis' rule decides by the priors alone.
     pub(super) fn exchange_latency(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -257,9 +261,9 @@ impl Propagation {
         }
     }
 
-    /// Moves particle `i` to where it is `early` seconds later, its past included. Velocities in the past
-    /// are those over as long as noise lasts: between rows a millisecond apart they would be mostly noise,
-    /// which every move would multiply.
+    /// Moves particle `i` to where it is `early` seconds later, its past included. Velocities in
+    /// the past are those over as long as noise lasts: between rows a millisecond apart they would
+    /// be mostly noise, which every move would multiply.
     fn advance_trajectory(
         &mut self,
         columns: &Columns,
@@ -291,8 +295,8 @@ impl Propagation {
         }
     }
 
-    /// Where each particle's pusher and fixels stand beside their poses, and how contacts creep, in all
-    /// substeps.
+    /// Where each particle's pusher and fixels stand beside their poses, and how contacts creep, in
+    /// all substeps.
     #[inline(always)]
     pub(super) fn load_offsets(
         &mut self,
@@ -363,8 +367,8 @@ fn registered<const W: usize>(unsure: &Uncertainty, roughness: Lanes<W>) -> Lane
     roughness.exp() * unsure.well_registered_at(roughness)
 }
 
-/// Share of their spread by which offsets wander at a time that are `scale` times as large as told: by the
-/// same way (m), however large they are.
+/// Share of their spread by which offsets wander at a time that are `scale` times as large as told:
+/// by the same way (m), however large they are.
 #[inline(always)]
 fn offset_step(scale: Column) -> Column {
     (Lanes::splat(OFFSET_STEP) / scale).min(Lanes::splat(1.0))

@@ -35,12 +35,14 @@ pub struct StepPlan {
     pub driven: bool,
     /// Whether the parameters take a random step.
     pub parameter_noise: ParameterNoise,
-    /// Steps since the one that drew the noise which this step shares with it; 0 where it draws its own.
+    /// Steps since the one that drew the noise which this step shares with it; 0 where it draws its
+    /// own.
     pub noise_age: u64,
-    /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag (contact
-    /// mode).
+    /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag
+    /// (contact mode).
     pub steady: Option<[f64; 2]>,
-    /// The pusher, where nobody knows where it is, and it may carry the object along (contact mode).
+    /// The pusher, where nobody knows where it is, and it may carry the object along (contact
+    /// mode).
     pub unseen_pusher: Option<UnseenPusher>,
     /// Whether it has just come back into view (contact mode).
     pub pusher_is_back: bool,
@@ -101,13 +103,14 @@ impl StepPlan {
     }
 
     /// Whether what a particle takes as known changes a little, so that copies differ: while the
-    /// camera looks, and in the dark while the pusher moves (contact mode). At rest nothing would tell
-    /// them apart.
+    /// camera looks, and in the dark while the pusher moves (contact mode). At rest nothing would
+    /// tell them apart.
     pub(crate) fn unknowns_wander(&self) -> bool {
         self.driven || !self.is_dark()
     }
 
-    /// Whether the camera sees where the object rests: what keeps it from the poses that are seen is the rig.
+    /// Whether the camera sees where the object rests: what keeps it from the poses that are seen
+    /// is the rig.
     pub(crate) fn shows_rest(&self) -> bool {
         !self.driven && self.unseen_pusher.is_none() && !self.is_dark()
     }

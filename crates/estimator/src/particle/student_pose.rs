@@ -13,8 +13,8 @@ pub struct StudentPose {
 }
 
 impl StudentPose {
-    /// The pose that stands in these distributions where three numbers stand in the normal one; drawn from
-    /// them where the numbers are random.
+    /// The pose that stands in these distributions where three numbers stand in the normal one;
+    /// drawn from them where the numbers are random.
     pub fn at(&self, normals: [f64; 3]) -> Pose {
         let mut pose = self.mean;
         for (k, x) in pose.fields_mut().into_iter().enumerate() {
@@ -24,8 +24,8 @@ impl StudentPose {
     }
 }
 
-/// The number of Student's t distribution that stands where `z` stands in the normal one, to first order in
-/// 1 / `freedom` (Fisher and Cornish 1960).
+/// The number of Student's t distribution that stands where `z` stands in the normal one, to first
+/// order in 1 / `freedom` (Fisher and Cornish 1960).
 fn student(z: f64, freedom: f64) -> f64 {
     z + (z * z * z + z) / (4.0 * freedom)
 }

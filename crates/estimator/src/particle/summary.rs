@@ -7,7 +7,7 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;
 
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
-use crate::mode::Mode;
+use crate::filter_model::FilterModel;
 use crate::particle::geometric_median::way_to_median;
 use crate::particle::model::ContactModel;
 use crate::particle::sums::{ANGLE, Reference};
@@ -52,7 +52,7 @@ pub(crate) fn summarise(
         friction: Some(stds.friction),
     };
     let mut published = pose(means.position, theta);
-    if filter.model().columns().mode() == Mode::Contact {
+    if filter.model().columns().model() == FilterModel::Robust {
         let way = way_to_median(filter, published);
         published = Pose::new(
             published.x + way.x,

@@ -251,8 +251,8 @@ fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
     total(sum)
 }
 
-/// Weight of the particles that stick and slide on a body, which particles of weight `touch` touch: in most
-/// blocks none.
+/// Weight of the particles that stick and slide on a body, which particles of weight `touch` touch:
+/// in most blocks none.
 #[inline(always)]
 fn slips(
     block: &Block<'_>,

@@ -1,5 +1,5 @@
-//! What the particles do not know of how the object stands (contact mode; docs/method.md (55)): where its centre of
-//! friction lies, and in which directions its three feet.
+//! What the particles do not know of how the object stands (contact mode; docs/method.md (55)):
+//! where its centre of friction lies, and in which directions its three feet.
 
 use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::BlockMut;

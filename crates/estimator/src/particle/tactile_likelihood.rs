@@ -30,9 +30,10 @@ impl TactileLikelihood {
     /// log-probability of the readings given one chunk's contacts.
     ///
     /// The impulses of a driven particle tell which fixels it touches. An idle particle does not:
-    /// the support's friction holds it, so it stays where it is whether the pusher behind it presses
-    /// or not. Both are certified solutions of its step, and the warm start and the tracking noise
-    /// decide which of them the solver returns. So the one that explains the readings better counts.
+    /// the support's friction holds it, so it stays where it is whether the pusher behind it
+    /// presses or not. Both are certified solutions of its step, and the warm start and the
+    /// tracking noise decide which of them the solver returns. So the one that explains the
+    /// readings better counts.
     #[inline(always)]
     pub fn log_likelihood(
         &self,

@@ -12,8 +12,8 @@ pub(crate) const BELIEF_LEN: usize = 2 + QUARTERS;
 pub(crate) struct SensorBelief<const W: usize> {
     /// Probabilities that it is stuck at 0 and at 1.
     stuck: [Lanes<W>; 2],
-    /// If it works, in which quarter the probability of a touch lies from which on it feels it. Within a
-    /// quarter that counts as drawn anew in every row.
+    /// If it works, in which quarter the probability of a touch lies from which on it feels it.
+    /// Within a quarter that counts as drawn anew in every row.
     felt_from: [Lanes<W>; QUARTERS],
 }
 
@@ -35,8 +35,8 @@ impl<const W: usize> SensorBelief<W> {
 /// from its readings, particle by particle (docs/method.md, "Contact mode").
 ///
 /// Readings of a sensor that misses a touch now will miss it in the next frame, too: they count
-/// once, not frame by frame. So does what is not known of a contact, its gap or whether it presses: it is
-/// felt where its probability of being so exceeds a number between 0 and 1, that stays.
+/// once, not frame by frame. So does what is not known of a contact, its gap or whether it presses:
+/// it is felt where its probability of being so exceeds a number between 0 and 1, that stays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchChannel {
     /// Of a sensor that works: probability of reading 1 without touch, and with it.
@@ -69,7 +69,8 @@ impl TouchChannel {
         1.0 - libm::exp(-self.recovery * h)
     }
 
-    /// What is believed of a sensor after some time, in which what is stuck is [`freed`](Self::freed).
+    /// What is believed of a sensor after some time, in which what is stuck is
+    /// [`freed`](Self::freed).
     #[inline(always)]
     pub fn later<const W: usize>(
         &self,
@@ -93,8 +94,8 @@ impl TouchChannel {
         }
     }
 
-    /// A reading of a sensor that is touched with probability `touch`: what is believed then, and the log-likelihood of
-    /// the reading.
+    /// A reading of a sensor that is touched with probability `touch`: what is believed then, and
+    /// the log-likelihood of the reading.
     #[inline(always)]
     pub fn read<const W: usize>(
         &self,
@@ -125,8 +126,8 @@ impl TouchChannel {
         (after, likelihood.ln())
     }
 
-    /// A reading by the same rules, `h` seconds after the state given, with a touch of this probability,
-    /// drawn with three uniform numbers; with the state then.
+    /// A reading by the same rules, `h` seconds after the state given, with a touch of this
+    /// probability, drawn with three uniform numbers; with the state then.
     pub fn drawn(
         &self,
         before: DrawnSensor,
@@ -187,8 +188,8 @@ pub(crate) enum SensorState {
 }
 
 /// Probability that a sensor feels a contact, from its impulse in units of the sensor's threshold,
-/// and its gap in units of what is not known of it. A contact that rests without pressing may or may
-/// not be felt, and the threshold is not known exactly.
+/// and its gap in units of what is not known of it. A contact that rests without pressing may or
+/// may not be felt, and the threshold is not known exactly.
 #[inline(always)]
 pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W> {
     let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
@@ -198,8 +199,8 @@ pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W>
     impulse.gt(Lanes::ZERO).select(pressed, near)
 }
 
-/// The same of a contact that may be idle: no step tells whether one that is near presses (docs/method.md
-/// (38)).
+/// The same of a contact that may be idle: no step tells whether one that is near presses
+/// (docs/method.md (38)).
 #[inline(always)]
 pub(crate) fn felt_or_idle<const W: usize>(
     impulse: Lanes<W>,

@@ -18,17 +18,19 @@ const UNSEEN_LASTS: f64 = 0.15;
 /// The same where the object is not seen, either (s).
 const UNSEEN_LASTS_IN_THE_DARK: f64 = 1.0;
 
-/// Probability that a pusher which would have reached the object has not, having stopped or been lifted.
+/// Probability that a pusher which would have reached the object has not, having stopped or been
+/// lifted.
 const MISSES: f64 = 0.25;
 
-/// Spread of the velocity at which one that has reached it carries it on, beside its own, and of the turn, by the
-/// pusher's last speed.
+/// Spread of the velocity at which one that has reached it carries it on, beside its own, and of
+/// the turn, by the pusher's last speed.
 const AROUND: f64 = 0.5;
 
 impl Propagation {
-    /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in each particle, which
-    /// is drawn anew now and then. In the dark it is one that touched the object when it was last seen, or would have
-    /// reached it since, and that goes on as it did for longer, since no pose of the camera corrects a guess.
+    /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in
+    /// each particle, which is drawn anew now and then. In the dark it is one that touched the
+    /// object when it was last seen, or would have reached it since, and that goes on as it did for
+    /// longer, since no pose of the camera corrects a guess.
     pub(super) fn carry(
         &mut self,
         transition: &Transition<'_>,
@@ -82,8 +84,8 @@ impl Propagation {
         }
     }
 
-    /// A pusher that comes back into view inside an object pushes it out within a step. That is no speed of the object: it
-    /// has the pusher's at most.
+    /// A pusher that comes back into view inside an object pushes it out within a step. That is no
+    /// speed of the object: it has the pusher's at most.
     #[inline(always)]
     pub(super) fn slow_down(
         &self,

@@ -83,8 +83,8 @@ impl<'a> ParticleView<'a> {
         shown.map(|column| column.0[i % LANES])
     }
 
-    /// Whether nothing drives the object according to one particle: the pusher rests, or neither moves
-    /// the object nor presses on it.
+    /// Whether nothing drives the object according to one particle: the pusher rests, or neither
+    /// moves the object nor presses on it.
     ///
     /// # Panics
     /// If there is no such particle.

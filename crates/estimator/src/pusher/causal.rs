@@ -2,8 +2,8 @@
 //!
 //! Per axis an interacting multiple model filter runs from lively to nearly unaccelerated models,
 //! since the level of the process noise cannot be fitted before the series is known. While the
-//! pusher is not seen its last pose is held; how long the gap will be, nobody knows: after 0.2 s the
-//! pusher counts as lifted, and its track starts anew where it comes back.
+//! pusher is not seen its last pose is held; how long the gap will be, nobody knows: after 0.2 s
+//! the pusher counts as lifted, and its track starts anew where it comes back.
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMultipleModel};
@@ -72,8 +72,8 @@ impl CausalTrack {
         })
     }
 
-    /// Takes the pose measured at `time` (s), which rises; returns the tracked one, `None` while the
-    /// pusher is off the plane.
+    /// Takes the pose measured at `time` (s), which rises; returns the tracked one, `None` while
+    /// the pusher is off the plane.
     pub fn push(&mut self, time: f64, pose: Option<Pose>) -> Option<TrackedPose> {
         let pose = self.gate.pass(time, pose);
         let filters = &self.filters;

@@ -16,8 +16,8 @@ const LEAST: f64 = 2e-3;
 /// Standard deviations by which no pose errs.
 const SIGMAS: f64 = 20.0;
 
-/// Tells poses that the pusher cannot have come to since the two before: wrong detections of its tag. Where they go on,
-/// the time to come there grows, and they are believed.
+/// Tells poses that the pusher cannot have come to since the two before: wrong detections of its
+/// tag. Where they go on, the time to come there grows, and they are believed.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpGate {
     position_std: f64,

@@ -7,8 +7,8 @@ use crate::pusher::track::PusherTrack;
 /// A step is split where it is longer than this (s).
 const LONGEST_STEP: f64 = 0.055;
 
-/// No step is shorter than this (s): in less, what overlaps a little would be thrown apart, since a step takes the
-/// bodies out of each other within its time.
+/// No step is shorter than this (s): in less, what overlaps a little would be thrown apart, since a
+/// step takes the bodies out of each other within its time.
 pub(crate) const SHORTEST_STEP: f64 = 5e-4;
 
 /// Length that the parts of a split step do not exceed (s).
@@ -22,8 +22,9 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts. A row that comes less
-    /// than half a millisecond after the last step has none: the next one begins where the last one ended.
+    /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts. A
+    /// row that comes less than half a millisecond after the last step has none: the next one
+    /// begins where the last one ended.
     pub fn new(time: &[f64], track: &PusherTrack, substeps: Option<u32>) -> Self {
         let mut direction = track.first_direction(time);
         let mut from = 0;
@@ -68,7 +69,8 @@ fn parts_of(h: f64) -> u32 {
     }
 }
 
-/// The substeps of a step of `h` seconds: `parts` of equal length, or as many as the length asks for.
+/// The substeps of a step of `h` seconds: `parts` of equal length, or as many as the length asks
+/// for.
 pub(crate) fn split(
     h: f64,
     motion: Option<PusherMotion>,

@@ -14,7 +14,8 @@ use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
 
-/// By how much larger noise has to raise ln of a series' likelihood to be believed in place of the told one.
+/// By how much larger noise has to raise ln of a series' likelihood to be believed in place of the
+/// told one.
 const CLEARLY: f64 = 12.0;
 
 /// The larger noises that are tried, in told ones.
@@ -106,8 +107,8 @@ fn track_axis(
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// The model of greatest likelihood: with the told noise `std`, or with a larger one where the series says clearly that
-/// the poses scatter by more.
+/// The model of greatest likelihood: with the told noise `std`, or with a larger one where the
+/// series says clearly that the poses scatter by more.
 fn fitted(time: &[f64], measured: &[Option<f64>], std: f64) -> Result<ConstantVelocity, RunError> {
     let fit = |measurement_std: f64| -> Result<(ConstantVelocity, f64), RunError> {
         let model = ConstantVelocity {

@@ -3,8 +3,8 @@
 use stickslip_dynamics::{Pose, PusherMotion};
 use stickslip_filter::AxisEstimate;
 
-/// Longest gap in the pusher's poses that its tracker bridges (s), where they come often; in a longer one the pusher
-/// is off the plane.
+/// Longest gap in the pusher's poses that its tracker bridges (s), where they come often; in a
+/// longer one the pusher is off the plane.
 pub const LONGEST_BRIDGE: f64 = 0.2;
 
 /// Typical intervals between the pusher's poses that are bridged, where these are seldom.
@@ -29,8 +29,8 @@ pub struct TrackedPose {
     pub velocity: [f64; 2],
     /// Standard deviation of the tracked speed (m/s); 0 where poses are exact.
     pub speed_std: f64,
-    /// For how long before this row the pusher was held where it was last seen (s), in which it came here; 0 where it
-    /// was seen in the row before.
+    /// For how long before this row the pusher was held where it was last seen (s), in which it
+    /// came here; 0 where it was seen in the row before.
     pub held: f64,
 }
 
@@ -52,8 +52,9 @@ impl TrackedPose {
     }
 }
 
-/// Length (s) of the step to a row `h` seconds after the last one. One that catches up with a pusher that was held lasts
-/// as long as the pusher took: within a row of it the object would be thrown ahead.
+/// Length (s) of the step to a row `h` seconds after the last one. One that catches up with a
+/// pusher that was held lasts as long as the pusher took: within a row of it the object would be
+/// thrown ahead.
 pub(crate) fn step_length(next: Option<TrackedPose>, h: f64) -> f64 {
     next.map_or(h, |next| h.max(next.held))
 }
@@ -82,7 +83,8 @@ pub(crate) fn motion(
     })
 }
 
-/// Whether a gap from `from` to `to` (s) without a pusher pose is bridged, where poses come at an `interval` (s).
+/// Whether a gap from `from` to `to` (s) without a pusher pose is bridged, where poses come at an
+/// `interval` (s).
 pub(crate) fn bridged(from: f64, to: f64, interval: Option<f64>) -> bool {
     let intervals = interval.map_or(0.0, |interval| BRIDGED_INTERVALS * interval);
     to - from <= LONGEST_BRIDGE.max(intervals) + 1e-9

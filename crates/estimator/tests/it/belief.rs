@@ -1,8 +1,9 @@
-//! What a row says of the shape of the belief: modes, how contacts slip, and who descends from whom.
+//! What a row says of the shape of the belief: modes, how contacts slip, and who descends from
+//! whom.
 
 use crate::common::{know_feet, log, setup};
 use stickslip::dynamics::{Part, Pose, Shape};
-use stickslip::{Estimate, EstimateRow, Log, Mode, Occlusion, RunOptions, Setup, run};
+use stickslip::{Estimate, EstimateRow, FilterModel, Log, Occlusion, RunOptions, Setup, run};
 
 const SPEED: f64 = 0.02;
 
@@ -10,14 +11,14 @@ const SPEED: f64 = 0.02;
 const OBJECT: f64 = 0.03;
 const FINGER: f64 = 0.005;
 
-/// A slippery disc that is pushed straight at a fixel, hidden from 0.5 s on: it leaves to the one side
-/// or to the other, alike.
-fn head_on(mode: Mode) -> (Setup, Estimate) {
-    head_on_with(mode, 0)
+/// A slippery disc that is pushed straight at a fixel, hidden from 0.5 s on: it leaves to the one
+/// side or to the other, alike.
+fn head_on(model: FilterModel) -> (Setup, Estimate) {
+    head_on_with(model, 0)
 }
 
 /// The same with another seed.
-fn head_on_with(mode: Mode, seed: u64) -> (Setup, Estimate) {
+fn head_on_with(model: FilterModel, seed: u64) -> (Setup, Estimate) {
     let mut setup = setup(&[[0.06, 0.0]]);
     let nominal = &mut setup.scene.nominal;
     (nominal.mu_p, nominal.mu_f) = (0.05, 0.05);
@@ -29,7 +30,7 @@ fn head_on_with(mode: Mode, seed: u64) -> (Setup, Estimate) {
     let pusher = |time: f64| Some(Pose::new(-0.036 + SPEED * stopped(time), 0.0, 0.0));
     let log = log(140, frame, pusher);
     let hidden = Occlusion::Rows { from: 15, to: None };
-    let estimate = estimate(&setup, &log, (mode, seed), hidden);
+    let estimate = estimate(&setup, &log, (model, seed), hidden);
     (setup, estimate)
 }
 
@@ -38,9 +39,14 @@ fn frame(time: f64) -> Option<Pose> {
     Some(Pose::new(1e-9 * time, 0.0, 0.0))
 }
 
-fn estimate(setup: &Setup, log: &Log, (mode, seed): (Mode, u64), occlusion: Occlusion) -> Estimate {
+fn estimate(
+    setup: &Setup,
+    log: &Log,
+    (model, seed): (FilterModel, u64),
+    occlusion: Occlusion,
+) -> Estimate {
     let options = RunOptions {
-        mode,
+        model,
         occlusion,
         particles: 400,
         seed,
@@ -56,8 +62,8 @@ fn last(estimate: &Estimate) -> &EstimateRow {
 
 #[test]
 fn a_belief_that_falls_apart_has_a_mode_on_each_side() {
-    for mode in [Mode::Paper, Mode::Contact] {
-        let (_, estimate) = head_on(mode);
+    for model in [FilterModel::Paper, FilterModel::Robust] {
+        let (_, estimate) = head_on(model);
 
         // before the fork there is one, which holds all of the belief
         let before = &estimate.rows[30].modes;
@@ -67,12 +73,12 @@ fn a_belief_that_falls_apart_has_a_mode_on_each_side() {
         // then one on each side, the weights of a mirror image: of 400 particles that go either way
         // half ± 0.1, four standard errors
         let weight = weight_to_the_left(&estimate);
-        assert!((weight - 0.5).abs() < 0.1, "{mode:?}: {weight}");
+        assert!((weight - 0.5).abs() < 0.1, "{model:?}: {weight}");
 
         // in contact mode they descend from some fifty when they do, so that single seeds say less
-        let weights = (0..SEEDS).map(|seed| weight_to_the_left(&head_on_with(mode, seed).1));
+        let weights = (0..SEEDS).map(|seed| weight_to_the_left(&head_on_with(model, seed).1));
         let mean = weights.sum::<f64>() / SEEDS as f64;
-        assert!((mean - 0.5).abs() < 0.1, "{mode:?}: {mean}");
+        assert!((mean - 0.5).abs() < 0.1, "{model:?}: {mean}");
     }
 }
 
@@ -89,12 +95,13 @@ fn weight_to_the_left(estimate: &Estimate) -> f64 {
     if a.pose.y > 0.0 { a.weight } else { b.weight }
 }
 
-/// The mean lies between the modes; the pose of the least mean distance at the heavier one, where it is by a half.
+/// The mean lies between the modes; the pose of the least mean distance at the heavier one, where
+/// it is by a half.
 #[test]
 fn in_contact_mode_the_pose_is_at_the_heavier_mode() {
     let mut clear = 0;
     for seed in 0..SEEDS {
-        let (_, estimate) = head_on_with(Mode::Contact, seed);
+        let (_, estimate) = head_on_with(FilterModel::Robust, seed);
         let left = weight_to_the_left(&estimate);
         if left.max(1.0 - left) < 0.6 {
             continue;
@@ -105,7 +112,7 @@ fn in_contact_mode_the_pose_is_at_the_heavier_mode() {
         assert!(share > 0.8, "seed {seed}: {share} of the way, {left}");
     }
     assert!(clear > 0, "no mode is clearly heavier");
-    let (_, estimate) = head_on(Mode::Paper);
+    let (_, estimate) = head_on(FilterModel::Paper);
     let row = last(&estimate);
     let share = row.pose.expect("a pose").y / row.modes[0].pose.y;
     assert!(share < 0.5, "the mean: {share}");
@@ -114,7 +121,7 @@ fn in_contact_mode_the_pose_is_at_the_heavier_mode() {
 #[test]
 fn a_modes_pose_overlaps_nothing_where_the_mean_does() {
     // in paper mode bodies are where they are told
-    let (setup, estimate) = head_on(Mode::Paper);
+    let (setup, estimate) = head_on(FilterModel::Paper);
     let fixel = setup.scene.fixels[0].pose;
     let gap = |pose: Pose| (pose.x - fixel.x).hypot(pose.y - fixel.y) - OBJECT - FINGER;
     let row = last(&estimate);
@@ -127,8 +134,8 @@ fn a_modes_pose_overlaps_nothing_where_the_mean_does() {
     }
 }
 
-/// Stick, left and right on the pusher where a slippery disc is touched from its left by a pusher that
-/// moves on at `sideways` (m/s).
+/// Stick, left and right on the pusher where a slippery disc is touched from its left by a pusher
+/// that moves on at `sideways` (m/s).
 fn slip_beside(sideways: f64) -> [f64; 3] {
     let mut setup = setup(&[]);
     setup.scene.nominal.mu_p = 0.02;
@@ -143,7 +150,7 @@ fn slip_beside(sideways: f64) -> [f64; 3] {
         object: (0..40).map(|row| (row < 30).then(Pose::default)).collect(),
         ..log
     };
-    let estimate = estimate(&setup, &log, (Mode::Paper, 0), Occlusion::None);
+    let estimate = estimate(&setup, &log, (FilterModel::Paper, 0), Occlusion::None);
     let slip = last(&estimate).slip.as_ref().expect("bodies")[0];
     [slip.stick, slip.left, slip.right]
 }
@@ -159,7 +166,7 @@ fn a_slippery_contact_slides_away_from_where_the_pusher_goes() {
 
 #[test]
 fn slips_and_contact_agree() {
-    let (_, estimate) = head_on(Mode::Contact);
+    let (_, estimate) = head_on(FilterModel::Robust);
     for row in &estimate.rows {
         let contacts = std::iter::once(row.contact_pusher.expect("a share"))
             .chain(row.contact_fixels.iter().flatten().copied());
@@ -174,7 +181,8 @@ fn slips_and_contact_agree() {
     assert!(slip.left + slip.right < 0.02, "{slip:?}");
 }
 
-/// A pusher that a noisy tracker sees brings a disc to a fixel, stands there and, at last, goes back.
+/// A pusher that a noisy tracker sees brings a disc to a fixel, stands there and, at last, goes
+/// back.
 #[test]
 fn what_touches_while_nothing_moves_goes_on_touching() {
     let setup = setup(&[[0.06, 0.0]]);
@@ -187,7 +195,7 @@ fn what_touches_while_nothing_moves_goes_on_touching() {
     let pusher = |time: f64| Some(Pose::new(-0.036 + way(time) + noise(time), 0.0, 0.0));
     let log = log(150, frame, pusher);
     let hidden = Occlusion::Rows { from: 2, to: None };
-    let estimate = estimate(&setup, &log, (Mode::Contact, 0), hidden);
+    let estimate = estimate(&setup, &log, (FilterModel::Robust, 0), hidden);
     let touches = |row: &EstimateRow| row.contact_pusher.expect("a share");
 
     let standing: Vec<f64> = estimate.rows[stops + 5..leaves - 5]
@@ -200,7 +208,7 @@ fn what_touches_while_nothing_moves_goes_on_touching() {
 
 #[test]
 fn ancestors_are_lost_in_the_dark_and_counted_anew_in_the_light() {
-    let (_, estimate) = head_on(Mode::Contact);
+    let (_, estimate) = head_on(FilterModel::Robust);
     let counts = |row: &EstimateRow| {
         let (distinct, ancestors) = (row.distinct.expect("a count"), row.ancestors.expect("one"));
         assert!(ancestors <= distinct && distinct <= 400);
@@ -213,8 +221,8 @@ fn ancestors_are_lost_in_the_dark_and_counted_anew_in_the_light() {
     assert!(dark.last() < dark.first(), "{dark:?}");
 }
 
-/// Standard deviation of the angle of a square that a bar pushes flush, in the dark, where the bar's angle is known so
-/// well (rad).
+/// Standard deviation of the angle of a square that a bar pushes flush, in the dark, where the
+/// bar's angle is known so well (rad).
 fn spread_of_a_flush_square(orientation_std: f64) -> f64 {
     let mut setup = setup(&[]);
     know_feet(&mut setup);
@@ -229,7 +237,7 @@ fn spread_of_a_flush_square(orientation_std: f64) -> f64 {
     let pusher = |time: f64| Some(Pose::new(-0.0295 + SPEED * (time - 0.4).max(0.0), 0.0, 0.0));
     let log = log(90, frame, pusher);
     let hidden = Occlusion::Rows { from: 11, to: None };
-    let estimate = estimate(&setup, &log, (Mode::Contact, 0), hidden);
+    let estimate = estimate(&setup, &log, (FilterModel::Robust, 0), hidden);
     last(&estimate).spread.expect("a spread").pose.theta
 }
 

@@ -4,7 +4,7 @@
 use crate::common::{RATE, log, setup, slippery, sticky};
 use stickslip::dynamics::Pose;
 use stickslip::{
-    Estimate, Log, Method, Mode, Moves, Occlusion, Run, RunOptions, Setup, Tracking, run,
+    Estimate, FilterModel, Log, Method, Moves, Occlusion, Run, RunOptions, Setup, Tracking, run,
 };
 
 /// Speed of the pusher (m/s), and where it meets the disc (s).
@@ -29,13 +29,13 @@ fn pushed(latency: f64) -> Log {
     log(150, |time| Some(truth(time - latency)), pusher)
 }
 
-fn estimate(setup: &Setup, log: &Log, mode: Mode) -> Estimate {
-    estimate_of(400, setup, log, mode)
+fn estimate(setup: &Setup, log: &Log, model: FilterModel) -> Estimate {
+    estimate_of(400, setup, log, model)
 }
 
-fn estimate_of(particles: usize, setup: &Setup, log: &Log, mode: Mode) -> Estimate {
+fn estimate_of(particles: usize, setup: &Setup, log: &Log, model: FilterModel) -> Estimate {
     let options = RunOptions {
-        mode,
+        model,
         particles,
         ..RunOptions::default()
     };
@@ -56,7 +56,7 @@ fn farthest(estimate: &Estimate, from: f64, to: f64) -> f64 {
 #[test]
 fn friction_that_nothing_was_felt_of_keeps_its_prior() {
     let setup = setup(&[[0.2, 0.0]]);
-    let estimate = estimate(&setup, &pushed(0.0), Mode::Contact);
+    let estimate = estimate(&setup, &pushed(0.0), FilterModel::Robust);
     let last = estimate.rows.last().expect("rows");
     let (mean, std) = (
         last.friction.expect("friction").mu_f,
@@ -107,8 +107,8 @@ fn a_pose_that_is_wrong_now_and_then_moves_nothing() {
     for row in (20..150).step_by(17) {
         log.object[row] = Some(Pose::new(0.015, -0.02, 1.0));
     }
-    let contact = farthest(&estimate(&setup, &log, Mode::Contact), 0.5, 5.0);
-    let paper = farthest(&estimate(&setup, &log, Mode::Paper), 0.5, 5.0);
+    let contact = farthest(&estimate(&setup, &log, FilterModel::Robust), 0.5, 5.0);
+    let paper = farthest(&estimate(&setup, &log, FilterModel::Paper), 0.5, 5.0);
     assert!(contact < 6e-4, "{contact}");
     assert!(paper > 5e-3, "{paper}: the log has no outliers");
 }
@@ -119,8 +119,12 @@ fn a_camera_that_lags_more_than_told_does_not_drag_the_estimate() {
     let late = pushed(0.08);
     // while the disc moves, the camera is 1.6 mm behind
     // at more than twice what the prior expects: some forty of 400 particles lag as much
-    let contact = farthest(&estimate_of(1000, &setup, &late, Mode::Contact), 2.0, 3.0);
-    let paper = farthest(&estimate(&setup, &late, Mode::Paper), 2.0, 3.0);
+    let contact = farthest(
+        &estimate_of(1000, &setup, &late, FilterModel::Robust),
+        2.0,
+        3.0,
+    );
+    let paper = farthest(&estimate(&setup, &late, FilterModel::Paper), 2.0, 3.0);
     assert!(contact < 6e-4, "{contact}");
     assert!(paper > contact, "{paper}, {contact}");
 }
@@ -135,7 +139,7 @@ fn a_camera_that_moves_for_good_is_followed() {
     for (row, pose) in log.object.iter_mut().enumerate().skip(120) {
         *pose = pose.map(|pose| Pose::new(pose.x + 1e-6 * row as f64, pose.y, pose.theta));
     }
-    let estimate = estimate(&setup, &log, Mode::Contact);
+    let estimate = estimate(&setup, &log, FilterModel::Robust);
     let row = 120 + (0.3 * RATE) as usize;
     let pose = estimate.rows[row].pose.expect("a pose");
     assert!(
@@ -144,8 +148,9 @@ fn a_camera_that_moves_for_good_is_followed() {
     );
 }
 
-/// Bodies that are pressed give a little: a disc that jams rests deeper in the fixel than the rig says, and no particle
-/// may have believed so of a rig that seemed well measured while the disc moved.
+/// Bodies that are pressed give a little: a disc that jams rests deeper in the fixel than the rig
+/// says, and no particle may have believed so of a rig that seemed well measured while the disc
+/// moved.
 #[test]
 fn a_jam_that_gives_way_ends_where_the_camera_shows_it() {
     let setup = setup(&[[0.105, 0.0]]);
@@ -169,7 +174,7 @@ fn a_jam_that_gives_way_ends_where_the_camera_shows_it() {
         time,
         ..Log::default()
     };
-    let estimate = estimate(&setup, &log, Mode::Contact);
+    let estimate = estimate(&setup, &log, FilterModel::Robust);
     let late = &estimate.rows[1200..];
     let error: f64 = late
         .iter()
@@ -258,8 +263,8 @@ fn the_evidence_is_for_the_friction_that_was() {
     assert_eq!(kalman.log_evidence, None);
 }
 
-/// Mean error (m) along the push, and mean spread, of what is believed of an object pushed steadily for 1.8 s under a
-/// camera that lags by `latency` (s).
+/// Mean error (m) along the push, and mean spread, of what is believed of an object pushed steadily
+/// for 1.8 s under a camera that lags by `latency` (s).
 fn pushed_steadily(setup: &Setup, latency: f64) -> [f64; 2] {
     const SEEDS: u64 = 12;
     let log = pushed(latency);
@@ -278,9 +283,9 @@ fn pushed_steadily(setup: &Setup, latency: f64) -> [f64; 2] {
     [error, spread].map(|sum| sum / SEEDS as f64)
 }
 
-/// Under a steady push, what the camera shows fixes o − v L, the pusher's offset less the way in the
-/// latency. On that line the priors N(0, σ²) of o and exponential of L leave a normal distribution of
-/// mean −σ²/(v L̄), cut off where L = 0, for where the object is.
+/// Under a steady push, what the camera shows fixes o − v L, the pusher's offset less the way in
+/// the latency. On that line the priors N(0, σ²) of o and exponential of L leave a normal
+/// distribution of mean −σ²/(v L̄), cut off where L = 0, for where the object is.
 #[test]
 fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
     let mut setup = setup(&[]);
@@ -293,8 +298,8 @@ fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
     assert!((error - expected).abs() < 0.4 * std, "{error}, {expected}");
 }
 
-/// Where rigs differ, the same line leaves a mixture: that of all roughnesses η, each by how likely it makes what the
-/// camera shows. The sums are over η and over the latency.
+/// Where rigs differ, the same line leaves a mixture: that of all roughnesses η, each by how likely
+/// it makes what the camera shows. The sums are over η and over the latency.
 #[test]
 fn a_steady_push_tells_rigs_that_are_measured_well_from_others() {
     let mut setup = setup(&[]);

@@ -21,8 +21,8 @@ impl Observer for Steps {
     }
 }
 
-/// κ of (50), from what a particle's step states and how its step before ended; `None` where it did not press
-/// with one contact in both, or slower than 1 mm/s.
+/// κ of (50), from what a particle's step states and how its step before ended; `None` where it did
+/// not press with one contact in both, or slower than 1 mm/s.
 fn share(
     rho: f64,
     (_, before): &(StepProblem, StepSolution),

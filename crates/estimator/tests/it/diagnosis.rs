@@ -1,4 +1,5 @@
-//! What `diagnose` says of logs whose faults are known: a disc that a pusher comes to push along x, and stops.
+//! What `diagnose` says of logs whose faults are known: a disc that a pusher comes to push along x,
+//! and stops.
 
 use stickslip::diagnosis::{Finding, Severity, Subject, diagnose, misread};
 use stickslip::dynamics::{Part, Pose, Shape};
@@ -9,7 +10,8 @@ use crate::common::{disc, setup};
 /// Gap at the start (m).
 const WAY: f64 = 0.012;
 
-/// Standard deviations of the positions of object and pusher (m), and of their angles (rad), as [`setup`] has them.
+/// Standard deviations of the positions of object and pusher (m), and of their angles (rad), as
+/// [`setup`] has them.
 const NOISE: [f64; 2] = [3e-4, 1e-4];
 const TURN_NOISE: [f64; 2] = [5e-3, 2e-3];
 
@@ -149,8 +151,8 @@ fn a_pusher_hidden_while_the_object_moves_is_told_where_both_are_hidden() {
     assert_only(&faults, Severity::Warning, Subject::PusherPoses, words);
 }
 
-/// At 13 mm/s the pusher comes half a millimetre in 40 ms, and a pose is off by 0.3 mm, its turn by as much again where
-/// the pusher pushes a box beside its middle.
+/// At 13 mm/s the pusher comes half a millimetre in 40 ms, and a pose is off by 0.3 mm, its turn by
+/// as much again where the pusher pushes a box beside its middle.
 #[test]
 fn the_stop_of_a_slow_pusher_tells_no_latency_by_noise_alone() {
     let side = 0.08;

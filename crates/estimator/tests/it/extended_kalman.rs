@@ -148,8 +148,8 @@ fn wrong_poses_are_left_out_and_four_in_a_row_believed() {
     assert!((moved - 0.02).abs() < 3e-4, "{moved}");
 }
 
-/// Head-on into a fixel, then against it for seconds, the pusher a rigid one or not, the camera dark
-/// from before the touch: every number is finite, and rigid jams are counted.
+/// Head-on into a fixel, then against it for seconds, the pusher a rigid one or not, the camera
+/// dark from before the touch: every number is finite, and rigid jams are counted.
 #[test]
 fn a_jam_leaves_finite_numbers_and_counts_what_has_no_solution() {
     let unsolved = |stall_force| {
@@ -205,8 +205,8 @@ fn what_other_methods_refuse_is_refused_in_the_same_words() {
 const ROWS: usize = 36;
 const SEEN: usize = 24;
 
-/// A disc that is pushed a little off its middle, with noise so small that Γ is nearly linear in it,
-/// seen by a camera that errs, then dark.
+/// A disc that is pushed a little off its middle, with noise so small that Γ is nearly linear in
+/// it, seen by a camera that errs, then dark.
 fn pushed() -> (Setup, Log) {
     let mut setup = setup(&[]);
     let camera = setup.camera.as_mut().expect("a camera");
@@ -263,7 +263,8 @@ struct Weighed {
     ratios: [f64; 4],
 }
 
-/// A bootstrap particle filter, written out: moments after the last row seen and after the last row.
+/// A bootstrap particle filter, written out: moments after the last row seen and after the last
+/// row.
 fn bootstrap(setup: &Setup, log: &Log, seed: u64, count: usize) -> [Moments; 2] {
     let camera = setup.camera.expect("a camera");
     let track = PusherTrack::new(log, Some(&camera), Tracking::Smoothed).expect("a track");

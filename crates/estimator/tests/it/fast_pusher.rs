@@ -1,8 +1,8 @@
-//! A pusher that is tracked faster than the camera brings rows between frames. What is believed of the
-//! object does not depend on how many: rows at other rates tell of the same experiment.
+//! A pusher that is tracked faster than the camera brings rows between frames. What is believed of
+//! the object does not depend on how many: rows at other rates tell of the same experiment.
 
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Log, Mode, RunOptions, run};
+use stickslip::{Estimate, FilterModel, Log, RunOptions, run};
 
 use crate::common::{RATE, setup};
 
@@ -31,9 +31,9 @@ fn pushed(between: u32) -> Log {
     }
 }
 
-fn estimate(mode: Mode, between: u32, seed: u64) -> Estimate {
+fn estimate(model: FilterModel, between: u32, seed: u64) -> Estimate {
     let options = RunOptions {
-        mode,
+        model,
         particles: 200,
         seed,
         ..RunOptions::default()
@@ -42,13 +42,13 @@ fn estimate(mode: Mode, between: u32, seed: u64) -> Estimate {
     run.expect("a run").estimate
 }
 
-/// Standard deviations of x, y and θ at the end, and the greatest distance from the truth (m), means over
-/// some seeds.
-fn belief(mode: Mode, between: u32) -> [f64; 4] {
+/// Standard deviations of x, y and θ at the end, and the greatest distance from the truth (m),
+/// means over some seeds.
+fn belief(model: FilterModel, between: u32) -> [f64; 4] {
     const SEEDS: u64 = 4;
     let mut sum = [0.0; 4];
     for seed in 0..SEEDS {
-        let estimate = estimate(mode, between, seed);
+        let estimate = estimate(model, between, seed);
         let last = estimate.rows.last().expect("rows");
         let spread = last.spread.expect("a spread").pose;
         let rows = estimate.time.iter().zip(&estimate.rows);
@@ -67,15 +67,15 @@ fn belief(mode: Mode, between: u32) -> [f64; 4] {
 
 #[test]
 fn rows_of_the_pusher_alone_do_not_change_the_belief() {
-    for mode in [Mode::Paper, Mode::Contact] {
-        let slow = belief(mode, 1);
+    for model in [FilterModel::Paper, FilterModel::Robust] {
+        let slow = belief(model, 1);
         for between in [3, 33] {
-            let fast = belief(mode, between);
+            let fast = belief(model, between);
             let ratio = [0, 1, 2, 3].map(|k| fast[k] / slow[k]);
             let spreads = ratio[..3].iter().all(|ratio| (0.6..1.6).contains(ratio));
             assert!(
                 spreads && ratio[3] < 1.5,
-                "{mode:?}, {between} rows a frame: {ratio:.2?} times what one row says"
+                "{model:?}, {between} rows a frame: {ratio:.2?} times what one row says"
             );
         }
     }

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use crate::common::{log, setup};
 use stickslip::dynamics::{Friction, Pose};
 use stickslip::{
-    FilterSettings, Limits, Log, Mode, Observer, Occlusion, ParticleView, RunOptions, Setup,
+    FilterModel, FilterSettings, Limits, Log, Observer, Occlusion, ParticleView, RunOptions, Setup,
     SolvedStep, run_observed,
 };
 
@@ -36,7 +36,7 @@ fn friction_rows(setup: &Setup, log: &Log, occlusion: Occlusion) -> Vec<Vec<Fric
         ..setup.clone()
     };
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles: 64,
         occlusion,
         ..RunOptions::default()

@@ -2,7 +2,7 @@
 
 use crate::common::log;
 use stickslip::dynamics::Pose;
-use stickslip::{Method, Mode, RunOptions, run};
+use stickslip::{FilterModel, Method, RunOptions, run};
 
 const SCENE: &str = "gravity = 9.81
 object = { mass = 0.5, inertia = 2e-4, shape = [{ disc = { radius = 0.03 } }] }
@@ -22,7 +22,7 @@ fn unsolved(keys: &str, method: Method) -> u64 {
     let object = |t: f64| Some(Pose::new((0.015 * t).min(0.01), 0.0, 0.0));
     let pusher = |t: f64| Some(Pose::new(-0.035 + 0.015 * t.min(0.8), 0.0, 0.0));
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         method,
         particles: 16,
         ..RunOptions::default()

@@ -2,10 +2,10 @@
 
 use crate::common::{log, setup};
 use stickslip::dynamics::{Friction, Pose};
-use stickslip::{EstimateRow, Log, Mode, Occlusion, RunOptions, Setup, Uncertainty, run};
+use stickslip::{EstimateRow, FilterModel, Log, Occlusion, RunOptions, Setup, Uncertainty, run};
 
-/// A pusher that drives the disc of [`setup`] off its middle, so that it turns; the disc is not shown to turn,
-/// which some friction explains better than other.
+/// A pusher that drives the disc of [`setup`] off its middle, so that it turns; the disc is not
+/// shown to turn, which some friction explains better than other.
 fn pushed() -> Log {
     let at = |time: f64| 0.02 * (time - 1.0);
     log(
@@ -15,9 +15,9 @@ fn pushed() -> Log {
     )
 }
 
-fn rows(setup: &Setup, log: &Log, occlusion: Occlusion, mode: Mode) -> Vec<EstimateRow> {
+fn rows(setup: &Setup, log: &Log, occlusion: Occlusion, model: FilterModel) -> Vec<EstimateRow> {
     let options = RunOptions {
-        mode,
+        model,
         particles: 200,
         occlusion,
         ..RunOptions::default()
@@ -39,8 +39,8 @@ fn in_the_dark_friction_stays_as_the_camera_left_it() {
         from: 50,
         to: Some(80),
     };
-    let dark = rows(&setup, &log, dark, Mode::Contact);
-    let light = rows(&setup, &log, Occlusion::None, Mode::Contact);
+    let dark = rows(&setup, &log, dark, FilterModel::Robust);
+    let light = rows(&setup, &log, Occlusion::None, FilterModel::Robust);
     assert_eq!(known(&dark[49]), known(&light[49]));
     for (row, estimate) in dark.iter().enumerate().take(80).skip(50) {
         assert_eq!(known(estimate), known(&dark[49]), "row {row}");
@@ -58,8 +58,8 @@ fn the_last_blackout_changes_nothing_that_was_known_before() {
         from: 50,
         to: Some(119),
     };
-    let ends = rows(&setup, &log, ends, Mode::Contact);
-    let returns = rows(&setup, &log, returns, Mode::Contact);
+    let ends = rows(&setup, &log, ends, FilterModel::Robust);
+    let returns = rows(&setup, &log, returns, FilterModel::Robust);
     assert_eq!(ends[..50], returns[..50]);
     for row in 50..119 {
         assert_eq!(ends[row].pose, returns[row].pose, "row {row}");
@@ -83,7 +83,7 @@ fn nothing_is_learned_while_the_object_rests() {
         },
         |time| Some(Pose::new(-0.034 + at(time), 0.006, 0.0)),
     );
-    let rows = rows(&setup(&[]), &log, Occlusion::None, Mode::Contact);
+    let rows = rows(&setup(&[]), &log, Occlusion::None, FilterModel::Robust);
     let row_at = |time: f64| log.time.iter().position(|row| *row > time).expect("a row");
     assert_ne!(known(&rows[row_at(2.0)]), known(&rows[row_at(2.5)]));
     let rests = row_at(3.5);
@@ -99,7 +99,7 @@ fn friction_that_is_told_exactly_is_not_learned() {
         friction: Friction::default(),
         ..setup.uncertainty
     };
-    let rows = rows(&setup, &pushed(), Occlusion::None, Mode::Contact);
+    let rows = rows(&setup, &pushed(), Occlusion::None, FilterModel::Robust);
     let (mean, std) = known(rows.last().expect("rows"));
     for (mean, told) in mean.fields().iter().zip(setup.scene.nominal.fields()) {
         assert!((*mean - told).abs() < 1e-12, "{mean}, {told}");

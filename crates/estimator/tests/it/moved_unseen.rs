@@ -1,5 +1,5 @@
-//! An object that the camera sees move though nothing is known to touch it: one that is moved by hand before the push, or by a
-//! pusher that nobody sees come.
+//! An object that the camera sees move though nothing is known to touch it: one that is moved by
+//! hand before the push, or by a pusher that nobody sees come.
 
 use crate::common::setup;
 use stickslip::dynamics::Pose;
@@ -10,8 +10,8 @@ const RATE: f64 = 60.0;
 const ROWS: usize = 240;
 const NOISE: f64 = 3e-4;
 
-/// An object whose x at a time (s) is `place`, seen throughout; the pusher, which stands far off, at the times that it is
-/// `shown`.
+/// An object whose x at a time (s) is `place`, seen throughout; the pusher, which stands far off,
+/// at the times that it is `shown`.
 fn log(place: impl Fn(f64) -> f64, shown: impl Fn(f64) -> bool) -> Log {
     let mut log = Log::default();
     for k in 0..ROWS {
@@ -41,7 +41,8 @@ fn tracked(log: &Log, place: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
     .collect()
 }
 
-/// Root mean square of the errors (m) over some rows, and how many of these are off by more than four standard deviations.
+/// Root mean square of the errors (m) over some rows, and how many of these are off by more than
+/// four standard deviations.
 fn score(rows: &[[f64; 2]]) -> (f64, usize) {
     let squares: f64 = rows.iter().map(|[error, _]| error * error).sum();
     let surely_wrong = rows.iter().filter(|[error, std]| error.abs() > 4.0 * std);

@@ -5,8 +5,8 @@ use std::sync::Mutex;
 
 use stickslip::dynamics::{Feet, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
-    Camera, FilterSettings, Log, Mode, Observer, Occlusion, ParticleView, Run, RunOptions, Setup,
-    SolvedStep, Tactile, Uncertainty, run, run_observed,
+    Camera, FilterModel, FilterSettings, Log, Observer, Occlusion, ParticleView, Run, RunOptions,
+    Setup, SolvedStep, Tactile, Uncertainty, run, run_observed,
 };
 
 const ROWS: usize = 40;
@@ -129,7 +129,7 @@ fn watched(options: &RunOptions) -> (Run, Vec<Moments>) {
 #[test]
 fn an_observer_sees_the_particles_that_the_estimate_is_made_of() {
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles: 100,
         occlusion: Occlusion::Rows { from: 30, to: None },
         ..RunOptions::default()
@@ -260,7 +260,7 @@ fn in_contact_mode_no_pose_is_nearer_to_the_particles_in_the_mean() {
 #[test]
 fn an_observer_changes_no_bit() {
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles: 100,
         ..RunOptions::default()
     };
@@ -271,7 +271,7 @@ fn an_observer_changes_no_bit() {
 #[test]
 fn methods_without_particles_show_none() {
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         method: stickslip::Method::Kalman,
         ..RunOptions::default()
     };

@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use crate::common::{disc, log, setup};
 use stickslip::dynamics::Pose;
 use stickslip::{
-    Log, Method, Mode, Observer, ParticleView, PoseCovariance, RunOptions, Setup, SolvedStep, run,
-    run_observed,
+    FilterModel, Log, Method, Observer, ParticleView, PoseCovariance, RunOptions, Setup,
+    SolvedStep, run, run_observed,
 };
 
 /// Two poses of an object at rest, and how noisy they are.
@@ -126,9 +126,9 @@ fn two_noisy_poses_have_the_posterior_of_normal_distributions() {
     let (expected, covariance) = posterior();
     // the second pose is nearer the first in y than in x, and both noises lean, so that a filter which
     // took the axes for independent would be off by many of the standard errors below
-    for mode in [Mode::Paper, Mode::Contact] {
+    for model in [FilterModel::Paper, FilterModel::Robust] {
         let options = RunOptions {
-            mode,
+            model,
             particles: PARTICLES,
             ..RunOptions::default()
         };
@@ -141,21 +141,21 @@ fn two_noisy_poses_have_the_posterior_of_normal_distributions() {
             let error = std / (PARTICLES as f64 / 10.0).sqrt();
             assert!(
                 (mean[i] - expected[i]).abs() < 4.0 * error,
-                "{mode:?} {i}: {mean:?} {expected:?}"
+                "{model:?} {i}: {mean:?} {expected:?}"
             );
             for j in 0..3 {
                 let scale = std * covariance[j][j].sqrt();
                 assert!(
                     (found[i][j] - covariance[i][j]).abs() < 0.08 * scale,
-                    "{mode:?} {i} {j}: {found:?} {covariance:?}"
+                    "{model:?} {i} {j}: {found:?} {covariance:?}"
                 );
             }
         }
     }
 }
 
-/// Without process noise and with a velocity that is known to be 0, the Kalman filter's axes are means
-/// weighted by the inverse variances.
+/// Without process noise and with a velocity that is known to be 0, the Kalman filter's axes are
+/// means weighted by the inverse variances.
 #[test]
 fn the_kalman_filter_weighs_poses_by_their_variances() {
     let options = RunOptions {

@@ -1,12 +1,13 @@
-//! Experiments drawn from the filter's own model: what is drawn has the priors' distributions, and the
-//! filter's beliefs of such experiments hold as much as they say (simulation-based calibration).
+//! Experiments drawn from the filter's own model: what is drawn has the priors' distributions, and
+//! the filter's beliefs of such experiments hold as much as they say (simulation-based
+//! calibration).
 
 use std::sync::Mutex;
 
 use crate::common::{log, setup};
 use stickslip::dynamics::Pose;
 use stickslip::{
-    Log, Mode, Observer, ParticleView, PriorSample, RunOptions, Setup, SolvedStep, Tactile,
+    FilterModel, Log, Observer, ParticleView, PriorSample, RunOptions, Setup, SolvedStep, Tactile,
     run_observed,
 };
 
@@ -31,7 +32,8 @@ fn push() -> Log {
 }
 
 fn samples(setup: &Setup) -> Vec<PriorSample> {
-    let draw = |seed| PriorSample::draw(setup, &push(), Mode::Contact, seed).expect("a sample");
+    let draw =
+        |seed| PriorSample::draw(setup, &push(), FilterModel::Robust, seed).expect("a sample");
     (0..SAMPLES).map(draw).collect()
 }
 
@@ -100,7 +102,7 @@ fn a_truth_is_drawn_around_the_first_pose_which_stays() {
     // many short ones: nothing is near yet
     let mut log = push();
     log.truncate(20);
-    let draw = |seed| PriorSample::draw(&setup, &log, Mode::Contact, seed).expect("a sample");
+    let draw = |seed| PriorSample::draw(&setup, &log, FilterModel::Robust, seed).expect("a sample");
     let samples: Vec<PriorSample> = (0..400).map(draw).collect();
     let first = Pose::default();
     assert!(
@@ -180,7 +182,8 @@ fn sensors_that_never_err_read_what_is_touched() {
 
 #[test]
 fn a_sample_is_reproduced_by_its_seed() {
-    let draw = |seed| PriorSample::draw(&scene(), &push(), Mode::Contact, seed).expect("a sample");
+    let draw =
+        |seed| PriorSample::draw(&scene(), &push(), FilterModel::Robust, seed).expect("a sample");
     assert_eq!(draw(3), draw(3));
     assert_ne!(draw(3).truth, draw(4).truth);
 }

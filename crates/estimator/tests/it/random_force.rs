@@ -9,7 +9,8 @@ use stickslip::{Observer, SolvedStep, Uncertainty};
 /// `force_std` of all runs here.
 const TOLD: f64 = 0.25;
 
-/// Of the first step in which a force acts on a particle: the impulse along x, as a share of its μ_s m g h.
+/// Of the first step in which a force acts on a particle: the impulse along x, as a share of its
+/// μ_s m g h.
 #[derive(Debug)]
 struct FirstForce(Mutex<[f64; PARTICLES]>);
 
@@ -30,8 +31,8 @@ impl Observer for FirstForce {
     }
 }
 
-/// Mean square of what acts on particles that a pusher comes near, over many seeds, with the camera `seeing` them or
-/// not.
+/// Mean square of what acts on particles that a pusher comes near, over many seeds, with the camera
+/// `seeing` them or not.
 fn mean_square(uncertainty: Uncertainty, seeing: bool) -> f64 {
     let mut setup = setup(&[]);
     setup.uncertainty = Uncertainty {

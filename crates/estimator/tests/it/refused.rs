@@ -1,5 +1,5 @@
-//! A setup, a log or options that cannot be are refused in words, whoever made them; and what is at the
-//! edge of what can be is run without a panic.
+//! A setup, a log or options that cannot be are refused in words, whoever made them; and what is at
+//! the edge of what can be is run without a panic.
 
 use crate::common::{log, setup};
 use stickslip::dynamics::Pose;

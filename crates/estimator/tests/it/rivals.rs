@@ -1,5 +1,5 @@
-//! Two rivals of the particle filter: the Kalman filter that stops at touch, and what is glued to the
-//! pusher.
+//! Two rivals of the particle filter: the Kalman filter that stops at touch, and what is glued to
+//! the pusher.
 
 use crate::common::{log, setup};
 use stickslip::dynamics::{Pose, Twist};

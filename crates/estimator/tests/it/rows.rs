@@ -1,4 +1,5 @@
-//! What a row brings is used once, for what it tells, and what its estimate says of the particles is true of them.
+//! What a row brings is used once, for what it tells, and what its estimate says of the particles
+//! is true of them.
 
 use std::num::NonZero;
 
@@ -176,8 +177,8 @@ fn poses_that_come_late_or_beside_a_step_move_particles_as_those_on_time_do() {
     }
 }
 
-/// The object is jammed between pusher and fixel, as the camera shows it, and the pusher's log creeps on; one pose is
-/// wrong.
+/// The object is jammed between pusher and fixel, as the camera shows it, and the pusher's log
+/// creeps on; one pose is wrong.
 #[test]
 fn a_pusher_that_contradicts_all_particles_makes_no_camera_pose_believed() {
     let setup = setup(&[[0.0351, 0.0]]);
@@ -223,8 +224,8 @@ fn a_row_says_the_same_of_the_learning_particles_whether_more_poses_come_or_not(
     assert!(whole.unsolved > 0);
 }
 
-/// ln of the likelihood of a 1 far from all, after a second of them and ten seconds of so many rows, which are `silent`:
-/// without a reading of the sensor, or without readings.
+/// ln of the likelihood of a 1 far from all, after a second of them and ten seconds of so many
+/// rows, which are `silent`: without a reading of the sensor, or without readings.
 fn false_alarm(rows_between: usize, silent: &[Option<bool>]) -> f64 {
     let setup = setup(&[[0.2, 0.0]]);
     let mut tracker = tracker(&setup, 50);
@@ -278,8 +279,8 @@ fn second_tries_of_a_blackout_end_also_where_the_number_of_particles_changes() {
     assert!((17..=48).contains(&tries), "{tries}");
 }
 
-/// Where it stands, what a jam gives weighs no particle; but a pusher that stands far beyond all jams says that all of
-/// them went another way than the object.
+/// Where it stands, what a jam gives weighs no particle; but a pusher that stands far beyond all
+/// jams says that all of them went another way than the object.
 #[test]
 fn a_pusher_that_stands_beyond_all_jams_has_the_steps_made_again() {
     let (setup, log) = sticky_and_slippery();
@@ -299,7 +300,8 @@ fn a_pusher_that_stands_beyond_all_jams_has_the_steps_made_again() {
     assert!(last > at_rest + 5, "{at_rest}, {last}");
 }
 
-/// Rows of a camera, and beside each one of a faster tracker that has the pusher alone, so much later (s).
+/// Rows of a camera, and beside each one of a faster tracker that has the pusher alone, so much
+/// later (s).
 fn two_clocks(later: f64) -> Log {
     let place = |time: f64| 0.02 * (time - 0.4_f64).max(0.0);
     let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);

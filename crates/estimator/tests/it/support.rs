@@ -1,4 +1,5 @@
-//! Feet of each particle in contact mode (docs/method.md (55)): drawn anew while the object rests, kept once it moves.
+//! Feet of each particle in contact mode (docs/method.md (55)): drawn anew while the object rests,
+//! kept once it moves.
 
 use std::sync::Mutex;
 
@@ -23,7 +24,8 @@ impl Observer for Arms {
     }
 }
 
-/// The centre of a particle's feet, in standard deviations, and the cosine of the first foot's direction from there.
+/// The centre of a particle's feet, in standard deviations, and the cosine of the first foot's
+/// direction from there.
 type Stand = ([f64; 2], f64);
 
 /// How the particles stand in each step of a run.
@@ -53,7 +55,8 @@ fn mean(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.iter().sum::<f64>() / numbers.len() as f64
 }
 
-/// Mean square of the centre on an axis, and mean product with that of the step before; 1 is the prior's variance.
+/// Mean square of the centre on an axis, and mean product with that of the step before; 1 is the
+/// prior's variance.
 fn square_and_product(runs: &[Steps], steps: std::ops::Range<usize>) -> [f64; 2] {
     let pairs: Vec<[[f64; 2]; 2]> = runs
         .iter()

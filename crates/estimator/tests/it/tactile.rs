@@ -2,7 +2,7 @@
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
-    Camera, Estimate, FilterSettings, Log, Mode, Occlusion, RunOptions, Setup, Tactile,
+    Camera, Estimate, FilterModel, FilterSettings, Log, Occlusion, RunOptions, Setup, Tactile,
     Uncertainty, run,
 };
 
@@ -98,7 +98,7 @@ fn estimate(aside: f64, readings: impl Fn(usize) -> bool) -> Estimate {
         to: None,
     };
     let options = RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles: 200,
         occlusion,
         ..RunOptions::default()

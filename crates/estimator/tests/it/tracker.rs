@@ -1,4 +1,5 @@
-//! A [`Tracker`] gives, row by row, what a run over the whole log gives, and takes rows as they come.
+//! A [`Tracker`] gives, row by row, what a run over the whole log gives, and takes rows as they
+//! come.
 
 use std::num::NonZero;
 
@@ -63,8 +64,8 @@ fn rows_one_by_one_give_what_the_whole_log_gives_causally() {
     }
 }
 
-/// Later rows cannot change what was said: the estimate of a log that is cut off is the beginning of
-/// the whole one's.
+/// Later rows cannot change what was said: the estimate of a log that is cut off is the beginning
+/// of the whole one's.
 #[test]
 fn an_estimate_depends_on_no_later_row() {
     let (setup, log) = push();
@@ -111,7 +112,8 @@ fn after_warm_up_a_row_allocates_nothing_on_one_thread() {
     });
 }
 
-/// The camera stands still over an object at rest: each of its poses says the same, on time or late.
+/// The camera stands still over an object at rest: each of its poses says the same, on time or
+/// late.
 fn at_rest(late: &[f64]) -> Tracker<'static> {
     let mut setup = setup(&[]);
     // a camera as noisy as told, so that all is normal
@@ -249,8 +251,8 @@ fn before_the_first_pose_there_is_no_estimate() {
     assert!(tracker.particles().is_none());
 }
 
-/// Fewer particles and more again: the estimates stay near those of one number, and the same numbers
-/// give the same bits.
+/// Fewer particles and more again: the estimates stay near those of one number, and the same
+/// numbers give the same bits.
 #[test]
 fn number_of_particles_may_change_from_row_to_row() {
     let (setup, log) = push();

@@ -1,10 +1,10 @@
-//! What a belief is does not depend on how the world's axes lie: noise is drawn along them, but with
-//! the same deviation on both, so that the belief of a turned scene is the turned belief. The random
-//! numbers fall otherwise, so that scores differ as those of two seeds do.
+//! What a belief is does not depend on how the world's axes lie: noise is drawn along them, but
+//! with the same deviation on both, so that the belief of a turned scene is the turned belief. The
+//! random numbers fall otherwise, so that scores differ as those of two seeds do.
 
 use crate::common::{RATE, log, setup};
 use stickslip::dynamics::Pose;
-use stickslip::{Log, Mode, RunOptions, Setup, run};
+use stickslip::{FilterModel, Log, RunOptions, Setup, run};
 
 const SEEDS: u64 = 24;
 const ROWS: usize = 50;
@@ -38,10 +38,10 @@ fn on_a_turned_table(setup: &Setup, log: &Log) -> (Setup, Log) {
 }
 
 /// Mean pose and logarithms of its standard deviations at the last row: of each seed.
-fn beliefs(setup: &Setup, log: &Log, mode: Mode) -> Vec<[f64; 6]> {
+fn beliefs(setup: &Setup, log: &Log, model: FilterModel) -> Vec<[f64; 6]> {
     let belief = |seed: u64| {
         let options = RunOptions {
-            mode,
+            model,
             seed,
             ..RunOptions::default()
         };
@@ -63,11 +63,11 @@ fn over_seeds(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
     [mean, (square / (count - 1.0) / count).sqrt()]
 }
 
-fn the_belief_turns_with_the_scene(mode: Mode) {
+fn the_belief_turns_with_the_scene(model: FilterModel) {
     let (setup, log) = pushed();
-    let straight = beliefs(&setup, &log, mode);
+    let straight = beliefs(&setup, &log, model);
     let (setup, log) = on_a_turned_table(&setup, &log);
-    let other = beliefs(&setup, &log, mode);
+    let other = beliefs(&setup, &log, model);
 
     // what the belief on the turned table is in the axes of the straight one
     let back = |b: &[f64; 6]| {
@@ -80,19 +80,19 @@ fn the_belief_turns_with_the_scene(mode: Mode) {
         let limit = 4.0 * error.hypot(other_error);
         assert!(
             (found - expected).abs() < limit,
-            "{mode:?}, number {k}: {found} turned, {expected} straight, {limit}"
+            "{model:?}, number {k}: {found} turned, {expected} straight, {limit}"
         );
         // noise that is twice as large along one axis would be seen
-        assert!(k < 3 || limit < 0.5, "{mode:?}, number {k}: {limit}");
+        assert!(k < 3 || limit < 0.5, "{model:?}, number {k}: {limit}");
     }
 }
 
 #[test]
 fn the_belief_of_contact_mode_turns_with_the_scene() {
-    the_belief_turns_with_the_scene(Mode::Contact);
+    the_belief_turns_with_the_scene(FilterModel::Robust);
 }
 
 #[test]
 fn the_belief_of_paper_mode_turns_with_the_scene() {
-    the_belief_turns_with_the_scene(Mode::Paper);
+    the_belief_turns_with_the_scene(FilterModel::Paper);
 }

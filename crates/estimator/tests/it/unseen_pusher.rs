@@ -4,7 +4,8 @@ use crate::common::{know_feet, setup};
 use stickslip::dynamics::Pose;
 use stickslip::*;
 
-/// Speed of the pusher (m/s), from when on it moves (s), and by how much its centre lies behind that of the disc.
+/// Speed of the pusher (m/s), from when on it moves (s), and by how much its centre lies behind
+/// that of the disc.
 const SPEED: f64 = 0.02;
 const START: f64 = 0.4;
 const BEHIND: f64 = 0.035;
@@ -14,8 +15,8 @@ fn place(time: f64) -> f64 {
     SPEED * (time - START).max(0.0)
 }
 
-/// So many rows at `rate` (Hz) of a push that goes on to the end, without the object and without the pusher where these
-/// are `hidden` at a time (s).
+/// So many rows at `rate` (Hz) of a push that goes on to the end, without the object and without
+/// the pusher where these are `hidden` at a time (s).
 fn push(rows: usize, rate: f64, hidden: impl Fn(f64) -> [bool; 2]) -> Log {
     let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);
     let mut log = Log::default();
@@ -121,8 +122,8 @@ fn a_pusher_that_is_seldom_seen_pushes_between_its_poses() {
     }
 }
 
-/// Largest distance (m) in x from where the object is while the pusher's poses are missing for a second, in which it
-/// moves the object on or is lifted off it; and the mean standard deviation.
+/// Largest distance (m) in x from where the object is while the pusher's poses are missing for a
+/// second, in which it moves the object on or is lifted off it; and the mean standard deviation.
 fn without_pusher(moves_on: bool, tracking: Tracking) -> (f64, f64) {
     let setup = setup(&[]);
     let (lost, back) = (2.0, 3.0);

@@ -1,14 +1,15 @@
-//! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...`: where
-//! the truth lies in the filter's belief, over experiments whose friction is drawn from the prior: moved by
-//! the filter's own noisy dynamics, by these without noise and by the testbed, with touch, without, and with the
-//! camera on throughout, in both modes: at the end in the runs that observe a quantity, and in all runs at the last row
-//! that the camera saw. Keys are those of a scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is
-//! what they cost, `force_spread=1 creep=0.1` the model of the particles that learn friction. With keys only contact
-//! mode, which knows them, is run.
+//! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...`:
+//! where the truth lies in the filter's belief, over experiments whose friction is drawn from the
+//! prior: moved by the filter's own noisy dynamics, by these without noise and by the testbed, with
+//! touch, without, and with the camera on throughout, in both modes: at the end in the runs that
+//! observe a quantity, and in all runs at the last row that the camera saw. Keys are those of a
+//! scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is what they cost,
+//! `force_spread=1 creep=0.1` the model of the particles that learn friction. With keys only
+//! contact mode, which knows them, is run.
 
 use std::error::Error;
 
-use stickslip::{Mode, Uncertainty};
+use stickslip::{FilterModel, Uncertainty};
 use stickslip_evaluation::paper::PaperExperiment;
 use stickslip_evaluation::{
     CalibrationOptions, CalibrationRun, Observed, Physics, QUANTITIES, RankTally, Tally,
@@ -32,8 +33,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let particles = numbers.get(1).copied().unwrap_or(500);
     let uncertainty = uncertainty(&keys)?;
     let modes = match keys.is_empty() {
-        true => &[(Mode::Contact, "contact"), (Mode::Paper, "paper")][..],
-        false => &[(Mode::Contact, "contact")],
+        true => &[
+            (FilterModel::Robust, "robust"),
+            (FilterModel::Paper, "paper"),
+        ][..],
+        false => &[(FilterModel::Robust, "robust")],
     };
     println!(
         "{runs} runs each, {particles} particles; coverage of 90 % intervals at the end of the run"
@@ -47,16 +51,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         (TruthSource::Simulated(Physics::Testbed), "testbed"),
     ];
     for (source, truth) in sources {
-        for &(mode, name) in modes {
+        for &(model, name) in modes {
             for (variant, sensors) in VARIANTS {
                 let options = CalibrationOptions {
                     source,
-                    mode,
+                    model,
                     uncertainty,
                     variant,
                     particles,
                 };
-                println!("\n{truth}: {name} mode, {sensors}");
+                println!("\n{truth}: {name} model, {sensors}");
                 show(&CalibrationRun::of_papers(runs, &options));
             }
         }

@@ -1,6 +1,6 @@
 //! One of the paper's experiments with one seed: [`Replicate`].
 
-use stickslip::{Camera, Mode, Occlusion, RunError, Setup, Tracking};
+use stickslip::{Camera, FilterModel, Occlusion, RunError, Setup, Tracking};
 use stickslip_formats::{Experiment, read_scene, read_truth_json};
 
 use super::noise::Noise;
@@ -17,8 +17,8 @@ const RATE: f64 = 30.0;
 /// What all runs of an evaluation have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunSettings {
-    /// Rules of the particle filter; the paper's are [`Mode::Paper`].
-    pub mode: Mode,
+    /// Rules of the particle filter; the paper's are [`FilterModel::Paper`].
+    pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
     /// How the thumb is tracked.
@@ -88,7 +88,7 @@ impl Replicate {
     #[must_use]
     pub fn conditions(&self, settings: RunSettings) -> RunConditions {
         RunConditions {
-            mode: settings.mode,
+            model: settings.model,
             particles: settings.particles,
             tracking: settings.tracking,
             occlusion: self.occlusion,

@@ -35,8 +35,8 @@ pub struct MeasurementUpdate<const N: usize, const M: usize> {
 }
 
 impl<const N: usize> Gaussian<N> {
-    /// The normal distribution with the mean and the covariance of a mixture of parts (weight, distribution), whose
-    /// weights sum to `total`.
+    /// The normal distribution with the mean and the covariance of a mixture of parts (weight,
+    /// distribution), whose weights sum to `total`.
     #[must_use]
     pub fn mixture(parts: &[(f64, Self)], total: f64) -> Self {
         let mean: SVector<f64, N> = parts

@@ -51,8 +51,8 @@ impl ConstantVelocity {
         self.fit_process_noise_with_stds(times, measurements, &[])
     }
 
-    /// The same where measurements have standard deviations of their own, one per row or none at all;
-    /// those without have the model's.
+    /// The same where measurements have standard deviations of their own, one per row or none at
+    /// all; those without have the model's.
     ///
     /// # Errors
     /// If the model or the series is out of range or has fewer than 3 measurements, or a standard
@@ -232,8 +232,8 @@ fn log_likelihoods<const W: usize>(
 }
 
 /// The filters of [`ConstantVelocity`] for `W` levels of process noise side by side, written out
-/// for their two numbers, in units of measurement_std (so that R = 1, but for measurements with a noise
-/// of their own) and relative to the first measurement.
+/// for their two numbers, in units of measurement_std (so that R = 1, but for measurements with a
+/// noise of their own) and relative to the first measurement.
 struct Filters<const W: usize> {
     process_noise: [f64; W],
     position: [f64; W],
@@ -248,8 +248,8 @@ struct Filters<const W: usize> {
 }
 
 impl<const W: usize> Filters<W> {
-    /// At the first measurement, 0, whose variance is `variance`, at rest with a standard deviation of
-    /// `velocity_std`.
+    /// At the first measurement, 0, whose variance is `variance`, at rest with a standard deviation
+    /// of `velocity_std`.
     fn start(process_noise: [f64; W], variance: f64, velocity_std: f64) -> Self {
         Self {
             process_noise,
@@ -373,8 +373,8 @@ mod tests {
         }
     }
 
-    /// Noise of its own for every third row: the likelihood is that of the filter that is written with
-    /// matrices.
+    /// Noise of its own for every third row: the likelihood is that of the filter that is written
+    /// with matrices.
     #[test]
     fn log_likelihoods_take_the_noise_of_each_measurement() {
         let axis = ConstantVelocity {

@@ -70,7 +70,8 @@ pub enum SeriesError {
 pub(crate) struct Series<'a> {
     times: &'a [f64],
     measurements: &'a [Option<f64>],
-    /// Standard deviations of the measurements, where they have their own; none at all, or one per row.
+    /// Standard deviations of the measurements, where they have their own; none at all, or one per
+    /// row.
     stds: &'a [Option<f64>],
 }
 

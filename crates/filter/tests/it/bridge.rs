@@ -5,7 +5,8 @@ use stickslip_filter::{
     BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, ParticleFilter, WeightUpdate,
 };
 
-/// Two numbers that stay, standard normal before; sums of shares of them are observed with normal noise.
+/// Two numbers that stay, standard normal before; sums of shares of them are observed with normal
+/// noise.
 struct TwoNumbers {
     sensors: Vec<Sensor>,
     moves: bool,
@@ -115,8 +116,8 @@ impl Model for TwoNumbers {
     }
 }
 
-/// Over 200 seeds: root mean square distance of the mean from the exact one, mean variance, mean of the
-/// evidence, all of the first number after one observation.
+/// Over 200 seeds: root mean square distance of the mean from the exact one, mean variance, mean of
+/// the evidence, all of the first number after one observation.
 fn after(noise: f64, moves: bool) -> [f64; 3] {
     let (exact, _, density) = TwoNumbers::exact(noise);
     let seeds = 200;

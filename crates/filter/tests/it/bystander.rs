@@ -3,8 +3,8 @@
 use crate::common::{settings, std};
 use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, ParticleFilter};
 
-/// A random walk by standard normal steps, whose place is observed, and a standard normal number that
-/// takes no part in it.
+/// A random walk by standard normal steps, whose place is observed, and a standard normal number
+/// that takes no part in it.
 struct WalkAndBystander;
 
 /// Standard deviation of what is observed.

@@ -148,7 +148,8 @@ fn log_likelihood_agrees_with_the_joint_density() {
     );
 }
 
-/// Every third measurement has a noise of its own, from much smaller to much larger than the model's.
+/// Every third measurement has a noise of its own, from much smaller to much larger than the
+/// model's.
 #[test]
 fn measurements_may_have_a_noise_of_their_own() {
     let (times, measurements) = series(40, 6);

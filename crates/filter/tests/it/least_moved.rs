@@ -94,8 +94,8 @@ impl Model for Number {
     }
 }
 
-/// Over ten seeds of 100 particles, after 2000 observations: root mean square distance of the mean from the exact one, in exact
-/// standard deviations, and the mean variance beside the exact one.
+/// Over ten seeds of 100 particles, after 2000 observations: root mean square distance of the mean
+/// from the exact one, in exact standard deviations, and the mean variance beside the exact one.
 fn after_many(least: f64) -> [f64; 2] {
     let (seeds, count) = (10, 2000_u32);
     let exact = 1.0 / (1.0 + f64::from(count) / (NOISE * NOISE));

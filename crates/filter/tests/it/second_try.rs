@@ -4,8 +4,8 @@ use stickslip_filter::{
     Attempt, Block, BlockMut, Draw, Model, ParticleFilter, Pool, Settings, WeightedSums,
 };
 
-/// A fork in the road: the first step leads a particle to 1 with probability [`RIGHT`], else to 0, for
-/// good; an observation o says that ln L is o at 0, and 0 at 1.
+/// A fork in the road: the first step leads a particle to 1 with probability [`RIGHT`], else to 0,
+/// for good; an observation o says that ln L is o at 0, and 0 at 1.
 struct Fork;
 
 const RIGHT: f64 = 0.01;
@@ -167,8 +167,8 @@ fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
     assert!(attempt > 0, "the first set had it: choose another seed");
 }
 
-/// Evidences of tries at a fork that the first observation explains better the wrong way, by e⁶, and the second the right
-/// way, by e⁴⁰.
+/// Evidences of tries at a fork that the first observation explains better the wrong way, by e⁶,
+/// and the second the right way, by e⁴⁰.
 fn tried_at_a_deceptive_fork(resampling: bool) -> Vec<f64> {
     let settings = Settings {
         particles: 500,

@@ -1,10 +1,11 @@
-//! What fits find on random virtual rigs whose constants are known, a line for each, and how often the 90 %
-//! intervals of the constants hold them: `cargo run --release -p stickslip-fit --example rigs -- face 0 60`.
+//! What fits find on random virtual rigs whose constants are known, a line for each, and how often
+//! the 90 % intervals of the constants hold them:
+//! `cargo run --release -p stickslip-fit --example rigs -- face 0 60`.
 //!
-//! The first word is what the rigs stand on: `tripod` (the model's own physics), `face` or `feet` (the
-//! testbed's). Numbers are the first rig and how many. The numbers of `crates/fit/src/discrepancy.rs` are
-//! those with which the even ones of 0 to 59 of each kind were most likely; the odd ones judged them, then
-//! rigs from 100 on, which nothing was chosen by.
+//! The first word is what the rigs stand on: `tripod` (the model's own physics), `face` or `feet`
+//! (the testbed's). Numbers are the first rig and how many. The numbers of
+//! `crates/fit/src/discrepancy.rs` are those with which the even ones of 0 to 59 of each kind were
+//! most likely; the odd ones judged them, then rigs from 100 on, which nothing was chosen by.
 
 mod random_rig;
 

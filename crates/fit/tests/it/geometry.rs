@@ -94,8 +94,8 @@ fn offset_of_the_pusher_is_found() {
     }
 }
 
-/// The log's object poses come 0.08 s late, and nobody says so. A noisy pusher track carries the object
-/// ahead by up to 0.3 mm, since contact only pushes: at 15 mm/s that looks like 0.02 s.
+/// The log's object poses come 0.08 s late, and nobody says so. A noisy pusher track carries the
+/// object ahead by up to 0.3 mm, since contact only pushes: at 15 mm/s that looks like 0.02 s.
 #[test]
 fn latency_is_found_as_far_as_the_pusher_is_known() {
     let mut truth = setup();

@@ -71,8 +71,8 @@ fn friction_of_another_physics_is_found_nearly() {
     }
 }
 
-/// A stiff pusher moves the object at its own speed whatever the table's friction, and no push comes
-/// near a fixel.
+/// A stiff pusher moves the object at its own speed whatever the table's friction, and no push
+/// comes near a fixel.
 #[test]
 fn what_pushes_do_not_show_keeps_its_prior() {
     let pushes = pushes(TRUTH, Physics::Model, 2, 20);

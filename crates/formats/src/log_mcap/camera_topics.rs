@@ -67,8 +67,9 @@ impl FromStr for CameraMapping {
 }
 
 impl CameraTopics {
-    /// The topics that are mapped. CameraInfo that is not mapped is looked for where ROS 2 has it, beside
-    /// the images: `/camera/camera_info` for `/camera/image_raw` and `/camera/image_raw/compressed`.
+    /// The topics that are mapped. CameraInfo that is not mapped is looked for where ROS 2 has it,
+    /// beside the images: `/camera/camera_info` for `/camera/image_raw` and
+    /// `/camera/image_raw/compressed`.
     ///
     /// # Errors
     /// No images are mapped, or something twice.
@@ -116,8 +117,8 @@ impl CameraTopics {
         }
     }
 
-    /// Whether the name of the topic says that its images were rectified, so that the distortion that
-    /// CameraInfo tells is no longer in them.
+    /// Whether the name of the topic says that its images were rectified, so that the distortion
+    /// that CameraInfo tells is no longer in them.
     #[must_use]
     pub fn is_rectified(&self) -> bool {
         self.image

@@ -81,7 +81,8 @@ pub(crate) fn bodies<'a>(
     bodies
 }
 
-/// A closed line for each part of each body, or the word to take it away where its pose is not known.
+/// A closed line for each part of each body, or the word to take it away where its pose is not
+/// known.
 pub(crate) fn markers(header: &Header, bodies: &[Body<'_>]) -> Vec<Marker> {
     let mut markers: Vec<Marker> = Vec::new();
     for body in bodies {
@@ -139,7 +140,8 @@ pub(crate) fn outline_points(body: &Body<'_>) -> Vec<[f64; 2]> {
     points.map(|point| pose.transform(point)).collect()
 }
 
-/// A line's points and others between them, from one to the next at most a share 1 / [`POINTS`] of the way.
+/// A line's points and others between them, from one to the next at most a share 1 / [`POINTS`] of
+/// the way.
 fn points_along(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let sides = || line.iter().zip(&line[1..]);
     let length = |(a, b): (&[f64; 2], &[f64; 2])| libm::hypot(b[0] - a[0], b[1] - a[1]);

@@ -13,20 +13,22 @@ use crate::log_mcap::pose_message::{PoseWithCovarianceStamped, TfMessage, Transf
 use crate::log_mcap::write::{McapWriteError, Recorder, header, pose_parts, stamps};
 use crate::number;
 
-/// Writes an estimate as an MCAP recording of ROS 2 messages in the frame `world`, one of each per row
-/// that has a pose:
+/// Writes an estimate as an MCAP recording of ROS 2 messages in the frame `world`, one of each per
+/// row that has a pose:
 ///
-/// - `/stickslip/pose`, `geometry_msgs/msg/PoseWithCovarianceStamped`: the pose with its covariance of
-///   x, y and the angle about z; the rest is 0, and so is what the method does not know,
+/// - `/stickslip/pose`, `geometry_msgs/msg/PoseWithCovarianceStamped`: the pose with its covariance
+///   of x, y and the angle about z; the rest is 0, and so is what the method does not know,
 /// - `/tf`, `tf2_msgs/msg/TFMessage`: the frame `stickslip_object` in `world`,
-/// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, of the pusher at
-///   its pose in `pusher` and of the fixels, red where contact is likelier than not,
-/// - `/stickslip/particles`, `geometry_msgs/msg/PoseArray`: row by row the poses of `cloud`, particles that
-///   count the same; none where the slice is shorter or the row has none,
-/// - `/stickslip/points/...`, `sensor_msgs/msg/PointCloud2`, for viewers without markers: points along the
-///   outlines of the `object`, and of `pusher` and `fixels` where they are not `touched`; `particles`,
-/// - `/stickslip/friction`, `friction_std`, `contacts`, `health` and `belief`, `std_msgs/msg/Float64MultiArray`:
-///   numbers of `estimate.csv`, the columns that the label of the dimension names; NaN for empty cells.
+/// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, of the
+///   pusher at its pose in `pusher` and of the fixels, red where contact is likelier than not,
+/// - `/stickslip/particles`, `geometry_msgs/msg/PoseArray`: row by row the poses of `cloud`,
+///   particles that count the same; none where the slice is shorter or the row has none,
+/// - `/stickslip/points/...`, `sensor_msgs/msg/PointCloud2`, for viewers without markers: points
+///   along the outlines of the `object`, and of `pusher` and `fixels` where they are not `touched`;
+///   `particles`,
+/// - `/stickslip/friction`, `friction_std`, `contacts`, `health` and `belief`,
+///   `std_msgs/msg/Float64MultiArray`: numbers of `estimate.csv`, the columns that the label of the
+///   dimension names; NaN for empty cells.
 ///
 /// The same estimate gives the same bytes.
 ///
@@ -214,8 +216,8 @@ fn friction(friction: Option<Friction>, has_tripod: bool) -> Vec<f64> {
     }
 }
 
-/// Writes an estimate's poses as lines `time x y z q_x q_y q_z q_w`, as evo and the benchmarks of the
-/// TU Munich have them; rows without a pose are left out.
+/// Writes an estimate's poses as lines `time x y z q_x q_y q_z q_w`, as evo and the benchmarks of
+/// the TU Munich have them; rows without a pose are left out.
 ///
 /// # Errors
 /// Those of `writer`.
@@ -229,7 +231,8 @@ pub fn write_estimate_tum(mut writer: impl Write, estimate: &Estimate) -> std::i
     Ok(())
 }
 
-/// Variances and covariances of x, y and the angle about z at their places; 0 where nothing is known.
+/// Variances and covariances of x, y and the angle about z at their places; 0 where nothing is
+/// known.
 fn covariance(row: &EstimateRow) -> [[f64; 6]; 6] {
     let mut covariance = [[0.0; 6]; 6];
     if let Some(spread) = &row.spread {

@@ -45,8 +45,8 @@ pub enum BagPicture {
     },
 }
 
-/// `sensor_msgs/msg/CameraInfo`: how a camera maps directions to pixels. Rotation and projection, which
-/// rectified images have, are not kept.
+/// `sensor_msgs/msg/CameraInfo`: how a camera maps directions to pixels. Rotation and projection,
+/// which rectified images have, are not kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BagCameraInfo {
     /// Columns and rows of an image.
@@ -59,8 +59,8 @@ pub struct BagCameraInfo {
     pub matrix: [f64; 9],
     /// Pixels of the sensor that are one of the image, along x and y; 0 is 1.
     pub binning: [u32; 2],
-    /// The part of the sensor that is read out: left, top, width, height (px); width and height 0 for
-    /// all of it.
+    /// The part of the sensor that is read out: left, top, width, height (px); width and height 0
+    /// for all of it.
     pub window: [u32; 4],
 }
 

@@ -20,12 +20,12 @@ use crate::log_mcap::source::ENCODING;
 /// Most bytes of an image's message: a chunk holds no more.
 const LARGEST_IMAGE: usize = CHUNK_LIMIT as usize;
 
-/// Reads how the camera maps directions to pixels, from the first message on its topic; `None` where
-/// there is none, or it is not to be read. Files are read no further than that message.
+/// Reads how the camera maps directions to pixels, from the first message on its topic; `None`
+/// where there is none, or it is not to be read. Files are read no further than that message.
 ///
 /// # Errors
-/// The bytes are no MCAP file or cannot be read; the topic is mapped and not there, or has messages of
-/// another type; a number is not finite.
+/// The bytes are no MCAP file or cannot be read; the topic is mapped and not there, or has messages
+/// of another type; a number is not finite.
 pub fn read_bag_camera_info<R: Read>(
     files: impl IntoIterator<Item = (String, R)>,
     topics: &CameraTopics,
@@ -58,15 +58,15 @@ pub fn read_bag_camera_info<R: Read>(
     }
 }
 
-/// Shows the images of a bag to `take`, in the order of its files, until that says to break. One chunk
-/// of at most 256 MiB is in memory, and the image that is shown.
+/// Shows the images of a bag to `take`, in the order of its files, until that says to break. One
+/// chunk of at most 256 MiB is in memory, and the image that is shown.
 ///
 /// Returns what else was read: the readings of sensors up to there.
 ///
 /// # Errors
-/// Those of `take`; the bytes are no MCAP file or cannot be read; the images' topic is not there or has
-/// messages of another type; a message does not fit its type; two images have one stamp; a message of
-/// CameraInfo says something else than the first one.
+/// Those of `take`; the bytes are no MCAP file or cannot be read; the images' topic is not there or
+/// has messages of another type; a message does not fit its type; two images have one stamp; a
+/// message of CameraInfo says something else than the first one.
 pub fn read_bag_images<R: Read, E: From<McapError>>(
     files: impl IntoIterator<Item = (String, R)>,
     topics: &CameraTopics,

@@ -31,8 +31,8 @@ pub struct BagInfo {
     pub poses: Vec<PosesInfo>,
     /// What of it would do for a log, as `--topic` takes it; keys are left out where nothing would.
     pub suggestion: Vec<String>,
-    /// What of it would do to find the poses in images, as `stickslip track --topic` takes it; empty
-    /// without images.
+    /// What of it would do to find the poses in images, as `stickslip track --topic` takes it;
+    /// empty without images.
     pub image_suggestion: Vec<String>,
 }
 

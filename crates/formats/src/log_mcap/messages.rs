@@ -59,8 +59,8 @@ pub(crate) trait Visitor {
     fn message(&mut self, message: Recorded<'_>) -> Result<(), Stop>;
 }
 
-/// Shows all messages of file number `number` of a bag to `visitor`, up to the first damage, which is
-/// returned. The whole file may be packed with zstd.
+/// Shows all messages of file number `number` of a bag to `visitor`, up to the first damage, which
+/// is returned. The whole file may be packed with zstd.
 pub(crate) fn messages(
     file: impl Read,
     number: usize,
@@ -232,7 +232,8 @@ impl Progress<'_> {
     }
 }
 
-/// What a message of a needed topic says, at most `limit` bytes; it may be packed with zstd by itself.
+/// What a message of a needed topic says, at most `limit` bytes; it may be packed with zstd by
+/// itself.
 pub(crate) fn message_data<'d>(
     topic: &str,
     data: &'d [u8],

@@ -71,14 +71,15 @@ pub fn read_log_mcap(
 /// Bool the log time; messages may come in any order.
 ///
 /// A row stands at every stamp of the object and, where there is none for longer than the camera's
-/// period, at stamps of the pusher, about one per period or per 0.05 s. The pusher is interpolated between poses at
-/// most 0.2 s apart, and so are transforms on the way between two frames. A tactile cell is 1 if any
-/// reading in the interval that ends at its row is true, 0 if there are only false ones, without any
-/// the last one if it is at most 0.5 s old; a force cell is the interval's mean. The first row's
-/// interval is as long as the second's. θ = 2 atan2(q_z, q_w), unwrapped.
+/// period, at stamps of the pusher, about one per period or per 0.05 s. The pusher is interpolated
+/// between poses at most 0.2 s apart, and so are transforms on the way between two frames. A
+/// tactile cell is 1 if any reading in the interval that ends at its row is true, 0 if there are
+/// only false ones, without any the last one if it is at most 0.5 s old; a force cell is the
+/// interval's mean. The first row's interval is as long as the second's. θ = 2 atan2(q_z, q_w),
+/// unwrapped.
 ///
-/// Where messages of the object have a covariance, that of x, y and the turn about z is the row's; one
-/// of zeros is not known, and so is one that is none, with a warning.
+/// Where messages of the object have a covariance, that of x, y and the turn about z is the row's;
+/// one of zeros is not known, and so is one that is none, with a warning.
 ///
 /// Files are read piece by piece; memory is taken for one chunk of at most 256 MiB, and for the
 /// messages of the needed topics. Files, chunks and messages may be packed with zstd.
@@ -87,10 +88,11 @@ pub fn read_log_mcap(
 /// [`LogWarning::is_loss`] holds.
 ///
 /// # Errors
-/// The bytes are no MCAP file or cannot be read; the topic of object or pusher, or one that is mapped, is missing;
-/// sensors are not numbered without gaps; a topic has messages of another type or encoding; a
-/// number is not finite, an orientation no rotation; two messages of a topic have one stamp; frames
-/// differ or are not joined; a tag's place on its body is not told; there is no pose at all.
+/// The bytes are no MCAP file or cannot be read; the topic of object or pusher, or one that is
+/// mapped, is missing; sensors are not numbered without gaps; a topic has messages of another type
+/// or encoding; a number is not finite, an orientation no rotation; two messages of a topic have
+/// one stamp; frames differ or are not joined; a tag's place on its body is not told; there is no
+/// pose at all.
 pub fn read_bag<R: Read>(
     files: impl IntoIterator<Item = (String, R)>,
     options: &BagOptions,

@@ -1,6 +1,7 @@
 //! An MCAP file as records, as far as it can be read: [`records`], and what is in a chunk.
 //!
-//! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in them.
+//! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in
+//! them.
 
 use std::io::{self, ErrorKind, Read};
 
@@ -10,8 +11,8 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::log_mcap::error::McapProblem;
 
-/// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large image
-/// takes 50. No more than this of a file is in memory at a time.
+/// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large
+/// image takes 50. No more than this of a file is in memory at a time.
 pub(crate) const CHUNK_LIMIT: u64 = 1 << 28;
 
 /// Most bytes that are taken from a file at once: a record may claim more than there is.

@@ -31,11 +31,12 @@ impl CameraRecording {
         damage_warnings(&self.recording, &self.files)
     }
 
-    /// What sensors read in rows at `time` (ns, rising); forces from `touch_force` (N) on are touches. As
-    /// in [`read_bag`](crate::read_bag).
+    /// What sensors read in rows at `time` (ns, rising); forces from `touch_force` (N) on are
+    /// touches. As in [`read_bag`](crate::read_bag).
     ///
     /// # Errors
-    /// Sensors are not numbered without gaps, a mapped one is missing, a message does not fit its type.
+    /// Sensors are not numbered without gaps, a mapped one is missing, a message does not fit its
+    /// type.
     pub fn readings(
         &self,
         topics: &CameraTopics,

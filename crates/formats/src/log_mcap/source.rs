@@ -94,8 +94,8 @@ impl<'a> Source<'a> {
         self.by_stamp(read)
     }
 
-    /// Whether something touches: readings by log time, since such messages have no stamp, or forces
-    /// by stamp, of which those of `touch_force` (N) and more are touches.
+    /// Whether something touches: readings by log time, since such messages have no stamp, or
+    /// forces by stamp, of which those of `touch_force` (N) and more are touches.
     pub(crate) fn touches(&self, touch_force: f64) -> Result<Series<bool>, McapError> {
         if self.kind(&[Bool::TYPE, WrenchStamped::TYPE])? == WrenchStamped::TYPE {
             let read = self.read(|data| {

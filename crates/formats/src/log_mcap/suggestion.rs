@@ -56,8 +56,8 @@ pub(crate) fn suggestion(topics: &[TopicInfo], poses: &[PosesInfo]) -> Vec<Strin
     suggested
 }
 
-/// Mappings of a bag with images: of several cameras the one whose numbers are there, and whose images
-/// are as its lens made them; nothing without images.
+/// Mappings of a bag with images: of several cameras the one whose numbers are there, and whose
+/// images are as its lens made them; nothing without images.
 pub(crate) fn images(topics: &[TopicInfo]) -> Vec<String> {
     let camera = |info: &TopicInfo| CameraTopics::new([CameraMapping::Image(info.name.clone())]);
     let with_images = topics.iter().filter(|info| info.keys.contains(&"image"));

@@ -239,7 +239,8 @@ impl Topics {
         Ok(Self(places))
     }
 
-    /// Name of a topic, with its first frames where it has some; `None` for a wrench that is left out.
+    /// Name of a topic, with its first frames where it has some; `None` for a wrench that is left
+    /// out.
     #[must_use]
     pub fn name(&self, topic: Topic) -> Option<String> {
         self.places(topic).first().map(Place::to_string)

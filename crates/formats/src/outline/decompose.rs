@@ -3,9 +3,9 @@
 use crate::outline::Point;
 use crate::outline::error::OutlineProblem;
 
-/// Cuts a simple counter-clockwise polygon into convex ones that share edges: ears are cut off, then
-/// edges are taken out where both ends stay convex (Hertel & Mehlhorn 1983), which leaves at most four
-/// times as many parts as there must be.
+/// Cuts a simple counter-clockwise polygon into convex ones that share edges: ears are cut off,
+/// then edges are taken out where both ends stay convex (Hertel & Mehlhorn 1983), which leaves at
+/// most four times as many parts as there must be.
 ///
 /// Ears are cut off fattest first, so that no sliver is left, and in the order of the boundary from
 /// some of its vertices on; the way that leaves the fewest parts counts.
@@ -59,8 +59,8 @@ fn turn([a, b, c]: [Point; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Triangles of vertex numbers, counter-clockwise. Where an ear is cut off, no other vertex than its
-/// neighbours becomes an ear or ceases to be one (O'Rourke 1998), so that n² steps are enough.
+/// Triangles of vertex numbers, counter-clockwise. Where an ear is cut off, no other vertex than
+/// its neighbours becomes an ear or ceases to be one (O'Rourke 1998), so that n² steps are enough.
 fn triangles(polygon: &[Point], order: Order) -> Result<Vec<Vec<usize>>, OutlineProblem> {
     let mut left: Vec<usize> = (0..polygon.len()).collect();
     if let Order::From(start) = order {

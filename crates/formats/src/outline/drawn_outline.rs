@@ -172,8 +172,8 @@ fn extent(contour: &[Point]) -> Point {
     })
 }
 
-/// The contour about `centre`, counter-clockwise, its coordinates rounded, without points that lie on
-/// the line of their neighbours.
+/// The contour about `centre`, counter-clockwise, its coordinates rounded, without points that lie
+/// on the line of their neighbours.
 fn rounded(contour: &[Point], centre: Point) -> Vec<Point> {
     let near = |x: f64| (x / ROUNDED).round() * ROUNDED;
     let mut points: Vec<Point> = contour

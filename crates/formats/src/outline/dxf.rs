@@ -22,12 +22,13 @@ const NOT_DRAWN: [&str; 10] = [
     "ENDSEC",
 ];
 
-/// Reads the outline of an object from a DXF drawing in ASCII: its lines, polylines with their arcs,
-/// circles and ellipses; `name` is shown in errors. Lengths are in the unit that `$INSUNITS` says.
+/// Reads the outline of an object from a DXF drawing in ASCII: its lines, polylines with their
+/// arcs, circles and ellipses; `name` is shown in errors. Lengths are in the unit that `$INSUNITS`
+/// says.
 ///
 /// # Errors
-/// [`OutlineError`]: no DXF, no unit, entities that cannot be read, no closed line, several of them side
-/// by side, one that crosses itself, sizes that cannot be.
+/// [`OutlineError`]: no DXF, no unit, entities that cannot be read, no closed line, several of them
+/// side by side, one that crosses itself, sizes that cannot be.
 pub fn read_dxf_outline(
     text: &str,
     name: &str,

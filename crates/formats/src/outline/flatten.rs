@@ -13,8 +13,8 @@ pub(super) struct Flattener {
 }
 
 impl Flattener {
-    /// Adds a Bézier curve of degree 2 or 3 behind its first point, which is there already. A chord of
-    /// a curve c over a step h of its parameter is at most h²/8 max |c″| off.
+    /// Adds a Bézier curve of degree 2 or 3 behind its first point, which is there already. A chord
+    /// of a curve c over a step h of its parameter is at most h²/8 max |c″| off.
     pub(super) fn bezier<const N: usize>(&self, points: [Point; N], to: &mut Vec<Point>) {
         let degree = (N - 1) as f64;
         let bend = |[a, b, c]: &[Point; 3]| {
@@ -29,8 +29,8 @@ impl Flattener {
         }
     }
 
-    /// Adds an arc of an ellipse behind its first point: about `centre`, with half axes `a` and `b` at
-    /// right angles, over the eccentric anomalies `from` to `to_angle` (rad).
+    /// Adds an arc of an ellipse behind its first point: about `centre`, with half axes `a` and `b`
+    /// at right angles, over the eccentric anomalies `from` to `to_angle` (rad).
     pub(super) fn arc(
         &self,
         (centre, a, b): (Point, Point, Point),

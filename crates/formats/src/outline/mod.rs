@@ -1,8 +1,8 @@
 //! Outlines from drawings: [`read_svg_outline`], [`read_dxf_outline`], both an [`Outline`].
 //!
-//! `svg` and `dxf` take drawings apart into `lines`, curves flattened by `flatten`; `contours` joins lines
-//! that meet into closed ones, `drawn_outline` takes the outermost and moves it into the object's frame,
-//! `decompose` cuts it into convex parts.
+//! `svg` and `dxf` take drawings apart into `lines`, curves flattened by `flatten`; `contours`
+//! joins lines that meet into closed ones, `drawn_outline` takes the outermost and moves it into
+//! the object's frame, `decompose` cuts it into convex parts.
 
 mod contours;
 mod decompose;

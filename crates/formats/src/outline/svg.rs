@@ -36,11 +36,11 @@ const NOT_DRAWN: [&str; 14] = [
     "linearGradient",
 ];
 
-/// Reads the outline of an object from an SVG drawing: its lines, curves, rectangles, circles, ellipses
-/// and polygons, whatever colour they have; `name` is shown in errors.
+/// Reads the outline of an object from an SVG drawing: its lines, curves, rectangles, circles,
+/// ellipses and polygons, whatever colour they have; `name` is shown in errors.
 ///
-/// Lengths are those that `width`, `height` and `viewBox` say, or pixels of 1/96 inch. The drawing's y
-/// points down, the object's up.
+/// Lengths are those that `width`, `height` and `viewBox` say, or pixels of 1/96 inch. The
+/// drawing's y points down, the object's up.
 ///
 /// # Errors
 /// [`OutlineError`]: no SVG, elements that refer to others, no closed line, several of them side by
@@ -354,7 +354,8 @@ impl Drawing {
     }
 }
 
-/// Refuses numbers of a path that are too large: as many curves stand for an arc as its radius asks for.
+/// Refuses numbers of a path that are too large: as many curves stand for an arc as its radius asks
+/// for.
 fn check_numbers(d: &str) -> Result<(), OutlineProblem> {
     use svgtypes::PathSegment::{
         ClosePath, CurveTo, EllipticalArc, HorizontalLineTo, LineTo, MoveTo, Quadratic,

@@ -47,8 +47,8 @@ impl SceneEdit {
         self.heading += &format!("# {line}\n");
     }
 
-    /// Writes a number, rounded to six digits, at the end of a way of keys; tables that are missing are
-    /// made.
+    /// Writes a number, rounded to six digits, at the end of a way of keys; tables that are missing
+    /// are made.
     ///
     /// # Panics
     /// If the way is empty or leads through something that is no table.
@@ -63,8 +63,8 @@ impl SceneEdit {
         table.insert(key, Item::Value(value));
     }
 
-    /// Writes the outline of a body, `object` or `pusher`, one part a line; the names of its parts stay, what
-    /// was written between them does not.
+    /// Writes the outline of a body, `object` or `pusher`, one part a line; the names of its parts
+    /// stay, what was written between them does not.
     ///
     /// # Panics
     /// If the scene has no such body.

@@ -300,7 +300,8 @@ fn pusher(table: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
 /// The force (N) at which the drive gives way; `None` where the file says that it never does.
 ///
 /// No drive is rigid, and a jam under a rigid one has no solution: where the file says nothing, it
-/// is a multiple of `sliding`. It must be given where that is no force, on a table without friction.
+/// is a multiple of `sliding`. It must be given where that is no force, on a table without
+/// friction.
 fn stall_force(table: &Table<'_>, sliding: f64) -> Result<Option<f64>> {
     let assumed = ASSUMED_STALL * sliding;
     let force = if assumed > 0.0 && assumed.is_finite() {
@@ -311,7 +312,8 @@ fn stall_force(table: &Table<'_>, sliding: f64) -> Result<Option<f64>> {
     Ok(force.is_finite().then_some(force))
 }
 
-/// The feet with the nominal d_tri; where the file has none, that of a plate of the object's outline.
+/// The feet with the nominal d_tri; where the file has none, that of a plate of the object's
+/// outline.
 fn feet(support: &Table<'_>, object: &Table<'_>) -> Result<(Feet, f64)> {
     match support.optional(FOOT.key) {
         Some(feet) => known_feet(support, &feet),
@@ -343,7 +345,8 @@ fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
     Ok((Feet::Known { positions, loads }, (a + b + c) / 3.0))
 }
 
-/// Loads that are not those of statics: where friction acts about another point than the centre of mass.
+/// Loads that are not those of statics: where friction acts about another point than the centre of
+/// mass.
 fn given_loads(node: &Node<'_>) -> Result<[f64; 3]> {
     let [a, b, c] = node.exactly::<3>(FOOT_LOADS.what)?;
     let loads = [

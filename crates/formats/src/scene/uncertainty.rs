@@ -134,8 +134,8 @@ const TOUCH_GAP: Quantity = Quantity::new(
     Rule::Positive,
 );
 
-/// What is not known where the file does not say: where feet are given, they stand there, and so does a tripod
-/// whose angle is.
+/// What is not known where the file does not say: where feet are given, they stand there, and so
+/// does a tripod whose angle is.
 pub(super) fn with_support(support: &Table<'_>) -> Uncertainty {
     let given = |key: &str| support.optional(key).is_some();
     let mut unknown = Uncertainty::default();

@@ -1,5 +1,5 @@
-//! Bags as ROS 2 leaves them: poses in other messages than PoseStamped, between frames of transforms,
-//! from several tags; forces as touches; files, chunks and messages packed and split.
+//! Bags as ROS 2 leaves them: poses in other messages than PoseStamped, between frames of
+//! transforms, from several tags; forces as touches; files, chunks and messages packed and split.
 
 use crate::bag;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -109,8 +109,8 @@ fn body(k: i64) -> Pose {
     Pose::new(0.02 + 0.001 * k, -0.03 + 0.0005 * k, 2.9 + 0.02 * k)
 }
 
-/// Transforms from the camera to a tag and back to the table: 30 frames, the table's frame seen as a
-/// child of the camera as well.
+/// Transforms from the camera to a tag and back to the table: 30 frames, the table's frame seen as
+/// a child of the camera as well.
 fn seen_by_camera(mount: Pose, down: bool) -> Vec<Line> {
     (0..30)
         .map(|k| {

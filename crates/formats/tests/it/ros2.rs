@@ -1,8 +1,8 @@
 //! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written
 //! here, and what rosbags writes is read here.
 //!
-//! `cargo test -p stickslip-formats --test it -- --ignored ros2::`, with these Python packages where
-//! `python3` finds them.
+//! `cargo test -p stickslip-formats --test it -- --ignored ros2::`, with these Python packages
+//! where `python3` finds them.
 
 use std::f64::consts::TAU;
 use std::fs::{self, File};
@@ -190,8 +190,8 @@ fn read_folder(bag: &Path, options: &BagOptions) -> Log {
     log
 }
 
-/// Asserts that a bag's log is that of the table, but for a pusher that is missing for a moment, and
-/// is bridged; poses are the same within `tolerance`, angles to a full turn.
+/// Asserts that a bag's log is that of the table, but for a pusher that is missing for a moment,
+/// and is bridged; poses are the same within `tolerance`, angles to a full turn.
 #[track_caller]
 fn assert_same(read: &Log, log: &Log, tolerance: f64) {
     assert_eq!((read.len(), &read.tactile), (log.len(), &log.tactile));

@@ -1,8 +1,8 @@
 //! Estimates against other programs: mcap-ros2-support and rosbags read the messages, evo the
 //! trajectory.
 //!
-//! `cargo test -p stickslip-formats --test it -- --ignored ros2_estimate::`, with these Python packages where
-//! `python3` finds them.
+//! `cargo test -p stickslip-formats --test it -- --ignored ros2_estimate::`, with these Python
+//! packages where `python3` finds them.
 
 use std::fs::File;
 use std::path::Path;

@@ -2,8 +2,8 @@
 //! the dark rows are shaded, the page fits a phone. Chromium prints the page after its scripts have
 //! run, with a verdict that a script added here wrote into it.
 //!
-//! `cargo test -p stickslip-report --test it -- --ignored browser::`; the browser is `chromium`, or what
-//! `STICKSLIP_CHROMIUM` names.
+//! `cargo test -p stickslip-report --test it -- --ignored browser::`; the browser is `chromium`, or
+//! what `STICKSLIP_CHROMIUM` names.
 
 mod chromium;
 

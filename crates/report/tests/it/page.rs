@@ -79,7 +79,8 @@ fn a_download_holds_every_byte() {
     assert_eq!(read, bytes);
 }
 
-/// Poses that the camera had lost just before they were hidden belong to the blackout; others do not.
+/// Poses that the camera had lost just before they were hidden belong to the blackout; others do
+/// not.
 #[test]
 fn the_camera_is_dark_from_the_last_pose_on() {
     let (setup, mut log) = (setup(), log(90));
@@ -257,8 +258,8 @@ fn legend(experiment: &ReportedExperiment<'_>) -> String {
     after.split_once("</p>").unwrap().0.to_owned()
 }
 
-/// A log of a camera tells of no contact; without sensors nothing is ever yellow, and a Kalman filter
-/// has neither particles nor probabilities.
+/// A log of a camera tells of no contact; without sensors nothing is ever yellow, and a Kalman
+/// filter has neither particles nor probabilities.
 #[test]
 fn the_legend_names_what_is_there() {
     let (setup, log) = (setup(), log(60));

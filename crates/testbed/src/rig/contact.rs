@@ -1,7 +1,7 @@
 //! Compliant contacts with friction: [`ContactLaw`], [`CompliantContact`].
 //!
-//! A spring and a damper push overlapping bodies apart; they never pull. Along the tangent a bristle
-//! stretches with the slip, and pulls with at most μ times the normal force.
+//! A spring and a damper push overlapping bodies apart; they never pull. Along the tangent a
+//! bristle stretches with the slip, and pulls with at most μ times the normal force.
 
 use stickslip_dynamics::Gap;
 
@@ -74,8 +74,8 @@ impl CompliantContact {
         }
     }
 
-    /// Force at one contact point in this step; its gap is negative. `mass` is the object's (kg), `h`
-    /// the step (s).
+    /// Force at one contact point in this step; its gap is negative. `mass` is the object's (kg),
+    /// `h` the step (s).
     pub(super) fn force(
         &mut self,
         law: &ContactLaw,

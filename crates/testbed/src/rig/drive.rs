@@ -1,5 +1,5 @@
-//! The pusher's drive: [`DriveSettings`], a motor that lags and ripples, and a compliant [`Spindle`]
-//! that slips at the stall force.
+//! The pusher's drive: [`DriveSettings`], a motor that lags and ripples, and a compliant
+//! [`Spindle`] that slips at the stall force.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls, in steps
-//! of 80 µs or less.
+//! The rig: an object on bristles, compliant contacts, a drive that lags, ripples and stalls, in
+//! steps of 80 µs or less.
 //!
 //! Nothing here solves a complementarity problem: every force is a function of the state, and the
 //! state is integrated by semi-implicit Euler steps, v ← v + h M⁻¹ f(q, v), q ← q + h v.

@@ -1,8 +1,8 @@
 //! Friction between object and table: [`SupportFriction`], bristles under every point of the face.
 //!
 //! Each point drags a bristle along the table. Per unit of load it pulls with κ z + γ s, where z is
-//! its stretch and s the point's slip velocity, and with at most μ(x, y) φ(|s|). A bristle whose κ z
-//! reaches that limit slips: z stops growing and aligns with s.
+//! its stretch and s the point's slip velocity, and with at most μ(x, y) φ(|s|). A bristle whose κ
+//! z reaches that limit slips: z stops growing and aligns with s.
 
 use stickslip_dynamics::{Pose, Scene, Twist, Wrench};
 
@@ -182,8 +182,8 @@ impl SupportFriction {
 impl Block {
     /// One step of the bristles; adds their pull and its moment to `sums`.
     ///
-    /// Written line by line over the lanes, with selections for branches, so that it compiles to SIMD
-    /// instructions.
+    /// Written line by line over the lanes, with selections for branches, so that it compiles to
+    /// SIMD instructions.
     #[inline(always)]
     fn step(
         &mut self,

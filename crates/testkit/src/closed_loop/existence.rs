@@ -16,8 +16,8 @@ const ENUMERATED: usize = 3;
 /// What is known of a step's solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existence {
-    /// There is one of a speed that is sought: no impulses within the friction cones cancel each other, and work
-    /// bounds the speed, or one was found by enumeration.
+    /// There is one of a speed that is sought: no impulses within the friction cones cancel each
+    /// other, and work bounds the speed, or one was found by enumeration.
     Certain,
     /// The gap rows exclude each other at every reasonable speed.
     Excluded,

@@ -1,8 +1,8 @@
 //! Random scenes in closed loop: [`ClosedLoop`] makes a scene, records a push in it, and lets the
 //! particle filter follow that with noise, warm starts and resampling, while every step is judged.
 //!
-//! A scene is a pure function of (seed, index, frames, particles); so is everything that is counted.
-//! Only the times are not.
+//! A scene is a pure function of (seed, index, frames, particles); so is everything that is
+//! counted. Only the times are not.
 
 mod block_timer;
 mod existence;
@@ -100,8 +100,8 @@ impl ClosedLoop {
         RandomScene::draw(self.seed, index, self.frames, self.particles).to_string()
     }
 
-    /// Runs the scenes of `range`, one to a thread; `progress` is shown each as it ends, in no fixed
-    /// order.
+    /// Runs the scenes of `range`, one to a thread; `progress` is shown each as it ends, in no
+    /// fixed order.
     ///
     /// # Errors
     /// The filter refuses a scene.

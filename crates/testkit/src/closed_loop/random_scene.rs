@@ -3,7 +3,7 @@
 use std::fmt;
 
 use stickslip::{
-    Camera, FilterSettings, Limits, Mode, Occlusion, RunOptions, Setup, Tactile, TactileUse,
+    Camera, FilterModel, FilterSettings, Limits, Occlusion, RunOptions, Setup, Tactile, TactileUse,
     Tracking, Uncertainty,
 };
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
@@ -279,7 +279,7 @@ fn filter_settings(rng: &mut SplitMix64, limits: Friction<Limits>) -> FilterSett
 
 fn options(rng: &mut SplitMix64, frames: usize, particles: usize) -> RunOptions {
     RunOptions {
-        mode: Mode::Paper,
+        model: FilterModel::Paper,
         particles,
         seed: rng.word(),
         tactile: if rng.one_in(3) {

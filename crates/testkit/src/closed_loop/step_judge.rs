@@ -19,8 +19,8 @@ use crate::survey::Tally;
 /// Of the steps that the Newton iteration solved, one in so many is checked.
 const CHECK_ONE_IN: u64 = 50;
 
-/// Largest independent residual of a solved step (m/s): the tolerance of the solver, twice, since the
-/// two residuals round differently.
+/// Largest independent residual of a solved step (m/s): the tolerance of the solver, twice, since
+/// the two residuals round differently.
 const LARGEST_RESIDUAL: f64 = 2e-9;
 
 /// Proofs checked per scene: the first ones, then one in so many; of the first one all modes of its

@@ -29,8 +29,8 @@ fn counts(run: SceneRun) -> LoopTally {
     }
 }
 
-/// Steps of which at most one may fail: creeping pushers in form closures cost the search over modes
-/// more than a step's limit on work.
+/// Steps of which at most one may fail: creeping pushers in form closures cost the search over
+/// modes more than a step's limit on work.
 const ONE_MAY_FAIL_OF: u64 = 10_000;
 
 #[test]

@@ -70,7 +70,8 @@ fn true_lens() -> Lens {
     }
 }
 
-/// With the true lens, one frame of the flat board puts every point over the plate where it is seen.
+/// With the true lens, one frame of the flat board puts every point over the plate where it is
+/// seen.
 #[test]
 fn find_table_finds_the_table_of_a_known_lens() {
     let (recording, board) = &*BOARD;

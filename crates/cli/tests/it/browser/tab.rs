@@ -19,7 +19,8 @@ pub struct Tab {
 }
 
 impl Tab {
-    /// Opens the page at `address` in a window of some width (px); the browser's profile lies in `folder`.
+    /// Opens the page at `address` in a window of some width (px); the browser's profile lies in
+    /// `folder`.
     pub fn open(folder: &Path, address: &str, width: u32) -> Self {
         let program = std::env::var("STICKSLIP_CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
         let mut browser = Command::new(&program)

@@ -1,5 +1,5 @@
-//! Any valid shapes at any finite poses: no panic, finite contacts with unit normals, all gaps below
-//! the search distance.
+//! Any valid shapes at any finite poses: no panic, finite contacts with unit normals, all gaps
+//! below the search distance.
 
 use proptest::prelude::*;
 use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};

@@ -82,8 +82,8 @@ pub fn log(
 /// Particles of [`run_into_the_dark`]: not more than a block, so that they are shown in one piece.
 pub const PARTICLES: usize = 64;
 
-/// Some particles whose object at the origin a pusher comes to move after the camera went dark: what is
-/// seen would tell of what they do not know.
+/// Some particles whose object at the origin a pusher comes to move after the camera went dark:
+/// what is seen would tell of what they do not know.
 pub fn run_into_the_dark(setup: &Setup, seed: u64, observer: &impl Observer) {
     run_from_rest(setup, seed, false, observer);
 }
@@ -107,8 +107,8 @@ pub fn run_from_rest(setup: &Setup, seed: u64, seeing: bool, observer: &impl Obs
     run_observed(setup, &log, &options, observer, &mut |_| ()).expect("a run");
 }
 
-/// A disc that is pushed beside its middle against a fixel jams where both frictions are above 0.29,
-/// else it slides round the fixel, if its feet stand about its middle. Here it slides.
+/// A disc that is pushed beside its middle against a fixel jams where both frictions are above
+/// 0.29, else it slides round the fixel, if its feet stand about its middle. Here it slides.
 pub fn slippery() -> (Setup, Log) {
     let mut slippery = setup(&[[0.032, -0.022]]);
     know_feet(&mut slippery);

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-/// What Chromium prints of the page at `address`, or the screenshot that it makes, at a window's `width`
-/// (px) and after `budget` (ms) of the browser's own time; its profile lies in `folder`.
+/// What Chromium prints of the page at `address`, or the screenshot that it makes, at a window's
+/// `width` (px) and after `budget` (ms) of the browser's own time; its profile lies in `folder`.
 pub fn chromium(
     folder: &Path,
     address: &str,
