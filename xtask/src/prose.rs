@@ -44,6 +44,9 @@ const REPLACED: [(&str, &str); 22] = [
     ("paper mode", "paper's model"),
 ];
 
+/// Openings that a doc comment does not have: it begins with a noun phrase or a verb.
+const OPENINGS: [&str; 3] = ["What ", "Whether ", "The same "];
+
 /// Every document and every doc comment.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let documents = tree
@@ -52,11 +55,34 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     let comments = tree
         .texts(".rs")
         .map(|(path, text)| (path, doc_comments(text)));
+    let openings = tree
+        .texts(".rs")
+        .flat_map(|(path, text)| openings(path, text));
     documents
         .chain(comments)
         .filter(|(path, _)| !EXEMPT.iter().any(|exempt| path.starts_with(exempt)))
         .flat_map(|(path, lines)| wrong(path, &lines))
+        .chain(openings)
         .collect()
+}
+
+/// Doc comments that begin as none does.
+fn openings(path: &str, text: &str) -> Vec<Finding> {
+    let lines: Vec<Line<'_>> = doc_comments(text);
+    let before = std::iter::once("").chain(lines.iter().map(|line| line.text));
+    let first = before.zip(&lines).filter(|(before, _)| before.is_empty());
+    let wrong = first.filter_map(|(_, line)| {
+        let opening = OPENINGS
+            .iter()
+            .find(|opening| line.text.trim_start().starts_with(**opening))?;
+        Some(Finding {
+            file: path.to_string(),
+            line: line.number,
+            rule: format!("a doc comment that begins with \"{}\"", opening.trim_end()),
+            next: "begin with a noun phrase or a verb in the third person".to_string(),
+        })
+    });
+    wrong.collect()
 }
 
 /// A line of prose: its number, its columns in the file, its text; empty text ends a paragraph.
@@ -290,6 +316,15 @@ mod tests {
         for text in ["`told`", "foretold", "```\ntold\n```"] {
             assert!(found("a.md", text).is_empty(), "{text}");
         }
+    }
+
+    #[test]
+    fn check_finds_comments_that_begin_with_a_clause() {
+        assert_eq!(found("a.rs", "/// Whether it is.\nfn f() {}").len(), 1);
+        assert_eq!(
+            found("a.rs", "/// One.\n/// What follows.\nfn f() {}").len(),
+            0
+        );
     }
 
     #[test]
