@@ -1,10 +1,10 @@
-"""A ROS 2 node around ``stickslip.Tracker``: poses and touches in, the estimate and its frame out.
+"""ROS 2 node around ``stickslip.Tracker``: poses and touches in, the estimate and its frame out.
 
     python3 ros2_node.py --ros-args -p scene:=my/scene.toml -p object:=/tf:table.tag_7 -p pusher:=/pusher/pose \
         -p contacts:="['/fixel_1/contact']"
 
-Needs a sourced ROS 2 with rclpy and tf2_ros, and the Python package stickslip. The parameters are in the guide,
-docs/guide/live.md. ``main`` joins the functions of this file to ROS; all that is decided is decided in them.
+Needs a sourced ROS 2 with rclpy and tf2_ros, and the Python package stickslip. The parameters are
+in the guide, docs/guide/live.md. ``main`` only connects the functions of this file to ROS.
 """
 
 from __future__ import annotations
@@ -20,36 +20,36 @@ import stickslip
 #: x, y (m) and theta (rad).
 Pose = tuple[float, float, float]
 
-#: A pause after which nothing can be said of what happened since, and the longest step to the row after it (s).
+#: Shortest pause that restarts the tracker, and longest step to the row after it (s).
 PAUSE, NEAR = 5.0, 1.0
 
-#: How long pusher poses are kept (s).
+#: Time for which pusher poses are kept (s).
 KEPT = 2.0
 
 
 def seconds(stamp: Any) -> float:
-    """The time of a ``builtin_interfaces/msg/Time`` (s)."""
+    """Returns the time of a ``builtin_interfaces/msg/Time`` (s)."""
     return float(stamp.sec + 1e-9 * stamp.nanosec)
 
 
 def planar(position: Any, orientation: Any) -> Pose:
-    """x, y (m) and the heading of the x-axis (rad) of a pose whose z-axis is upright."""
+    """Returns x, y (m) and the heading of the x-axis (rad) of a pose with an upright z-axis."""
     x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
     return position.x, position.y, math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
 def frames(source: str) -> tuple[str, str] | None:
-    """Parent and child of a source on /tf, as ``/tf:table.tag_7``; None of a topic."""
+    """Returns parent and child of a source such as ``/tf:table.tag_7``; None for a topic."""
     if not source.startswith("/tf:"):
         return None
     parent, dot, child = source.removeprefix("/tf:").partition(".")
     if not (parent and dot and child):
-        raise ValueError(f"the source is `{source}`; frames are told as /tf:parent.child")
+        raise ValueError(f"the source is `{source}`; frames are named as /tf:parent.child")
     return parent, child
 
 
 def between(track: Sequence[tuple[float, Pose]], time: float) -> Pose | None:
-    """The pose at ``time`` (s), linear between the two poses around it; the last one after them; None before them."""
+    """Interpolates the pose at ``time`` (s); the last pose after the track, None before it."""
     after = bisect_left(track, time, key=lambda entry: entry[0])
     if after == len(track) or track[after][0] == time:
         return track[min(after, len(track) - 1)][1] if track else None
@@ -62,11 +62,12 @@ def between(track: Sequence[tuple[float, Pose]], time: float) -> Pose | None:
 
 
 class Rows:
-    """Rows at the camera's rate out of messages that come one by one, each when it likes.
+    """Makes rows at the camera's rate from messages that arrive asynchronously.
 
-    A row waits for the pusher to pass it, at most ``period`` (s). Where no object was seen for one and a half periods
-    and ``lag`` (s), by which the camera's poses come after the pusher's of the same time, rows have the pusher alone. A
-    sensor reads true if it did at any time since the row before.
+    A row waits until a pusher pose at its time or later arrives, at most ``period`` (s). A row has
+    the pusher alone if no object pose arrives for one and a half periods plus ``lag`` (s), the
+    delay of the camera's poses after the pusher's of the same time. A sensor reads true if it was
+    true at any time since the previous row.
     """
 
     def __init__(self, sensors: int, period: float, lag: float = 0.0) -> None:
@@ -82,17 +83,17 @@ class Rows:
         self._objects.append((time, pose))
 
     def pusher(self, time: float, pose: Pose) -> None:
-        """Takes a pose of the pusher at a time (s); what does not come in order is left out."""
+        """Takes a pose of the pusher at a time (s); ignores it if it is out of order."""
         if not self._pusher or time > self._pusher[-1][0]:
             self._pusher.append((time, pose))
 
     def touch(self, sensor: int, on: bool) -> None:
-        """Takes a reading of a sensor, from 0."""
+        """Takes a reading of a sensor; sensors are numbered from 0."""
         self._reads[sensor] = on
         self._touched[sensor] |= on
 
     def take(self) -> list[stickslip.Row]:
-        """The rows that are complete by now, and no others later."""
+        """Returns the rows that are complete, each once."""
         rows = []
         newest = max([time for time, _ in self._pusher[-1:] + self._objects], default=-math.inf)
         passed = self._pusher[-1][0] if self._pusher else -math.inf
@@ -104,7 +105,7 @@ class Rows:
                 waiting.append((time, pose))
         self._objects = waiting
         while not waiting and -math.inf < self._latest + 1.5 * self._period + self._lag <= passed:
-            # over a pause there is one row, which a tracker refuses
+            # a pause gives one row, which the tracker refuses
             step = self._period if passed - self._latest < PAUSE else passed - self._latest
             rows.append(self._row(self._latest + step, None))
         self._pusher = [entry for entry in self._pusher if entry[0] >= passed - KEPT]
@@ -121,7 +122,7 @@ class Rows:
 
 
 class Following:
-    """A tracker that starts anew after a pause."""
+    """Tracker that restarts after a pause."""
 
     def __init__(self, start: Callable[[], stickslip.Tracker]) -> None:
         self._start = start
@@ -130,10 +131,10 @@ class Following:
         self._ahead: float | None = None
 
     def push(self, row: stickslip.Row) -> dict[str, float]:
-        """The estimate at the latest row, whose time is ``time`` (s).
+        """Returns the estimate at the latest row, whose time is ``time`` (s).
 
-        Raises :class:`stickslip.Error` where the row cannot be used: the first one after a pause, whose time may be
-        wrong, too.
+        Raises :class:`stickslip.Error` if the row is invalid, or if it is the first one after a
+        pause, since its time may be wrong.
         """
         time = row["time"]
         try:
@@ -155,7 +156,7 @@ class Following:
 def fill_header(header: Any, frame: str, time: float) -> None:
     """Fills a ``std_msgs/msg/Header`` with a frame and a time (s)."""
     whole = math.floor(time)
-    # the product of the whole time would have too few digits
+    # a product with the whole time would lose digits
     nanoseconds = round(1e9 * (time - whole))
     header.frame_id = frame
     header.stamp.sec, header.stamp.nanosec = whole + nanoseconds // 10**9, nanoseconds % 10**9
@@ -182,19 +183,19 @@ def fill_transform(message: Any, estimate: dict[str, float], child: str) -> None
 
 
 def words(estimate: dict[str, float]) -> list[tuple[str, str]]:
-    """Friction, contacts and health of an estimate: what ``diagnostic_msgs/msg/KeyValue`` takes."""
+    """Returns friction, contacts and health of an estimate for ``diagnostic_msgs/msg/KeyValue``."""
     placed = {"x", "y", "theta", "std_x", "std_y", "std_theta", "cov_x_y", "cov_x_theta", "cov_y_theta"}
     return [(name, f"{value:.6g}") for name, value in estimate.items() if name not in placed and not math.isnan(value)]
 
 
 class Transforms:
-    """What is new of a frame that is looked up again and again."""
+    """Reports each transform of a frame once."""
 
     def __init__(self, look_up: Callable[[], Any], take: Callable[[float, Pose], None]) -> None:
         self._look_up, self._take, self._latest = look_up, take, -math.inf
 
     def look(self) -> None:
-        """Takes the newest transform, if it is one that was not seen."""
+        """Takes the newest transform if it is new."""
         found = self._look_up()
         if found is None or seconds(found.header.stamp) <= self._latest:
             return
@@ -280,7 +281,7 @@ def main() -> None:
             if following.time is not None and not math.isnan(estimate["x"]):
                 publish(estimate, following.time)
 
-    # twice the camera's rate, so that no row waits for longer than half a period
+    # twice the camera's rate, so that a complete row waits at most half a period
     node.create_timer(0.5 / rate, on_time)
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(node)

@@ -1,8 +1,9 @@
 # %% [markdown]
 # # Learn a scene from pushes
 #
-# Nobody knows friction beforehand; recorded pushes tell it. Here they are simulated, so that there is a truth to
-# compare with. With pushes of your own, give their folders: `stickslip.fit("pushes/", [...])`.
+# Friction is unknown in advance. Recorded pushes contain it. The pushes of this notebook are
+# simulated, so the true values are known. Give the folder of your own pushes instead:
+# `stickslip.fit("pushes/", [...])`.
 
 # %%
 import matplotlib.pyplot as plt
@@ -22,8 +23,12 @@ start   = {{ object = [0, 0, 0], pusher = [{x}, -0.0285, 0], direction = {direct
 """
 
 # %% [markdown]
-# Eight pushes against the lower face, at different places and angles. The scene's first guesses are a friction of
-# 0.3 at the pusher and a tripod radius of 25 mm; in truth they are 0.5 and 33 mm.
+# Eight pushes against the lower face, at different places and angles.
+#
+# | parameter | first guess in the scene | truth |
+# | --- | --- | --- |
+# | friction at the pusher | 0.3 | 0.5 |
+# | tripod radius | 25 mm | 33 mm |
 
 # %%
 places = [-0.025, 0.015, -0.01, 0.028, 0.005, -0.018, 0.021, -0.003]
@@ -46,7 +51,8 @@ for name in fit.names:
     )
 
 # %% [markdown]
-# No push touches a fixel, so the friction of fixels keeps its first guess, and the fit says so.
+# No push touches a fixel. The friction at fixels therefore keeps its first guess, and the fit
+# reports it as not determined.
 
 # %%
 known = {"mu_p": truth["mu_p"], "tripod_radius": truth["d_tri"]}
@@ -56,7 +62,7 @@ for name, true in known.items():
 assert not fit.determined["mu_f"]
 
 # %% [markdown]
-# Draws of the posterior are arrays; the k-th values belong together.
+# Posterior draws are arrays, one per parameter. The k-th values of all arrays are one draw.
 
 # %%
 figure, ax = plt.subplots(layout="constrained")
@@ -68,20 +74,20 @@ ax.legend()
 plt.show()
 
 # %% [markdown]
-# Each push was also predicted by a fit to others, from its first pose and the pusher's way alone. That says whether
-# fitting buys anything.
+# Cross-validation predicts each push by a fit to other pushes. The prediction uses the first pose
+# and the pusher's path only. It shows whether fitting improves predictions.
 
 # %%
 validation = fit.cross_validation
 unfitted, fitted = validation["median_final_mm"]
 print(
     f"final position of {len(validation['pushes'])} pushes left out: {unfitted:.2f} mm off with the first guesses, "
-    f"{fitted:.2f} mm with what the others taught; 90 % intervals hold {validation['coverage_90']:.0%}"
+    f"{fitted:.2f} mm with what the others taught; 90 % intervals cover {validation['coverage_90']:.0%}"
 )
 assert fitted < 0.6 * unfitted
 
 # %% [markdown]
-# `fit.scene` is a scene like any other: filter with it, plan with it, or save it.
+# `fit.scene` is a scene like any other. Filter with it, plan with it, or save it.
 
 # %%
 print("\n".join(line for line in fit.scene.text.splitlines() if "friction" in line or line.startswith("#")))

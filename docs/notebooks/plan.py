@@ -1,8 +1,9 @@
 # %% [markdown]
 # # Plan a push
 #
-# Ten thousand pushes a second are enough to try all of them: which brings the object nearest to a goal, which may
-# jam, and which would teach us most about friction?
+# The simulator computes ten thousand pushes per second, enough to try all candidates. Three
+# questions follow: which push brings the object nearest to a goal, which may jam, and which is most
+# informative about friction?
 
 # %%
 import time
@@ -38,7 +39,8 @@ orientation_std = 5e-3
 here, goal = (0.0, 0.0, 0.0), (0.035, -0.010, -0.3)
 
 # %% [markdown]
-# Candidates: 500 straight pushes from all sides, each under 20 frictions that the scene allows for.
+# Candidates are 500 straight pushes from all sides. Each is simulated under 20 frictions from the
+# scene's prior.
 
 # %%
 pushes = plan.straight_pushes(scene, here, 500, length=0.05)
@@ -64,19 +66,20 @@ print(
 assert distance[best] < np.median(distance)
 
 # %% [markdown]
-# Which push would teach most? One whose end depends on friction by more than the camera's noise.
+# The most informative push is one whose end depends on friction by more than the camera's noise.
 
 # %%
 information = outcome.information(position_std=3e-4, orientation_std=5e-3)
 teacher = int(information.argmax())
 print(
-    f"push {teacher} would tell {information[teacher]:.1f} nats of friction, "
+    f"push {teacher} gives {information[teacher]:.1f} nats of information about friction, "
     f"the median push {np.median(information):.1f}"
 )
 
 # %% [markdown]
-# Push it (here: simulate it, with a friction that nobody told us), look once, and keep the frictions that explain
-# what was seen. Then plan again: the same pushes, fewer doubts.
+# Execute this push (the notebook simulates it with a hidden friction). Measure the pose once. Keep
+# the frictions that explain the measurement. Then plan again with the same pushes and less
+# uncertainty.
 
 # %%
 rng = np.random.default_rng(3)

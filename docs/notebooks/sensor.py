@@ -1,8 +1,9 @@
 # %% [markdown]
 # # Write your own sensor model
 #
-# A light barrier crosses the table: it only says whether the object interrupts it. A particle filter over rollouts
-# with that sensor is some thirty lines: move the particles, weigh them, resample.
+# A light barrier crosses the table. It measures one bit: whether the object interrupts it. A
+# particle filter over rollouts with this sensor has about thirty lines. It moves the particles,
+# weights them and resamples them.
 
 # %%
 import matplotlib.pyplot as plt
@@ -30,8 +31,8 @@ h, steps = 1 / 30, 90
 pusher = np.column_stack([-0.037 + 0.02 * h * np.arange(steps + 1), np.full(steps + 1, 0.012), np.zeros(steps + 1)])
 
 # %% [markdown]
-# The truth: a friction that the filter is not told, and what two barriers at y = -0.035 m and y = -0.045 m say at
-# every row. They are wrong in one reading of fifty.
+# The truth has a friction that the filter does not know. Two barriers at y = -0.035 m and
+# y = -0.045 m give a reading at every row. One reading in fifty is wrong.
 
 # %%
 rng = np.random.default_rng(0)
@@ -41,14 +42,15 @@ barriers = np.array([-0.035, -0.045])
 
 
 def interrupted(pose):
-    """Whether the disc (radius 30 mm) reaches each barrier: (..., 2)."""
+    """Returns True where the disc (radius 30 mm) reaches a barrier: (..., 2)."""
     return np.abs(pose[..., 1:2] - barriers) < 0.03
 
 
 readings = interrupted(truth) ^ (rng.random((steps + 1, 2)) < 0.02)
 
 # %% [markdown]
-# The filter. Each particle has a pose, a twist and a friction of its own; the model is one call of `rollout`.
+# The filter. Each particle has its own pose, twist and friction. The motion model is one call of
+# `rollout`.
 
 # %%
 N = 2000
@@ -58,19 +60,19 @@ state[:, :3] = rng.normal(0, [5e-4, 5e-4, 5e-3], (N, 3))
 weight = np.full(N, 1 / N)
 mean, spread = [], []
 for step in range(steps):
-    # move: one step of contact dynamics, and a little noise on the velocity
+    # move: one step of contact dynamics
     moved = stickslip.rollout(scene, state, pusher[step : step + 2], friction, h=h)
     state = np.hstack([moved["pose"][:, -1], moved["twist"][:, -1]])
-    # weigh: the sensor model, here two error rates
+    # weight: the sensor model, the same error rate for both barriers
     agrees = interrupted(state) == readings[step + 1]
     weight *= np.where(agrees, 0.98, 0.02).prod(axis=1)
     weight /= weight.sum()
-    # resample where few particles hold the weight
+    # resample when few particles have most of the weight
     if 1 / (weight**2).sum() < N / 2:
         picked = np.searchsorted(np.cumsum(weight), (np.arange(N) + rng.random()) / N).clip(max=N - 1)
         state, weight = state[picked], np.full(N, 1 / N)
         friction = {name: values[picked] for name, values in friction.items()}
-        # spread the copies a little
+        # a little noise separates the copies
         state[:, :3] += rng.normal(0, [2e-4, 2e-4, 2e-3], (N, 3))
     mean.append(weight @ state[:, :3])
     spread.append(np.sqrt(weight @ (state[:, :3] - mean[-1]) ** 2))
@@ -92,5 +94,6 @@ print(f"y at the end: {1e3 * error:.1f} mm off with the barriers, {1e3 * unaided
 assert error < unaided
 
 # %% [markdown]
-# In Rust, a sensor goes beside `camera_likelihood.rs` in `crates/estimator/src/particle/`, where it runs in vector
-# lanes with all that contact mode allows for: docs/method.md, "From the paper to the code", has the steps.
+# A sensor in Rust goes next to `camera_likelihood.rs` in `crates/estimator/src/particle/`. There it
+# runs in vector lanes with the full robust model: docs/method.md, "From the paper to the code", has
+# the steps.

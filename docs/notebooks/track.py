@@ -1,8 +1,9 @@
 # %% [markdown]
 # # Track your log
 #
-# A disc pushes an L-shaped plate against fixed bodies, and the camera goes dark before the first touch. Put the
-# path of your own folder in `folder`; it needs a `scene.toml` and a `log.csv` (docs/guide/formats.md).
+# A disc pushes an L-shaped plate against fixels. The camera turns off before the first touch. Put
+# the path of your own folder in `folder`. It needs a `scene.toml` and a `log.csv`
+# (docs/guide/formats.md).
 
 # %%
 from pathlib import Path
@@ -21,7 +22,8 @@ log = stickslip.load_log(folder / "log.csv")
 print(scene, scene.friction, f"{len(log['time'])} rows, {', '.join(log)}")
 
 # %% [markdown]
-# From row 200 on the camera's poses are hidden from the filter. What comes back has one number per row.
+# The camera's poses are hidden from the filter from row 200 on. Each array of the estimate has one
+# number per row.
 
 # %%
 estimate = stickslip.filter(log, scene, occlude=200)
@@ -30,7 +32,8 @@ plot.friction(estimate)
 plt.show()
 
 # %% [markdown]
-# Where there is a truth, the distance from it can be set against what the filter believes of itself.
+# A known truth allows a comparison: the error of the estimate and the standard deviation that the
+# filter reports.
 
 # %%
 truth = stickslip.load_truth(folder / "truth.csv")
@@ -41,26 +44,27 @@ print({name: round(value, 3) for name, value in scores.items()})
 assert scores["wmse_occluded_mm"] < 5
 
 # %% [markdown]
-# Every method on the same log, and another seed: what chance does.
+# Every method on the same log. A second seed shows the effect of random numbers.
 
 # %%
 for row in stickslip.compare([folder], seeds=2, occlude=200):
-    print(f"{row['variant']:22} seed {row['seed']}: {row['wmse_occluded_mm']:8.3f} mm while dark")
+    print(f"{row['variant']:22} seed {row['seed']}: {row['wmse_occluded_mm']:8.3f} mm with the camera off")
 
 # %% [markdown]
-# The belief is a cloud of particles. `samples` draws from it with equal weights, in the shape that ArviZ takes.
+# The belief is a set of weighted particles. `samples` draws from it with equal weights, in the
+# shape that ArviZ takes.
 
 # %%
 cloud = stickslip.particles(log, scene, rows=[199, 300], occlude=200)
 figure, (before, dark) = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
-plot.particles(cloud, 199, ("mu_s", "mu_p"), ax=before).set_title("the camera sees")
-plot.particles(cloud, 300, ("x", "y"), ax=dark).set_title("it is dark")
+plot.particles(cloud, 199, ("mu_s", "mu_p"), ax=before).set_title("camera on")
+plot.particles(cloud, 300, ("x", "y"), ax=dark).set_title("camera off")
 plt.show()
 posterior = stickslip.samples(log, scene, rows=[len(log["time"]) - 1], chains=2, occlude=200)
 print({name: (values.shape, float(np.median(values))) for name, values in posterior.items()})
 
 # %% [markdown]
-# On a robot, rows come one by one.
+# A robot delivers rows one by one.
 
 # %%
 tracker = stickslip.Tracker(scene)

@@ -1,9 +1,9 @@
-"""Tracks a pushed object through contact and camera blackouts, and simulates pushes by the thousand.
+"""Tracks a pushed object through contact and occlusion, and simulates pushes by the thousand.
 
-All numbers are in SI units (m, rad, s, kg, N); angles are counter-clockwise and not wrapped. A log is a
-dict of columns as in ``log.csv`` (or the path of such a file, or a data frame), an estimate a dict of
-columns as in ``estimate.csv``; NaN stands where a file has an empty cell. The same input and seed give
-the same bits on any number of threads, and those of the program ``stickslip``.
+All numbers are in SI units (m, rad, s, kg, N). Angles are counter-clockwise and not wrapped. A log
+is a dict of columns as in ``log.csv``, the path of such a file, or a data frame. An estimate is a
+dict of columns as in ``estimate.csv``. NaN marks an empty cell. The same input and seed give the
+bits of the program ``stickslip``, on any number of threads.
 
 >>> import stickslip
 >>> scene = stickslip.load_scene("my/scene.toml")  # doctest: +SKIP

@@ -1,4 +1,4 @@
-"""The command ``stickslip``, also as ``python -m stickslip``: the program, byte for byte."""
+"""Command ``stickslip`` and ``python -m stickslip``: the program with the same output bytes."""
 
 import signal
 import sys
@@ -7,8 +7,8 @@ from stickslip import _native
 
 
 def main() -> None:
-    """Runs the program with the arguments of this process and ends the process with its exit code."""
-    # as in any program: Python would wait for the end of the run before it hears of Ctrl+C
+    """Runs the program with this process's arguments and exits with the program's exit code."""
+    # default action, as in any program: Python would handle Ctrl+C only after the run
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.exit(_native.program(sys.argv[1:]))
 

@@ -19,7 +19,7 @@ Log: TypeAlias = "str | os.PathLike[str] | Mapping[str, Any] | Any"
 
 
 def columns_of(table: Any, what: str) -> Columns:
-    """The columns of a mapping or a data frame as contiguous float64 arrays (rows,).
+    """Returns the columns of a mapping or a data frame as contiguous float64 arrays (rows,).
 
     Masked and missing values of data frames become NaN.
     """
@@ -31,7 +31,7 @@ def columns_of(table: Any, what: str) -> Columns:
 
 def _column(values: Any, what: str, name: str) -> NDArray[np.float64]:
     try:
-        if hasattr(values, "to_numpy") and hasattr(values, "isna"):  # pandas, whose missing values are no numbers
+        if hasattr(values, "to_numpy") and hasattr(values, "isna"):  # pandas, NA is no float
             values = values.to_numpy(dtype=np.float64, na_value=np.nan)
         column = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""Every method on experiment folders."""
+"""Comparison of all methods on experiment folders."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stickslip._filter import FilterOptions, filter
 from stickslip._native import Error
 from stickslip._score import score
 
-#: What is compared: the method and whether it uses tactile readings and sees through the blackout.
+#: Options of each variant: method, use of tactile readings, and ``camera_on`` for no occlusion.
 _VARIANTS: dict[str, dict[str, Any]] = {
     "nominal": {"method": "nominal"},
     "kalman": {"method": "kalman"},
@@ -32,16 +32,19 @@ def compare(
     scene_name: str = "scene.toml",
     **options: Unpack[FilterOptions],
 ) -> list[dict[str, Any]]:
-    """Runs each variant on each experiment folder, particle filters with ``seeds`` seeds from ``seed`` on.
+    """Runs each variant on each experiment folder and scores it.
 
-    A folder that is none itself stands for those below it.
+    ``folders``: experiment folders, or folders that contain such folders. ``seeds``: number of
+    seeds of each particle filter, from ``seed`` on. ``variants``: ``nominal``, ``kalman``,
+    ``extended_kalman``, ``particle_no_tactile``, ``particle``, ``particle_always_on`` (no
+    occlusion). ``particle_no_tactile`` is left out for a log without tactile columns, and
+    ``particle_always_on`` for a log without hidden rows.
 
-    ``variants``: ``nominal``, ``kalman``, ``extended_kalman``, ``particle_no_tactile``, ``particle``,
-    ``particle_always_on`` (the camera stays on). Those that do not differ on a log (no tactile columns, nothing
-    hidden) are left out. The camera is hidden as ``options`` say, else from ``occlude_from`` of ``truth.json`` on.
-    Scores are against ``truth.csv`` where there is one, else against the log's own poses.
+    ``options`` give the hidden rows; the default is ``occlude_from`` of ``truth.json``. Scores are
+    against ``truth.csv`` if it exists, else against the log's own poses.
 
-    Returns a dict per run: ``folder``, ``variant``, ``seed``, and the scores of :func:`stickslip.score`.
+    Returns a dict per run: ``folder``, ``variant``, ``seed``, and the scores of
+    :func:`stickslip.score`.
     """
     chosen = list(variants)
     unknown = sorted(set(chosen) - set(_VARIANTS))

@@ -1,4 +1,4 @@
-"""Reads scenes, logs and truths from files."""
+"""Readers of scenes, logs and truths."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from stickslip._native import Error, Scene
 def load_scene(path: str | os.PathLike[str]) -> Scene:
     """Reads a scene file.
 
-    Raises :class:`stickslip.Error` with file, line, place, value found, rule and next step where it
-    cannot be used, and OSError where it cannot be read.
+    Raises :class:`stickslip.Error` with file, line, value, rule and next step if the scene is
+    invalid, and OSError if the file cannot be read.
     """
     path = Path(path)
     try:
@@ -28,18 +28,19 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
 
 
 def load_log(path: str | os.PathLike[str]) -> Columns:
-    """Reads ``log.csv``, or ``log.mcap`` by the file's ending.
+    """Reads ``log.csv`` or ``log.mcap``, as the file's ending says.
 
     Returns the columns of ``log.csv``, each (rows,): ``time`` (s), ``object_x``, ``object_y`` (m),
-    ``object_theta`` (rad), the same of the ``pusher``, ``tactile_1``, ... (0 or 1) and
-    ``pusher_force_x``, ``pusher_force_y`` (N) where the log has them; NaN where nothing was measured.
+    ``object_theta`` (rad), ``pusher_x``, ``pusher_y``, ``pusher_theta``, and if present
+    ``tactile_1``, ... (0 or 1), ``pusher_force_x``, ``pusher_force_y`` (N). NaN is a missing
+    measurement.
     """
     path = Path(path)
     return _native.read_log(path.read_bytes(), str(path))
 
 
 def load_truth(path: str | os.PathLike[str]) -> Columns:
-    """Reads ``truth.csv``: ``time`` (s), ``x``, ``y`` (m), ``theta`` (rad) and what else it has, each (rows,)."""
+    """Reads ``truth.csv``: ``time`` (s), ``x``, ``y`` (m), ``theta`` (rad), ..., each (rows,)."""
     path = Path(path)
     with path.open(encoding="utf-8") as file:
         names = file.readline().strip().split(",")
@@ -53,12 +54,12 @@ def load_truth(path: str | os.PathLike[str]) -> Columns:
 
 
 def log_in(folder: Path) -> Path:
-    """The log of an experiment folder."""
+    """Returns the path of the log of an experiment folder."""
     return folder / "log.csv" if (folder / "log.csv").is_file() else folder / "log.mcap"
 
 
 def experiments(folder: Path, scene_name: str) -> list[Path]:
-    """The folder, or the experiment folders below it in the order of their names."""
+    """Returns the folder, or the experiment folders below it in the order of their names."""
 
     def is_one(path: Path) -> bool:
         return (path / scene_name).is_file() or log_in(path).is_file()
@@ -68,12 +69,12 @@ def experiments(folder: Path, scene_name: str) -> list[Path]:
 
 
 def scene_of(scene: Scene | str | os.PathLike[str]) -> Scene:
-    """A scene, or that of a file."""
+    """Returns a scene as it is, or reads it from its file."""
     return load_scene(scene) if isinstance(scene, str | os.PathLike) else scene
 
 
 def log_of(log: Any) -> Columns:
-    """The columns of a log that is given by its path, as a mapping or as a data frame."""
+    """Returns the columns of a log given as a path, a mapping or a data frame."""
     if isinstance(log, str | os.PathLike):
         return load_log(log)
     return columns_of(log, "the log")

@@ -1,4 +1,4 @@
-"""One method over one log: estimates, particles, samples."""
+"""Estimates, particles and samples of one method on one log."""
 
 from __future__ import annotations
 
@@ -20,50 +20,60 @@ if TYPE_CHECKING:
 
 
 class FilterOptions(TypedDict, total=False):
-    """How a log is run; the defaults are those of the program."""
+    """Options of a run on a log, with the defaults of the program."""
 
-    #: ``particle`` (default), ``kalman`` (knows nothing of contact), ``kalman-stops`` (the same, stops at touch),
-    #: ``with-pusher`` (moves with it), ``extended-kalman`` (knows contact, feels no touch) or ``nominal`` (looks once).
+    #: ``particle`` (default), ``kalman`` (constant velocity, no contact), ``kalman-stops``
+    #: (``kalman``, at rest from the first touch in an occlusion), ``with-pusher`` (glued to the
+    #: pusher in an occlusion), ``extended-kalman`` (contact dynamics, no touch) or ``nominal``
+    #: (simulation from the first pose).
     method: Literal["particle", "kalman", "kalman-stops", "with-pusher", "extended-kalman", "nominal"]
-    #: Rules of the particle filter: ``contact`` (default) or ``paper``.
+    #: Model of the particle filter: ``robust`` (default) or ``paper`` (as published).
     model: Literal["robust", "paper"]
     #: Number of particles, 500 by default.
     particles: int
     #: Seed of all random numbers, 0 by default.
     seed: int
-    #: Whether tactile readings count, True by default.
+    #: True (default) to use tactile readings.
     tactile: bool
-    #: Whether the pusher is tracked from the rows so far only, as live; False by default.
+    #: True to track the pusher without later rows, as live; False by default.
     causal: bool
-    #: Forced number of substeps from row to row; None: by the length of the step.
+    #: Number of substeps from row to row; None: by the length of the step.
     substeps: int | None
-    #: Rows whose object pose is hidden from the method: ``60`` (from there on) or ``(60, 90)`` (90 excluded).
+    #: Rows with a hidden object pose: ``60`` (from row 60 on) or ``(60, 90)`` (90 excluded).
     occlude: int | tuple[int, int | None] | None
-    #: Length of a blackout about the middle of the log (s).
+    #: Length of an occlusion about the middle of the log (s).
     occlude_middle: float | None
-    #: Threads; None: as many as help. They change no bit.
+    #: Number of threads; None: as many as help. Results do not depend on it.
     threads: int | None
 
 
 def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[FilterOptions]) -> Columns:
     """Tracks the object of a log.
 
-    ``log``: path of ``log.csv`` or ``log.mcap``, dict of columns, or data frame, in the columns of
-    ``log.csv`` (see :func:`stickslip.load_log`). ``scene``: a scene, or the path of its file. ``options``: see
-    :class:`FilterOptions`.
+    ``log``: path of ``log.csv`` or ``log.mcap``, dict of columns, or data frame, with the columns
+    of ``log.csv`` (see :func:`stickslip.load_log`). ``scene``: a scene, or the path of its file.
+    ``options``: see :class:`FilterOptions`.
 
-    Returns the columns of ``estimate.csv``, each (rows,), one row per log row: ``time`` (s); pose ``x``,
-    ``y`` (m), ``theta`` (rad, unwrapped); twist ``vx``, ``vy`` (m/s), ``omega`` (rad/s); friction
-    ``mu_s``, ``mu_p``, ``mu_f`` and tripod radius ``d_tri`` (m); posterior probabilities of contact
-    ``contact_pusher``, ``contact_1``, ...; standard deviations ``std_x``, ...; effective sample size
-    ``ess``; ``resampled`` and ``visual`` (0 or 1); particles without a certified solution ``unsolved``
-    and, of them, ``failed``; covariances ``cov_x_y``, ``cov_x_theta``, ``cov_y_theta``; ``collapsed`` (0 or 1);
-    surviving particles ``distinct`` and ``ancestors``; the number of ``modes``, weight and pose of the likeliest
-    one, ``mode_weight``, ``mode_x``, ``mode_y``, ``mode_theta``; and how the object slips on what it touches,
-    ``stick_pusher``, ``left_pusher``, ``right_pusher``, ``stick_1``, ... NaN where the method has no value. The
-    numbers have the bits of those in the program's ``estimate.csv``.
+    Returns the columns of ``estimate.csv``, each (rows,), one row per log row, with the bits of the
+    program's file. NaN: the method has no value.
 
-    Raises :class:`stickslip.Error` where log, scene or options cannot be used.
+    - ``time`` (s)
+    - pose: ``x``, ``y`` (m), ``theta`` (rad, unwrapped)
+    - twist: ``vx``, ``vy`` (m/s), ``omega`` (rad/s)
+    - friction ``mu_s``, ``mu_p``, ``mu_f`` and tripod radius ``d_tri`` (m)
+    - posterior contact probabilities: ``contact_pusher``, ``contact_1``, ...
+    - standard deviations: ``std_x``, ...
+    - effective sample size ``ess``; ``resampled`` and ``visual`` (0 or 1)
+    - ``unsolved``: particles without a certified solution; ``failed``: those of them whose solver
+      gave up
+    - covariances: ``cov_x_y``, ``cov_x_theta``, ``cov_y_theta``
+    - ``collapsed`` (0 or 1); surviving particles ``distinct`` and ``ancestors``
+    - number of ``modes``; weight and pose of the likeliest mode: ``mode_weight``, ``mode_x``,
+      ``mode_y``, ``mode_theta``
+    - probability of each contact mode: ``stick_pusher``, ``left_pusher``, ``right_pusher``,
+      ``stick_1``, ...
+
+    Raises :class:`stickslip.Error` if log, scene or options are invalid.
     """
     return _native.filter(log_of(log), scene_of(scene), arguments(options))
 
@@ -75,14 +85,19 @@ def particles(
     rows: Sequence[int] | None = None,
     **options: Unpack[FilterOptions],
 ) -> dict[str, NDArray[np.float64]]:
-    """The particles of the particle filter after the rows in ``rows`` (None: all rows).
+    """Returns the particles of the particle filter after the rows in ``rows`` (None: all rows).
 
-    Returns ``row`` (R,), the rows that have particles, rising; ``weight``, ``x``, ``y`` (m), ``theta``
-    (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each (R, N), of the particles that say where the object is.
-    The friction of the estimate is learned by others in contact mode: ``friction_weight``, ``friction_mu_s``,
-    ``friction_mu_p``, ``friction_mu_f``, ``friction_d_tri``, each (R, N), as they were when the camera last saw the
-    object move; in paper mode, and where friction is told exactly, by the same. Weights of a row sum to 1. Rows
-    before the first object pose have none. Offsets of the rig and where each one's feet stand are not among them.
+    ``row`` (R,) has the rows with particles, in rising order. Rows before the first object pose
+    have none. Two sets follow, each array (R, N), with weights that sum to 1 in a row:
+
+    - particles of the pose: ``weight``, ``x``, ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``,
+      ``mu_f``, ``d_tri`` (m)
+    - particles that estimate friction: ``friction_weight``, ``friction_mu_s``, ``friction_mu_p``,
+      ``friction_mu_f``, ``friction_d_tri`` (m)
+
+    The robust model has separate particles for friction, as they were when the camera last saw the
+    object move. The two sets are the same in the paper's model and with exactly known friction.
+    Offsets of the rig and positions of the feet are not included.
     """
     if options.get("method", "particle") != "particle":
         raise Error(f"method is `{options.get('method')}`; only `particle` has particles")
@@ -101,16 +116,18 @@ def samples(
     draws: int | None = None,
     **options: Unpack[FilterOptions],
 ) -> dict[str, NDArray[np.float64]]:
-    """Samples of equal weight from the posterior after some rows, as ArviZ takes them.
+    """Draws samples of equal weight from the posterior after some rows, in the shape of ArviZ.
 
-    Chain c is a filter of its own with the seed ``seed + c``; its ``draws`` samples (None: one per
-    particle) are drawn from its particles by systematic resampling, so they are not in sequence: chains
-    can be compared (R-hat), autocorrelation has no meaning. In contact mode friction is learned by particles of its
-    own: samples of friction go together, and those of the pose, but not these with those.
+    Chain c is a separate filter with the seed ``seed + c``. Its ``draws`` samples (None: one per
+    particle) are drawn from its particles by systematic resampling. The samples are not a sequence:
+    chains can be compared (R-hat), autocorrelation has no meaning. The robust model has separate
+    particles for friction. Samples of friction are joint, samples of the pose are joint, but the
+    two groups are independent of each other.
 
     Returns ``x``, ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each
-    (chains, draws, R) for the R rows in ``rows``: ``arviz.from_dict({"posterior": samples})``, before
-    ArviZ 1.0 ``arviz.from_dict(posterior=samples)``.
+    (chains, draws, R) for the R rows in ``rows``. ArviZ 1.0 and later takes them by
+    ``arviz.from_dict({"posterior": samples})``, older versions by
+    ``arviz.from_dict(posterior=samples)``.
     """
     columns, scene = log_of(log), scene_of(scene)
     seed = options.get("seed", 0)
@@ -137,7 +154,7 @@ def _drawn(
     draws: int | None,
     seed: tuple[int, int],
 ) -> dict[str, NDArray[np.float64]]:
-    """Samples (draws, R) of each of ``names``, which go together, from the columns with ``prefix`` before them."""
+    """Draws joint samples (draws, R) of ``names`` from the columns with this ``prefix``."""
     picked = [_systematic(cloud[f"{prefix}weight"][row], draws, seed) for row in order]
     return {
         name: np.stack([cloud[prefix + name][row, pick] for row, pick in zip(order, picked, strict=True)], axis=-1)
@@ -146,7 +163,7 @@ def _drawn(
 
 
 def _systematic(weights: NDArray[np.float64], draws: int | None, seed: tuple[int, int]) -> NDArray[np.intp]:
-    """Indices (draws,) of particles, each as often as its weight says, to one; in random order."""
+    """Returns particle indices (draws,) by systematic resampling, in random order."""
     count = len(weights) if draws is None else draws
     rng = np.random.default_rng(seed)
     places = (np.arange(count) + rng.random()) / count
@@ -155,7 +172,7 @@ def _systematic(weights: NDArray[np.float64], draws: int | None, seed: tuple[int
 
 
 def arguments(options: FilterOptions) -> RunArguments:
-    """The options with their defaults, as the library takes them."""
+    """Returns the options with their defaults, as the library takes them."""
     unknown = sorted(set(options) - set(FilterOptions.__annotations__))
     if "mode" in unknown:
         raise TypeError("option `mode` is called `model`: `robust` (formerly contact) or `paper`")
@@ -177,7 +194,7 @@ def arguments(options: FilterOptions) -> RunArguments:
 
 
 def _rows(occlude: int | tuple[int, int | None] | None) -> tuple[int, int | None] | None:
-    """First hidden row and the first visible one after it."""
+    """Returns the first hidden row and the first visible one after it."""
     if occlude is None:
         return None
     rule = f"occlude is {occlude!r}; give the first hidden row, from 0, or that and the first visible one after it"

@@ -1,4 +1,4 @@
-"""What many pushes teach."""
+"""Scene parameters learnt from many pushes."""
 
 from __future__ import annotations
 
@@ -18,37 +18,42 @@ from stickslip._files import experiments, load_log, load_scene, log_in, log_of
 from stickslip._native import Scene
 from stickslip._simulate import Simulation
 
-#: What a push may be given as: its experiment folder, a simulation, or a scene and a log.
+#: A push: its experiment folder, a simulation, or a scene and a log.
 Push = str | os.PathLike[str] | Simulation | tuple[Scene, Log]
 
 
 @dataclass(frozen=True)
 class Fit:
-    """What some pushes taught."""
+    """Result of :func:`fit`."""
 
-    #: Names of what was learnt, in the order of all arrays; a name like ``pusher_offset`` stands for two, x and y.
+    #: Names of the parameters, in the order of all arrays; ``pusher_offset`` and the like are two,
+    #: x and y.
     names: tuple[str, ...]
-    #: Values that predict best; the first guess where the pushes teach nothing of one (spread over 0.8 of the prior's).
+    #: Values that predict best; the first guess if the posterior's spread exceeds 0.8 of the
+    #: prior's.
     values: dict[str, float]
-    #: Standard deviations of those, in the same unit (m, s, or none); the prior's where nothing was learnt.
+    #: Their standard deviations, in the same unit (m, s, or none); the prior's if nothing was
+    #: learnt.
     stds: dict[str, float]
     #: First guesses.
     prior_values: dict[str, float]
     #: Standard deviations of the first guesses, at the guess.
     prior_stds: dict[str, float]
-    #: Whether the pushes left less than half of the prior's spread.
+    #: True if the posterior's spread is less than half of the prior's.
     determined: dict[str, bool]
     #: Correlation in the posterior (P, P).
     correlation: NDArray[np.float64]
-    #: Draws of the posterior by name, and of ``camera_scale`` and ``drift``, each (512,); k-th ones belong together.
+    #: Posterior draws by name, and of ``camera_scale`` and ``drift``, each (512,); k-th values are
+    #: joint.
     draws: dict[str, NDArray[np.float64]]
-    #: Errors on pushes left out, as ``cross_validation`` of ``fit.json`` has them; None where none was left out.
+    #: Errors on pushes left out, as ``cross_validation`` of ``fit.json``; None without such pushes.
     cross_validation: dict[str, Any] | None
-    #: The first push's scene with the learnt values and their spreads in place, the first guesses where
+    #: First push's scene with the learnt values and spreads, or with the first guesses if
     #: ``cross_validation["pays"]`` is false; ``scene.text`` is the file.
     scene: Scene
-    #: All numbers, under the names of ``fit.json``; ``["parameters"][k]["constant"]`` is the constant of material or
-    #: support that the k-th value imitates, with its 90 % interval, or None.
+    #: All numbers, with the names of ``fit.json``; ``["parameters"][k]["constant"]`` is the
+    #: constant of material or support that the k-th value imitates, with its 90 % interval, or
+    #: None.
     result: dict[str, Any]
 
 
@@ -61,16 +66,19 @@ def fit(
     scene_name: str = "scene.toml",
     threads: int | None = None,
 ) -> Fit:
-    """Learns from many pushes of one object on one table what their scene cannot know.
+    """Learns unknown scene parameters from many pushes of one object on one table.
 
-    ``pushes``: experiment folders (``scene.toml``, ``log.csv`` or ``log.mcap``), folders of such folders, what
-    :func:`stickslip.simulate` returned, or pairs of a scene and a log; at least two pushes. All scenes must start
-    from the same first guess. ``free``: what to learn, of ``mu_s``, ``mu_p``, ``mu_f``, ``tripod_radius``,
-    ``centre_of_friction``, ``outline_scale``, ``outline_offset``, ``pusher_offset``, ``latency``. ``folds``: parts that
-    the pushes are dealt into, each to be predicted by a fit to the others; 0: none; None: 4, 2 for fewer than 8
-    pushes, 0 for fewer than 4. The numbers have the bits of the program's ``fit.json``, on any number of threads.
+    ``pushes``: at least two pushes, as experiment folders (``scene.toml``, ``log.csv`` or
+    ``log.mcap``), folders of such folders, results of :func:`stickslip.simulate`, or pairs of a
+    scene and a log. All scenes must have the same first guess. ``free``: parameters to learn, of
+    ``mu_s``, ``mu_p``, ``mu_f``, ``tripod_radius``, ``centre_of_friction``, ``outline_scale``,
+    ``outline_offset``, ``pusher_offset``, ``latency``. ``folds``: number of parts in the
+    cross-validation, each predicted by a fit to the others; 0: none; None: 4, or 2 for fewer than 8
+    pushes, or 0 for fewer than 4.
 
-    Raises :class:`stickslip.Error` where a push or a name cannot be used.
+    The numbers have the bits of the program's ``fit.json``, on any number of threads.
+
+    Raises :class:`stickslip.Error` if a push or a name is invalid.
     """
     given = [pushes] if isinstance(pushes, str | os.PathLike) else list(pushes)
     read = [push for item in given for push in _pushes(item, scene_name)]

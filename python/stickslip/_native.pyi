@@ -1,4 +1,4 @@
-"""The library behind the package; what it takes is checked, not converted."""
+"""Native library of the package. Arguments are checked, not converted."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict, final
@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 __version__: str
 
 class Error(ValueError):
-    """An input that cannot be used: what was found, the rule, and what to do."""
+    """Invalid input: the value found, the rule, and the next step."""
 
 @final
 class Scene:
-    """What is known before an experiment: scene, sensors and filter settings, as scene.toml holds them."""
+    """Content of scene.toml: scene, sensors and filter settings."""
 
     def __new__(cls, text: str, name: str = "scene.toml") -> Scene:
         """Reads the text of a scene file; ``name`` is shown in errors."""
     @property
     def text(self) -> str:
-        """The file's text."""
+        """Text of the file."""
     @property
     def name(self) -> str:
-        """The name shown in errors."""
+        """Name shown in errors."""
     @property
     def fixels(self) -> int:
         """Number of fixels."""
@@ -34,7 +34,7 @@ class Scene:
         """Weight of an angle in scores: the object's radius of gyration (m)."""
 
     def drawn_friction(self, normals: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Friction (K, 4) from the scene's prior, by standard normal numbers (K, 4): mu_s, mu_p, mu_f, d_tri."""
+        """Maps standard normal numbers (K, 4) to mu_s, mu_p, mu_f, d_tri of the prior."""
 
 class RunArguments(TypedDict):
     method: str
@@ -71,7 +71,7 @@ def fit(
     pushes: Sequence[tuple[str, Scene, dict[str, NDArray[np.float64]]]], options: Mapping[str, Any]
 ) -> tuple[str, str, dict[str, NDArray[np.float64]], str]: ...
 def program(words: Sequence[str]) -> int:
-    """Runs the program with the words of a command line, those after its name; its exit code."""
+    """Runs the program with the words after its name on a command line; returns its exit code."""
 
 def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> dict[str, Any]: ...
 def simulate(

@@ -1,4 +1,4 @@
-"""Outlines of a scene's bodies, to be drawn."""
+"""Outlines of a scene's bodies for drawing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip._native import Scene
 
-#: Corners of the polygon that stands for a disc or an ellipse.
+#: Number of corners of the polygon that approximates a disc or an ellipse.
 _CORNERS = 48
 
 #: Closed polygons (K, 2) in m, one per part.
@@ -20,7 +20,7 @@ Polygons = list[NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class Outlines:
-    """The bodies of a scene; object and pusher in their own frames, fixels in the world."""
+    """Bodies of a scene: object and pusher in their own frames, fixels in the world frame."""
 
     object: Polygons
     pusher: Polygons
@@ -28,7 +28,7 @@ class Outlines:
 
 
 def outlines(scene: Scene) -> Outlines:
-    """The bodies of a scene as polygons (K, 2) in m, one per part."""
+    """Returns the bodies of a scene as polygons (K, 2) in m, one per part."""
     bodies = tomllib.loads(scene.text)
     fixels = [
         placed(_parts(fixel["shape"]), (*fixel["position"], fixel.get("angle", 0.0)))
@@ -38,7 +38,7 @@ def outlines(scene: Scene) -> Outlines:
 
 
 def placed(polygons: Polygons, pose: ArrayLike) -> Polygons:
-    """The same polygons of a body at ``pose`` (x, y in m, theta in rad)."""
+    """Returns the polygons of a body moved to ``pose`` (x, y in m, theta in rad)."""
     x, y, theta = np.asarray(pose, dtype=np.float64)
     turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
     return [polygon @ turn.T + [x, y] for polygon in polygons]

@@ -1,4 +1,4 @@
-"""Many pushes at once."""
+"""Simulation of many pushes at once."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._native import Error, Scene
 
-#: Friction parameters in the order of arrays.
+#: Names of the friction parameters, in the order of arrays.
 FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")
 
 
@@ -24,9 +24,9 @@ class Rollout(TypedDict):
     twist: NDArray[np.float64]
     #: Steps without a certified solution (N,).
     unsolved: NDArray[np.uint32]
-    #: Way from where the pusher stands at the end to its pose (m), (N, 2): it gave way by so much.
+    #: Vector from the pusher's final position to its commanded one (m), (N, 2); 0 unless it yields.
     pusher_lag: NDArray[np.float64]
-    #: Length of the longest such way after any step (m), (N,).
+    #: Largest length of this vector after any step (m), (N,).
     most_pusher_lag: NDArray[np.float64]
 
 
@@ -42,18 +42,18 @@ def rollout(
 ) -> Rollout:
     """Simulates N pushes over T steps of ``h`` seconds by the certified contact dynamics.
 
-    ``states``: where the object starts, (N, 6): x, y (m), theta (rad), vx, vy (m/s), omega (rad/s), or
-    (N, 3): poses, at rest. ``pusher``: poses of the pusher where steps begin and end, (N, T + 1, 3), or
-    (T + 1, 3) for all: x, y (m), theta (rad); it moves straight from one to the next, and gives way where
-    the scene has a stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a number or
-    (N,); the scene's where it has none. ``out``: an earlier rollout of the same shape, whose poses and twists
-    are written over.
+    ``states``: start of the object, (N, 6): x, y (m), theta (rad), vx, vy (m/s), omega (rad/s), or
+    (N, 3): poses at rest. ``pusher``: commanded poses at the ends of steps, (N, T + 1, 3), or
+    (T + 1, 3) for all: x, y (m), theta (rad). The pusher moves straight between them, and yields if
+    the scene has a stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a
+    number or (N,); the scene's values by default. ``out``: a rollout of the same shape, whose poses
+    and twists are overwritten.
 
-    The interpreter's lock is released; C-ordered float64 arrays are read as they lie, and results are
-    written straight into the arrays that are returned. A trajectory depends on nothing but its own start,
-    friction and pusher: the same bits for any N and any number of threads.
+    The interpreter's lock is released. C-ordered float64 arrays are read in place, and results are
+    written directly into the returned arrays. A trajectory depends only on its own start, friction
+    and pusher: the bits are the same for any N and any number of threads.
 
-    Raises :class:`stickslip.Error` where shapes do not go together or a number is out of range.
+    Raises :class:`stickslip.Error` if shapes do not match or a number is out of range.
     """
     start = _array(states, "states")
     if start.ndim != 2 or start.shape[1] not in (3, 6):
@@ -98,7 +98,7 @@ def _array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def _frictions(scene: Scene, given: Mapping[str, ArrayLike], count: int) -> NDArray[np.float64]:
-    """Friction of each trajectory (N, 4)."""
+    """Returns the friction of each trajectory (N, 4)."""
     nominal = scene.friction
     unknown = sorted(set(given) - set(FRICTION))
     if unknown:

@@ -1,4 +1,4 @@
-"""How far an estimate is from what happened."""
+"""Errors of an estimate against a reference."""
 
 from __future__ import annotations
 
@@ -24,17 +24,20 @@ def score(
     first_pusher_contact: int | None = None,
     virtual_radius: float | None = None,
 ) -> dict[str, float]:
-    """Scores an estimate against ``truth`` (columns ``time``, ``x``, ``y``, ``theta``), else against the
-    log's own poses, hidden ones included.
+    """Scores an estimate against ``truth`` or, without it, against the log's own poses.
 
-    ``occlude``, ``occlude_middle``: what was hidden from the method, as in :func:`stickslip.filter`.
-    ``first_pusher_contact``: its row, where it is known. ``virtual_radius``: weight of an angle (m), by
-    default the object's radius of gyration.
+    ``truth``: columns ``time``, ``x``, ``y``, ``theta``. The log's poses include the hidden ones.
+    ``occlude``, ``occlude_middle``: the rows that were hidden, as in :func:`stickslip.filter`.
+    ``first_pusher_contact``: row of the first contact, if known. ``virtual_radius``: weight of an
+    angle (m), by default the object's radius of gyration.
 
-    Returns ``wmse_mm``, the weighted RMSE of the pose over all rows (mm; the paper calls it WMSE),
-    ``wmse_occluded_mm`` over hidden rows, ``wmse_moving_mm`` from first contact to rest,
-    ``spread_occluded_mm``, what ``wmse_occluded_mm`` would be if the standard deviations were true, and the
-    final errors ``final_error_mm`` and ``final_error_deg``; NaN where there is nothing to score on.
+    Returns these numbers; NaN: there are no rows to score.
+
+    - ``wmse_mm``: pose RMSE over all rows (mm; the paper calls it WMSE)
+    - ``wmse_occluded_mm``: pose RMSE over hidden rows
+    - ``wmse_moving_mm``: pose RMSE from first contact to rest
+    - ``spread_occluded_mm``: expected ``wmse_occluded_mm`` if the standard deviations are correct
+    - ``final_error_mm`` and ``final_error_deg``: errors at the end
     """
     return _native.score(
         columns_of(estimate, "the estimate"),

@@ -1,4 +1,4 @@
-"""Experiments with known truth."""
+"""Simulated experiments with known truth."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from stickslip._native import Error, Scene
 class Simulation:
     """A simulated experiment."""
 
-    #: What was simulated.
+    #: Scene of the simulation.
     scene: Scene
-    #: Columns of ``log.csv``: what was measured.
+    #: Columns of ``log.csv``: the measurements.
     log: Columns
     #: Columns of ``truth.csv``: ``time``, ``x``, ``y``, ``theta``, twists, forces; exact.
     truth: Columns
-    #: What ``truth.json`` holds: true friction, first contacts, ``occlude_from``.
+    #: Content of ``truth.json``: true friction, first contacts, ``occlude_from``.
     facts: dict[str, Any]
 
     def write(self, folder: str | os.PathLike[str]) -> None:
-        """Writes ``scene.toml``, ``log.csv``, ``truth.csv`` and ``truth.json``; the folder must be new or empty."""
+        """Writes scene.toml, log.csv, truth.csv and truth.json into a new or empty folder."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         if any(folder.iterdir()):
@@ -53,9 +53,9 @@ def simulate(
 ) -> Simulation:
     """Simulates the experiment that the scene's ``[start]`` describes.
 
-    ``physics``: ``testbed``, a rig with compliant contacts, uneven friction and a drive that lags, or
+    ``physics``: ``testbed``, a rig with compliant contacts, uneven friction and a lagging drive, or
     ``model``, the filter's own contact dynamics without noise. ``rate``: frames per second (Hz).
-    ``friction``: true ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); the scene's where it has none.
+    ``friction``: true ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); the scene's values by default.
     """
     true = dict(friction or {})
     unknown = sorted(set(true) - {"mu_s", "mu_p", "mu_f", "d_tri"})

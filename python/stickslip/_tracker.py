@@ -1,4 +1,4 @@
-"""One row at a time, as a robot needs it."""
+"""Row-by-row tracking for a robot."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stickslip._columns import Log
 from stickslip._files import log_of, scene_of
 from stickslip._native import Scene
 
-#: Columns of a log that say how noisy the object's pose is.
+#: Columns of a log with the covariance of the object's pose.
 COVARIANCE = (
     "object_var_x",
     "object_var_y",
@@ -25,28 +25,29 @@ COVARIANCE = (
 
 
 class Row(TypedDict):
-    """What one instant brings; None where nothing was measured."""
+    """Measurements at one time; None is a missing measurement."""
 
     #: Time (s).
     time: float
-    #: Pose of the object (m, m, rad), as the camera measured it.
+    #: Camera pose of the object (m, m, rad).
     object: Sequence[float] | None
-    #: How noisy that pose is: variances of x, y, theta (m^2, m^2, rad^2), then covariances of x with y, x with theta, y
-    #: with theta; None for as noisy as the scene's camera.
+    #: Covariance of that pose: variances of x, y, theta (m^2, m^2, rad^2), then covariances of x
+    #: with y, x with theta, y with theta; None: the noise of the scene's camera.
     object_covariance: Sequence[float] | None
     #: Pose of the pusher (m, m, rad).
     pusher: Sequence[float] | None
-    #: Readings of the sensors on the fixels over the interval that ends here, 0 or 1.
+    #: Tactile readings of the fixels, 0 or 1, over the interval that ends at this row.
     tactile: Sequence[bool | int | None]
     #: Force of the pusher on the object, world frame (N).
     force: Sequence[float] | None
 
 
 class Tracker:
-    """The particle filter, one row at a time, on the caller's thread.
+    """Particle filter that takes one row at a time, on the caller's thread.
 
-    It gives the bits of ``stickslip.filter(..., causal=True)``. ``late``: how far behind the latest row a
-    row may come and still count (s); the particles remember their poses for as long.
+    Its estimates have the bits of ``stickslip.filter(..., causal=True)``. ``late``: largest delay
+    of a row behind the latest one at which its object pose counts (s). The particles keep their
+    poses for this time.
 
     >>> tracker = stickslip.Tracker(scene, particles=500)  # doctest: +SKIP
     >>> estimate = tracker.push(0.033, object=(0.1, 0.0, 0.0), pusher=(0.07, 0.0, 0.0))  # doctest: +SKIP
@@ -84,16 +85,18 @@ class Tracker:
         force: Sequence[float] | None = None,
         object_covariance: Sequence[float] | None = None,
     ) -> dict[str, float]:
-        """Takes what was measured at ``time`` (s): poses of object and pusher (m, m, rad), readings of the
-        tactile sensors, 0 or 1, sensor k on fixel k, and the force of the pusher on the object (N), None where
-        there is none. ``object_covariance`` says how noisy the object's pose is, where that is told: the
-        variances of x, y and theta, then the covariances of x with y, x with theta and y with theta.
+        """Takes the measurements at ``time`` (s); None is a missing measurement.
 
-        Returns the estimate at the latest row under the names of ``estimate.csv`` (see
-        :func:`stickslip.filter`); NaN before the first object pose. A row without an object pose is blacked
-        out; a row that is not later than the latest one is late, and its object pose counts for its time.
+        ``object``, ``pusher``: poses (m, m, rad). ``tactile``: readings 0 or 1, sensor k on fixel
+        k. ``force``: force of the pusher on the object (N). ``object_covariance``: variances of x,
+        y and theta, then covariances of x with y, x with theta and y with theta.
 
-        Raises :class:`stickslip.Error` where the row cannot be used; the tracker then is as it was before.
+        Returns the estimate at the latest row, with the names of ``estimate.csv`` (see
+        :func:`stickslip.filter`); NaN before the first object pose. A row without an object pose is
+        occluded. A row that is not later than the latest one is late: its object pose counts for
+        its own time.
+
+        Raises :class:`stickslip.Error` if the row is invalid. The tracker is then unchanged.
         """
         row = {
             "time": time,
@@ -107,17 +110,17 @@ class Tracker:
 
     @property
     def estimate(self) -> dict[str, float]:
-        """The estimate at the latest row."""
+        """Estimate at the latest row."""
         return self._tracker.estimate()
 
     @property
     def collapses(self) -> int:
-        """Rows at which no particle explained the camera and all were drawn anew around its pose."""
+        """Number of rows at which no particle explained the camera's pose and all were resampled."""
         return self._tracker.collapses
 
 
 def rows(log: Log) -> Iterator[Row]:
-    """The rows of a log, one after the other: ``for row in rows(log): tracker.push(**row)``."""
+    """Yields the rows of a log: ``for row in rows(log): tracker.push(**row)``."""
     columns = log_of(log)
     sensors = [f"tactile_{k}" for k in range(1, len(columns) + 1) if f"tactile_{k}" in columns]
 

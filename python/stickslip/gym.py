@@ -1,4 +1,4 @@
-"""A Gymnasium environment: push an object to a goal, with a camera that may go dark.
+"""Gymnasium environment: push an object to a goal with a camera that may turn off.
 
 Needs ``pip install 'stickslip[gym]'``. All environments of a vector are one rollout.
 """
@@ -23,22 +23,28 @@ __all__ = ["PushEnv"]
 #: Distance between object and pusher at the start (m).
 _CLEARANCE = 2e-3
 
-#: Numbers of an observation.
+#: Length of an observation.
 _SEEN = 8
 
 
 class PushEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArray[Any]]):
-    """``num_envs`` objects, each pushed to a goal of its own under a friction of its own.
+    """``num_envs`` objects, each with its own goal and its own friction from the scene's prior.
 
-    Observation (8,): the object from the goal as last seen, x, y (m), cos and sin of the turn; the pusher from
-    the object as last seen, x, y (m); 1 while the camera sees, else 0; time left, 1 to 0. Action (2,): velocity
-    of the pusher as a share of ``speed`` (m/s), each from -1 to 1; it keeps its angle. Reward: by how much the
-    object came nearer to the goal (in tolerances; angles by the radius of gyration), and 10 on arrival.
+    Observation (8,), with the object's pose as last seen:
 
-    An episode ends where object and goal are ``tolerance`` (m) apart, and is cut after ``actions`` actions of
-    ``frames`` steps of 1/30 s. Where an episode ended, the next step resets the environment
-    (``AutoresetMode.NEXT_STEP``). ``goal_distance``: nearest and farthest goals (m). ``dark``: probability per
-    action that the camera goes dark for the rest of the episode. Friction is drawn from the scene's prior.
+    - object relative to the goal: x, y (m), cos and sin of the angle
+    - pusher relative to the object: x, y (m)
+    - 1 if the camera is on, else 0
+    - time left, from 1 to 0
+
+    Action (2,): velocity of the pusher as a share of ``speed`` (m/s), each from -1 to 1. The pusher
+    keeps its angle. Reward: decrease of the distance to the goal (in tolerances; angles times the
+    radius of gyration), and 10 on arrival.
+
+    An episode ends if the distance is at most ``tolerance`` (m). It is truncated after ``actions``
+    actions of ``frames`` steps of 1/30 s. The next step then resets the environment
+    (``AutoresetMode.NEXT_STEP``). ``goal_distance``: nearest and farthest goals (m). ``dark``:
+    probability per action that the camera turns off for the rest of the episode.
     """
 
     metadata = {"autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012 (as the base class has it)
@@ -81,7 +87,7 @@ class PushEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArray[Any]])
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Starts an episode everywhere."""
+        """Starts an episode in every environment."""
         if isinstance(seed, list):
             seed = seed[0]
         super().reset(seed=seed)

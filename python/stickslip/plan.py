@@ -1,4 +1,4 @@
-"""Choosing a push: which of many brings the object nearest to a goal, may jam, or teaches most of friction.
+"""Choice of a push: by distance to a goal, risk of a jam, or information about friction.
 
 >>> from stickslip import plan
 >>> pushes = plan.straight_pushes(scene, pose=(0, 0, 0), count=500, length=0.05)  # doctest: +SKIP
@@ -20,17 +20,17 @@ from stickslip._rollout import FRICTION, rollout
 
 __all__ = ["Outcome", "predict", "prior", "straight_pushes"]
 
-#: Distance between object and pusher where a candidate begins (m).
+#: Distance between object and pusher at the start of a candidate (m).
 _CLEARANCE = 2e-3
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How N pushes end under K frictions."""
+    """End of N pushes under K frictions."""
 
-    #: Last poses of the object (N, K, 3): x, y (m), theta (rad).
+    #: Final poses of the object (N, K, 3): x, y (m), theta (rad).
     pose: NDArray[np.float64]
-    #: Whether the drive gave way, or a step had no certified solution (N, K).
+    #: True if the pusher yielded or a step had no certified solution (N, K).
     jammed: NDArray[np.bool_]
     #: Weight of an angle in distances (m): the object's radius of gyration.
     radius: float
@@ -41,24 +41,25 @@ class Outcome:
         return np.asarray(self.jammed.mean(axis=1))
 
     def distance(self, goal: ArrayLike) -> NDArray[np.float64]:
-        """Root mean square distance (m) from ``goal`` (x, y in m, theta in rad) over the frictions (N,)."""
+        """Returns the RMS distance (m) to ``goal`` (m, m, rad) over the frictions (N,)."""
         away = self.pose - np.asarray(goal, dtype=np.float64)
         turn = np.angle(np.exp(1j * away[..., 2]))
         square = away[..., 0] ** 2 + away[..., 1] ** 2 + (self.radius * turn) ** 2
         return np.asarray(np.sqrt(square.mean(axis=1)))
 
     def nearest(self, goal: ArrayLike, *, jam_below: float = 1.0) -> int:
-        """The push that ends nearest to ``goal`` among those that jam with at most this probability."""
+        """Returns the push nearest to ``goal`` whose jam probability is at most ``jam_below``."""
         allowed = self.jam_probability <= jam_below
         if not allowed.any():
             raise Error(f"every push jams with more than {jam_below}; the least is {self.jam_probability.min()}")
         return int(np.where(allowed, self.distance(goal), np.inf).argmin())
 
     def information(self, *, position_std: float, orientation_std: float) -> NDArray[np.float64]:
-        """What a look at the object after each push would tell of friction (N,), in nats.
+        """Returns the information about friction in one pose after each push (N,), in nats.
 
-        It is the mutual information of friction and a pose with this noise (m, rad), with the poses that the
-        frictions lead to taken as normal: half of ln det(1 + C / noise), C their covariance.
+        It is the mutual information of friction and a pose with this noise (m, rad). The poses
+        under the K frictions are taken as normal: half of ln det(1 + C / noise), with their
+        covariance C.
         """
         noise = np.array([position_std, position_std, orientation_std])
         if self.pose.shape[1] < 2 or not (noise > 0).all():
@@ -80,10 +81,11 @@ def predict(
 ) -> Outcome:
     """Simulates every push under every friction.
 
-    ``pose``: the object's, at rest, (3,), or one per friction, (K, 3), as from :func:`stickslip.particles`.
-    ``pushes``: poses of the pusher (N, T + 1, 3), a step of ``h`` (s) apart. ``friction``: ``mu_s``, ``mu_p``,
-    ``mu_f``, ``d_tri`` (m), each (K,), as from :func:`prior` or :func:`stickslip.samples`; the scene's by
-    default. A push counts as jammed where the pusher falls farther than ``gives_way`` (m) behind.
+    ``pose``: pose of the object at rest, (3,), or one per friction, (K, 3), as from
+    :func:`stickslip.particles`. ``pushes``: poses of the pusher (N, T + 1, 3), a step of ``h`` (s)
+    apart. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each (K,), as from
+    :func:`prior` or :func:`stickslip.samples`; the scene's by default. ``gives_way``: lag of the
+    pusher (m) above which a push counts as jammed.
     """
     paths = np.ascontiguousarray(pushes, dtype=np.float64)
     if paths.ndim != 3 or paths.shape[2] != 3 or paths.shape[1] < 2:
@@ -108,7 +110,7 @@ def predict(
 
 
 def prior(scene: Scene, count: int, *, seed: int = 0) -> dict[str, NDArray[np.float64]]:
-    """Frictions drawn from the scene's prior (``[uncertainty]``): each parameter (count,), d_tri in m."""
+    """Draws frictions from the scene's prior (``[uncertainty]``), each (count,); d_tri in m."""
     normals = np.random.default_rng(seed).standard_normal((count, len(FRICTION)))
     drawn = scene.drawn_friction(normals)
     known = {name for name, value in scene.friction.items() if not np.isnan(value)}
@@ -125,10 +127,11 @@ def straight_pushes(
     h: float = 1.0 / 30.0,
     seed: int = 0,
 ) -> NDArray[np.float64]:
-    """Random straight pushes at ``speed`` (m/s) that begin clear of the object at ``pose`` and go ``length`` (m)
-    past the circle around it: poses of the pusher (count, T + 1, 3), a step of ``h`` (s) apart.
+    """Draws random straight pushes: pusher poses (count, T + 1, 3), ``h`` (s) apart.
 
-    The direction is any, the aim any point across the object. A push may still sweep through a fixel.
+    A push begins clear of the object at ``pose`` and goes ``length`` (m) past the circle around it,
+    at ``speed`` (m/s). Direction and aim across the object are random. A push may sweep through a
+    fixel.
     """
     if not (count > 0 and length > 0 and speed > 0 and h > 0):
         raise Error("count, length, speed and h must be above 0")

@@ -22,14 +22,14 @@ from stickslip._rollout import FRICTION
 
 __all__ = ["errors", "friction", "particles", "poses", "scene"]
 
-#: Colours of bodies and curves: Okabe and Ito's, told apart by all eyes.
+#: Colours of bodies and curves, from the colour-blind-safe palette of Okabe and Ito.
 _BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#999999"
 
 
 def scene(
     scene: Scene, *, object: ArrayLike | None = None, pusher: ArrayLike | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Draws the fixels, and object and pusher where their poses (x, y in m, theta in rad) are given."""
+    """Draws the fixels, and the object and pusher at given poses (x, y in m, theta in rad)."""
     ax = _plane(ax)
     bodies = outlines(scene)
     for fixel in bodies.fixels:
@@ -50,8 +50,10 @@ def poses(
     log: Log | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draws where the object was after ``rows`` (None: eight of all), later ones darker; the pusher too
-    where its ``log`` is given."""
+    """Draws the object's poses after ``rows`` (None: eight rows), later ones more opaque.
+
+    The pusher is drawn too if its ``log`` is given.
+    """
     ax = _plane(ax)
     bodies = outlines(scene)
     for fixel in bodies.fixels:
@@ -73,8 +75,11 @@ def poses(
 def errors(
     estimate: Mapping[str, Any], truth: Mapping[str, Any], *, intervals: float = 1.645, ax: Axes | None = None
 ) -> Axes:
-    """Draws the distance (mm) of the estimate from the truth at the same times against time, with the length
-    of ``intervals`` of its own standard deviations (1.645: 90 % of an axis) in grey."""
+    """Draws the distance (mm) of the estimate from the truth against time.
+
+    The grey band has the length of ``intervals`` reported standard deviations (1.645: 90 % per
+    axis).
+    """
     ax = ax or plt.figure(layout="constrained").add_subplot()
     time = np.asarray(estimate["time"], dtype=np.float64)
     at = {name: np.interp(time, truth["time"], truth[name]) for name in ("x", "y")}
@@ -89,7 +94,7 @@ def errors(
 
 
 def friction(estimate: Mapping[str, Any], *, names: Sequence[str] = FRICTION, ax: Axes | None = None) -> Axes:
-    """Draws friction parameters against time with a band of one standard deviation; d_tri in cm."""
+    """Draws friction parameters over time with a band of one standard deviation; d_tri in cm."""
     ax = ax or plt.figure(layout="constrained").add_subplot()
     time = np.asarray(estimate["time"], dtype=np.float64)
     for name in names:
@@ -108,7 +113,7 @@ def friction(estimate: Mapping[str, Any], *, names: Sequence[str] = FRICTION, ax
 def particles(
     cloud: Mapping[str, NDArray[np.float64]], row: int, names: tuple[str, str] = ("x", "y"), *, ax: Axes | None = None
 ) -> Axes:
-    """Draws two numbers of the particles after a log's ``row`` against each other, areas by weight."""
+    """Draws two numbers of the particles after ``row`` against each other; areas show weights."""
     ax = ax or plt.figure(layout="constrained").add_subplot()
     (at,) = np.flatnonzero(np.asarray(cloud["row"]) == row)
     weight = cloud["weight"][at]
@@ -130,7 +135,7 @@ def _draw(ax: Axes, polygons: Polygons, *, color: str, alpha: float = 1.0, fill:
 
 
 def _shade_dark(ax: Axes, time: NDArray[np.float64], estimate: Mapping[str, Any]) -> None:
-    """Shades the times at which no camera pose was used."""
+    """Shades the times without a camera pose."""
     dark = np.asarray(estimate["visual"], dtype=np.float64) == 0
     if dark.any():
         ax.fill_between(time, 0, 1, where=dark, transform=ax.get_xaxis_transform(), color="black", alpha=0.06)

@@ -1,7 +1,7 @@
-"""Many runs on many workers: logs x settings x seeds, resumable, by joblib's backends.
+"""Resumable runs of logs x settings x seeds on many workers, by joblib's backends.
 
-A study is a folder with one file per finished task. Starting it again runs what is missing. A task that
-fails, or whose worker dies, costs itself only: it is listed with its error, and tried anew the next time.
+A study is a folder with one file per finished task. A second start runs only the missing tasks. A
+task that fails, or whose worker dies, is listed with its error and repeated at the next start.
 Needs ``pip install 'stickslip[study]'``.
 
 >>> from stickslip import study
@@ -35,10 +35,10 @@ except ImportError as error:
 
 __all__ = ["Task", "grid", "run", "score_folder", "to_parquet"]
 
-#: What one run is given: keyword arguments of its function that JSON can hold.
+#: Keyword arguments of one run, which JSON can represent.
 Task = dict[str, Any]
 
-#: Times that a task is given to a worker before its death is the task's own fault.
+#: Number of dead workers after which the task itself counts as failed.
 _ATTEMPTS = 3
 
 
@@ -48,8 +48,10 @@ def grid(
     *,
     seeds: int = 1,
 ) -> list[Task]:
-    """One task for :func:`score_folder` per folder, combination of settings (see
-    :class:`stickslip.FilterOptions`) and seed."""
+    """Returns one task for :func:`score_folder` per folder, combination of settings and seed.
+
+    ``settings``: see :class:`stickslip.FilterOptions`.
+    """
     names = list(settings or {})
     choices = itertools.product(*(settings or {}).values())
     combinations = [dict(zip(names, choice, strict=True)) for choice in choices]
@@ -62,7 +64,7 @@ def grid(
 
 
 def score_folder(folder: str, seed: int = 0, variant: str = "particle", **options: Any) -> dict[str, Any]:
-    """The scores of one variant on one experiment folder, on one thread (see :func:`stickslip.compare`)."""
+    """Scores one variant on one folder, on one thread (see :func:`stickslip.compare`)."""
     own: Any = {"threads": 1, **options, "seed": seed}
     rows = compare([folder], variants=[variant], **own)
     if not rows:
@@ -81,13 +83,13 @@ def run(
 ) -> list[dict[str, Any]]:
     """Runs ``function(**task)`` for every task that has no result in ``folder`` yet.
 
-    ``function``: importable by workers; returns a dict that JSON can hold. ``workers``: how many, -1 for one
-    per processor. ``backend``: ``loky`` (processes, the default), ``threading``, or one that is registered
-    with joblib: ``ray`` (registered here where Ray is installed), ``dask``. ``progress``: says on standard
-    error how far it is.
+    ``function``: importable by workers; returns a dict that JSON can represent. ``workers``: number
+    of workers, -1 for one per processor. ``backend``: ``loky`` (processes, the default),
+    ``threading``, or one that is registered with joblib: ``ray`` (registered here if Ray is
+    installed), ``dask``. ``progress``: True to print progress on standard error.
 
-    Returns the rows of all tasks in their order: the task's items and, over them, those of its result, or
-    ``error`` with the reason. Results do not depend on backend or workers.
+    Returns the rows of all tasks in their order. A row has the task's items, updated with those of
+    its result, or ``error`` with the reason. Results do not depend on backend or workers.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -111,7 +113,7 @@ def run(
                     f"the backend `{backend}` ran no task ({failure}); is it installed, and can workers import {name}?"
                 ) from failure
             continue
-        # what was under way when a worker died goes alone to one, so that only the task at fault is lost
+        # unfinished tasks of a dead worker run one at a time: only the task at fault is lost
         for file in pending:
             _run_together([jobs[file]], backend, 2, progress)
             if not _outcome(file) and _tries(file) >= _ATTEMPTS:
@@ -124,7 +126,7 @@ def run(
 
 
 def to_parquet(rows: Sequence[Mapping[str, Any]], path: str | os.PathLike[str]) -> None:
-    """Writes rows as a Parquet file, a column per name; null where a row has no such item."""
+    """Writes rows as a Parquet file, a column per name; null if a row has no such item."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -133,24 +135,24 @@ def to_parquet(rows: Sequence[Mapping[str, Any]], path: str | os.PathLike[str]) 
 
 
 def _key(function: Callable[..., Any], task: Task) -> str:
-    """Names a task's file: the same for the same function and items."""
+    """Returns the name of a task's file, which depends on the function and the items."""
     name = f"{function.__module__}.{function.__qualname__}"
     return hashlib.sha256(json.dumps([name, task], sort_keys=True).encode()).hexdigest()[:24]
 
 
 def _run_together(jobs: list[Any], backend: str, workers: int, progress: bool) -> Exception | None:
-    """Gives jobs to workers; where one dies, those that are not done are left undone, and the reason is returned."""
+    """Gives jobs to workers; returns the reason if a worker dies, with its jobs not done."""
     try:
         with joblib.parallel_config(backend=backend, n_jobs=workers):
             joblib.Parallel()(jobs)
-    except Exception as error:  # joblib, loky and Ray each have their own for a dead worker
-        _say(progress, f"a worker died ({type(error).__name__}); what it had not ended is tried again")
+    except Exception as error:  # joblib, loky and Ray have different errors for a dead worker
+        _say(progress, f"a worker died ({type(error).__name__}); its unfinished tasks are repeated")
         return error
     return None
 
 
 def _run_one(function: Callable[..., dict[str, Any]], task: Task, file: str) -> None:
-    """Runs a task in a worker and writes its result, or why there is none."""
+    """Runs a task in a worker and writes its result or its error."""
     path = Path(file)
     with path.with_suffix(".tries").open("a", encoding="utf-8") as tries:
         tries.write("1")
@@ -163,20 +165,20 @@ def _run_one(function: Callable[..., dict[str, Any]], task: Task, file: str) -> 
 
 
 def _write(path: Path, value: Mapping[str, Any]) -> None:
-    """Writes a file whole or not at all."""
+    """Writes a file completely or not at all."""
     part = path.with_name(f"{path.name}.{os.getpid()}.part")
     part.write_text(json.dumps(value), encoding="utf-8")
     part.replace(path)
 
 
 def _tries(file: Path) -> int:
-    """How often a task was begun and not ended."""
+    """Returns the number of times that a task was begun and not finished."""
     tries = file.with_suffix(".tries")
     return tries.stat().st_size if tries.exists() else 0
 
 
 def _outcome(file: Path) -> Path | None:
-    """The file of a task's result or error, where there is one."""
+    """Returns the file of a task's result or error, if it exists."""
     return next((path for path in (file, file.with_suffix(".error")) if path.exists()), None)
 
 

@@ -1,9 +1,9 @@
 """Public pushing data as experiment folders.
 
-Users download; nothing is shipped. Each importer reads a file as its authors publish it and writes
-``scene.toml`` and ``log.csv`` (``truth.json`` where something is known), which every part of stickslip
-takes. What a file does not hold, the scene, is the user's: a text of ``scene.toml``, best begun with
-:func:`scene_text`.
+The package contains no data: users download it. Each importer reads a file as its authors publish
+it and writes ``scene.toml`` and ``log.csv``, and ``truth.json`` if something is known of the truth.
+All parts of stickslip read these folders. The scene is not in the data. The user gives the text of
+``scene.toml``, for example from :func:`scene_text`.
 """
 
 from stickslip.datasets._benchmark import occlusion_benchmark

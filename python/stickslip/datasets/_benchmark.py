@@ -1,4 +1,4 @@
-"""How well methods predict what the camera does not show, over a data set."""
+"""Occlusion benchmark of all methods over a data set."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ def occlusion_benchmark(
     scene_name: str = "scene.toml",
     **options: Unpack[FilterOptions],
 ) -> list[dict[str, Any]]:
-    """Hides the camera for the middle ``seconds`` of every experiment and scores each method there.
+    """Hides the camera for the middle ``seconds`` of every experiment and scores each method.
 
-    Returns the rows of :func:`stickslip.compare`; its ``wmse_occluded_mm`` is the benchmark's number.
+    Returns the rows of :func:`stickslip.compare`; ``wmse_occluded_mm`` is the benchmark's score.
     ``pandas.DataFrame(rows).groupby("variant")["wmse_occluded_mm"].median()`` makes a table of it.
     """
     own = FilterOptions(**{**options, "occlude": None, "occlude_middle": seconds})

@@ -1,4 +1,4 @@
-"""Writes experiment folders."""
+"""Writer of experiment folders."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def write_experiment(
 ) -> Path:
     """Writes ``scene.toml`` (its text), ``log.csv`` and, with ``facts``, ``truth.json`` into a new folder.
 
-    Raises :class:`stickslip.Error` where the scene or the log could not be read back, or the folder is not
-    empty, so that nothing recorded is lost; nothing is written then.
+    Raises :class:`stickslip.Error`, and writes nothing, if the scene or the log is invalid or the
+    folder is not empty.
     """
     folder = Path(folder)
     Scene(scene, str(folder / "scene.toml"))

@@ -1,4 +1,4 @@
-"""Pushes of the MIT pushing data set and of Omnipush."""
+"""Importers of the MIT pushing data set and of Omnipush."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def import_mit(
 ) -> Path:
     """Writes the experiment folder ``out`` of one push of the MIT pushing data set (Yu et al., IROS 2016).
 
-    ``file``: its JSON, or HDF5 (needs ``h5py``), with ``object_pose`` and ``tip_pose`` as rows of time (s),
-    x, y (m), theta (rad), or time, x, y, z and a quaternion x, y, z, w; and ``ft_wrench`` as rows of time,
-    fx, fy (N), torque. The streams are not synchronised and the object's angle jumps by 90 and 180 degrees:
-    see :func:`log_of_streams`. ``scene``: text of ``scene.toml``; the object's frame there must be the data
-    set's, so its origin the centre of mass. ``force_sign``: 1 where the forces act on the object, -1 where on
-    the finger; None leaves them out.
+    ``file``: JSON, or HDF5 (needs ``h5py``), with ``object_pose`` and ``tip_pose`` as rows of time
+    (s), x, y (m), theta (rad), or of time, x, y, z and a quaternion x, y, z, w; and ``ft_wrench``
+    as rows of time, fx, fy (N), torque. The streams are not synchronised, and the object's angle
+    jumps by 90 and 180 degrees: see :func:`log_of_streams`. ``scene``: text of ``scene.toml``, with
+    the object's frame of the data set, whose origin is the centre of mass. ``force_sign``: 1 if the
+    forces act on the object, -1 if they act on the finger; None leaves them out.
     """
     streams = _read(Path(file))
     force = streams.get("force")
@@ -49,8 +49,8 @@ def import_omnipush(
 ) -> Path:
     """Writes the experiment folder ``out`` of one push of Omnipush (Bauza et al., IROS 2019).
 
-    ``file``: HDF5 (needs ``h5py``) or JSON with ``object_pose`` and ``tip_pose`` as rows of time (s), x, y (m),
-    yaw (rad). ``scene``: text of ``scene.toml``.
+    ``file``: HDF5 (needs ``h5py``) or JSON with ``object_pose`` and ``tip_pose`` as rows of time
+    (s), x, y (m), yaw (rad). ``scene``: text of ``scene.toml``.
     """
     return import_mit(file, scene, out, rate=rate, symmetry=None)
 
@@ -92,7 +92,7 @@ def _streams(file: Path, get: Callable[[str], Any]) -> dict[str, Stream]:
 
 
 def _stream(rows: Stream, stream: str, name: str) -> Stream:
-    """Planar poses of spatial ones."""
+    """Converts spatial poses to planar ones."""
     if stream == "force" or rows.value.shape[1] == 3:
         return rows
     if rows.value.shape[1] != 7:

@@ -1,4 +1,4 @@
-"""Texts of scene files."""
+"""Text of scene files."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ from stickslip._native import Error, Scene
 
 
 def uniform_plate(polygon: ArrayLike, mass: float) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """A plate of equal thickness: its polygon (K, 2) moved so that the centre of mass is the origin, where that
-    centre was, (2,), and the moment of inertia about it (kg m^2), for a ``polygon`` in m, counter-clockwise."""
+    """Returns the frame and the inertia of a plate of equal thickness.
+
+    ``polygon``: corners (K, 2) in m, counter-clockwise. ``mass`` in kg. Returns the polygon moved
+    to the centre of mass as origin (K, 2), that centre in the given frame (2,), and the moment of
+    inertia about it (kg m^2).
+    """
     a = np.asarray(polygon, dtype=np.float64)
     if a.ndim != 2 or a.shape[1] != 2 or len(a) < 3:
         raise Error(f"the polygon has the shape {a.shape}; it must be (K, 2) with K at least 3")
@@ -41,11 +45,12 @@ def scene_text(
     orientation_std: float = 5e-3,
     latency: float = 0.0,
 ) -> str:
-    """The text of a ``scene.toml`` for an object pushed by a round finger, without fixels.
+    """Returns the text of a ``scene.toml`` for an object pushed by a round finger, without fixels.
 
-    ``shape``: convex parts in TOML, such as ``"{ disc = { radius = 0.03 } }"``, or rows of corners as from
-    :func:`uniform_plate`, in the frame of the centre of mass. Friction values and ``tripod_radius`` (m; the
-    radius of gyration by default) are first guesses: the filter adapts them, ``stickslip fit`` learns them.
+    ``shape``: convex parts in TOML, such as ``"{ disc = { radius = 0.03 } }"``, or rows of corners
+    as from :func:`uniform_plate`, in the frame of the centre of mass. Friction values and
+    ``tripod_radius`` (m; the radius of gyration by default) are first guesses. The filter adapts
+    them, and ``stickslip fit`` learns them.
     """
     parts = [shape] if isinstance(shape, str) else list(shape)
     if parts and not isinstance(parts[0], str):

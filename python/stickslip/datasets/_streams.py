@@ -1,4 +1,4 @@
-"""From streams of several clocks to the rows of a log."""
+"""Rows of a log from streams with different clocks."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip._columns import Columns
 from stickslip._native import Error
 
-#: Longest time between two samples over which poses are interpolated (s), that of the format.
+#: Longest time between two samples for interpolation (s), as in the format.
 LONGEST_GAP = 0.2
 
-#: Times that differ by less are one (s).
+#: Times that differ by less than this are equal (s).
 _SAME = 1e-6
 
 
 @dataclass(frozen=True)
 class Stream:
-    """Measurements of one sensor on its own clock."""
+    """Measurements of one sensor, with their times."""
 
     #: Time of each sample (s), (n,).
     time: NDArray[np.float64]
-    #: The samples (n, k): poses x, y (m), theta (rad), or forces (N).
+    #: Samples (n, k): poses x, y (m), theta (rad), or forces (N).
     value: NDArray[np.float64]
 
     @classmethod
     def of(cls, rows: ArrayLike, name: str) -> Stream:
-        """The stream of rows (n, 1 + k), time first; sorted, of equal times the first kept."""
+        """Makes a stream of rows (n, 1 + k), time first: sorted, with the first of equal times."""
         table = np.asarray(rows, dtype=np.float64)
         if table.ndim != 2 or table.shape[1] < 2 or not len(table):
             raise Error(f"{name} has the shape {table.shape}; it must be rows of a time and numbers, at least one")
@@ -48,13 +48,13 @@ def log_of_streams(
     symmetry: float | None = None,
     start: float | None = None,
 ) -> Columns:
-    """The log of streams that are not synchronised.
+    """Makes a log of streams that are not synchronised.
 
-    Rows come at ``rate`` (Hz) while object and pusher are both recorded. Poses are interpolated over at most
-    0.2 s, and NaN where the samples are farther apart; ``force`` (world frame, on the object) is the mean
-    over the interval that ends at the row. Angles are unwrapped; ``symmetry`` (rad) is the angle by which
-    the tracker takes the object for itself, pi / 2 for a square: jumps by multiples of it are taken out.
-    ``start``: time that becomes 0, that of the first row by default.
+    The log has rows at ``rate`` (Hz) while both object and pusher are recorded. Poses are
+    interpolated over at most 0.2 s; a longer gap gives NaN. ``force`` (world frame, on the object)
+    is the mean over the interval that ends at the row. Angles are unwrapped. ``symmetry`` (rad):
+    rotation that maps the object to itself, pi / 2 for a square; jumps by multiples of it are
+    removed. ``start``: time that becomes 0, by default that of the first row.
     """
     if not rate > 0:
         raise Error(f"rate is {rate} Hz; it must be above 0")
@@ -78,9 +78,12 @@ def log_of_streams(
 
 
 def planar(position: ArrayLike, quaternion: ArrayLike, body: ArrayLike | None = None) -> NDArray[np.float64]:
-    """Planar poses (n, 3) of bodies that a tracker saw at ``position`` (n, 3), in any unit of length, with
-    ``quaternion`` (n, 4) as w, x, y, z. ``body`` (4, 4): pose of the object in the frame that is tracked, in
-    the same unit, where the two differ."""
+    """Projects spatial poses to planar ones (n, 3).
+
+    ``position`` (n, 3), in any unit of length, and ``quaternion`` (n, 4) as w, x, y, z: the tracked
+    frame. ``body`` (4, 4): pose of the object in the tracked frame, in the same unit, if the two
+    differ.
+    """
     place = np.asarray(position, dtype=np.float64)
     w, x, y, z = np.moveaxis(np.asarray(quaternion, dtype=np.float64), -1, 0)
     scale = 2 / (w * w + x * x + y * y + z * z)
@@ -99,7 +102,7 @@ def planar(position: ArrayLike, quaternion: ArrayLike, body: ArrayLike | None = 
 
 
 def unwrapped(theta: NDArray[np.float64], period: float) -> NDArray[np.float64]:
-    """Angles (n,) without jumps by multiples of ``period`` (rad)."""
+    """Removes jumps by multiples of ``period`` (rad) from angles (n,)."""
     return np.asarray(np.unwrap(theta, period=period), dtype=np.float64)
 
 
@@ -115,7 +118,7 @@ def _poses(stream: Stream, time: NDArray[np.float64], period: float) -> NDArray[
 
 
 def _means(stream: Stream, time: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Mean of the samples in (t - 1 / rate, t] of each row; NaN where there is none."""
+    """Averages the samples in (t - 1 / rate, t] of each row; NaN without samples."""
     ends = np.searchsorted(stream.time, time, side="right")
     begins = np.searchsorted(stream.time, time - 1 / rate, side="right")
     sums = np.vstack([np.zeros(2), np.cumsum(stream.value[:, :2], axis=0)])

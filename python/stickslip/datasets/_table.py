@@ -1,4 +1,4 @@
-"""Tables with columns of any name."""
+"""Importer of tables with any column names."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from stickslip._native import Error
 from stickslip.datasets._folder import write_experiment
 from stickslip.datasets._streams import unwrapped
 
-#: A column of the file, or a column and a factor that makes SI units of it.
+#: Column of the file, or a column and the factor that converts it to SI units.
 Source = str | tuple[str, float]
 
 
@@ -30,12 +30,14 @@ def import_csv(
 ) -> Path:
     """Writes the experiment folder ``out`` of a table with a header.
 
-    ``columns``: for each column of ``log.csv`` the file's, with a factor where that is not in SI units::
+    ``columns``: the file's column for each column of ``log.csv``, with a factor if it is not in SI
+    units::
 
         {"time": ("stamp_ms", 1e-3), "object_x": ("x_mm", 1e-3), "object_theta": ("yaw_deg", np.pi / 180), ...}
 
-    Columns of poses that are not named (the pusher's angle, say) are 0. ``missing``: cells that mean that
-    nothing was measured; a pose is missing where one of its numbers is. Angles are unwrapped. Time starts at 0.
+    Pose columns that are not named (the pusher's angle, for example) are 0. ``missing``: cells that
+    mean a missing measurement; a pose is missing if one of its numbers is. Angles are unwrapped.
+    Time starts at 0.
     """
     read = {name: _column(Path(file), source, delimiter, missing) for name, source in columns.items()}
     for name in ("time", "object_x", "object_y", "pusher_x", "pusher_y"):

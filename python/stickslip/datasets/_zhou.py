@@ -1,4 +1,4 @@
-"""The recordings of J. Zhou and M. T. Mason (CMU)."""
+"""Importers of the recordings of J. Zhou and M. T. Mason (CMU)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from stickslip._native import Error
 from stickslip.datasets._folder import write_experiment
 from stickslip.datasets._streams import Stream, unwrapped
 
-#: Time without rows above which the hand was lifted (s).
+#: Longest time without rows while the hand is on the table (s).
 _LIFTED = 0.5
 
 
@@ -27,14 +27,17 @@ def import_two_finger(
     centre: tuple[float, float] = (0.0, -0.3175),
     single_pushes: bool = False,
 ) -> list[Path]:
-    """Writes the experiment folder of one run of PlanarManipulationToolBox's ``robot_exp_logs`` (ISRR 2017), or,
-    with ``single_pushes``, of each of its pushes as ``out-1``, ``out-2``, ...
+    """Writes the experiment folder of one run of ``robot_exp_logs`` (ISRR 2017).
 
-    ``file``: rows of time (s), the object's x, y (mm), theta (rad), the hand's, and the edge that is pushed,
-    without a header. The first row, a stale message, is dropped; object poses of zeros are lost ones and
-    become empty; angles are unwrapped. Where the hand was lifted there are no rows; they are filled at 30 Hz
-    with empty cells, so that it is not swept through the object. Object positions p become ``centre`` +
-    ``scale`` (p - ``centre``) + ``shift`` (m), where camera and robot disagree.
+    The files are those of PlanarManipulationToolBox. With ``single_pushes``, each push of the run
+    becomes a folder ``out-1``, ``out-2``, ...
+
+    ``file``: rows of time (s), the object's x, y (mm), theta (rad), the hand's, and the pushed
+    edge, without a header. The first row is a stale message and is dropped. Object poses of zeros
+    are lost ones and become empty. Angles are unwrapped. The file has no rows while the hand is
+    lifted. They are filled at 30 Hz with empty cells, so that the hand does not sweep through the
+    object. ``centre``, ``scale``, ``shift`` correct a disagreement of camera and robot: object
+    positions p become ``centre`` + ``scale`` (p - ``centre``) + ``shift`` (m).
     """
     table = _table(Path(file), 8)[1:]
     if not len(table):
@@ -58,11 +61,11 @@ def import_two_finger(
 
 
 def read_alternating(file: str | os.PathLike[str]) -> Stream:
-    """The stream of a file of MLab_EXP whose odd lines are times (s) and whose even lines are numbers.
+    """Reads a file of MLab_EXP whose odd lines are times (s) and whose even lines are numbers.
 
-    Of ``exp3`` and ``exp4``, ``pos*.txt`` and ``robot*.txt`` hold x, y, z (mm) and a quaternion w, x, y, z:
-    make poses of them with :func:`planar` (and the calibration of the tracked body), and a log with
-    :func:`log_of_streams`; ``force*.txt`` holds forces (N) in the sensor's frame.
+    ``pos*.txt`` and ``robot*.txt`` of ``exp3`` and ``exp4`` have x, y, z (mm) and a quaternion w,
+    x, y, z. :func:`planar` makes poses of them, with the calibration of the tracked body, and
+    :func:`log_of_streams` makes a log. ``force*.txt`` has forces (N) in the sensor's frame.
     """
     lines = Path(file).read_text(encoding="utf-8").split("\n")
     lines = [line for line in lines if line.strip()]
@@ -88,7 +91,7 @@ def _table(file: Path, columns: int) -> NDArray[np.float64]:
 def _filled(
     time: NDArray[np.float64], poses: NDArray[np.float64], breaks: NDArray[np.intp]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Rows of NaN at 30 Hz where the hand was lifted."""
+    """Adds rows of NaN at 30 Hz while the hand is lifted."""
     times, rows = [], []
     for begin, end in zip([0, *breaks], [*breaks, len(time)], strict=True):
         if begin > 0:
