@@ -1,6 +1,7 @@
 //! `stickslip compare`: every variant on each experiment folder, medians over seeds, quantiles over
 //! folders.
 
+mod best_baseline;
 mod folders;
 mod page;
 mod played;

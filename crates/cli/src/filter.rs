@@ -172,7 +172,6 @@ fn report(
         summary: warnings
             .iter()
             .map(|text| Block::Note(format!("Warning: {text}")))
-            .chain(reported.summary().iter().cloned())
             .collect(),
         sections: vec![reported.section()],
         origin: origin(

@@ -34,8 +34,8 @@ mod tests {
 
     #[test]
     fn a_clocks_times_count_from_the_logs_start_and_others_stay() {
-        let scene = include_str!("../demo/slide-ell-disc-110/scene.toml");
-        let log = include_bytes!("../demo/slide-ell-disc-110/log.csv");
+        let scene = include_str!("../../testkit/experiments/slide-ell-disc-110/scene.toml");
+        let log = include_bytes!("../../testkit/experiments/slide-ell-disc-110/log.csv");
         let own = Experiment {
             setup: read_scene(scene, "scene.toml").unwrap(),
             log: read_log(&log[..], "log.csv").unwrap().0,

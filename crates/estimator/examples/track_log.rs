@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // what is known before, and what was measured
     let embedded = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../cli/demo/slide-ell-disc-110"
+        "/../testkit/experiments/slide-ell-disc-110"
     );
     let folder = std::env::args().nth(1).unwrap_or(embedded.to_owned());
     let scene = fs::read_to_string(format!("{folder}/scene.toml"))?;

@@ -42,7 +42,7 @@ pub struct Run {
 /// ```
 /// use stickslip::{Occlusion, RunOptions, run};
 ///
-/// # let folder = "../cli/demo/slide-ell-disc-110";
+/// # let folder = "../testkit/experiments/slide-ell-disc-110";
 /// let scene = std::fs::read_to_string(format!("{folder}/scene.toml"))?;
 /// let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;
 /// let file = std::fs::File::open(format!("{folder}/log.csv"))?;

@@ -121,7 +121,7 @@ pub struct StepSize {
 ///
 /// ```
 /// use stickslip::{Row, Tracker, TrackerOptions};
-/// # let folder = "../cli/demo/slide-ell-disc-110";
+/// # let folder = "../testkit/experiments/slide-ell-disc-110";
 /// let scene = std::fs::read_to_string(format!("{folder}/scene.toml"))?;
 /// let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;
 /// let mut tracker = Tracker::new(&setup, &TrackerOptions::default())?;

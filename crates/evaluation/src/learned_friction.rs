@@ -112,7 +112,7 @@ impl LearnedParameter {
     #[must_use]
     pub fn shown(&self) -> String {
         match (self.observed, self.name) {
-            (false, _) => "not observed".to_owned(),
+            (false, _) => "not identifiable".to_owned(),
             (true, "d_tri") => format!("{:.1} ± {:.1} mm", 1e3 * self.mean, 1e3 * self.std),
             (true, _) => format!("{:.3} ± {:.3}", self.mean, self.std),
         }
@@ -209,7 +209,7 @@ mod tests {
                 ("d_tri", Some(3), 0.32, 0.2)
             ]
         );
-        assert_eq!(all[2].shown(), "not observed");
+        assert_eq!(all[2].shown(), "not identifiable");
         assert_eq!(all[3].shown(), "320.0 ± 200.0 mm");
         let known_feet = Estimate {
             has_tripod: false,

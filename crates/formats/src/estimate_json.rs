@@ -43,7 +43,7 @@ pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup, pace: Option<P
 mod tests {
     use super::*;
 
-    const SCENE: &str = include_str!("../../cli/demo/slide-ell-disc-110/scene.toml");
+    const SCENE: &str = include_str!("../../testkit/experiments/slide-ell-disc-110/scene.toml");
 
     #[test]
     fn line_is_json_with_the_columns_as_keys() {

@@ -158,7 +158,7 @@ impl ContactTimeline {
             );
         }
         if !self.dark.is_empty() {
-            legend.push(Swatch::Dark, "camera dark");
+            legend.push(Swatch::Dark, "camera off");
         }
         legend
     }

@@ -45,8 +45,10 @@ pub struct Body {
     pub colour: Colour,
     /// How its boundary is drawn.
     pub line: Line,
-    /// How far its inside is covered, 0 to 1.
+    /// Opacity of its inside, 0 to 1.
     pub opacity: f64,
+    /// True for one of many, whose boundary is a faint hairline.
+    pub thin: bool,
 }
 
 /// A camera image, and where it shows what.
@@ -94,7 +96,14 @@ impl Body {
             colour,
             line: Line::Solid,
             opacity: 0.0,
+            thin: false,
         }
+    }
+
+    /// The body as a faint hairline, one of many.
+    #[must_use]
+    pub fn thin(self) -> Self {
+        Self { thin: true, ..self }
     }
 
     /// The same, drawn with this line.
@@ -151,7 +160,7 @@ impl Overlay {
         let scale = inner / (right - left).max(1e-9);
         let map = |[x, y]: [f64; 2]| Some([scale * (x - left), scale * (high - y)]);
         let size = [inner, scale * (high - low)];
-        self.framed(size, html! { (grid(left, high, scale, size)) }, scale, &map)
+        self.framed(size, html! { path class="grid" d=(grid_lines([left, high], scale, size)) stroke=(GRID.hex()) fill="none" {} }, scale, &map)
     }
 
     /// Corners of what holds all bodies, with some room (m).
@@ -255,7 +264,7 @@ impl Body {
         html! {
             path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
             @if on_image { path d=(boundary) fill="none" stroke="#ffffff" stroke-width="4.5" stroke-opacity="0.75" stroke-linejoin="round" {} }
-            path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round"
+            path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width=(if self.thin { "1" } else { "2" }) stroke-opacity=[self.thin.then_some("0.16")] stroke-linejoin="round" stroke-linecap="round"
                 stroke-dasharray=[self.line.dashes()] {}
             @if let Some(at) = middle.filter(|_| !self.tag.is_empty()) {
                 (Text { anchor: Anchor::Middle, weight: Weight::Bold, ..Text::at(at, &self.tag) }.sized(LABEL))
@@ -270,8 +279,8 @@ fn with_room([[left, low], [right, high]]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     [[left - room, low - room], [right + room, high + room]]
 }
 
-/// A line every 10 mm.
-fn grid(left: f64, high: f64, scale: f64, [width, height]: [f64; 2]) -> Markup {
+/// Path with a line every 10 mm, over a picture whose corner is at the left and upper end (m).
+pub(crate) fn grid_lines([left, high]: [f64; 2], scale: f64, [width, height]: [f64; 2]) -> String {
     let step = 0.01;
     let count = (width.max(height) / (scale * step)).min(500.0) as u32;
     let [first_x, first_y] = [
@@ -280,11 +289,10 @@ fn grid(left: f64, high: f64, scale: f64, [width, height]: [f64; 2]) -> Markup {
     ];
     let across = (0..=count).map(|k| scale * (first_x + step * f64::from(k)));
     let down = (0..=count).map(|k| scale * (first_y + step * f64::from(k)));
-    let lines: String = across
+    across
         .map(|x| path([[x, 0.0], [x, height]], false))
         .chain(down.map(|y| path([[0.0, y], [width, y]], false)))
-        .collect();
-    html! { path class="grid" d=(lines) stroke=(GRID.hex()) fill="none" {} }
+        .collect()
 }
 
 /// A bar of a round length that ends below the picture's right corner (px), with the length; and

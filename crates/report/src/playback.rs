@@ -172,7 +172,7 @@ impl Playback {
                     div class="marks" {}
                     div class="strip" {
                         svg viewBox="0 0 1000 100" preserveAspectRatio="none" role="img"
-                            aria-label="Position errors against time; dark where the camera is" {}
+                            aria-label="Position errors against time; shaded while the camera is off" {}
                         span class="quantity" { "position error" }
                     }
                     input type="range" min="0" max=(last) value="0" step="1" aria-label="time";
@@ -205,7 +205,7 @@ impl Playback {
             false => "",
         };
         format!(
-            "Filled: the {}, dashed while the camera is dark. Coloured outlines: estimates{particles}.{yellow}{rims}",
+            "Filled: the {}, dashed while the camera is off. Coloured outlines: estimates{particles}.{yellow}{rims}",
             self.reference_name
         )
     }

@@ -243,7 +243,7 @@ impl TimeFigure {
         }
         let dark = |panel: &Panel| !panel.dark.as_ref().unwrap_or(&self.dark).is_empty();
         if self.panels.iter().any(dark) {
-            legend.push(Swatch::Dark, "camera dark");
+            legend.push(Swatch::Dark, "camera off");
         }
         legend
     }

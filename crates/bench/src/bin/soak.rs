@@ -23,7 +23,7 @@ use stickslip::quantile;
 
 const DEMO: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/../cli/demo/slide-ell-disc-110"
+    "/../testkit/experiments/slide-ell-disc-110"
 );
 const PERIOD: Duration = Duration::from_millis(10);
 

@@ -36,7 +36,7 @@ pub fn played(
         let folder = folders.iter().find(path).expect("a result has its folder");
         let section = section(folder, model, comparison.particles)?;
         let place = format!(
-            "number {} of {count} by the particle filter's WMSE, seed 0",
+            "number {} of {count} by the particle filter's pose RMSE, seed 0",
             rank + 1
         );
         Ok(Section {
@@ -68,7 +68,7 @@ fn section(folder: &Folder, model: FilterModel, particles: usize) -> Result<Sect
         occlusion: *occlusion,
         seed: 0,
     };
-    let variants: Vec<Variant> = Variant::drawn_on(&experiment.log, *occlusion).collect();
+    let variants: Vec<Variant> = Variant::compared_on(&experiment.log, *occlusion).collect();
     let runs = variants
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, &conditions))

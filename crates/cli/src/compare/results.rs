@@ -8,6 +8,7 @@ use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip_evaluation::{ScoredRun, Variant, quantile};
 use stickslip_formats::Experiment;
 
+use super::best_baseline::BestBaseline;
 use crate::args::CompareArgs;
 use crate::failure::one_line;
 
@@ -135,7 +136,9 @@ pub struct Comparison {
     pub folders: Vec<FolderResult>,
     /// Over folders.
     pub overall: Vec<Overall>,
-    /// What touch does to the belief; `None` where no two folders have sensors.
+    /// Best baseline against the particle filter; `None` if either has no score.
+    pub best_baseline: Option<BestBaseline>,
+    /// Gain by touch; `None` if fewer than two folders have sensors.
     pub touch_gain: Option<TouchGain>,
     /// Folders that gave no result.
     pub errors: Vec<LostFolder>,
@@ -155,7 +158,7 @@ pub struct TouchGain {
 /// The scores that are shown, in order.
 pub const COLUMNS: [Column; 6] = [
     Column {
-        title: "WMSE mm",
+        title: "RMSE mm",
         of: |scores| scores.wmse_mm,
         over: Over::Quantiles,
     },
@@ -186,9 +189,9 @@ pub const COLUMNS: [Column; 6] = [
     },
 ];
 
-/// What the columns of a table mean, in a line.
-pub const LEGEND: &str = "WMSE: over hidden rows, over all where none is hidden. covers: share of the 90 % intervals of x, y and theta that hold the \
-     reference there; CRPS: error of the whole belief; both means.";
+/// Meaning of the columns of a table.
+pub const LEGEND: &str = "RMSE: of the pose on occluded rows, on all rows if none is occluded. Moving: while the object moves. Final: at the last row. \
+     Covers: share of 90 % intervals of x, y and theta that cover the reference, mean. CRPS: error of the whole belief, mean.";
 
 impl ShownScores {
     /// The scores of one run.
@@ -359,6 +362,7 @@ impl Comparison {
             particles: args.shared.particles,
             seeds: args.seeds,
             quantile,
+            best_baseline: BestBaseline::of(&folders),
             touch_gain: TouchGain::of(&folders),
             folders,
             overall,

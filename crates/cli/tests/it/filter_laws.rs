@@ -18,17 +18,17 @@ struct Experiment {
 
 fn stop_experiment() -> Experiment {
     let setup = read_scene(
-        include_str!("../../demo/stop-square50-bar-000/scene.toml"),
+        include_str!("../../../testkit/experiments/stop-square50-bar-000/scene.toml"),
         "scene.toml",
     )
     .unwrap();
     let (log, _) = read_log(
-        include_str!("../../demo/stop-square50-bar-000/log.csv").as_bytes(),
+        include_str!("../../../testkit/experiments/stop-square50-bar-000/log.csv").as_bytes(),
         "log.csv",
     )
     .unwrap();
     let truth = read_truth_csv(
-        include_str!("../../demo/stop-square50-bar-000/truth.csv").as_bytes(),
+        include_str!("../../../testkit/experiments/stop-square50-bar-000/truth.csv").as_bytes(),
         "truth.csv",
     )
     .unwrap();

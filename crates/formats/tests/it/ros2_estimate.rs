@@ -15,7 +15,7 @@ use stickslip_formats::{read_scene, write_estimate_mcap, write_estimate_tum};
 /// An estimate of two rows, the first without a pose, in the scene of an embedded experiment; all
 /// fixels are touched.
 fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
-    let scene = include_str!("../../../cli/demo/stop-square50-bar-000/scene.toml");
+    let scene = include_str!("../../../testkit/experiments/stop-square50-bar-000/scene.toml");
     let setup = read_scene(scene, "scene.toml").unwrap();
     let fixels = setup.scene.fixels.len();
     let quarters = ContactSlip {
