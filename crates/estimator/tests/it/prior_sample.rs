@@ -1,5 +1,5 @@
-//! Experiments drawn from the filter's own model: what is drawn has the priors' distributions, and
-//! the filter's beliefs of such experiments hold as much as they say (simulation-based
+//! Experiments drawn from the filter's own model. What is drawn has the priors' distributions. The
+//! filter's beliefs about such experiments cover as much as they say (simulation-based
 //! calibration).
 
 use std::sync::Mutex;
@@ -128,8 +128,8 @@ fn a_truth_is_drawn_around_the_first_pose_which_stays() {
     let [a, b] = [0, 1].map(|k| mean(&|squares| libm::log(squares[k])));
     let covariance = mean(&|[first, later]| (libm::log(*first) - a) * (libm::log(*later) - b));
     assert!((covariance - 0.36).abs() < 0.2, "{covariance}");
-    // and that noise is unknown: variances of the position in told ones have mean ν/(ν − 2), with a standard
-    // error of 0.12
+    // and that noise is unknown: variances of the position in nominal ones have mean ν/(ν − 2),
+    // with a standard error of 0.12
     let told = 2.0 * camera.position_std * camera.position_std;
     let mean = mean(&|[first, _]| first / told);
     let expected = freedom / (freedom - 2.0);

@@ -1,12 +1,12 @@
-//! Feet of each particle in contact mode (docs/method.md (55)): drawn anew while the object rests,
-//! kept once it moves.
+//! Feet of each particle in the robust model (docs/method.md (55)): resampled from the prior while
+//! the object rests, kept once it moves.
 
 use std::sync::Mutex;
 
 use crate::common::{PARTICLES, run_into_the_dark, setup};
 use stickslip::{Observer, SolvedStep};
 
-/// Steps in which nothing touches the object yet, and such in which it moves in all particles.
+/// Steps in which nothing touches the object yet, and steps in which it moves in all particles.
 const AT_REST: std::ops::Range<usize> = 0..18;
 const MOVING: std::ops::Range<usize> = 45..55;
 
@@ -28,10 +28,10 @@ impl Observer for Arms {
 /// direction from there.
 type Stand = ([f64; 2], f64);
 
-/// How the particles stand in each step of a run.
+/// Stands of the particles in each step of a run.
 type Steps = Vec<Vec<Stand>>;
 
-/// How they stand in all runs.
+/// Stands of the particles in all runs.
 fn feet() -> Vec<Steps> {
     let setup = setup(&[]);
     let told = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
