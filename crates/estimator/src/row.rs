@@ -120,7 +120,7 @@ pub enum RowError {
         time: f64,
         /// Time of the latest row (s).
         latest: f64,
-        /// How far back a row may lie (s).
+        /// Longest time by which a row may be behind the latest one (s).
         remembered: f64,
     },
 }

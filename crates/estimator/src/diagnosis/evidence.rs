@@ -194,7 +194,8 @@ impl<'a> Evidence<'a> {
 
     /// Standard deviation of a way that noise alone makes (m).
     fn way_std(&self) -> Option<f64> {
-        // the difference of two means of three poses, which are no better than one where errors last
+        // the difference of two means of three poses, which are no better than one where errors
+        // last
         let (noise, poses) = match self.lasting {
             Some(Lasting { wander, .. }) => (wander.max(self.stated()), 1.0),
             None => (self.noise?, 3.0),

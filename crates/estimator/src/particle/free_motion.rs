@@ -171,7 +171,8 @@ mod tests {
     fn poses_that_move_on_are_taken_for_motion_within_three_and_two_at_rest_for_rest() {
         let (mut free, mut rest) = (FreeMotion::new(&at(0.0), 0.02), at(0.0));
         let mut moved = Vec::new();
-        // 60 mm/s at 30 Hz, from the third pose to the ninth, with half a turn of the circle in between
+        // 60 mm/s at 30 Hz, from the third pose to the ninth, with half a turn of the circle in
+        // between
         for k in 0..20 {
             let x = 2e-3 * (f64::from(k) - 2.0).clamp(0.0, 7.0);
             let turned = std::f64::consts::TAU * f64::from(k % 2);

@@ -12,7 +12,7 @@ const GROWTH: usize = 8;
 /// set).
 #[derive(Clone, Debug)]
 pub(crate) struct PoseHistory {
-    /// How far back poses are needed (s); 0: the particles keep none.
+    /// Time back to which poses are needed (s); 0: the particles keep none.
     depth: f64,
     /// (time, slot) in order of time, the first row of the estimate first.
     kept: VecDeque<(f64, usize)>,

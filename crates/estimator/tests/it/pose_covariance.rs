@@ -124,8 +124,8 @@ impl Observer for Moments {
 fn two_noisy_poses_have_the_posterior_of_normal_distributions() {
     const PARTICLES: usize = 40_000;
     let (expected, covariance) = posterior();
-    // the second pose is nearer the first in y than in x, and both noises lean, so that a filter which
-    // took the axes for independent would be off by many of the standard errors below
+    // the second pose is nearer the first in y than in x, and both noises lean, so that a filter
+    // which took the axes for independent would be off by many of the standard errors below
     for model in [FilterModel::Paper, FilterModel::Robust] {
         let options = RunOptions {
             model,

@@ -90,8 +90,8 @@ fn feet_are_drawn_anew_until_the_object_moves_and_kept_after_that() {
     );
     assert!((cosine - told).abs() < 0.02, "{cosine}, {told}");
 
-    // 1280 particles, some of which were copied, that wander by a tenth: correlated by √0.99 from step to step, as the
-    // object turns a little
+    // 1280 particles, some of which were copied, that wander by a tenth: correlated by √0.99 from
+    // step to step, as the object turns a little
     let [square, product] = square_and_product(&runs, MOVING);
     assert!((square - 1.0).abs() < 0.1, "variance {square}");
     let kept = product / square;

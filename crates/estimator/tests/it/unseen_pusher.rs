@@ -53,7 +53,8 @@ fn tracked(log: &Log, tracking: Tracking) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_pusher_that_is_seen_again_throws_nothing_ahead() {
-    // a tracker at 200 Hz that misses twenty poses; the step to the next one would be 21 times as fast
+    // a tracker at 200 Hz that misses twenty poses; the step to the next one would be 21 times as
+    // fast
     let lost = 1.5..1.6;
     let log = push(400, 200.0, |time| [time >= 1.4, lost.contains(&time)]);
     let rows = tracked(&log, Tracking::Causal);
