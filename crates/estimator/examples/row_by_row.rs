@@ -1,4 +1,4 @@
-//! Tracks a log as if its rows came live, and looks at the particles between them:
+//! Tracks a log as if its rows came live, and prints the likeliest particle between them:
 //! `cargo run --release -p stickslip --example row_by_row`.
 
 use std::error::Error;
