@@ -27,10 +27,8 @@ fn folder() -> PathBuf {
 fn page() -> String {
     let (setup, log) = (setup(), log(200));
     let experiment = experiment("a grasp", &setup, &log, 60);
-    let summary = experiment.summary().to_vec();
     Report {
         title: "A test of the report".to_owned(),
-        summary,
         sections: vec![experiment.section()],
         ..Report::default()
     }
