@@ -181,7 +181,7 @@ fn filter_writes_a_report_and_the_same_estimate() {
         "download=\"filter_report-estimate.csv\"",
         "--occlude 153",
         "<dt>seed</dt><dd>0</dd>",
-        "Friction: not identifiable from this push; the scene&#39;s values were used.",
+        "Friction: not identifiable from this push; the scene's values were used.",
     ] {
         assert!(page.contains(text), "{text} is missing");
     }
@@ -207,7 +207,7 @@ fn compare_writes_a_report_of_all_folders() {
     );
     let page = fs::read_to_string(page).unwrap();
     for text in [
-        "1 experiment, every method on each: particle filters with",
+        "1 experiment, all variants on each: particle filters with",
         "with one seed",
         "All experiments",
         "class=\"player\"",
