@@ -35,7 +35,7 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// What the steps of one chunk's lanes say, side by side.
+    /// Answers of the steps of one chunk's lanes, side by side.
     pub(crate) fn asked_by_lane(
         &self,
         chunk: usize,

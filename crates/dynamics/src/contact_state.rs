@@ -1,4 +1,4 @@
-//! How the object stands to one body after a step: what presses, how far it is, how it slips.
+//! State of the contact with one body after a step: impulse, gap and slip.
 
 use stickslip_lanes::Lanes;
 

@@ -32,7 +32,7 @@ pub struct StepWork<const W: usize> {
 }
 
 impl<const W: usize> StepWork<W> {
-    /// How the last step of each particle ended, chunk by chunk.
+    /// Outcomes of the last step, chunk by chunk.
     pub fn reports(&self) -> &[[Report; W]] {
         &self.reports
     }
@@ -59,10 +59,12 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive
+    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk. Positive
     /// where the object's surface moves to the left of the contact normal, which points into the
-    /// object: the mean of its contacts, each by what it presses; where none presses, that of the
-    /// nearest one, and 0 where there is none.
+    /// object.
+    ///
+    /// It is the mean over its contacts, each weighted by its normal impulse. Where none presses,
+    /// it is that of the nearest contact, and 0 where there is no contact.
     #[inline(always)]
     pub fn slips(&self, chunk: usize, body: Body) -> Lanes<W> {
         if self.by_lane.is_empty() {

@@ -46,7 +46,7 @@ impl EllipseContact {
     }
 }
 
-/// Whether a boundary point of one part of `shape` is not on the union's boundary.
+/// Returns true if a boundary point of one part of `shape` is not on the union's boundary.
 pub(crate) fn hides(shape: &Shape, point: Vec2) -> bool {
     shape.hides(splat::<1>(point)).lane(0)
 }
@@ -154,8 +154,8 @@ fn shallowest(ellipse: &Ellipse, polygon: &Polygon) -> Option<Gap> {
     })
 }
 
-/// Whether an ellipse and a polygon overlap: scaled so that the ellipse is the unit circle, by the
-/// distance from its centre.
+/// Returns true if an ellipse and a polygon overlap. Both are scaled so that the ellipse is the
+/// unit circle, and the polygon's distance from its centre decides.
 fn overlaps(ellipse: &Ellipse, polygon: &Polygon) -> bool {
     let scaled = |corner: Vec2| ellipse.normalise(sub(corner, ellipse.centre));
     let nearest = polygon

@@ -102,7 +102,7 @@ pub enum ShapeError {
     SelfIntersecting {
         /// The part.
         part: usize,
-        /// How often it winds about its inside.
+        /// Number of times that it winds about its inside.
         turns: i64,
     },
 }

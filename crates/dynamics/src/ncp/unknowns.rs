@@ -80,7 +80,7 @@ impl<const W: usize> Unknowns<W> {
         self.normal.iter().zip(&self.tangential)
     }
 
-    /// Where no normal impulse exceeds `LARGEST`.
+    /// Lanes in which no normal impulse exceeds `LARGEST`.
     #[inline(always)]
     pub fn is_bounded(&self) -> Mask<W> {
         !self.largest_normal().gt(Lanes::splat(LARGEST))

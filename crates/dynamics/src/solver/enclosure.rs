@@ -1,4 +1,4 @@
-//! Where the velocity may be between two points of a curve: [`Enclosure`].
+//! Bounds on the velocity between two points of a curve: [`Enclosure`].
 
 use crate::solver::scalar_ncp::ScalarFoot;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
@@ -58,13 +58,13 @@ impl Between<'_> {
         self.enclosure(&[identity(); 2])
     }
 
-    /// An ellipsoid, by how fast the feet slip in another enclosure at most: what slips slowly
-    /// hardly turns. `None` where nothing slips slowly.
+    /// An ellipsoid, from the highest slip speeds of the feet in another enclosure: the direction
+    /// of a slow slip hardly turns. `None` where no foot slips slowly.
     ///
-    /// With f = −p, Δload·Δv is |Δv|² + Σ Δf_k·Δs_k, and no term of the sum is negative: it is b
-    /// (|s| + |s_a|)(1 − cos) where the foot slips at a, at least b (|s| + |s_a|)/(2 |s|²) times
-    /// the square of the part of s across s_a; where it stands there, at least (b − |p_a|)|s|. The
-    /// enclosure bounds |s|.
+    /// With f = −p, Δload·Δv is |Δv|² + Σ Δf_k·Δs_k, and no term of the sum is negative. Where the
+    /// foot slips at a, a term is b (|s| + |s_a|)(1 − cos). That is at least b (|s| + |s_a|)/(2
+    /// |s|²) times the square of the part of s across s_a. Where the foot stands at a, a term is at
+    /// least (b − |p_a|)|s|. The enclosure bounds |s|.
     pub fn narrower(&self, than: &Enclosure) -> Option<Enclosure> {
         let fastest = self.feet.each_ref().map(|foot| than.fastest(foot));
         let creeps = self
@@ -115,7 +115,7 @@ impl Enclosure {
 }
 
 impl Slide<'_> {
-    /// What resists a change of v from here, where feet slip no faster than `fastest`.
+    /// Resistance to a change of v from here, where feet slip no faster than `fastest`.
     fn stiffness(&self, feet: &[ScalarFoot; 3], fastest: &[f64; 3]) -> [Vector<3>; 3] {
         let mut matrix = identity();
         let stands = STANDS * (1.0 + norm(&self.v));

@@ -24,12 +24,12 @@ pub struct NewtonQueue<const W: usize> {
     progress: Progress<W>,
 }
 
-/// Where an iteration stands that goes on in a queue.
+/// State of an iteration that goes on in a queue.
 #[derive(Clone, Copy, Debug)]
 pub struct Underway<'a, const W: usize> {
     /// Its memory.
     pub newton: &'a Newton<W>,
-    /// How far it is.
+    /// Its progress.
     pub progress: &'a Progress<W>,
     /// The problems.
     pub ncp: &'a Ncp<W>,
@@ -44,7 +44,7 @@ pub struct Ended<'a, const W: usize> {
     pub index: LaneIndex,
     /// Its lane of the queue.
     pub slot: usize,
-    /// How all lanes went.
+    /// Progress of all lanes.
     pub progress: &'a Progress<W>,
     /// The points of all lanes.
     pub z: &'a Unknowns<W>,

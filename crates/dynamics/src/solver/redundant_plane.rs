@@ -91,7 +91,7 @@ impl<'a> RedundantPlane<'a> {
         finding
     }
 
-    /// Whether no V of a part has impulses that are positive and balance the load.
+    /// Returns true if no V of a part has impulses that are positive and balance the load.
     fn excludes(
         &self,
         part: &PlaneRegion,

@@ -48,7 +48,7 @@ pub const CAREFUL: SmoothingSchedule = SmoothingSchedule {
     steps: 60.0,
 };
 
-/// How ε falls.
+/// Schedule by which ε falls.
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothingSchedule {
     /// First ε, as a share of the speed scale.
@@ -70,7 +70,7 @@ pub struct StartedBlock<'a, const W: usize> {
     pub start: &'a [Unknowns<W>],
 }
 
-/// How one problem ended.
+/// Outcome of one problem.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished<'a, const W: usize> {
     /// Which particle.
@@ -98,7 +98,7 @@ pub struct SmoothedPath<const W: usize> {
     certificate: NaturalMap<W>,
 }
 
-/// How far each lane is.
+/// Progress of each lane.
 #[derive(Clone, Debug)]
 struct Progress<const W: usize> {
     epsilon: Lanes<W>,
@@ -265,7 +265,7 @@ impl<const W: usize> Progress<W> {
         self.due = busy & (self.due | fallen);
     }
 
-    /// Whether they are due in half of the lanes with a problem.
+    /// Returns true if they are due in half of the lanes with a problem.
     #[inline(always)]
     fn enough_due(&self, busy: Mask<W>) -> bool {
         let [due, busy] = [self.due.count(), busy.count()];

@@ -1,4 +1,4 @@
-//! Where the pusher cannot go on: a drive with a force limit yields, a rigid one is reported as
+//! A pusher that cannot go on: a drive with a force limit yields, a rigid one is reported as
 //! infeasible and bounded.
 
 use crate::common::{FRICTION, at, disc, fixel, pushing, square_scene, step};
