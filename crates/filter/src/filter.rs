@@ -28,7 +28,7 @@ pub struct ParticleFilter<M: Model> {
     pub(crate) bridge: Bridge,
     ancestors: Vec<u32>,
     pub(crate) lineage: Lineage,
-    /// Whether their number has changed since the last step.
+    /// True if their number has changed since the last step.
     resized: bool,
     scratch: PerThread<M::Scratch>,
     /// The sums over every block, and over all.
@@ -36,12 +36,12 @@ pub struct ParticleFilter<M: Model> {
     sums: M::Sums,
 }
 
-/// What a step does beside moving and weighing the particles.
+/// Parts of a step other than moving and weighing the particles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepParts {
-    /// Whether it resamples them where the condition for that is met.
+    /// True if it resamples them where the condition for that is met.
     pub resampling: bool,
-    /// Whether it takes the sums over them.
+    /// True if it takes the sums over them.
     pub sums: bool,
 }
 
@@ -102,17 +102,17 @@ impl<M: Model> ParticleFilter<M> {
     /// Calculate estimated mean using {g_i}            Model::sum, combine_sums
     /// ```
     ///
-    /// What concerns one block of particles happens in one parallel pass over the blocks; what
-    /// needs all of them comes before it (choosing ancestors) and after it (normalising the
-    /// weights, adding the blocks' sums). If no particle explains the part of the observation that
-    /// a reinitialisation can improve, or all weights are zero, the particles are reinitialised
-    /// around it. Where a model lets an observation move them, it does as far as weighing alone
-    /// would leave few, or the model asks for.
+    /// Work on one block of particles happens in one parallel pass over the blocks. Work on all of
+    /// them comes before it (choosing ancestors) and after it (normalising the weights, adding the
+    /// blocks' sums). If no particle explains the part of the observation that a reinitialisation
+    /// can improve, or all weights are zero, the particles are reinitialised around it. If the
+    /// model allows it, an observation also moves the particles: as far as weighing alone would
+    /// leave few, or as far as the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.make_step(input, observation, StepParts::ALL)
     }
 
-    /// The same, of these parts.
+    /// One time step with these parts.
     pub(crate) fn make_step(
         &mut self,
         input: &M::Input,
@@ -299,7 +299,7 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// Sensor resetting (Lenser & Veloso 2000) after a collapse: resamples by the weights before
-    /// the observation, then has the model draw the particles anew around it.
+    /// the observation, then has the model redraw the particles around it.
     fn reinitialise(&mut self, observation: &M::Observation) {
         self.choose_ancestors(Purpose::ResampleAfterCollapse);
         let (model, draw) = (&self.model, self.draw(Purpose::Reinitialise));

@@ -1,8 +1,8 @@
-//! How a particle filter runs: [`Settings`].
+//! Settings of a particle filter: [`Settings`].
 
 use crate::resample::Resampling;
 
-/// How a filter runs.
+/// Settings of a filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The number N of particles, at least 1.

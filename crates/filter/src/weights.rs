@@ -384,7 +384,7 @@ fn best_log_likelihood(first: usize, log_weights: &[f64], log_likelihood: &[f64]
     })
 }
 
-/// Whether `log` is no logarithm of a weight or a likelihood.
+/// Returns true if `log` is no logarithm of a weight or a likelihood.
 fn is_broken(log: f64) -> bool {
     log.is_nan() || log == f64::INFINITY
 }
