@@ -1,4 +1,4 @@
-//! What is simulated: [`Trial`], and why it cannot be: [`TrialError`].
+//! Experiment to simulate, [`Trial`], and the reasons why it cannot be simulated: [`TrialError`].
 
 use stickslip_dynamics::{Body, Gap, Placed, Scene, Start, narrow_phase};
 

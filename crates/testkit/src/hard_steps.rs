@@ -9,7 +9,7 @@ const TEXT: &str = include_str!("../data/hard_steps.txt");
 /// and step length 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HardStep {
-    /// What was hard about it.
+    /// Class of its difficulty.
     pub class: String,
     /// The problem.
     pub problem: StepProblem,

@@ -35,7 +35,7 @@ pub struct HarvestedStep {
 /// The steps of one run.
 #[derive(Clone, Debug, Default)]
 pub struct Harvest {
-    /// How they ended; residuals are the larger of the solver's own and [`judged_residual`].
+    /// Outcomes of the steps; residuals are the larger of the solver's own and [`judged_residual`].
     pub tally: Tally,
     /// Some of those with contacts.
     pub kept: Vec<HarvestedStep>,
@@ -43,7 +43,7 @@ pub struct Harvest {
     pub refuted: Vec<StepProblem>,
 }
 
-/// How a harvest is made.
+/// Options of a harvest.
 #[derive(Clone, Copy, Debug)]
 pub struct HarvestOptions {
     /// Particles of the filter, at most [`MOST_PARTICLES`].
@@ -135,8 +135,8 @@ fn fingerprint(problem: &StepProblem) -> u64 {
         .fold(0, |hash, number| mix(hash ^ number.to_bits()))
 }
 
-/// How the solver does on harvested steps from a cold start: as they are, and disturbed.
-/// Independent of the number of threads.
+/// Results of the solver on harvested steps from a cold start: as they are, and disturbed. They do
+/// not depend on the number of threads.
 ///
 /// The disturbance of step k is a pure function of (seed, k).
 #[must_use]

@@ -18,7 +18,7 @@ const STILL: f64 = 1e-9;
 /// Worst accepted residual, relative to the same.
 const ACCURACY: f64 = 1e-8;
 
-/// What the twist says about a direction.
+/// Condition of the twist on a direction.
 #[derive(Clone, Copy, PartialEq)]
 enum Motion {
     Still,

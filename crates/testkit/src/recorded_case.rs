@@ -21,7 +21,7 @@ pub struct RecordedCase {
     pub setup: Setup,
     /// The log.
     pub log: Log,
-    /// What is hidden.
+    /// Rows that are hidden.
     pub occlusion: Occlusion,
 }
 
@@ -33,7 +33,7 @@ pub enum RecordedError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         cause: std::io::Error,
     },
     /// A file does not hold what it should.
@@ -137,7 +137,7 @@ fn folders_with_log(root: &Path) -> Result<Vec<PathBuf>, RecordedError> {
     Ok(found)
 }
 
-/// What a folder holds, by name.
+/// Contents of a folder, by name.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, RecordedError> {
     let read = || {
         fs::read_dir(folder)?

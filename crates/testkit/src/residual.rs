@@ -86,7 +86,7 @@ pub fn residual_rows_si(problem: &StepProblem, solution: &StepSolution) -> Vec<(
         .collect()
 }
 
-/// What a contact pushes the object with (N s).
+/// Impulse of a contact on the object (N s).
 fn contact_impulse(contact: &ContactPoint, normal: f64, tangential: f64) -> [f64; 2] {
     let (n, t) = (contact.normal, left(contact.normal));
     [

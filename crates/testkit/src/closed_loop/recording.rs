@@ -17,7 +17,7 @@ const FARTHEST: f64 = 1.0;
 /// Longest step of the true motion (s).
 const LONGEST_STEP: f64 = 0.05;
 
-/// What happened up to one frame.
+/// State at one frame, and touches up to it.
 struct Frame {
     object: Pose,
     pusher: Pose,
