@@ -7,7 +7,7 @@
 //!
 //! A block hides what one particle costs, so each particle's step is also timed alone, as a chunk
 //! of one lane: that costs more than its share of a block. A thread that has to wait for a
-//! processor looks slow; so the shortest of [`ALONE_ROUNDS`] times counts.
+//! processor seems slow; so the shortest of [`ALONE_ROUNDS`] times counts.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
@@ -53,7 +53,7 @@ impl Observer for Capture {
     }
 }
 
-/// What the replay of some logs cost.
+/// Cost of the replay of some logs.
 #[derive(Debug, Default)]
 struct Cost {
     /// Time per particle-step of every block, rounds together (ns).

@@ -1,4 +1,4 @@
-//! What the benchmarks share: scenes, batches of particles, clocks and the file of results.
+//! Tools that the benchmarks share: scenes, batches of particles, clocks and the file of results.
 //!
 //! `cargo bench -p stickslip-bench --bench timing_scene` and its neighbours print what they measure
 //! and append it to `bench/results/<machine>-<date>.csv`. They measure one thread unless they say

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::machine::{date, processor};
 
-/// Where the files of results lie, from this crate.
+/// Folder of the files of results, from this crate.
 const FOLDER: &str = "../../bench/results";
 
 /// Prints what is measured and appends it to `bench/results/<machine>-<date>.csv`: columns

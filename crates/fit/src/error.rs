@@ -110,7 +110,7 @@ pub enum FitError {
     Run {
         /// The push.
         push: String,
-        /// What is wrong with it.
+        /// Its error.
         source: RunError,
     },
 }

@@ -77,7 +77,7 @@ impl Fit {
         Ok(edit.text())
     }
 
-    /// How well the centre of friction is known, on one axis, as a share of the radius of gyration.
+    /// Uncertainty of the centre of friction, on one axis, as a share of the radius of gyration.
     fn spread_of_centre(&self, setup: &Setup) -> f64 {
         let is_centre = |p| matches!(p, Parameter::CentreX | Parameter::CentreY);
         let centre = self
@@ -88,7 +88,7 @@ impl Fit {
         variance.sqrt() / setup.scene.object.gyration_radius()
     }
 
-    /// What was learnt, for people.
+    /// Comments on the parameters that were learnt, for people.
     fn comments(&self) -> Vec<String> {
         let value = |fitted: &FittedParameter| {
             let said = format!(

@@ -31,7 +31,7 @@ pub struct Lighting {
 /// Noise of the sensor, in grey levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// Standard deviation in the dark.
+    /// Standard deviation without light.
     pub read_noise: f64,
     /// Variance per grey level of light, on top of it.
     pub shot_noise: f64,

@@ -56,7 +56,7 @@ const ELLIPSE: Part = Part::Ellipse {
     angle: 0.3,
 };
 
-/// What a line of sight can meet.
+/// Surface that a line of sight can meet.
 enum Surface {
     Top,
     Side,

@@ -8,7 +8,7 @@ use crate::lens::Lens;
 /// Models of distortion that are Brown–Conrady's, as far as their numbers beyond the fifth are 0.
 const BROWN_CONRADY: [&str; 3] = ["plumb_bob", "rational_polynomial", ""];
 
-/// What ROS calls CameraInfo: how a camera maps directions to pixels.
+/// Map from directions to pixels, called CameraInfo in ROS.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraInfo {
     /// Columns and rows of an image.
@@ -59,7 +59,7 @@ pub enum CameraInfoError {
     Part {
         /// Whose numbers.
         of: String,
-        /// What they are.
+        /// Description of the images.
         what: String,
     },
     /// Columns or rows that are none.

@@ -1,4 +1,4 @@
-//! What is drawn on a sheet of paper, and the sheet as SVG: [`Sheet`].
+//! Drawing on a sheet of paper, and the sheet as SVG: [`Sheet`].
 
 use std::fmt::Write as _;
 

@@ -12,7 +12,7 @@ use crate::tag::TAG_COUNT;
 pub struct BodyTag {
     /// Number of the tag.
     pub id: u16,
-    /// Where it is on the body.
+    /// Its place on the body.
     pub place: TagPlace,
 }
 

@@ -54,7 +54,7 @@ fn with_level(dynamics: Dynamics, name: Option<&str>) -> Result<Dynamics, String
         .ok_or(format!("`{name}`: this machine has {}", known.join(", ")))
 }
 
-/// How far the object moves (m) under half of μ_s m g.
+/// Distance that the object moves (m) under half of μ_s m g.
 fn creep(scene: &Scene) -> f64 {
     let weight = scene.object.mass * scene.gravity;
     let applied = Wrench {
