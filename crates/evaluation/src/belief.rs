@@ -1,11 +1,11 @@
-//! Whether what an estimate says of its own errors is true: [`Belief`].
+//! Accuracy of the errors that an estimate reports of itself: [`Belief`].
 
 use stickslip::dynamics::Pose;
 
 /// Standard deviations on either side of the centre that hold 90 % of a normal distribution.
 pub(crate) const NINETY_PERCENT: f64 = 1.644_853_626_951_472_7;
 
-/// How an estimate's poses and standard deviations agree with a reference over some rows; `None`
+/// Agreement of an estimate's poses and standard deviations with a reference over some rows; `None`
 /// over no rows, and for methods without a spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Belief {

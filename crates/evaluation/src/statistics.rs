@@ -46,7 +46,7 @@ pub struct PairedDifference {
     pub pairs: usize,
 }
 
-/// What a difference says, once its error is taken into account.
+/// Direction of a difference, once its error is taken into account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// The first is below the second.

@@ -37,11 +37,11 @@ pub enum PaperExperiment {
 pub struct PaperScene {
     /// Name shown in errors and tables.
     pub name: &'static str,
-    /// What happens.
+    /// Story of the experiment.
     pub story: &'static str,
     /// scene.toml.
     pub scene: &'static str,
-    /// truth.json: the true friction, and the blackout where the paper says it.
+    /// truth.json: the true friction, and the occlusion where the paper states it.
     pub truth: &'static str,
 }
 
