@@ -5,7 +5,7 @@ use stickslip::{EstimateRow, Setup};
 
 use crate::estimate_csv::{EstimateColumns, cells, header};
 
-/// What a deadline did to the estimates so far.
+/// Effect of a deadline on the estimates so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
     /// Particles that this estimate is made of.

@@ -43,7 +43,7 @@ pub enum RowJsonError {
         key: String,
         /// The value.
         found: String,
-        /// What it must be.
+        /// Expected value.
         expected: &'static str,
     },
     /// A pose or force without all of its numbers.

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use stickslip::Occlusion;
 use stickslip_dynamics::Pose;
 
-/// What is known of an experiment after it; `None` where the file does not say.
+/// Facts that are known of an experiment after it; `None` where the file does not say.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TruthFacts {
-    /// Where the truth comes from, in words.
+    /// Source of the truth, in words.
     pub source: Option<String>,
     /// True μ_s.
     pub mu_s: Option<f64>,
@@ -31,7 +31,7 @@ pub struct TruthFacts {
 }
 
 impl TruthFacts {
-    /// What the camera does not see: everything from `occlude_from` on.
+    /// Rows that the camera does not see: everything from `occlude_from` on.
     #[must_use]
     pub fn occlusion(&self) -> Occlusion {
         self.occlude_from

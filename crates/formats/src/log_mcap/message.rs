@@ -166,7 +166,7 @@ pub(crate) fn decode<M: Message>(bytes: &[u8]) -> Result<M, McapProblem> {
     }
 }
 
-/// What a message begins with, and the bytes that follow.
+/// Decodes the beginning of a message, and returns it with the bytes that follow.
 pub(crate) fn decode_front<M: Message>(bytes: &[u8]) -> Result<(M, &[u8]), McapProblem> {
     let Some((&[first, second, _, _], body)) = bytes.split_first_chunk() else {
         return Err(wrong::<M>(format!(

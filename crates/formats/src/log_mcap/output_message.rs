@@ -113,7 +113,7 @@ impl Numbers {
 
 /// A line from point to point.
 pub(crate) const LINE_STRIP: i32 = 4;
-/// What to do with a marker: draw it anew, take it away.
+/// Actions on a marker: draw it again, take it away.
 pub(crate) const ADD: i32 = 0;
 pub(crate) const DELETE: i32 = 2;
 

@@ -8,7 +8,7 @@ use stickslip_dynamics::Pose;
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::message::{Quaternion, Vector3};
 
-/// How far a quaternion's length may be from 1.
+/// Largest difference of a quaternion's length from 1.
 const UNIT: f64 = 0.01;
 /// Tilt from which a pose is not one in the plane (rad).
 const TILTED: f64 = 5.0 * PI / 180.0;
@@ -27,7 +27,7 @@ pub(crate) enum ZAxis {
 /// Poses that stand askew.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Tilt {
-    /// How many are tilted by more than 5°.
+    /// Number of poses tilted by more than 5°.
     pub count: usize,
     /// Largest tilt (rad).
     pub largest: f64,

@@ -22,11 +22,11 @@ pub(crate) struct RawMessage {
     pub number: usize,
     /// Log time (ns).
     pub log_time: u64,
-    /// What it says.
+    /// Its bytes.
     pub data: Vec<u8>,
 }
 
-/// What a topic holds.
+/// Content of a topic.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Content {
     /// Types and encodings of its channels.
@@ -37,7 +37,7 @@ pub(crate) struct Content {
 
 /// Which topics are read.
 pub(crate) trait Wanted {
-    /// Whether a topic with messages of a type is read.
+    /// Returns true if a topic with messages of a type is read.
     fn wants(&self, name: &str, schema: &str) -> bool;
 }
 
@@ -47,7 +47,7 @@ impl Wanted for Topics {
     }
 }
 
-/// What was seen of a topic, read or not.
+/// Counts of a topic, read or not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seen {
     /// Message type.
@@ -85,9 +85,9 @@ pub(crate) struct Recording {
     pub names: BTreeMap<String, Seen>,
     /// The needed ones by name.
     pub topics: BTreeMap<String, Content>,
-    /// Where its files were cut off.
+    /// Places at which its files were cut off.
     pub damage: Vec<Damage>,
-    /// How many files were read.
+    /// Number of files that were read.
     files: usize,
 }
 
@@ -112,7 +112,7 @@ impl Recording {
         Ok(())
     }
 
-    /// What keeps the messages of one more file.
+    /// Visitor that keeps the messages of one more file.
     pub(crate) fn keeper<'t>(&'t mut self, wanted: &'t dyn Wanted) -> Keeper<'t> {
         self.files += 1;
         Keeper {

@@ -24,7 +24,7 @@ pub(crate) enum Stop {
     Damage(String),
     /// It cannot be read.
     Refused(McapProblem),
-    /// Whoever looks has seen enough.
+    /// The visitor has seen enough.
     Enough,
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
 }
 
 /// A record whose texts lie within it; the library reserves memory by their lengths before it
-/// looks.
+/// checks them.
 pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
     let fits = match opcode {
         op::SCHEMA => body
@@ -111,7 +111,7 @@ pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
     }
 }
 
-/// What follows `count` texts, each behind its length.
+/// Bytes that follow `count` texts, each behind its length.
 fn after_texts(bytes: &[u8], count: usize) -> Option<&[u8]> {
     (0..count).try_fold(bytes, |rest, _| {
         let (length, rest) = rest.split_first_chunk()?;
@@ -119,7 +119,7 @@ fn after_texts(bytes: &[u8], count: usize) -> Option<&[u8]> {
     })
 }
 
-/// Whether all keys and values of a map lie in it.
+/// `Some` if all keys and values of a map lie in it.
 fn map_fits(bytes: &[u8]) -> Option<()> {
     let (length, rest) = bytes.split_first_chunk()?;
     let mut map = rest.get(..u32::from_le_bytes(*length) as usize)?;

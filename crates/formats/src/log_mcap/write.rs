@@ -69,14 +69,14 @@ impl From<mcap::McapError> for McapWriteError {
     }
 }
 
-/// Writes a log as an MCAP recording of ROS 2 messages: poses as `geometry_msgs/msg/PoseStamped`,
-/// the object's as `PoseWithCovarianceStamped` where the log has covariances (zeros in rows
-/// without), tactile readings as `std_msgs/msg/Bool`, forces as `geometry_msgs/msg/WrenchStamped`,
-/// all in the frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no
-/// message. The same log gives the same bytes.
+/// Writes a log as an MCAP recording of ROS 2 messages. Poses are `geometry_msgs/msg/PoseStamped`,
+/// the object's `PoseWithCovarianceStamped` where the log has covariances (zeros in rows without).
+/// Tactile readings are `std_msgs/msg/Bool`, forces `geometry_msgs/msg/WrenchStamped`. All are in
+/// the frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no message.
+/// Equal logs give equal bytes.
 ///
-/// What [`crate::read_log_mcap`] does not bring back: rows without any pose, and which cells were
-/// empty where its rules fill them.
+/// Reading by [`crate::read_log_mcap`] loses rows without any pose, and which cells were empty
+/// where its rules fill them.
 ///
 /// # Errors
 /// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says. After the

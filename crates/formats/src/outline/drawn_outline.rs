@@ -23,11 +23,11 @@ const LEAST_AREA: f64 = 1e-9;
 /// The unit of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnUnit {
-    /// What it says itself, as `mm`.
+    /// The drawing's own, as `mm`.
     Said(&'static str),
     /// SVG's own, a 96th of an inch, in a drawing that says no other.
     Pixel,
-    /// What was given, in metres.
+    /// The given one, in metres.
     Given(f64),
 }
 
@@ -44,7 +44,7 @@ pub struct Outline {
     pub area: f64,
     /// Its holes, which are not among the parts.
     pub holes: usize,
-    /// Where the origin was in the drawing, y up (m).
+    /// Place of the origin in the drawing, y up (m).
     pub centre: [f64; 2],
     /// The drawing's unit.
     pub unit: DrawnUnit,

@@ -361,7 +361,7 @@ fn check_numbers(d: &str) -> Result<(), OutlineProblem> {
         ClosePath, CurveTo, EllipticalArc, HorizontalLineTo, LineTo, MoveTo, Quadratic,
         SmoothCurveTo, SmoothQuadratic, VerticalLineTo,
     };
-    // what is no path is told where it is drawn
+    // a shape that is no path is reported at the place where it is drawn
     for segment in PathParser::from(d).map_while(Result::ok) {
         let numbers: [f64; 6] = match segment {
             MoveTo { x, y, .. } | LineTo { x, y, .. } | SmoothQuadratic { x, y, .. } => {

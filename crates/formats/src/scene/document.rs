@@ -213,7 +213,7 @@ impl<'a> Node<'a> {
         Ok(named.collect())
     }
 
-    /// Whether it is a list.
+    /// Returns true if it is a list.
     pub(super) fn is_list(&self) -> bool {
         matches!(self.value.get_ref(), DeValue::Array(_))
     }

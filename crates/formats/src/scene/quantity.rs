@@ -21,7 +21,7 @@ impl Quantity {
         }
     }
 
-    /// What to give, with the unit.
+    /// The value to give, with the unit.
     pub(super) fn order(&self) -> String {
         match self.unit {
             Unit::None => self.what.to_owned(),

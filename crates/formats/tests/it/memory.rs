@@ -9,7 +9,7 @@ use stickslip_formats::{
     read_row_json, read_scene, read_truth_json,
 };
 
-/// What any reader may take at once for a small input (bytes).
+/// Memory that any reader may take at once for a small input (bytes).
 const SMALL: u64 = 32 << 20;
 
 const SCENE: &str = include_str!("full_scene.toml");

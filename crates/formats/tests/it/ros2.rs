@@ -22,7 +22,7 @@ const LOGS: [&str; 3] = [
     "real/zhou-tripod-push/hardboard_3pts_10-10_10-130_130-10_03",
 ];
 
-/// What the script says of the noise of poses.
+/// Noise of poses in the script.
 const TOLD: PoseCovariance = PoseCovariance {
     x: 1e-6,
     y: 1e-6 * 2.0,
