@@ -26,10 +26,10 @@ const LENS: [&str; 8] = [
     "fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2",
 ];
 
-/// How many images of a bag a lens is found from.
+/// Number of images of a bag that a lens is found from.
 const FRAMES: usize = 30;
 
-/// What is printed of a calibration.
+/// Printed result of a calibration.
 #[derive(Debug, Serialize)]
 struct Summary {
     frames: usize,
@@ -41,7 +41,7 @@ struct Summary {
     camera_height_m: f64,
 }
 
-/// What is printed of a table that was found alone.
+/// Printed result of a table that was found alone.
 #[derive(Debug, Serialize)]
 struct TableSummary {
     tags: usize,

@@ -43,7 +43,7 @@ pub struct CameraSetup {
 pub struct BoardFrames {
     print: rendering::Board,
     poses: Vec<BoardPose>,
-    /// How the board lies in the first frame.
+    /// Place of the board in the first frame.
     pub on_table: BoardOnTable,
 }
 

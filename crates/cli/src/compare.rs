@@ -37,7 +37,7 @@ struct Folder {
     experiment: Experiment,
     occlusion: Occlusion,
     tracking: Tracking,
-    /// Whether all of the log could be read.
+    /// Says whether all of the log could be read.
     verdict: Verdict,
 }
 

@@ -37,7 +37,7 @@ const ESTIMATE: &str = "estimate.csv";
 /// Particle steps above which a person would wait.
 const LONG: usize = 200_000;
 
-/// What is printed of a run.
+/// Printed result of a run.
 #[derive(Debug, Serialize)]
 struct Summary<'a> {
     wmse_mm: Option<f64>,
@@ -53,7 +53,7 @@ struct Summary<'a> {
     second_tries: u32,
     /// ln of what the particles expected of the log.
     log_evidence: Option<f64>,
-    /// What makes the scores doubtful.
+    /// Reasons to doubt the scores.
     warnings: &'a [String],
     real_time_factor: f64,
     /// In N; `None` is a rigid drive.
@@ -317,7 +317,7 @@ fn friction_table(experiment: &Experiment, parameters: &[LearnedParameter]) -> T
     table
 }
 
-/// The last estimate beside the measured final pose, where only that is known of the truth.
+/// The last estimate next to the measured final pose, where only that is known of the truth.
 fn final_pose_line(experiment: &Experiment, estimate: &Estimate) -> Option<String> {
     let measured = experiment
         .facts

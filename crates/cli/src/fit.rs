@@ -25,12 +25,12 @@ use crate::output::{show_result, talk};
 use crate::progress::stage;
 use crate::verdict::Verdict;
 
-/// What values that predict best do not say.
+/// Limits of values that predict best.
 const CANNOT_KNOW: &str = "what the model cannot know: it is only nearly right, so the value that predicts best \
     is not the constant of the material or the support; \"constant, 90 %\" says what that may be, as on virtual rigs \
     whose predictions drift as much";
 
-/// What is written to fit.json.
+/// Content of fit.json.
 #[derive(Debug, Serialize)]
 struct FitResult {
     /// The folders with the pushes.
@@ -228,7 +228,7 @@ fn page(result: &FitResult, seed: u64) -> Report {
     }
 }
 
-/// What matters most: what was learnt, and what that is worth.
+/// Most important results: values that were learnt, and their accuracy.
 fn headlines(result: &FitResult) -> Vec<String> {
     let (learnt, left): (Vec<_>, Vec<_>) = result
         .fit
@@ -265,7 +265,7 @@ fn headlines(result: &FitResult) -> Vec<String> {
     lines
 }
 
-/// What is to be said besides the tables.
+/// Remarks besides the tables.
 fn remarks(result: &FitResult) -> Vec<String> {
     let fit = &result.fit;
     let mut remarks = Vec::new();

@@ -1,4 +1,4 @@
-//! What made a report: [`origin`].
+//! Origin of a report: [`origin`].
 
 use std::ffi::OsString;
 use std::sync::OnceLock;

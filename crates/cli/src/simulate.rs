@@ -168,7 +168,7 @@ fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
     )
 }
 
-/// The nominal friction beside the true one.
+/// The nominal friction next to the true one.
 fn friction(setup: &Setup, facts: &TruthFacts) -> Table {
     let nominal = setup.scene.nominal;
     let number = |value: f64| format!("{value:.3}");

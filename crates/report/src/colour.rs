@@ -61,7 +61,7 @@ impl Colour {
     }
 }
 
-/// How a line is drawn; the later ones lie on the earlier ones, which one sees through their gaps.
+/// Style of a line. The later ones lie on the earlier ones, which one sees through their gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Line {
     /// Through.

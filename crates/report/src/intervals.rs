@@ -1,4 +1,4 @@
-//! Where flags are set: [`row_ranges`], [`intervals`] and [`times`].
+//! Stretches over which flags are set: [`row_ranges`], [`intervals`] and [`times`].
 
 /// Every stretch of set flags: its first row and the row after its last one.
 pub(crate) fn row_ranges(flags: impl IntoIterator<Item = bool>) -> Vec<[usize; 2]> {

@@ -75,7 +75,7 @@ struct Run<'a> {
     text: &'a str,
     /// Font size (px).
     size: f64,
-    /// How far it lies below what stands before it (px).
+    /// Shift down from the text before it (px).
     drop: f64,
 }
 
@@ -104,7 +104,7 @@ fn number(text: Option<&str>) -> Option<f64> {
 
 /// Writes letters as path data.
 struct Pen {
-    /// Where the next letter stands (px).
+    /// Place of the next letter (px).
     at: [f64; 2],
     /// Size of a font unit (px).
     scale: f64,
@@ -163,7 +163,7 @@ mod tests {
 
     use super::*;
 
-    /// What the text of an SVG covers, without the space about its letters.
+    /// Area that the text of an SVG covers, without the space about its letters.
     fn covered(text: &str) -> Rect {
         let svg = format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="4000" height="4000">{text}</svg>"#

@@ -27,7 +27,7 @@ impl ReportedRun {
         Colour::of(self.scored.variant)
     }
 
-    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
+    /// Weighted RMSE while the camera was off, over all rows where it never was (mm).
     #[must_use]
     pub fn wmse_mm(&self) -> Option<f64> {
         let scores = &self.scored.scores;

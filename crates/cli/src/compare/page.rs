@@ -8,7 +8,7 @@ use super::tables;
 use crate::origin::origin;
 use crate::output::counted;
 
-/// What the legend of the tables leaves out.
+/// Legend of scores that the legend of the tables leaves out.
 const REST: &str = "WMSE is the paper's name for the weighted root mean square error of the pose, angles times the radius of gyration; \
     moving: the same from the pusher's first contact to the object's last motion; final: errors at the last row. Unsolved: steps of \
     particles that the solver left unsolved; collapses: rows that no particle explained; both summed.";
@@ -84,10 +84,10 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
     }
 }
 
-/// How each variant fares over so many experiments.
+/// Outcome of each variant over so many experiments.
 fn story(overall: &[Overall], experiments: usize) -> Story {
     let outcome = |row: &Overall| Outcome {
-        // medians over other experiments than the rest are not to be set beside theirs
+        // medians over other experiments than the rest are not comparable with theirs
         name: match row.folders == experiments {
             true => row.variant.title().to_owned(),
             false => format!("{} on {} of them", row.variant.title(), row.folders),

@@ -1,4 +1,4 @@
-//! What is kept of a live session: [`Recording`].
+//! Record of a live session: [`Recording`].
 
 use std::collections::BTreeMap;
 use std::fs::File;

@@ -170,7 +170,7 @@ fn garbage_repeats_and_late_rows_are_answered_and_the_session_goes_on() {
     let next = live.ask(rows[22].as_bytes());
     assert!(next["x"].is_f64() && next["time"].as_f64() > late["time"].as_f64());
 
-    // a source that comes back after a pause starts anew, from the second row on
+    // a source that comes back after a pause starts over, from the second row on
     let later = |time: f64| {
         format!("{{\"time\": {time}, \"object_x\": 0.01, \"object_y\": 0, \"object_theta\": 0}}")
     };

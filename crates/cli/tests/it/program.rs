@@ -269,7 +269,7 @@ fn broken_files_are_named_with_line_and_column() {
     );
 }
 
-/// What the command does where nobody reads its results; `Silent` also where nobody reads its
+/// Runs the command with the reader of its results gone; with `Unread`, also the reader of its
 /// errors.
 fn unread(command: &mut Command, errors: Errors) -> Output {
     let closed = || {

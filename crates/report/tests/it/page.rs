@@ -79,7 +79,7 @@ fn a_download_holds_every_byte() {
     assert_eq!(read, bytes);
 }
 
-/// Poses that the camera had lost just before they were hidden belong to the blackout; others do
+/// Poses that the camera had lost just before they were hidden belong to the occlusion; others do
 /// not.
 #[test]
 fn the_camera_is_dark_from_the_last_pose_on() {
@@ -246,7 +246,7 @@ fn pages_of_nothing_and_of_one_row_are_pages() {
     );
 }
 
-/// The paragraph beside the stage.
+/// The paragraph next to the stage.
 fn legend(experiment: &ReportedExperiment<'_>) -> String {
     let sections = vec![experiment.section()];
     let page = Report {
