@@ -1,4 +1,4 @@
-//! Which crate may depend on which: what `cargo metadata` says against [`CRATES`].
+//! Allowed dependencies between crates: the output of `cargo metadata` against [`CRATES`].
 
 use std::path::Path;
 use std::process::Command;

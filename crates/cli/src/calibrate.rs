@@ -197,7 +197,7 @@ fn number(text: &str) -> Result<usize> {
     })
 }
 
-/// Which of a folder's images shows the board on the table.
+/// Number of the image in a folder that shows the board on the table.
 fn flat(args: &CalibrateArgs, folder: &FrameFolder) -> Result<usize> {
     let Some(name) = &args.flat else {
         return Ok(0);

@@ -32,7 +32,7 @@ const THICKNESS: f64 = 0.003;
 pub struct CameraSetup {
     /// The camera before the stage.
     pub renderer: Renderer,
-    /// Which tag is on which body, and where.
+    /// Tags of each body, and their places.
     pub tags: Tags,
     /// Height of the hand (m).
     pub hand_height: f64,

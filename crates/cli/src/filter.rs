@@ -56,7 +56,7 @@ struct Summary<'a> {
     /// Reasons to doubt the scores.
     warnings: &'a [String],
     real_time_factor: f64,
-    /// In N; `None` is a rigid drive.
+    /// Stall force in N; `None` is a rigid drive.
     stall_force: Option<f64>,
     stall_force_assumed: bool,
     friction: BTreeMap<&'static str, LearnedParameter>,

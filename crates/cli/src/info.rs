@@ -194,7 +194,7 @@ fn poses_table(poses: &[PosesInfo]) -> Table {
     table
 }
 
-/// Why some poses cannot be read.
+/// Reason why some poses cannot be read.
 fn problems(poses: &[PosesInfo]) -> Vec<String> {
     let told = poses.iter().filter_map(|info| {
         let problem = info.problem.as_ref()?;

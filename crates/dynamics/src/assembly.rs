@@ -32,13 +32,13 @@ const STILL: f64 = 1e-9;
 /// motion that presses.
 const PRESSING: f64 = 0.5;
 
-/// Which contact each row of a chunk's problems stands for.
+/// Contact that each row of a chunk's problems stands for.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly<const W: usize> {
     pub(crate) rows: Vec<Row<W>>,
     /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
-    /// By how much the object is larger than its shape (m).
+    /// Growth of the object beyond its shape (m).
     growth: Lanes<W>,
     pub(crate) scaling: Scaling<W>,
 }

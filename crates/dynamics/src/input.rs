@@ -40,8 +40,8 @@ pub struct Offsets<'a, const W: usize> {
     pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
-    /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
-    /// smaller by that.
+    /// Distances by which the object's outline lies outside its shape (m), chunk by chunk: every
+    /// gap is smaller by that.
     pub growth: &'a [Lanes<W>],
     /// Offsets of the feet from the scene's (m, m), and their turns about their centre of friction
     /// (rad), in the object's frame, chunk by chunk. Empty where they stand as in the scene.

@@ -81,7 +81,7 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub pusher: Option<&'a PusherContext<W>>,
     /// Offsets of the fixels (m); none where they stand as the scene says.
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
-    /// By how much the object is larger than its shape (m).
+    /// Growth of the object beyond its shape (m).
     pub growth: Lanes<W>,
     /// Offset of the feet from the scene's, and their turn; `None` where they stand as in the
     /// scene.
@@ -200,7 +200,7 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// By how much the object is larger than its shape (m) in one chunk.
+    /// Growth of the object beyond its shape (m) in one chunk.
     #[inline(always)]
     pub fn growth(&self, chunk: usize) -> Lanes<W> {
         match self {

@@ -71,7 +71,7 @@ pub trait RolloutArrays {
     fn keep_end(&mut self, trajectory: usize, end: RolloutEnd);
 }
 
-/// Why a rollout was refused.
+/// Reason why a rollout was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RolloutError {

@@ -235,8 +235,8 @@ impl Error {
         }
     }
 
-    /// With what the estimate says of it, and the reference's own noise; `None` where it says
-    /// nothing.
+    /// The error with the estimate's standard deviations, and the reference's own noise; `None`
+    /// where the estimate has none.
     fn judged(self, estimate: &Estimate, reference: &Reference, row: usize) -> Option<Judged> {
         let own = estimate.std_at(reference.time[row] - reference.latency)?;
         let noise = reference.std;

@@ -55,7 +55,7 @@ pub struct Simulation {
     pub facts: TruthFacts,
 }
 
-/// Why an experiment cannot be simulated.
+/// Reason why an experiment cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {

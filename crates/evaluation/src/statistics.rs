@@ -30,7 +30,7 @@ impl Band {
 /// Pairs below which a median has no standard error.
 pub const FEWEST_PAIRS: usize = 6;
 
-/// By how much one method's scores are above another's, seed by seed.
+/// Difference of one method's scores from another's, seed by seed.
 ///
 /// Scores of methods that lose the object now and then have heavy tails, so that the median of the
 /// differences is reported, not their mean.

@@ -269,7 +269,7 @@ impl Sums {
 struct Part<'a> {
     /// `[column][part]`.
     block: &'a [[f64; PART]],
-    /// Which part.
+    /// Number of the part.
     part: usize,
 }
 
@@ -291,8 +291,8 @@ fn group(part: usize, parts: usize) -> usize {
     part * parts.min(GROUPS) / parts
 }
 
-/// By how much a column moves where an error does by one that is observed under noise; a covariance
-/// that is not `certain` counts only by the share that is not chance.
+/// Gain: the motion of a column where an error that is observed under noise moves by one. A
+/// covariance that is not `certain` counts only by the share that is not chance.
 #[inline(always)]
 fn gain_by(weight: &Weight, of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
     let (x, e) = (of.x / weight.w, error.x / weight.w);

@@ -1,4 +1,4 @@
-//! Which particles of earlier steps those of now descend from: [`Lineage`].
+//! Descent of the present particles from those of earlier steps: [`Lineage`].
 
 /// Counts ancestors: of the latest step, and of a generation further back.
 ///

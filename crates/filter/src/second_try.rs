@@ -64,7 +64,8 @@ const GIVEN_UP: f64 = 50.0;
 /// One re-simulation of the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attempt {
-    /// Which one since the checkpoint, from 1 on: each has random numbers of its own.
+    /// Number of the re-simulation since the checkpoint, from 1 on: each has random numbers of its
+    /// own.
     pub number: u64,
     /// True if the particles are resampled on the way, as they were the first time. If false, they
     /// are resampled before the first step and the last one only. Each then goes its way and is

@@ -45,7 +45,7 @@ impl Settings {
     }
 }
 
-/// Why settings were refused.
+/// Reason why settings were refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {

@@ -22,7 +22,7 @@ const GRAIN: usize = 256 * BLOCK;
 /// Independent partial results: a single one would wait for every operation before it.
 const PARTIAL: usize = 8;
 
-/// Why weights were refused.
+/// Reason why weights were refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WeightError {

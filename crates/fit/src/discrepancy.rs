@@ -32,11 +32,11 @@ const NOTHING: f64 = 0.97;
 /// The discrepancy of one parameter, of logarithms.
 #[derive(Clone, Copy, Debug)]
 struct Discrepancy {
-    /// By how much it multiplies the spread that the pushes leave.
+    /// Factor on the spread that the pushes leave.
     growth: f64,
     /// Its standard deviation on top of that.
     std: f64,
-    /// By how much the value that predicts best is above the constant, in the mean.
+    /// Mean excess of the value that predicts best over the constant.
     bias: f64,
 }
 

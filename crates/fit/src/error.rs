@@ -1,10 +1,10 @@
-//! Why a fit was refused: [`FitError`].
+//! Reason why a fit was refused: [`FitError`].
 
 use stickslip::RunError;
 use stickslip_dynamics::ShapeError;
 use stickslip_formats::SceneError;
 
-/// Why a fit was refused.
+/// Reason why a fit was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {

@@ -67,7 +67,7 @@ pub struct Fit {
 pub struct FittedParameter {
     /// Its name.
     pub name: &'static str,
-    /// Which one it is.
+    /// The parameter.
     #[serde(skip)]
     pub parameter: Parameter,
     /// Symbol of its unit; empty for a bare number.

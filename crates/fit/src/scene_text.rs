@@ -116,7 +116,7 @@ impl Fit {
     }
 }
 
-/// Why a scene keeps its first guesses.
+/// Reason why a scene keeps its first guesses.
 fn refusal(validation: &CrossValidation) -> String {
     let [gain, error] = validation.gain_mm;
     format!(

@@ -34,8 +34,8 @@ pub struct CrossValidation {
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
-    /// By how much the fitted scene is better than the unfitted one, in the final position error
-    /// plus the WMSE (mm): mean over the pushes, and its standard error.
+    /// Gain of the fitted scene over the unfitted one, in the final position error plus the WMSE
+    /// (mm): mean over the pushes, and its standard error.
     pub gain_mm: [f64; 2],
     /// True if that mean is above 0. If it is not, a scene keeps its first guesses.
     pub pays: bool,
@@ -146,7 +146,7 @@ fn summary(folds: usize, pushes: Vec<HeldOut>) -> CrossValidation {
 }
 
 impl HeldOut {
-    /// By how much the fitted scene is better (mm).
+    /// Gain of the fitted scene (mm).
     fn gain_mm(&self) -> f64 {
         let [unfitted, fitted] = [0, 1].map(|k| self.final_mm[k] + self.wmse_mm[k]);
         unfitted - fitted

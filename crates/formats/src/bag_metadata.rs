@@ -16,7 +16,7 @@ pub struct BagMetadata {
     pub relative_file_paths: Vec<String>,
 }
 
-/// Why `metadata.yaml` was refused.
+/// Reason why `metadata.yaml` was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BagMetadataError {

@@ -1,4 +1,4 @@
-//! Why a CSV file was refused: [`CsvError`].
+//! Reason why a CSV file was refused: [`CsvError`].
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub struct CsvColumn {
     pub name: String,
 }
 
-/// Why a CSV file was refused, and where.
+/// Reason why a CSV file was refused, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct CsvError {
     /// Display name of the file.
@@ -26,7 +26,7 @@ pub struct CsvError {
     pub problem: CsvProblem,
 }
 
-/// Why a log was refused.
+/// Reason why a log was refused.
 pub type LogError = CsvError;
 
 impl fmt::Display for CsvError {

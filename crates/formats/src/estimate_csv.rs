@@ -128,7 +128,7 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
     Ok(estimate)
 }
 
-/// Which columns an estimate has, and which are filled.
+/// Columns that an estimate has, and those that are filled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EstimateColumns {
     /// Number of fixels.

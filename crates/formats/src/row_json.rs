@@ -14,7 +14,7 @@ use crate::nearest::nearest;
 /// Most tactile sensors of a row.
 const MOST_SENSORS: usize = 1000;
 
-/// Why a line is no row.
+/// Reason why a line is no row.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RowJsonError {

@@ -39,7 +39,7 @@ impl TruthFacts {
     }
 }
 
-/// Why a `truth.json` was refused, and where.
+/// Reason why a `truth.json` was refused, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}:{column}: {}{problem}. Write one JSON object with numbers, row indices from 0 and null where nothing is known", if .key.is_empty() { String::new() } else { format!("`{key}`: ") })]
 pub struct TruthFactsError {

@@ -76,7 +76,7 @@ impl<const W: usize> Mask<W> {
         })
     }
 
-    /// In how many lanes the condition holds.
+    /// Number of lanes in which the condition is met.
     #[inline(always)]
     pub fn count(self) -> u32 {
         self.bits().count_ones()

@@ -14,7 +14,7 @@ pub struct Camera {
     forward: [f64; 3],
 }
 
-/// Why a camera was refused.
+/// Reason why a camera was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {

@@ -1,4 +1,4 @@
-//! Who touches when: [`ContactTimeline`], true contacts against sensed and estimated ones.
+//! Times of contact: [`ContactTimeline`], true contacts against sensed and estimated ones.
 
 use maud::{Markup, html};
 

@@ -58,7 +58,7 @@ pub struct CameraImage<'a> {
     pub pixel: &'a dyn Fn([f64; 2]) -> Option<[f64; 2]>,
 }
 
-/// Why a camera image could not be drawn on.
+/// Reason why a camera image could not be drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the camera image is no PNG; give the bytes of a whole PNG file")]
 pub struct ImageError;

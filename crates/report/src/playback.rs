@@ -42,7 +42,7 @@ pub struct Playback {
     pub marks: Vec<Mark>,
     /// The runs.
     pub runs: Vec<PlaybackRun>,
-    /// In which order they are drawn, by number; those that agree cover each other. Runs that are
+    /// Order in which they are drawn, by number; those that agree cover each other. Runs that are
     /// not here follow.
     pub lowest_first: Vec<usize>,
 }

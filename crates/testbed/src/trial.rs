@@ -18,7 +18,7 @@ pub struct Trial<'a> {
     pub seed: u64,
 }
 
-/// Why an experiment cannot be simulated.
+/// Reason why an experiment cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrialError {
@@ -35,7 +35,7 @@ pub enum TrialError {
         "the true {name} is {value}; it must be a finite number from 0 up. Give a coefficient of friction"
     )]
     Friction {
-        /// Which one.
+        /// Name of the number.
         name: &'static str,
         /// The value found.
         value: f64,

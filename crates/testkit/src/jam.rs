@@ -113,8 +113,8 @@ pub fn is_solvable(problem: &StepProblem) -> bool {
         && impulses * scaled.speed() <= LARGEST_IMPULSE
 }
 
-/// Less than which the sum of wrenches, with the push along the drive, cannot be for impulses whose
-/// normal parts sum to one.
+/// Least size of the sum of wrenches, with the push along the drive, for impulses whose normal
+/// parts sum to one.
 fn least_wrench(problem: &StepProblem) -> f64 {
     let scaled = ScaledProblem::new(problem);
     // the edges of the friction cones: wrench, then push

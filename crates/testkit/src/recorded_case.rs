@@ -25,7 +25,7 @@ pub struct RecordedCase {
     pub occlusion: Occlusion,
 }
 
-/// Why an experiment could not be read.
+/// Reason why an experiment could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordedError {
     /// A file or folder cannot be read.

@@ -17,7 +17,7 @@ use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution};
 
 use crate::vector::{cross, dot, left};
 
-/// Which condition a residual belongs to; the numbers index contacts and feet.
+/// Condition to which a residual belongs; the numbers index contacts and feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResidualRow {
     /// Newton's law along x.

@@ -1,4 +1,4 @@
-//! Why a calibration was refused: [`CalibrationError`].
+//! Reason why a calibration was refused: [`CalibrationError`].
 
 /// Fewest of the board's tags that make a frame usable.
 pub(crate) const FEWEST_TAGS: usize = 4;
@@ -7,7 +7,7 @@ pub(crate) const FEWEST_FRAMES: usize = 4;
 /// Largest mean misfit (px).
 pub(crate) const WORST_MISFIT: f64 = 1.0;
 
-/// Why a calibration was refused.
+/// Reason why a calibration was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrationError {

@@ -2,7 +2,7 @@
 
 use serde::de::DeserializeOwned;
 
-/// Why a TOML file was refused, and where.
+/// Reason why a TOML file was refused, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {problem}")]
 pub struct ConfigError {

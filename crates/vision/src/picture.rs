@@ -8,7 +8,7 @@ use image::{DynamicImage, GrayImage, ImageDecoder, ImageFormat, ImageReader};
 /// more.
 const MOST_PIXELS: u64 = 1 << 26;
 
-/// Why an image was refused.
+/// Reason why an image was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {

@@ -22,7 +22,7 @@ pub struct Paper {
     pub height: f64,
 }
 
-/// Why something cannot be printed.
+/// Reason why something cannot be printed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrintError {

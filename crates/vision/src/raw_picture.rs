@@ -17,7 +17,7 @@ pub struct RawPicture {
     pub bytes: Vec<u8>,
 }
 
-/// Why an image of pixels was refused.
+/// Reason why an image of pixels was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RawPictureError {

@@ -1,4 +1,4 @@
-//! Which tag is on which body, and where: [`Tags`], tags.toml.
+//! Tags of each body, and their places: [`Tags`], tags.toml.
 
 use serde::Deserialize;
 use stickslip_dynamics::Pose;

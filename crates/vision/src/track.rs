@@ -47,7 +47,7 @@ pub struct Track {
     pub frames: Vec<FrameSighting>,
 }
 
-/// Why the frames give no track.
+/// Reason why the frames give no track.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {

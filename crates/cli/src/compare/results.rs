@@ -98,7 +98,7 @@ pub struct FolderResult {
 pub struct LostFolder {
     /// The folder.
     pub folder: String,
-    /// Why, in one line.
+    /// The reason, in one line.
     pub error: String,
 }
 

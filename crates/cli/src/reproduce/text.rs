@@ -184,7 +184,7 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
     table
 }
 
-/// In which experiments touch makes a difference, in a sentence.
+/// Experiments in which touch makes a difference, in a sentence.
 pub fn touch(results: &[OcclusionResult]) -> String {
     let no_touch = Variant::ParticleNoTouch.paper_key();
     let all = results.iter().filter_map(|result| {

@@ -30,8 +30,8 @@ impl Gap {
 /// A contact between two features, in the lanes that have it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<const W: usize> {
-    /// Which features of the two bodies touch, below [`Contact::ID_COUNT`]: the same from one step
-    /// to the next.
+    /// Number of the pair of features that touch, below [`Contact::ID_COUNT`]; it stays from one
+    /// step to the next.
     pub id: u32,
     /// The lanes that have it.
     pub present: Mask<W>,

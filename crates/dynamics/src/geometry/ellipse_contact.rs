@@ -172,7 +172,7 @@ fn distance_to_segment(from: Vec2, to: Vec2) -> f64 {
     length(add(from, scale(share, along)))
 }
 
-/// With an edge, in closed form: the ellipse's lowest point, if it projects onto the edge.
+/// Contact with an edge, in closed form: the ellipse's lowest point, if it projects onto the edge.
 fn with_edge(ellipse: &Ellipse, edge: &Edge, slack: f64) -> Option<Gap> {
     let normal = edge.normal();
     let (_, height) = edge.coordinates(ellipse.centre);
@@ -181,7 +181,7 @@ fn with_edge(ellipse: &Ellipse, edge: &Edge, slack: f64) -> Option<Gap> {
     edge.spans(s, slack).then_some(contact)
 }
 
-/// With a corner or a disc: the largest separation within its cone.
+/// Contact with a corner or a disc: the largest separation within its cone.
 fn with_vertex(ellipse: &Ellipse, vertex: &RoundedVertex, slack: f64) -> Option<Gap> {
     let separation = Separation {
         d: sub(ellipse.centre, vertex.centre),

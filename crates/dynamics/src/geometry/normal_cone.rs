@@ -1,4 +1,4 @@
-//! Which normals a corner or a disc has: [`NormalCone`].
+//! Normals of a corner or a disc: [`NormalCone`].
 
 use stickslip_lanes::{Lanes, Mask};
 

@@ -101,7 +101,7 @@ impl Between<'_> {
 }
 
 impl Enclosure {
-    /// By how much row·v may differ from its value at the centre.
+    /// Largest difference of row·v from its value at the centre.
     pub fn reach(&self, row: &Vector<3>) -> f64 {
         self.radius * norm(&forward(&self.factor, row)) + self.rounding * norm(row)
     }

@@ -21,7 +21,7 @@ const BATCH: BatchLimits = BatchLimits {
 /// Outcome of the iteration of one particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterated {
-    /// Which particle.
+    /// The particle.
     pub index: LaneIndex,
     /// Its residual (m/s).
     pub residual: f64,

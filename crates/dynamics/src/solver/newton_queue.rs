@@ -40,7 +40,7 @@ pub struct Underway<'a, const W: usize> {
 /// A problem whose iteration has ended in a queue.
 #[derive(Clone, Copy, Debug)]
 pub struct Ended<'a, const W: usize> {
-    /// Which problem.
+    /// The problem.
     pub index: LaneIndex,
     /// Its lane of the queue.
     pub slot: usize,

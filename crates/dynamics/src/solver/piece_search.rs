@@ -77,7 +77,7 @@ pub struct Sample {
     pub v: Vector<4>,
     /// Impulses of the feet.
     pub feet: [[f64; 2]; 3],
-    /// By how much it misses the last condition: zero at a solution.
+    /// Residual of the last condition: zero at a solution.
     pub miss: f64,
     /// Error of V (m/s).
     pub error: f64,

@@ -73,7 +73,7 @@ pub struct StartedBlock<'a, const W: usize> {
 /// Outcome of one problem.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished<'a, const W: usize> {
-    /// Which particle.
+    /// The particle.
     pub index: LaneIndex,
     /// Residual of the last attempt with fixed modes (m/s); infinite without one.
     pub residual: f64,

@@ -23,7 +23,7 @@ use stickslip_evaluation::{
 };
 use stickslip_formats::read_scene;
 
-/// With what names they are shown.
+/// Variants, with the names by which they are shown.
 const VARIANTS: [(Variant, &str); 3] = [
     (Variant::Particle, "touch"),
     (Variant::ParticleNoTouch, "no touch"),

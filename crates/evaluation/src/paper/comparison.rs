@@ -23,7 +23,7 @@ pub enum Finding {
     TooFewSeeds,
 }
 
-/// By which scores two variants are compared.
+/// Scores by which two variants are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Over all rows, against the exact motion.

@@ -28,7 +28,7 @@ pub struct RunSettings {
 /// One of the paper's experiments with one seed.
 #[derive(Clone, Debug)]
 pub struct Replicate {
-    /// Which experiment.
+    /// The experiment.
     pub paper: PaperExperiment,
     /// Seed of rig, sensors and filters.
     pub seed: u64,

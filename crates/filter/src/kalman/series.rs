@@ -1,6 +1,6 @@
 //! A series of measurements of one axis, checked.
 
-/// Why a series was refused.
+/// Reason why a series was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SeriesError {

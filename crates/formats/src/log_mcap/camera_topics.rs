@@ -1,4 +1,4 @@
-//! Which topics of a bag hold a camera's images and what belongs to them: [`CameraTopics`].
+//! Topics of a bag with a camera's images and with data that belong to them: [`CameraTopics`].
 
 use std::str::FromStr;
 

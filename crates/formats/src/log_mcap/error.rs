@@ -1,4 +1,4 @@
-//! Why a recording was refused: [`McapError`].
+//! Reason why a recording was refused: [`McapError`].
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub struct McapPlace {
     pub message: Option<(usize, u64)>,
 }
 
-/// Why a recording was refused, and where.
+/// Reason why a recording was refused, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct McapError {
     /// Display name of the file.

@@ -71,7 +71,7 @@ pub struct PosesInfo {
     pub moves_at: f64,
     /// Largest angle between its z-axis and the vertical of the frame it is in (deg).
     pub tilt_deg: f64,
-    /// Why it cannot be read, where it cannot.
+    /// Reason why it cannot be read; `None` where it can.
     pub problem: Option<String>,
 }
 

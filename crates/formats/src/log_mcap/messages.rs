@@ -20,7 +20,7 @@ const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// Place at which a file ends before its end.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Damage {
-    /// Which file, from 0.
+    /// Number of the file, from 0.
     pub file: usize,
     /// Bytes that were read.
     pub at: u64,

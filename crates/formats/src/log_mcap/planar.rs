@@ -15,7 +15,7 @@ const TILTED: f64 = 5.0 * PI / 180.0;
 /// Tilt from which a pose has no angle about the vertical (rad).
 const UPSIDE_DOWN: f64 = 179.9 * PI / 180.0;
 
-/// Which way the z-axis of a frame may point.
+/// Directions in which the z-axis of a frame may point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ZAxis {
     /// Up from the table.

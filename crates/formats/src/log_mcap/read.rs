@@ -26,7 +26,7 @@ use crate::nearest::nearest;
 /// Options for reading a bag.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BagOptions {
-    /// Which topic is which.
+    /// Topics of all quantities.
     pub topics: Topics,
     /// Places of tags on object and pusher, where these are read from transforms.
     pub mounts: Mounts,

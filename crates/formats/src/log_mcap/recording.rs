@@ -16,7 +16,7 @@ const MESSAGE_LIMIT: usize = 1 << 16;
 /// A message as it is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RawMessage {
-    /// Which file it is in, from 0.
+    /// Number of its file, from 0.
     pub file: usize,
     /// Number among those of its topic in the file, from 1.
     pub number: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Content {
     pub messages: Vec<RawMessage>,
 }
 
-/// Which topics are read.
+/// Choice of the topics that are read.
 pub(crate) trait Wanted {
     /// Returns true if a topic with messages of a type is read.
     fn wants(&self, name: &str, schema: &str) -> bool;
@@ -95,7 +95,7 @@ pub(crate) struct Recording {
 pub(crate) struct Keeper<'t> {
     wanted: &'t dyn Wanted,
     recording: &'t mut Recording,
-    /// Which file it is, from 0.
+    /// Number of the file, from 0.
     file: usize,
     /// Messages so far by topic.
     numbers: BTreeMap<String, usize>,

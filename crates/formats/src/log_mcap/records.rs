@@ -18,7 +18,7 @@ pub(crate) const CHUNK_LIMIT: u64 = 1 << 28;
 /// Most bytes that are taken from a file at once: a record may claim more than there is.
 const LARGEST_READ: usize = 1 << 20;
 
-/// Why reading stopped.
+/// Reason why reading stopped.
 pub(crate) enum Stop {
     /// The file is damaged here.
     Damage(String),
@@ -34,14 +34,14 @@ impl From<mcap::McapError> for Stop {
     }
 }
 
-/// Why a file cannot be read at all.
+/// Reason why a file cannot be read at all.
 pub(crate) fn unreadable(error: &io::Error) -> McapProblem {
     McapProblem::Unreadable {
         why: error.to_string(),
     }
 }
 
-/// Why a file cannot be read on: what unpacks it says so by these two kinds.
+/// Reason why a file cannot be read on: what unpacks it says so by these two kinds.
 pub(crate) fn damaged(error: &io::Error) -> Stop {
     match error.kind() {
         ErrorKind::UnexpectedEof | ErrorKind::Other => Stop::Damage(error.to_string()),

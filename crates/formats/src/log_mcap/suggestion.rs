@@ -1,4 +1,5 @@
-//! Which topics of a bag would do for a log, by their names and by what moves: [`suggestion`].
+//! Topics of a bag that would do for a log, by their names and by the motion in them:
+//! [`suggestion`].
 
 use crate::log_mcap::camera_topics::{CameraMapping, CameraTopics};
 use crate::log_mcap::info::{PosesInfo, TopicInfo};

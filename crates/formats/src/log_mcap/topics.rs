@@ -1,4 +1,4 @@
-//! Which topic carries what: [`Topic`], [`TopicMapping`], [`Topics`].
+//! Topics and the quantities that they carry: [`Topic`], [`TopicMapping`], [`Topics`].
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -35,7 +35,7 @@ pub struct TopicMapping {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topics(BTreeMap<Topic, Vec<Place>>);
 
-/// Why a mapping was refused.
+/// Reason why a mapping was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TopicError {

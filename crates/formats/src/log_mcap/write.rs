@@ -22,7 +22,7 @@ const FRAME: &str = "world";
 /// Size of a chunk (bytes); a file that is cut off loses at most one.
 const CHUNK: u64 = 1 << 16;
 
-/// Why a log was not written.
+/// Reason why a log was not written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum McapWriteError {

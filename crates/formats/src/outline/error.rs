@@ -1,8 +1,8 @@
-//! Why a drawing gives no outline: [`OutlineError`].
+//! Reason why a drawing gives no outline: [`OutlineError`].
 
 use crate::outline::Point;
 
-/// Why a drawing gives no outline.
+/// Reason why a drawing gives no outline.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{file}{}: {problem}", .line.map_or(String::new(), |line| format!(":{line}")))]
 pub struct OutlineError {

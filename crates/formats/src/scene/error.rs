@@ -1,8 +1,8 @@
-//! Why a scene file was refused: [`SceneError`].
+//! Reason why a scene file was refused: [`SceneError`].
 
 use stickslip_dynamics::ShapeError;
 
-/// Why a scene file was refused, and where.
+/// Reason why a scene file was refused, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{file}:{line}:{column}: {problem}")]
 pub struct SceneError {
@@ -101,7 +101,7 @@ pub enum SceneProblem {
     Shape {
         /// The part or the shape.
         key: String,
-        /// Why.
+        /// The reason.
         source: ShapeError,
     },
     /// Feet and a tripod are both given.
