@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::finding::Finding;
 
-/// A crate of the workspace by its folder, and what it may depend on.
+/// A crate of the workspace by its folder, and its allowed dependencies.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
     /// Folder from the root.

@@ -9,7 +9,7 @@ use crate::machine::{date, processor};
 /// Folder of the files of results, from this crate.
 const FOLDER: &str = "../../bench/results";
 
-/// Prints what is measured and appends it to `bench/results/<machine>-<date>.csv`: columns
+/// Prints measurements and appends them to `bench/results/<machine>-<date>.csv`: columns
 /// `name,value,unit`.
 #[derive(Debug)]
 pub struct Results {

@@ -1,4 +1,4 @@
-//! The timing scene of `bench-scene/scene.toml` and what can be changed of it.
+//! The timing scene of `bench-scene/scene.toml` and its variations.
 
 use std::ops::Range;
 

@@ -66,7 +66,7 @@ impl BagImages {
         }))
     }
 
-    /// The lens that CameraInfo tells; `None` without it, and of a camera that was not calibrated.
+    /// The lens of CameraInfo; `None` without it, and of a camera that was not calibrated.
     pub fn lens(&self) -> Result<Option<Lens>> {
         let Some(info) = read_bag_camera_info(self.files.open_all()?, &self.topics)? else {
             return Ok(None);

@@ -171,7 +171,7 @@ fn write(args: &CalibrateArgs, camera: &Camera) -> Result<()> {
     write_file(&args.out, write_camera(camera).as_bytes())
 }
 
-/// The lens that a file tells.
+/// The lens in a file.
 fn lens_of(path: &Path) -> Result<Lens> {
     let (text, name) = (text_of(path, "lens")?, path.display().to_string());
     if path.extension().is_some_and(|ending| ending == "toml") {

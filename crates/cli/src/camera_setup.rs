@@ -12,7 +12,7 @@ use stickslip_vision::{Board, BoardOnTable, BodyTag, TagPlace, Tags, tag_cells};
 
 const OBJECT_TAG: u16 = 0;
 const PUSHER_TAG: u16 = 1;
-/// Room of the plate about what happens (m).
+/// Room of the plate about the motion (m).
 const PLATE_ROOM: f64 = 0.06;
 /// Frames of the board are numbered from here, away from those of the experiment.
 const BOARD_FRAMES: u64 = 1 << 40;

@@ -138,8 +138,8 @@ pub fn read_scene_file(path: &Path) -> Result<Setup> {
     Ok(setup)
 }
 
-/// Reads what else a scene file says of how a log is recorded: where tags sit and from which force
-/// a sensor is touched; `topics` are those of the command line.
+/// Reads other values of a scene file about the recording of a log: places of tags, and the force
+/// from which a sensor is touched; `topics` are those of the command line.
 fn bag_options(path: &Path, setup: &Setup, topics: &Topics) -> Result<BagOptions> {
     Ok(BagOptions {
         topics: topics.clone(),

@@ -1,4 +1,4 @@
-//! Writing files and folders: what went wrong, and what to do about it.
+//! Writing files and folders: the fault, and the next step.
 
 use std::ffi::OsString;
 use std::fs::{self, File};

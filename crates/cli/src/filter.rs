@@ -51,7 +51,7 @@ struct Summary<'a> {
     failed: u64,
     collapses: u32,
     second_tries: u32,
-    /// ln of what the particles expected of the log.
+    /// ln of the evidence of the log.
     log_evidence: Option<f64>,
     /// Reasons to doubt the scores.
     warnings: &'a [String],

@@ -1,4 +1,4 @@
-//! `stickslip info`: what is in a bag, and how to read a log from it.
+//! `stickslip info`: the content of a bag, and how to read a log from it.
 
 use std::path::{Path, PathBuf};
 

@@ -131,7 +131,7 @@ impl LogFiles {
         Ok((info, self.told(&warnings)))
     }
 
-    /// Refuses what is no bag.
+    /// Refuses a log that is no bag.
     pub fn require_bag(&self) -> Result<()> {
         if self.is_bag {
             return Ok(());

@@ -1,7 +1,7 @@
 //! The one place where the program speaks: results by [`show`] on standard output, all else by
 //! [`talk`] on standard error.
 //!
-//! A reader may leave early, as `head` does. That is no failure: what is left to tell is dropped,
+//! A reader may leave early, as `head` does. That is no failure: the remaining output is dropped,
 //! files are still written, and the exit code is that of the work.
 
 use std::fmt::Display;
@@ -66,7 +66,7 @@ fn unwritable(error: &io::Error) -> anyhow::Error {
     )
 }
 
-/// Most characters of a line on standard error; what a damaged file says of itself may be longer.
+/// Most characters of a line on standard error; texts from a damaged file may be longer.
 const LONGEST_LINE: usize = 2000;
 
 /// Writes a line to standard error, without characters that a terminal would obey. It is lost where
@@ -98,7 +98,7 @@ fn printable(text: &str) -> String {
     }
 }
 
-/// Tells standard error what failed, and ends with that error's exit code.
+/// Writes the failure to standard error, and returns that error's exit code.
 pub fn tell(error: &anyhow::Error) -> Verdict {
     if let Some(error) = error.downcast_ref::<clap::Error>() {
         // clap's own words; that they cannot be printed changes nothing

@@ -25,7 +25,7 @@ use crate::output::{show, talk};
 use crate::simulation_args::SimulateArgs;
 use crate::verdict::Verdict;
 
-/// A scene's text with what is known of its truth.
+/// A scene's text with the known part of its truth.
 struct Source {
     name: String,
     scene: String,

@@ -331,8 +331,9 @@ impl<const W: usize> Assembly<W> {
     }
 
     /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`]
-    /// that press, and where the pusher stands. What is unsolved would be a bad start: compliant
-    /// impulses are a million times too large; and so would be what grows from step to step.
+    /// that press, and where the pusher stands. Impulses of unsolved lanes would be a bad start:
+    /// compliant impulses are a million times too large. So would be impulses that grow from step
+    /// to step.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Unknowns<W>, solved: Mask<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;

@@ -5,8 +5,8 @@ use stickslip_lanes::Lanes;
 use crate::ncp::rows::FootRow;
 use crate::se2::Twist;
 
-/// Share of the feet's friction with which a contact counts as pressed at least: what a new contact
-/// will carry is not known.
+/// Share of the feet's friction with which a contact counts as pressed at least: the load of a new
+/// contact is not known.
 const LEAST_LOAD: f64 = 0.1;
 
 /// Least friction bound of a contact, and of the feet together (m/s): keeps quotients finite.

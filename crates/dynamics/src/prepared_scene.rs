@@ -8,7 +8,7 @@ use crate::input::{Offsets, PusherMotion};
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
 
-/// A scene, with what of it no step changes.
+/// A scene, with quantities derived from it that no step changes.
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedScene {
     pub scene: Scene,

@@ -189,7 +189,7 @@ impl Dynamics {
     }
 }
 
-/// Refuses what cannot be simulated.
+/// Refuses input that cannot be simulated.
 fn check(
     h: f64,
     steps: usize,

@@ -295,8 +295,8 @@ impl Dynamics {
         length_at_most(vx, vy) + omega.abs() * self.object_radius
     }
 
-    /// Gap below which contacts of a chunk are looked for (m): what object and pusher can close
-    /// within the step, with room for the velocity that the contacts add.
+    /// Gap below which contacts of a chunk are sought (m): the distance that object and pusher can
+    /// close within the step, with room for the velocity that the contacts add.
     #[inline(always)]
     fn search_distance<const W: usize>(
         &self,

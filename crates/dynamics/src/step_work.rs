@@ -1,4 +1,4 @@
-//! Working memory of a step, and what it tells of the last one: [`StepWork`].
+//! Working memory of a step, and results of the last one: [`StepWork`].
 
 use stickslip_lanes::Lanes;
 
@@ -48,8 +48,8 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// Smallest gap (m) between the object and a body at the end of the last step, as its contacts
-    /// tell it, by lane of a chunk; infinite where none was near.
+    /// Smallest gap (m) between the object and a body at the end of the last step, by its contacts,
+    /// by lane of a chunk; infinite where none was near.
     #[inline(always)]
     pub fn gaps(&self, chunk: usize, body: Body) -> Lanes<W> {
         if self.by_lane.is_empty() {

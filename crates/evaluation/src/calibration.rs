@@ -26,7 +26,7 @@ const POSE: usize = 3;
 /// Place of the truth in a belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Weight of the particles below the truth; uniform from 0 to 1 where beliefs are true.
+    /// Weight of the particles below the truth; uniform from 0 to 1 where beliefs are calibrated.
     pub rank: f64,
     /// Distance of the belief's mean from the truth (SI).
     pub error: f64,
@@ -47,8 +47,8 @@ pub struct CalibrationRun {
 /// Source of the object's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TruthSource {
-    /// The filter's own model, noise and measurements included ([`PriorSample`]): of such truths,
-    /// true beliefs hold as much as they say.
+    /// The filter's own model, noise and measurements included ([`PriorSample`]): calibrated
+    /// beliefs cover such truths as often as they say.
     Prior,
     /// A simulation by the filter's dynamics without noise, or by the testbed.
     Simulated(Physics),
@@ -94,8 +94,8 @@ impl CalibrationRun {
     /// occlusion. `None` where no fixel is met, or the drawn rig cannot be simulated.
     ///
     /// The occlusion begins before the first contact with a fixel. If the filter's own model moves
-    /// the object, that is the contact of the simulation whose pusher it has, so that no occlusion
-    /// tells of the truth.
+    /// the object, that is the contact of the simulation whose pusher it has, so that the occlusion
+    /// reveals nothing of the truth.
     ///
     /// # Panics
     /// If an embedded scene cannot be run.
@@ -315,7 +315,7 @@ fn covers(rank: f64) -> bool {
 pub struct RankTally {
     /// Number of beliefs.
     pub count: usize,
-    /// Share of them whose central 90 % hold the truth.
+    /// Share of them whose central 90 % cover the truth.
     pub covered: f64,
     /// Standard error of that share.
     pub standard_error: f64,

@@ -16,8 +16,8 @@ use stickslip::{Estimate, EstimateRow};
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
 
-/// Share of the prior's spread below which a parameter was observed: what is known of it then is
-/// nearer the truth than the prior's mean by almost half (docs/log/2026-11-robust-model.md).
+/// Share of the prior's spread below which a parameter is identified: its estimate then is nearer
+/// the truth than the prior's mean by almost half (docs/log/2026-11-robust-model.md).
 const NARROWER: f64 = 0.6;
 
 /// One friction parameter at the end of a run.

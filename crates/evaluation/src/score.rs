@@ -80,8 +80,8 @@ impl Reference {
         }
     }
 
-    /// The log's own poses, hidden ones included, whether there is a truth or not: what the paper
-    /// scores against.
+    /// The log's own poses, hidden ones included, whether there is a truth or not: the paper scores
+    /// against these.
     #[must_use]
     pub fn measured(experiment: &Experiment) -> Self {
         Self {

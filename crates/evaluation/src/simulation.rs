@@ -132,8 +132,8 @@ impl Simulation {
         })
     }
 
-    /// The experiment as its files would say it; `setup` is what was simulated, as the methods are
-    /// to know it.
+    /// The experiment in the form of its files; `setup` is the methods' view of the simulated
+    /// scene.
     ///
     /// # Panics
     /// If `setup` has fewer fixels than the simulated one.
@@ -144,7 +144,7 @@ impl Simulation {
     }
 }
 
-/// The true friction: what is known, else the nominal one.
+/// The true friction where it is known, else the nominal one.
 fn friction(setup: &Setup, known: &TruthFacts) -> Friction {
     let nominal = setup.scene.nominal;
     Friction {

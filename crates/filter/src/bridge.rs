@@ -85,8 +85,9 @@ impl Bridge {
         sum * sum / squares
     }
 
-    /// Weights of the particles that move, summing to 1; the others have none. Whether there are
-    /// any to speak of: what does not move can tell against all of them.
+    /// Weights of the particles that move, summing to 1; the others have none. Returns true if
+    /// their weight is large enough: the part of the observation that does not move particles can
+    /// speak against all of them.
     fn weigh_near(&mut self, far: f64, weights: &LogWeights, moving: &[f64]) -> bool {
         self.weights.copy_from_slice(weights.weights());
         if moving.iter().all(|likelihood| *likelihood >= far) {

@@ -173,8 +173,8 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.reset();
     }
 
-    /// Goes on with another number of particles: resamples by the weights, which become equal. What
-    /// is estimated stays that of the last step; where the number is the same, nothing changes.
+    /// Goes on with another number of particles: resamples by the weights, which become equal. The
+    /// estimate stays that of the last step. If the number is unchanged, nothing changes.
     ///
     /// # Errors
     /// If the number is out of range; nothing changes then.
@@ -242,8 +242,8 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles.
-    /// Also ln of the mean likelihood of what reinitialising can improve, by the weights before,
-    /// where the model judges it.
+    /// Also returns ln of the mean likelihood, by the weights before, of the part that
+    /// reinitialising can improve, where the model judges it.
     fn update_weights(&mut self, observation: &M::Observation) -> (WeightUpdate, Option<f64>) {
         let judged = self.model.judges_resetting(observation);
         let judged = judged.then(|| self.resetting_log_evidence(observation));
@@ -289,7 +289,8 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.log_mean_likelihood(&self.resetting)
     }
 
-    /// ln of the likelihoods of what reinitialising can improve, and what moves.
+    /// Computes ln of the likelihoods of the part of the observation that reinitialising can
+    /// improve, and that moves particles.
     pub(crate) fn weigh_resetting(&mut self, observation: &M::Observation) {
         let model = &self.model;
         self.particles

@@ -21,7 +21,7 @@ impl WeightedSums for () {
 
 /// A state-space model over blocks of particles.
 ///
-/// Methods work on a block at a time and may run on any thread in any order: what they write may
+/// Methods work on a block at a time and may run on any thread in any order: their results may
 /// depend only on their arguments. All random numbers come from `draw`, with the particle's index
 /// in the set ([`BlockMut::particles`]) and draw numbers of the model's choosing; each method has
 /// streams of its own.
@@ -30,8 +30,8 @@ pub trait Model: Sync {
     type Input: Sync + ?Sized;
     /// One observation.
     type Observation: Sync + ?Sized;
-    /// Working memory of one thread, made once. No result may depend on what it holds at the start
-    /// of a call: a thread takes any block. State of a particle belongs in a column.
+    /// Working memory of one thread, made once. No result may depend on its content at the start of
+    /// a call: a thread takes any block. State of a particle belongs in a column.
     type Scratch: Send;
     /// The sums that the step's estimate is made of; `()` where none is needed.
     type Sums: WeightedSums;
@@ -116,8 +116,8 @@ pub trait Model: Sync {
     /// enough of them; by default none. Particles that lie far from it stay then, and are weighed
     /// by all of it.
     ///
-    /// Weighing by many observations that each tell little leaves few particles all the same, and
-    /// where nothing disturbs them, those stay what they are.
+    /// Weighing by many observations that each say little leaves few particles all the same. Where
+    /// nothing disturbs these, they do not change.
     fn least_moved(&self, _observation: &Self::Observation) -> f64 {
         0.0
     }

@@ -50,7 +50,7 @@ pub(crate) fn asks_for_help(place: Place, pieces: usize) -> bool {
     with_pace(place, |pace| pace.asks_for_help(pieces))
 }
 
-/// Takes into account what asking brought to a loop at `place` of so many `pieces`.
+/// Takes into account the help that asking brought to a loop at `place` of so many `pieces`.
 pub(crate) fn learn(place: Place, pieces: usize, help: Help) {
     with_pace(place, |pace| pace.learn(pieces, help));
 }

@@ -25,8 +25,8 @@ const HALF_DRIFT: f64 = 0.02;
 /// since rigs differ in how far the model is off.
 const NINETY_PERCENT: f64 = 1.943;
 
-/// Largest posterior over prior standard deviation that is taken for what it is; beyond, the pushes
-/// say nothing.
+/// Largest posterior over prior standard deviation that is used as it is; beyond, the pushes say
+/// nothing.
 const NOTHING: f64 = 0.97;
 
 /// The discrepancy of one parameter, of logarithms.
@@ -52,8 +52,8 @@ const TRIPOD_RADIUS: Discrepancy = Discrepancy {
     bias: 0.05,
 };
 
-/// The constant of a rig, as far as fitted values of the model tell of it: friction as one would
-/// measure it by itself, the radius of the tripod with the torque of the real support in pure spin.
+/// The constant of a rig, estimated from fitted values of the model: friction as one would measure
+/// it by itself, the radius of the tripod with the torque of the real support in pure spin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Constant {
     /// Best guess, in the parameter's unit.

@@ -8,7 +8,7 @@ use stickslip_formats::SceneError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Too few pushes for what is asked.
+    /// Too few pushes for the request.
     #[error("there are {pushes} pushes; at least {least} are needed. Give more folders")]
     TooFewPushes {
         /// Pushes given.

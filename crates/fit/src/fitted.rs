@@ -217,8 +217,8 @@ fn settle(
     Ok((values, smaller.noise(&best[0]), tried))
 }
 
-/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; what it says
-/// of the constant is left open.
+/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; the constant
+/// is left open.
 fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
     let learnt = std < LEARNT;
     let value = prior.value(z);

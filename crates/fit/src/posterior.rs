@@ -33,7 +33,7 @@ const DRIFT: Prior = Prior::LogNormal {
     relative_std: 1.5,
 };
 
-/// The pushes and what is open.
+/// The pushes and the free parameters.
 #[derive(Debug)]
 pub(crate) struct Posterior<'a> {
     pub pushes: Vec<&'a PreparedPush>,

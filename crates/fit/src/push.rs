@@ -23,7 +23,7 @@ const LEAST_NOISE: f64 = 1e-6;
 pub struct Push {
     /// Its name.
     pub name: String,
-    /// Scene, sensors and what is not known of them.
+    /// Scene, sensors and their uncertainty.
     pub setup: Setup,
     /// The log.
     pub log: Log,

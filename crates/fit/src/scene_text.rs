@@ -1,4 +1,4 @@
-//! A scene file with what was learnt: [`Fit::scene_text`].
+//! A scene file with the learnt values: [`Fit::scene_text`].
 
 use stickslip::Setup;
 use stickslip_dynamics::Feet;
@@ -10,8 +10,8 @@ use crate::parameter::Parameter;
 use crate::validation::CrossValidation;
 
 impl Fit {
-    /// A scene file with the fitted values and their spreads in place; what nothing was learnt of
-    /// stays as it is, and so does all where `validation` says that fitting does not pay. Values
+    /// A scene file with the fitted values and their spreads in place; a parameter that was not
+    /// learnt stays as it is. So do all if `validation` says that fitting does not pay. Values
     /// without a key of their own (an offset, a scale) are worked into the outlines and feet, and
     /// said in comments on top. `name` is shown in errors.
     ///

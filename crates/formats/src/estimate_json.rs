@@ -1,5 +1,5 @@
 //! An estimate's row as one line of JSON: [`estimate_json`], keys named as the columns of
-//! `estimate.csv`, and what a deadline did to it.
+//! `estimate.csv`, and the effect of a deadline on it.
 
 use stickslip::{EstimateRow, Setup};
 

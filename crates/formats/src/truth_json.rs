@@ -1,4 +1,4 @@
-//! `truth.json`, the true friction values and what happened when: [`TruthFacts`],
+//! `truth.json`, the true friction values and the times of events: [`TruthFacts`],
 //! [`read_truth_json`], [`write_truth_json`]. For scoring only.
 
 use std::io::Write;

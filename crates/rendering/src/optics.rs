@@ -238,8 +238,8 @@ mod tests {
         );
     }
 
-    /// Mean and variance of the bytes of an even image against what was asked for, rounding (1/12)
-    /// included.
+    /// Mean and variance of the bytes of an even image, compared with the requested ones, rounding
+    /// (1/12) included.
     #[test]
     fn capture_has_the_noise_asked_for() {
         let lighting = Lighting {

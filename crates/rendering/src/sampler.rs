@@ -26,7 +26,7 @@ const TILE_SIDE: usize = 16 * SUBPIXELS;
 
 /// Something to look at.
 pub(crate) trait View {
-    /// Grey of what a ray meets at an instant, below [`INSTANTS`], of the exposure.
+    /// Grey of the surface that a ray meets at an instant, below [`INSTANTS`], of the exposure.
     fn grey(&self, ray: &Ray, instant: usize) -> f32;
 
     /// Returns true if it is equal at every instant.
@@ -92,8 +92,8 @@ impl Sampler {
         })
     }
 
-    /// A box that holds what a tile sees between two heights: its lower left and upper right corner
-    /// (m).
+    /// A box that contains all that a tile sees between two heights: its lower left and upper right
+    /// corner (m).
     pub(crate) fn seen_box(&self, tile: &Tile, heights: [f64; 2]) -> [[f64; 2]; 2] {
         let rows = [tile.rows.start, tile.rows.end];
         let corners = rows.map(|row| {

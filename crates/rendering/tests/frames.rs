@@ -1,4 +1,4 @@
-//! Rendered frames against rays cast one by one, and what must hold of a video.
+//! Rendered frames against rays cast one by one, and properties of a video.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

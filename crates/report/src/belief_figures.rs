@@ -9,7 +9,7 @@ use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
 use crate::time_figure::{Curve, Panel, TimeFigure};
 
-/// Probability of contact from which a body is worth a panel.
+/// Probability of contact from which a body gets a panel.
 const TOUCHED: f64 = 0.5;
 
 impl ReportedExperiment<'_> {

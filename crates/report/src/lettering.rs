@@ -11,9 +11,9 @@ use crate::font::{self, Weight};
 
 /// An SVG with a path in the place of every `text`, in the fonts of every figure.
 ///
-/// Understood is what [`Drawing`](crate::Drawing) writes: one line with x, y, size, weight, anchor
-/// and transform, parts of it in another size and above or below the line (`tspan` with `dy`).
-/// Letters stand as far apart as [`font::width`] says; those that the fonts lack are left out.
+/// It reads the output of [`Drawing`](crate::Drawing): one line with x, y, size, weight, anchor and
+/// transform, parts of it in another size and above or below the line (`tspan` with `dy`). Letters
+/// stand as far apart as [`font::width`] says; those that the fonts lack are left out.
 ///
 /// # Errors
 /// The text is no XML.
@@ -93,7 +93,7 @@ fn runs<'a>(text: Node<'a, '_>) -> Vec<Run<'a>> {
         .collect()
 }
 
-/// An attribute of a node or of what it is in.
+/// An attribute of a node or of its nearest ancestor that has it.
 fn inherited<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     node.ancestors().find_map(|of| of.attribute(name))
 }

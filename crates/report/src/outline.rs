@@ -1,4 +1,4 @@
-//! Outlines of bodies: [`Outline`], what of a union of parts is drawn.
+//! Outlines of bodies: [`Outline`], the drawn lines of a union of parts.
 
 use stickslip_dynamics::{Part, Pose, Shape};
 

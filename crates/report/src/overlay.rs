@@ -49,7 +49,7 @@ pub struct Body {
     pub opacity: f64,
 }
 
-/// A camera image, and where it shows what.
+/// A camera image, and the map from the plane to its pixels.
 pub struct CameraImage<'a> {
     /// The image as PNG.
     pub png: &'a [u8],
@@ -154,7 +154,7 @@ impl Overlay {
         self.framed(size, html! { (grid(left, high, scale, size)) }, scale, &map)
     }
 
-    /// Corners of what holds all bodies, with some room (m).
+    /// Corners of the box that contains all bodies, with some room (m).
     #[must_use]
     pub fn whole_view(&self) -> [[f64; 2]; 2] {
         let all = bounds(

@@ -107,8 +107,8 @@ impl PlaybackRun {
 }
 
 impl Playback {
-    /// A log with what it is compared to; runs, true contacts, and marks are to be added. All
-    /// rows are played back.
+    /// A log with its reference; runs, true contacts, and marks are to be added. All rows are
+    /// played back.
     #[must_use]
     pub fn new(scene: &Scene, log: &Log, reference: &Reference, hidden: Vec<bool>) -> Self {
         let touch = |name: String, sensed: Option<&Vec<Option<bool>>>| Touch {

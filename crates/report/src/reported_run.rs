@@ -1,11 +1,11 @@
-//! One run with what is drawn of its particles: [`ReportedRun`].
+//! One run with the particles of it that are drawn: [`ReportedRun`].
 
 use stickslip::dynamics::Pose;
 use stickslip_evaluation::ScoredRun;
 
 use crate::colour::Colour;
 
-/// One run with what is drawn of its particles.
+/// One run with the particles of it that are drawn.
 #[derive(Clone, Debug)]
 pub struct ReportedRun {
     /// The run.

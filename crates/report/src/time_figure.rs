@@ -52,7 +52,7 @@ pub struct Panel {
     pub label: String,
     /// Spacing of values.
     pub scale: Scale,
-    /// Smallest and largest value shown; `None`: what holds all curves and levels.
+    /// Smallest and largest value shown; `None`: a range that contains all curves and levels.
     pub limits: Option<[f64; 2]>,
     /// Smallest range that is shown, from lowest to highest; 0: as little as there is.
     pub least_span: f64,

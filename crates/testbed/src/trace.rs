@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::{Body, Friction, Pose, Twist};
 
-/// A simulated experiment: the truth at every camera frame, and what the touch sensors read.
+/// A simulated experiment: the truth at every camera frame, and the readings of the touch sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The true friction: μ_s is the mean along the object's path, d_tri the radius of the tripod

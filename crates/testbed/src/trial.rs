@@ -70,7 +70,7 @@ impl Trial<'_> {
         frame as f64 / self.rate
     }
 
-    /// Refuses what no physics can simulate.
+    /// Refuses trials that no physics can simulate.
     pub(crate) fn check(&self, friction: [(&'static str, f64); 3]) -> Result<(), TrialError> {
         if !(1.0..=1000.0).contains(&self.rate) {
             return Err(TrialError::Rate { rate: self.rate });

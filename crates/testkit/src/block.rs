@@ -2,7 +2,7 @@
 //! spinning and pivoting on its tripod.
 //!
 //! The block stands on an equal tripod of radius d with support friction bound b = μ m g h in all
-//! (b/3 per foot) and has no contacts; nothing acts on it but what a function's arguments name.
+//! (b/3 per foot) and has no contacts; only the loads that a function's arguments name act on it.
 //! With h fixed, every step of the scheme is exact, so tests may ask for rounding accuracy.
 
 use stickslip_dynamics::{Foot, StepProblem, StepSolution, Twist, Wrench};

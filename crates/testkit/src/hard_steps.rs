@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, StepSolution, Twist, Wrench};
 
-/// One step a line; its comments say what the numbers are.
+/// One step a line; its comments explain the numbers.
 const TEXT: &str = include_str!("../data/hard_steps.txt");
 
 /// A step of a particle filter over a recorded experiment, scaled to mass 1, radius of gyration 1

@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-9;
 /// Disturbed forms of each harvested step.
 const DISTURBED: u64 = 2;
 
-/// A step of a recorded experiment, with what the filter's solver made of it.
+/// A step of a recorded experiment, with the answer of the filter's solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HarvestedStep {
     /// The problem.
@@ -121,7 +121,7 @@ impl Observer for StepCollector {
     }
 }
 
-/// A number that tells steps apart: their twist and the noise impulse differ.
+/// A number that distinguishes steps: their twist and the noise impulse differ.
 fn fingerprint(problem: &StepProblem) -> u64 {
     let numbers = [
         problem.twist.vx,

@@ -78,8 +78,8 @@ pub fn may_jam(problem: &StepProblem) -> bool {
 /// other, and those that a solution needs give it no speed above [`speed_limit`].
 ///
 /// Let the wrenches of impulses P in all, with the positive part of the push, be at least δ P.
-/// Balance bounds P: δ P ≤ |v| + |free| + F + Q, with F what the feet can resist and Q the drive's
-/// impulse.
+/// Balance bounds P: δ P ≤ |v| + |free| + F + Q, with F the resistance of the feet and Q the
+/// drive's impulse.
 ///
 /// Work bounds |v|. The feet and the slips take power, and the drive takes y Q. A closed gap gives
 /// p_n times its offset and a slip p_t times its own. So |v|² + y Q ≤ |v| |free| + P g, with g the

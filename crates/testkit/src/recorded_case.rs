@@ -1,4 +1,4 @@
-//! Recorded experiments with what is hidden of them: [`RecordedCase`]s, read from a folder by
+//! Recorded experiments with their hidden rows: [`RecordedCase`]s, read from a folder by
 //! [`recorded_cases`].
 
 use std::fs;
@@ -36,7 +36,7 @@ pub enum RecordedError {
         /// Message of the system.
         cause: std::io::Error,
     },
-    /// A file does not hold what it should.
+    /// A file does not have the right content.
     #[error(transparent)]
     Content(Box<dyn std::error::Error + Send + Sync>),
     /// No folder holds an experiment.
@@ -90,7 +90,7 @@ pub fn recorded_cases(root: &Path) -> Result<Vec<RecordedCase>, RecordedError> {
     }
 }
 
-/// Nothing hidden, and where that differs, what is to be hidden.
+/// No occlusion; then the occlusion of truth.json, or else of the middle, if it hides a pose.
 fn occlusions(facts: &TruthFacts, log: &Log) -> Vec<Occlusion> {
     let occlusion = match facts.occlude_from {
         Some(from) => Occlusion::Rows { from, to: None },

@@ -169,8 +169,8 @@ fn check(adjusted: &Adjusted) -> Result<(), CalibrationError> {
     Ok(())
 }
 
-/// Refuses copies of few views: each makes the numbers look better known, and none tells anything
-/// new.
+/// Refuses copies of few views: each makes the numbers seem better known, and none adds
+/// information.
 fn check_distinct(views: &[BoardView<'_>]) -> Result<(), CalibrationError> {
     let mut distinct: Vec<&BoardView<'_>> = Vec::new();
     for view in views {

@@ -85,7 +85,7 @@ pub enum CalibrationError {
         /// All frames.
         frames: usize,
     },
-    /// The frames do not tell the focal length from the distance.
+    /// The frames do not separate the focal length from the distance.
     #[error("the frames leave the focal length open{}: the board must be seen tilted. Record frames with the board tilted by 20 to 40 degrees to all sides", spread(*.relative_std))]
     NoTilt {
         /// Its relative standard deviation, where there is one.

@@ -99,7 +99,7 @@ impl Document<'_> {
         self.error(line, ConfigProblem::OtherLens { apart })
     }
 
-    /// An error unless `kept`: the value of `key` is `found` and must be what `rule` says.
+    /// An error unless `kept`: the value of `key` is `found` and must follow `rule`.
     pub(crate) fn require(
         &self,
         kept: bool,

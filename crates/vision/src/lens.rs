@@ -66,7 +66,8 @@ impl Lens {
         self.ideal(self.bend(self.direction(ideal.into())).0).into()
     }
 
-    /// The ideal pixel of what is seen at a pixel (px); `None` where the distortion has no inverse.
+    /// The ideal pixel of the direction that is seen at a pixel (px); `None` where the distortion
+    /// has no inverse.
     pub fn undistort(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
         /// Directions this near are one.
         const CLOSE: f64 = 1e-13;

@@ -56,7 +56,7 @@ pub struct Measurement {
     pub chi2: f64,
 }
 
-/// Corners against what a pose predicts.
+/// Corners compared with those that a pose predicts.
 struct Fit {
     residual: SVector<f64, 8>,
     /// By x, y, θ and size.

@@ -1,4 +1,4 @@
-//! `poses.csv`, what every frame shows, with its noise: [`write_poses`].
+//! `poses.csv`, the poses in every frame, with their noise: [`write_poses`].
 
 use std::io::{Result, Write};
 

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 
 use crate::print::Paper;
 
-/// A sheet of paper with what is drawn on it, to scale; all in mm from its upper left corner, y
-/// down.
+/// A sheet of paper with the drawing on it, to scale; all in mm from its upper left corner, y down.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     pub(crate) paper: Paper,

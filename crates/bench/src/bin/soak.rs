@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Passes on what the program says, and the address of its page.
+/// Passes on the program's messages, and the address of its page.
 fn pass_on(told: impl BufRead, address: &Sender<String>) {
     for line in told.lines().map_while(Result::ok) {
         if let Some(at) = line.find("http://") {
@@ -215,14 +215,14 @@ fn open_page(address: &str) -> Result<Child, Box<dyn Error>> {
     Ok(browser)
 }
 
-/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux tells
+/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux reports
 /// it.
 fn load() -> String {
     let told = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     told.split(' ').take(3).collect::<Vec<_>>().join(" ")
 }
 
-/// Time that all threads of a process were on a processor (s), where Linux tells it.
+/// Time that all threads of a process were on a processor (s), where Linux reports it.
 fn processor_seconds(process: u32) -> Option<f64> {
     /// Unit of the system's times (1/s).
     const TICKS: f64 = 100.0;
@@ -234,7 +234,7 @@ fn processor_seconds(process: u32) -> Option<f64> {
     Some((user.parse::<f64>().ok()? + system.parse::<f64>().ok()?) / TICKS)
 }
 
-/// Memory of a process that is in use (MB), where Linux tells it.
+/// Memory of a process that is in use (MB), where Linux reports it.
 fn resident_megabytes(process: u32) -> Option<f64> {
     let status = fs::read_to_string(Path::new("/proc").join(process.to_string()).join("status"));
     let status = status.ok()?;

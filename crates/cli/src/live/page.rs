@@ -231,7 +231,7 @@ impl Shared {
     }
 }
 
-/// Takes what a page has said, without waiting for more; false where it has gone.
+/// Takes a page's messages, without waiting for more; false where it has gone.
 fn is_open(socket: &mut WebSocket<TcpStream>) -> io::Result<bool> {
     socket.get_ref().set_nonblocking(true)?;
     let mut said = (0..MOST_MESSAGES).map(|_| socket.read());

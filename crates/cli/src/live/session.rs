@@ -1,4 +1,4 @@
-//! A tracker that outlives what its source does: [`Session`].
+//! A tracker that survives pauses and errors of its source: [`Session`].
 
 use std::collections::VecDeque;
 use std::num::NonZero;
@@ -24,7 +24,7 @@ pub struct Answer {
     pub row: Option<Row>,
 }
 
-/// A tracker with what happened to it.
+/// A tracker with counts of its events.
 pub struct Session<'a> {
     setup: &'a Setup,
     options: &'a TrackerOptions,

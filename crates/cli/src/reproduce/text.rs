@@ -23,7 +23,7 @@ fn too_few_seeds(results: &[OcclusionResult]) -> bool {
     baselines.any(|against| against.standard_error_mm.is_infinite())
 }
 
-/// All tables, what holds of the paper's orders, and the particle filter under occlusion.
+/// All tables, the confirmed orders of the paper, and the particle filter under occlusion.
 pub fn text(results: &Results) -> String {
     let tables = results.tables.iter().map(|table| {
         let rows: Vec<String> = table.rows.iter().map(row).collect();

@@ -1,7 +1,7 @@
-//! The live page in a real browser: what comes over its socket is drawn, and it fits a phone.
+//! The live page in a real browser: rows that come over its socket are drawn, and it fits a phone.
 //!
-//! `cargo test --workspace --test it -- --ignored browser::`; the browser is `chromium`, or what
-//! `STICKSLIP_CHROMIUM` names.
+//! `cargo test --workspace --test it -- --ignored browser::`; the browser is `chromium`, or the
+//! program that `STICKSLIP_CHROMIUM` names.
 
 #[path = "../../../report/tests/it/browser/chromium.rs"]
 mod chromium;

@@ -5,7 +5,7 @@ use std::fs;
 use crate::common::{Experiment, SLIDE, STOP, json, stickslip};
 use serde_json::Value;
 
-/// Log and scene in millimetres: every camera pose is far from what the scene's noise allows.
+/// Log and scene in millimetres: every camera pose is farther off than the scene's noise allows.
 fn in_millimetres(test: &str) -> Experiment {
     let case = Experiment::copy(SLIDE, test);
     fs::remove_file(case.folder.join("truth.csv")).unwrap();

@@ -1,5 +1,5 @@
-//! Every way of giving a log and a scene that a user would try is taken, or answered with what to
-//! type.
+//! Every way of giving a log and a scene that a user would try is taken, or answered with the words
+//! to type.
 
 use std::fs;
 use std::process::{Command, Output};

@@ -64,7 +64,7 @@ impl Live {
         serde_json::from_str(&answer).unwrap_or_else(|error| panic!("{error}: {answer}"))
     }
 
-    /// Ends the source: exit code and what was said.
+    /// Ends the source: exit code and messages.
     fn end(mut self) -> (Option<i32>, String) {
         drop(self.input.take());
         let run = self.child.wait_with_output().unwrap();

@@ -1,4 +1,4 @@
-//! `stickslip live --page`: who may see it, and what comes over the socket.
+//! `stickslip live --page`: access to it, and the messages over its socket.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;

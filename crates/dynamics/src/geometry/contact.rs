@@ -67,7 +67,7 @@ impl<const W: usize> Contact<W> {
         }
     }
 
-    /// Takes over what `from` has in the lanes of `mask`.
+    /// Copies the lanes of `mask` from `from`.
     #[inline(always)]
     pub fn assign(&mut self, mask: Mask<W>, from: &Self) {
         for k in 0..2 {

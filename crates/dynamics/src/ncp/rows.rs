@@ -11,7 +11,7 @@ use crate::ncp::problem::{ContactPoint, StepProblem};
 
 /// Largest speed of a solution, in terms of the fastest one that its problem asks for. A face that
 /// closes on an object at an angle of two degrees squeezes it out that much faster; of 18 million
-/// solved steps of random scenes three were faster by 32 and ten by eight. What is faster still are
+/// solved steps of random scenes three were faster by 32 and ten by eight. Faster still are only
 /// solutions of wedges that friction all but locks: impulses of 1e6 m/s throw an object out at some
 /// 100 m/s where all else moves at 0.1.
 const SPEED_LIMIT: f64 = 30.0;

@@ -241,7 +241,8 @@ mod tests {
         [x, y, foot.jx * x + foot.jy * y, 0.0]
     }
 
-    /// Impulses add up, and no corner of the set lies on the wrong side of what separates.
+    /// Impulses add up, and no corner of the set lies on the wrong side of the direction that
+    /// separates.
     #[track_caller]
     fn is_sound(found: &Balance, generators: &[Vector<4>], load: &Load<'_>) {
         match found {

@@ -224,8 +224,8 @@ impl<const W: usize> Solver<W> {
 
     /// The unsolved problems: along the path, then one by one.
     ///
-    /// Compiled apart from the Newton iteration: of more code in one piece the compiler calls what
-    /// it should inline.
+    /// Compiled apart from the Newton iteration: in one larger piece of code the compiler would
+    /// call functions that it should inline.
     #[inline(never)]
     fn solve_unsolved(
         &mut self,
@@ -249,8 +249,8 @@ impl<const W: usize> Solver<W> {
         }
     }
 
-    /// The unsolved problems, packed together, from their warm starts; then what is left from the
-    /// free motion, since the last step's impulses may have led astray.
+    /// The unsolved problems, packed together, from their warm starts; then those that are left
+    /// from the free motion, since the last step's impulses may have led them astray.
     #[inline(always)]
     fn follow_paths(
         &mut self,

@@ -138,7 +138,7 @@ impl Slide<'_> {
     }
 }
 
-/// Adds to a matrix what resists, by `size`, a slip of a foot along a direction.
+/// Adds a resistance of `size` against slip of a foot along a direction to a matrix.
 fn add_along(matrix: &mut [Vector<3>; 3], foot: &ScalarFoot, [x, y]: [f64; 2], size: f64) {
     let row = [x, y, foot.jx * x + foot.jy * y];
     for i in 0..3 {

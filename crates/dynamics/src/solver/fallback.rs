@@ -122,7 +122,7 @@ impl Fallback {
         (smaller && residual <= TOLERANCE).then_some((&self.solution, residual))
     }
 
-    /// Leaves in `self.solution` what the search finds.
+    /// Leaves the search's result in `self.solution`.
     fn search_modes(&mut self, limit: u32, report: &mut Report) {
         let (ncp, refiner, guess) = (&self.ncp, &mut self.refiner, &mut self.guess);
         guess.clear(ncp.contacts.len());

@@ -415,8 +415,8 @@ impl ModeSearch {
         }
     }
 
-    /// Returns true if at some V of a plane the friction of the feet can balance what two
-    /// generators leave, with impulses α ≥ 0 of theirs.
+    /// Returns true if at some V of a plane the friction of the feet can balance the rest of the
+    /// load that two generators leave with their impulses α ≥ 0.
     fn plane_balances(&self, chosen: &[Generator; 2], certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
         let Some(mut region) = self.planes.of(conditions, chosen) else {

@@ -7,8 +7,9 @@
 //! weights of their own in that choice. An active row has a finite penalty stiffness k and keeps
 //! its impulse from one iteration to the next (a method of multipliers), so redundant contacts do
 //! no harm. Once the modes are right, the error shrinks by K/(K + k) an iteration, where K is the
-//! stiffness of what else resists. The start is the particle's last step. A stiff penalty converges
-//! sooner, a soft one copes better with modes that contradict each other: the iterations alternate.
+//! stiffness of all other resistance. The start is the particle's last step. A stiff penalty
+//! converges sooner, a soft one copes better with modes that contradict each other: the iterations
+//! alternate.
 
 use stickslip_lanes::{Lanes, Mask};
 

@@ -11,9 +11,9 @@ use crate::solver::newton::{Newton, NewtonSettings, Progress};
 /// penalty.
 const FAR: f64 = 10.0;
 
-/// Iterations after which what is far off is given up, no fewer than a chunk takes as a whole.
-/// Where active rows contradict each other, as in an object wedged between pusher and fixels, modes
-/// return in a cycle, and impulses with them.
+/// Iterations after which lanes far from a solution are given up, no fewer than a chunk takes as a
+/// whole. Where active rows contradict each other, as in an object wedged between pusher and
+/// fixels, modes return in a cycle, and impulses with them.
 const PATIENCE: f64 = 8.0;
 
 /// Problems under way: [`Newton`] at the point of a [`LaneQueue`].

@@ -93,7 +93,7 @@ pub trait ModePath {
     /// Returns true if there is no solution between two points.
     fn excludes(&self, a: &Sample, b: &Sample) -> bool;
 
-    /// The mode's conditions and generators, where balances tell more of it.
+    /// The mode's conditions and generators, where balances say more of it.
     fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {
         None
     }

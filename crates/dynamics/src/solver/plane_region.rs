@@ -129,8 +129,8 @@ pub fn complement(a: &Vector<4>, b: &Vector<4>) -> Option<[Vector<4>; 2]> {
     Some([third, most_across(&[along, across, third])?])
 }
 
-/// The unit vector of what of `v` is orthogonal to an orthonormal basis; `None` where next to
-/// nothing is.
+/// The unit vector along the part of `v` that is orthogonal to an orthonormal basis; `None` where
+/// that part is next to nothing.
 fn direction_across(v: &Vector<4>, basis: &[Vector<4>]) -> Option<Vector<4>> {
     let size = norm(v);
     // twice, against rounding

@@ -11,7 +11,7 @@ use crate::solver::load::Load;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::vector::{Vector, dot, norm};
 
-/// Speeds below this are zero, as the certificate has it (m/s).
+/// Speeds below this are zero, as in the certificate (m/s).
 const ZERO: f64 = 1e-9;
 
 /// Imbalance that is left to the certificate (m/s).

@@ -1,5 +1,5 @@
-//! One particle's problem as plain numbers: [`ScalarNcp`], what the search over contact modes works
-//! on.
+//! One particle's problem as plain numbers: [`ScalarNcp`], the form on which the search over
+//! contact modes works.
 
 use stickslip_lanes::Lanes;
 

@@ -126,9 +126,9 @@ impl<const W: usize> Default for Progress<W> {
 }
 
 impl<const W: usize> SmoothedPath<W> {
-    /// Follows `schedule` from the starts of the given particles; tells `finish` how each
-    /// ended, solved where its residual is at most `tolerance`. A particle's result does not depend
-    /// on the others.
+    /// Follows `schedule` from the starts of the given particles; reports to `finish` how each
+    /// ended. A particle is solved if its residual is at most `tolerance`. A particle's result does
+    /// not depend on the others.
     #[inline(always)]
     pub fn solve(
         &mut self,

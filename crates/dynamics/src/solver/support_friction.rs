@@ -24,8 +24,8 @@ const REGULAR: f64 = 1e-13;
 /// The map from a load to the velocity it causes where only the feet resist: a search over curves
 /// evaluates it many times.
 ///
-/// A load within the friction body of the feet moves nothing; one outside moves the object by what
-/// separates it from the nearest point of the body, load = F(e) + ε e. Newton's method in the
+/// A load within the friction body of the feet moves nothing; one outside moves the object by its
+/// difference from the nearest point of the body, load = F(e) + ε e. Newton's method in the
 /// direction e of slip and the speed ε serves objects that creep as well as those that slide, since
 /// F does not depend on the speed. The problem is convex, and smooth but for rest and the pivots
 /// about a foot: those are tried first, and descent from the best of them meets none of them again.

@@ -148,7 +148,7 @@ fn pusher_that_stalls_below_the_support_friction_does_not_move_the_object() {
     assert_eq!(particle.pose, Pose::default());
 }
 
-/// One step of a rigid pusher; checks what must hold of every infeasible step.
+/// One step of a rigid pusher; checks the properties of every infeasible step.
 fn infeasible_step(
     dynamics: &Dynamics,
     x: f64,

@@ -97,7 +97,7 @@ impl Replicate {
     }
 
     /// `repeats`: share of frames that are repeated, `pusher_memory`: how long the pusher's error
-    /// lasts (s); `adjust` may change what the scene says.
+    /// lasts (s); `adjust` may change the scene.
     fn simulate_with(
         paper: PaperExperiment,
         seed: u64,

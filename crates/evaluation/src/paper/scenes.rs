@@ -32,7 +32,7 @@ pub enum PaperExperiment {
     Corner,
 }
 
-/// A scene with the truth that it does not tell.
+/// A scene, and the truth that is not in it.
 #[derive(Clone, Copy, Debug)]
 pub struct PaperScene {
     /// Name shown in errors and tables.

@@ -1,4 +1,4 @@
-//! Observations that tell little, and move particles all the same.
+//! Observations that say little, and move particles all the same.
 
 use crate::common::{mean, settings, std};
 use stickslip_filter::{

@@ -108,8 +108,8 @@ impl TaggedBody<'_> {
     }
 }
 
-/// The poses of several places as one series, angles unwrapped: what different ones say within 1 ms
-/// is one pose, their mean.
+/// The poses of several places as one series, angles unwrapped: poses of different places within 1
+/// ms are one pose, their mean.
 pub(crate) fn joined(places: Vec<Series<Pose>>) -> Series<Pose> {
     let mut all: Vec<(usize, Timed<Pose>)> = Vec::new();
     for (place, series) in places.into_iter().enumerate() {

@@ -306,7 +306,7 @@ impl<'t, E: From<McapError>> Images<'t, E> {
     }
 }
 
-/// Shows images, and keeps what sensors read.
+/// Shows images, and keeps the readings of sensors.
 struct ImageVisitor<'v, 't, E> {
     images: &'v mut Images<'t, E>,
     sensors: Keeper<'v>,

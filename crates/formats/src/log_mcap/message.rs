@@ -9,7 +9,7 @@ use crate::log_mcap::error::McapProblem;
 /// Nanoseconds in a second.
 pub(crate) const SECOND: i64 = 1_000_000_000;
 
-/// Bytes that a message may be longer than its type: what writers pad it with.
+/// Bytes that a message may be longer than its type: padding by writers.
 pub(crate) const PADDING: usize = 8;
 
 /// A ROS 2 message type.

@@ -14,7 +14,8 @@ pub(crate) struct Colour {
     pub a: f32,
 }
 
-/// `visualization_msgs/msg/Marker`, its pose laid out flat; what no marker of ours has stays empty.
+/// `visualization_msgs/msg/Marker`, its pose laid out flat; fields that no marker of ours uses stay
+/// empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Marker {
     pub header: Header,

@@ -20,7 +20,7 @@ const UPSIDE_DOWN: f64 = 179.9 * PI / 180.0;
 pub(crate) enum ZAxis {
     /// Up from the table.
     Up,
-    /// Up or, as detectors of tags have it, into the tag.
+    /// Up or, as for detectors of tags, into the tag.
     UpOrDown,
 }
 

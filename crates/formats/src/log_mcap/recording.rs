@@ -102,7 +102,7 @@ pub(crate) struct Keeper<'t> {
 }
 
 impl Recording {
-    /// Adds what a file holds of the topics that `wanted` names, up to the first damage. The whole
+    /// Adds a file's messages of the topics that `wanted` names, up to the first damage. The whole
     /// file may be packed with zstd.
     pub(crate) fn add(&mut self, file: impl Read, wanted: &dyn Wanted) -> Result<(), McapProblem> {
         let mut keeper = self.keeper(wanted);

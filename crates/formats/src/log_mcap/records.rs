@@ -1,4 +1,4 @@
-//! An MCAP file as records, as far as it can be read: [`records`], and what is in a chunk.
+//! An MCAP file as records, as far as it can be read: [`records`], and the content of a chunk.
 //!
 //! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in
 //! them.
@@ -41,7 +41,7 @@ pub(crate) fn unreadable(error: &io::Error) -> McapProblem {
     }
 }
 
-/// Reason why a file cannot be read on: what unpacks it says so by these two kinds.
+/// Reason why a file cannot be read on: its decoder reports that by these two kinds.
 pub(crate) fn damaged(error: &io::Error) -> Stop {
     match error.kind() {
         ErrorKind::UnexpectedEof | ErrorKind::Other => Stop::Damage(error.to_string()),
@@ -77,7 +77,7 @@ pub(crate) fn records(file: &mut dyn Read, take: &mut Take<'_>) -> Result<(), St
     Ok(())
 }
 
-/// The first record of a chunk's content: its opcode, its body and what follows.
+/// The first record of a chunk's content: its opcode, its body and the bytes that follow.
 pub(crate) fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (opcode, rest) = bytes.split_first()?;
     let (length, rest) = rest.split_first_chunk()?;

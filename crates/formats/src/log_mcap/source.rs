@@ -53,7 +53,7 @@ pub(crate) struct FromMessage<'a, T> {
 }
 
 impl<'a> Source<'a> {
-    /// Poses by stamp, angles in [−π, π), with what their messages say of them.
+    /// Poses by stamp, angles in [−π, π), with the tilt and noise in their messages.
     pub(crate) fn poses(&self, frame: &mut CommonFrame) -> Result<TopicPoses, McapError> {
         let schema = self.kind(&PoseKind::TYPES)?;
         let mut found = TopicPoses::default();

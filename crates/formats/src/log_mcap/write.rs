@@ -254,7 +254,7 @@ impl<W: Write + Seek> Recorder<W> {
     }
 }
 
-/// The header of what is in the common frame at a time (ns).
+/// The header of a message in the common frame at a time (ns).
 pub(crate) fn header(stamp: i64) -> Header {
     let Some(stamp) = Time::of(stamp) else {
         panic!("{stamp} ns was checked")

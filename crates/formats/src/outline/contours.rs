@@ -3,8 +3,8 @@
 use crate::outline::Point;
 use crate::outline::error::OutlineProblem;
 
-/// Joins lines whose ends are at most `near` apart into closed contours, without repeated points;
-/// what is closed already stays as it is.
+/// Joins lines whose ends are at most `near` apart into closed contours, without repeated points; a
+/// line that is closed already stays as it is.
 pub(super) fn closed_contours(
     lines: Vec<Vec<Point>>,
     near: f64,

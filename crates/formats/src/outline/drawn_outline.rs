@@ -11,7 +11,7 @@ use crate::outline::error::OutlineProblem;
 use crate::outline::{OutlineOptions, Point};
 use crate::scene::NEW_SCENE;
 
-/// Coordinates are rounded to this (m), a hundredth of what a camera sees.
+/// Coordinates are rounded to this (m), a hundredth of the resolution of a camera.
 const ROUNDED: f64 = 1e-7;
 /// Most vertices of an outline that has to be cut, and most parts of a scene's shape.
 const MOST_VERTICES: usize = 1000;
@@ -133,7 +133,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// Of what a contour encloses, whichever way it runs.
+    /// Of the area that a contour encloses, whichever way it runs.
     fn of(contour: &[Point]) -> Self {
         // about its first point, so that nothing cancels far from the drawing's origin
         let [x0, y0] = contour[0];

@@ -1,4 +1,4 @@
-//! `scene.toml`, what is known before the experiment: [`read_scene`].
+//! `scene.toml`, the prior knowledge of an experiment: [`read_scene`].
 //!
 //! SI units, angles counter-clockwise; the object's frame has its origin in the centre of mass.
 

@@ -13,7 +13,8 @@ pub(super) struct Plate {
     /// Mean square of the distance from the origin (m²): the moment of inertia about it, per mass.
     pub mean_square: f64,
     /// Mean distance from the origin (m): a tripod of this radius resists turning as the whole
-    /// surface does, since friction's moment is mu N times the mean distance of what carries.
+    /// surface does, since friction's moment is mu N times the mean distance of the points that
+    /// carry.
     pub mean_radius: f64,
 }
 

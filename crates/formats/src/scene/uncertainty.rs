@@ -1,4 +1,4 @@
-//! `[uncertainty]`, what the other numbers leave open.
+//! `[uncertainty]`, the uncertainty of the other numbers.
 
 use stickslip::dynamics::Friction;
 use stickslip::{Rule, Uncertainty, Unit};

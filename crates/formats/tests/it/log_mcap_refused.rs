@@ -1,4 +1,4 @@
-//! MCAP recordings: every kind of bad input at its place, damaged files, and what is written.
+//! MCAP recordings: every kind of bad input at its place, damaged files, and refusals when writing.
 
 use std::io::Cursor;
 

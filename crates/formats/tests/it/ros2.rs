@@ -1,5 +1,5 @@
-//! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written
-//! here, and what rosbags writes is read here.
+//! Recordings against two other programs, mcap-ros2-support and rosbags: they read our files, and
+//! we read the files of rosbags.
 //!
 //! `cargo test -p stickslip-formats --test it -- --ignored ros2::`, with these Python packages
 //! where `python3` finds them.

@@ -1,4 +1,4 @@
-//! Every figure is a picture whatever its numbers are, and what it shows lies where it should.
+//! Every figure is a picture whatever its numbers are, and its content lies where it should.
 
 use crate::common::{HALF, disc, experiment, log, setup, square, truth};
 use resvg::tiny_skia::{Color, Pixmap};

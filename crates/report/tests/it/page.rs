@@ -258,7 +258,7 @@ fn legend(experiment: &ReportedExperiment<'_>) -> String {
     after.split_once("</p>").unwrap().0.to_owned()
 }
 
-/// A log of a camera tells of no contact; without sensors nothing is ever yellow, and a Kalman
+/// A log of a camera alone has no contacts; without sensors nothing is ever yellow, and a Kalman
 /// filter has neither particles nor probabilities.
 #[test]
 fn the_legend_names_what_is_there() {
@@ -288,7 +288,7 @@ fn the_legend_names_what_is_there() {
     assert!(!figures[0].caption.contains("shaded"));
 }
 
-/// A camera that sees the object before and after a push only: what is scored is shown.
+/// A camera that sees the object before and after a push only: the scored rows are shown.
 #[test]
 fn an_object_that_is_seen_at_the_ends_only_is_in_the_picture_and_compared() {
     let (setup, log) = (setup(), log(300));

@@ -94,8 +94,8 @@ fn survey(all: &Harvest, out: &mut impl Write) -> io::Result<bool> {
     Ok(sound)
 }
 
-/// The experiment's last two folders, its scene where that is not the usual one, and what is
-/// hidden.
+/// The experiment's last two folders, its scene where that is not the usual one, and the hidden
+/// rows.
 fn name(case: &RecordedCase) -> String {
     let parts: Vec<_> = case
         .folder

@@ -26,7 +26,7 @@ pub enum Existence {
 }
 
 impl Existence {
-    /// Of one step, from what its gaps and friction cones say alone: a fraction of a millisecond.
+    /// Of one step, from its gaps and friction cones alone: a fraction of a millisecond.
     ///
     /// # Panics
     /// Where Clarabel fails on a bounded program.

@@ -58,7 +58,7 @@ pub struct SceneRun {
     pub rigid: bool,
     /// Outcomes of its steps.
     pub tally: LoopTally,
-    /// Those worth a look.
+    /// Noteworthy steps.
     pub noted: NotedSteps,
 }
 

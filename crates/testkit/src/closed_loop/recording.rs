@@ -24,7 +24,7 @@ struct Frame {
     touches: Vec<bool>,
 }
 
-/// Moves the object and writes down what camera, pusher and touch sensors would measure.
+/// Moves the object and records the measurements of camera, pusher and touch sensors.
 pub(super) fn record(scene: &RandomScene) -> Log {
     let frames = frames(scene);
     let mut rng = scene.noise.clone();

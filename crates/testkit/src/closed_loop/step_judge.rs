@@ -28,7 +28,7 @@ const LARGEST_RESIDUAL: f64 = 2e-9;
 const FIRST_PROOFS: u64 = 4;
 const PROOFS_ONE_IN: u64 = 100;
 
-/// A step that is worth a look.
+/// A noteworthy step.
 #[derive(Clone, Debug)]
 pub struct NotedStep {
     /// Address of the step.
@@ -41,7 +41,7 @@ pub struct NotedStep {
     pub report: Report,
 }
 
-/// Steps of one scene that are worth a look.
+/// Noteworthy steps of one scene.
 #[derive(Clone, Debug, Default)]
 pub struct NotedSteps {
     /// The first ones that failed.

@@ -1,4 +1,4 @@
-//! Random scenes in closed loop: a slice of what the program `closed_loop` runs.
+//! Random scenes in closed loop: a part of those that the program `closed_loop` runs.
 
 use std::sync::OnceLock;
 

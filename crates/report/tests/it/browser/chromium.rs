@@ -1,4 +1,4 @@
-//! Chromium without a window: what pages look like once their scripts have run.
+//! Chromium without a window: the state of pages once their scripts have run.
 
 use std::path::Path;
 use std::process::Command;
