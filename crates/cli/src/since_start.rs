@@ -6,8 +6,8 @@ use stickslip_report::ReportedRun;
 /// Times that begin at this (s) or later are those of a clock.
 const CLOCK: f64 = 1e6;
 
-/// An experiment and its runs as pages show them, and what all their times are counted from (s), in
-/// whole seconds; `None` where that is 0.
+/// An experiment and its runs as pages show them, and the origin of all their times (s), in whole
+/// seconds; `None` where that is 0.
 pub fn since_start(
     experiment: &Experiment,
     mut runs: Vec<ReportedRun>,

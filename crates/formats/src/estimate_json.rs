@@ -1,11 +1,11 @@
 //! An estimate's row as one line of JSON: [`estimate_json`], keys named as the columns of
-//! `estimate.csv`, and what a deadline did to it.
+//! `estimate.csv`, and the effect of a deadline on it.
 
 use stickslip::{EstimateRow, Setup};
 
 use crate::estimate_csv::{EstimateColumns, cells, header};
 
-/// What a deadline did to the estimates so far.
+/// Effect of a deadline on the estimates so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
     /// Particles that this estimate is made of.

@@ -25,8 +25,8 @@ pub struct Overlay {
     pub title: String,
     /// Bodies, the lowest one first.
     pub bodies: Vec<Body>,
-    /// What is shown of the plane: two corners (m); `None`: all bodies. On an image: what is shown
-    /// of the image, in its pixels.
+    /// Section of the plane that is shown: two corners (m); `None`: all bodies. On an image:
+    /// section of the image, in its pixels.
     pub view: Option<[[f64; 2]; 2]>,
     /// Width of the picture (px).
     pub width: f64,
@@ -39,11 +39,11 @@ pub struct Body {
     pub name: String,
     /// Name written on the body; may be empty.
     pub tag: String,
-    /// Where its points are in the world (m).
+    /// Outline in the world (m).
     pub outline: Outline,
     /// Colour.
     pub colour: Colour,
-    /// How its boundary is drawn.
+    /// Style of its boundary.
     pub line: Line,
     /// Opacity of its inside, 0 to 1.
     pub opacity: f64,
@@ -51,7 +51,7 @@ pub struct Body {
     pub thin: bool,
 }
 
-/// A camera image, and where it shows what.
+/// A camera image, and the map from the plane to its pixels.
 pub struct CameraImage<'a> {
     /// The image as PNG.
     pub png: &'a [u8],
@@ -60,7 +60,7 @@ pub struct CameraImage<'a> {
     pub pixel: &'a dyn Fn([f64; 2]) -> Option<[f64; 2]>,
 }
 
-/// Why a camera image could not be drawn on.
+/// Reason why a camera image could not be drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the camera image is no PNG; give the bytes of a whole PNG file")]
 pub struct ImageError;
@@ -106,19 +106,19 @@ impl Body {
         Self { thin: true, ..self }
     }
 
-    /// The same, drawn with this line.
+    /// Draws its boundary with this line.
     #[must_use]
     pub fn line(self, line: Line) -> Self {
         Self { line, ..self }
     }
 
-    /// The same with its inside covered, 0 to 1.
+    /// Covers its inside, 0 to 1.
     #[must_use]
     pub fn filled(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
-    /// What stands around: fixels with their numbers, and the pusher where it is on the table.
+    /// Bodies about the object: fixels with their numbers, and the pusher where it is on the table.
     #[must_use]
     pub fn surroundings(scene: &Scene, pusher: Option<&Pose>) -> Vec<Self> {
         let fixel = |(k, fixel): (usize, &stickslip_dynamics::Fixel)| Self {
@@ -152,7 +152,7 @@ impl Overlay {
         Ok(self.drawing_on(image)?.to_svg())
     }
 
-    /// The bodies in the plane, to be put beside other drawings.
+    /// The bodies in the plane, to be put next to other drawings.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let [[left, low], [right, high]] = self.view.unwrap_or_else(|| self.whole_view());
@@ -163,7 +163,7 @@ impl Overlay {
         self.framed(size, html! { path class="grid" d=(grid_lines([left, high], scale, size)) stroke=(GRID.hex()) fill="none" {} }, scale, &map)
     }
 
-    /// Corners of what holds all bodies, with some room (m).
+    /// Corners of the box that contains all bodies, with some room (m).
     #[must_use]
     pub fn whole_view(&self) -> [[f64; 2]; 2] {
         let all = bounds(
@@ -175,7 +175,7 @@ impl Overlay {
         with_room(all.unwrap_or([[-0.05, -0.05], [0.05, 0.05]]))
     }
 
-    /// The bodies on a camera image, to be put beside other drawings.
+    /// The bodies on a camera image, to be put next to other drawings.
     ///
     /// # Errors
     /// The image is no PNG.

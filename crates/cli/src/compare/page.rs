@@ -89,10 +89,10 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
     }
 }
 
-/// How each variant fares over so many experiments.
+/// Outcome of each variant over so many experiments.
 fn story(overall: &[Overall], experiments: usize) -> Story {
     let outcome = |row: &Overall| Outcome {
-        // medians over other experiments than the rest are not to be set beside theirs
+        // medians over other experiments than the rest are not comparable with theirs
         name: match row.folders == experiments {
             true => row.variant.title().to_owned(),
             false => format!("{} on {} of them", row.variant.title(), row.folders),

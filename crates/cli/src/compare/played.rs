@@ -47,7 +47,7 @@ pub fn played(
     chosen.map(section).collect()
 }
 
-/// The particle filter's score, with what the log has and the camera as the experiment has it.
+/// The particle filter's score, with the log's sensors and the camera as in the experiment.
 fn particle_score(result: &FolderResult) -> Option<f64> {
     let mut methods = result.methods.iter();
     let particle = methods.find(|scores| scores.variant == Variant::Particle)?;

@@ -56,7 +56,7 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
         overall["median"]["wmse_mm"],
         report["folders"][0]["methods"][0]["wmse_mm"]
     );
-    // a simulation without a spread believes nothing; a share is one
+    // a simulation without a spread has no coverage; the particle filter's is a share
     assert!(overall["mean"]["covered_90"].is_null());
     let covered = report["folders"][0]["methods"][6]["covered_90"].as_f64();
     assert!(covered.is_some_and(|share| (0.0..=1.0).contains(&share)));

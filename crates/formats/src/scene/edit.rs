@@ -64,7 +64,7 @@ impl SceneEdit {
     }
 
     /// Writes the outline of a body, `object` or `pusher`, one part a line; the names of its parts
-    /// stay, what was written between them does not.
+    /// stay, text between them does not.
     ///
     /// # Panics
     /// If the scene has no such body.

@@ -2,7 +2,7 @@
 
 use stickslip::{Rule, Unit};
 
-/// A key that holds a number: its name, what it means, its unit and its rule.
+/// A key that holds a number: its name, its meaning, its unit and its rule.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quantity {
     pub(super) key: &'static str,
@@ -21,7 +21,7 @@ impl Quantity {
         }
     }
 
-    /// What to give, with the unit.
+    /// The value to give, with the unit.
     pub(super) fn order(&self) -> String {
         match self.unit {
             Unit::None => self.what.to_owned(),

@@ -12,7 +12,7 @@ const SHAPE: &str =
     "the outline as a list of parts, each { polygon = ... }, { disc = ... } or { ellipse = ... }";
 /// Most parts of a shape.
 const MOST_PARTS: usize = 200;
-/// Most vertices of a polygon: a disc of 1 m is told to 1 µm by them.
+/// Most vertices of a polygon: they resolve a disc of 1 m to 1 µm.
 const MOST_VERTICES: usize = 3000;
 const POLYGON: &str = "the vertices as [[x, y], ...] in m, counter-clockwise";
 const DISC: &str = "{ radius = ... } in m";

@@ -141,7 +141,7 @@ fn parts_of_others(setup: &Setup) -> usize {
     shapes.map(|shape| shape.parts().len()).sum()
 }
 
-/// Of the messages for viewers without markers, and of numbers, what one holds.
+/// Content of one of the messages for viewers without markers, and of one with numbers.
 fn assert_drawn((topic, label): (&str, &str), numbers: &[f64], (pose, setup): (Pose, &Setup)) {
     match (topic, label) {
         ("/stickslip/points/object", _) => assert_on_square(numbers, pose, setup),

@@ -1,10 +1,10 @@
-//! What helps to write `scene.toml`: the schema, the scene to begin with, what may be left out.
+//! Help for writing `scene.toml`: the schema, the scene to begin with, values that may be left out.
 
 use crate::scene_text::{FULL, replaced};
 use serde_json::Value;
 use stickslip_formats::{NEW_SCENE, SceneProblem, read_scene, scene_assumptions, scene_schema};
 
-/// Why a value does not match a schema of the few words that ours is written in.
+/// Reason why a value does not match a schema of the few words that ours is written in.
 fn mismatch(schema: &Value, value: &Value, path: &str) -> Option<String> {
     if let Some(kinds) = schema["oneOf"].as_array().or(schema["anyOf"].as_array()) {
         let fits = kinds

@@ -1,9 +1,9 @@
 //! The report in a real browser: no error, nothing loaded, moving the scrubber changes the drawing,
-//! the dark rows are shaded, the page fits a phone. Chromium prints the page after its scripts have
-//! run, with a verdict that a script added here wrote into it.
+//! the occluded rows are shaded, the page fits a phone. Chromium prints the page after its scripts
+//! have run, with a verdict that a script added here wrote into it.
 //!
 //! `cargo test -p stickslip-report --test it -- --ignored browser::`; the browser is `chromium`, or
-//! what `STICKSLIP_CHROMIUM` names.
+//! the program that `STICKSLIP_CHROMIUM` names.
 
 mod chromium;
 
@@ -35,7 +35,7 @@ fn page() -> String {
     .to_html()
 }
 
-/// What Chromium prints of a page, or the screenshot that it makes, at a width (px).
+/// Chromium's print of a page, or the screenshot that it makes, at a width (px).
 fn opened(page: &Path, width: u32, what: &str) -> String {
     // browsers that run at the same time may not share a profile
     let name = page.file_stem().unwrap().display();

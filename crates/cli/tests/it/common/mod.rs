@@ -30,7 +30,7 @@ pub fn succeeds(command: &mut Command) -> Output {
     run
 }
 
-/// What the program prints as JSON; it must succeed.
+/// Output of the program as JSON; it must succeed.
 #[track_caller]
 pub fn json(command: &mut Command) -> serde_json::Value {
     serde_json::from_slice(&succeeds(command).stdout).unwrap()
