@@ -124,25 +124,25 @@ def picture_axes(width: float, height: float, cut: tuple[float, float, float, fl
 def label(ax: plt.Axes, at: Points, words: str, colour: str, **more: object) -> None:
     """Writes words on a dark box."""
     box = {"facecolor": "black", "alpha": 0.65, "edgecolor": "none", "pad": 3}
-    ax.text(*at, words, color=colour, bbox=box, fontsize=15, **more)
+    ax.text(*at, words, color=colour, bbox=box, fontsize=18, **more)
 
 
 def frame() -> None:
     """A camera frame with the tracked tags and the world axes."""
     image, camera, corners, _, text = tracked_tags(100)
-    figure, ax = picture_axes(8, 5.9, (180, 640, 405, 66))
+    figure, ax = picture_axes(8, 5.9, (180, 639, 405, 66))
     ax.imshow(image, cmap="gray", vmin=0, vmax=255, extent=(-0.5, 639.5, 479.5, -0.5))
     for body, colour in (("object", "#56B4E9"), ("pusher", "#E69F00")):
         pixels = camera.pixels(corners[body])
         ax.add_patch(Polygon(pixels, fill=False, edgecolor=colour, linewidth=3))
         x, y, theta = (float(text[f"{body}_{key}"]) for key in ("x", "y", "theta"))
         words = f"{body}\n{1e3 * x:.2f} mm, {1e3 * y:.2f} mm\n{round(theta, 3) + 0.0:.3f} rad"
-        place = np.array([pixels[:, 0].mean() + 8, 105.0 if body == "object" else 335.0])
+        place = np.array([pixels[:, 0].mean() + (20 if body == "pusher" else -10), 100.0 if body == "object" else 340.0])
         label(ax, place, words, colour, ha="center", va="center")
     axes = camera.pixels(np.array([[0, 0, 0], [0.04, 0, 0], [0, -0.04, 0]], dtype=float) * [1, -1, 1])
     for k, name in ((1, "x"), (2, "y")):
         ax.annotate("", axes[k], axes[0], arrowprops={"arrowstyle": "-|>", "color": YELLOW, "linewidth": 3, "shrinkA": 0})
-    label(ax, axes[1] + [-4, 17], "x, world", YELLOW, ha="center", va="center")
+    label(ax, axes[1] + [-14, 19], "x, world", YELLOW, ha="center", va="center")
     label(ax, axes[2] + [12, 6], "y, world", YELLOW, ha="left", va="center")
     save_png(png_of(figure, 125), "frame", 64, ("#56B4E9", "#E69F00", YELLOW))
 
@@ -199,15 +199,15 @@ def tag_status() -> None:
     subprocess.run(["stickslip", "track", "status/frames", *known, "--out", "status"], cwd=WORK, check=True)
     with (WORK / "status/poses.csv").open() as file:
         rows = list(csv.DictReader(file))
-    figure = plt.figure(figsize=(9, 2.75))
+    figure = plt.figure(figsize=(6, 6.6))
     for k, row in enumerate(rows):
-        ax = figure.add_axes((0.01 + 0.2475 * k, 0.01, 0.2375, 0.86))
+        ax = figure.add_axes((0.01 + 0.5 * (k % 2), 0.51 - 0.5 * (k // 2), 0.48, 0.436))
         x, y, size = (390, 180, 110) if k < 3 else (345, 182, 250)
         image = Image.open(WORK / f"status/frames/{k:03d}.png").crop((x, y, x + size, y + size))
         ax.imshow(image, cmap="gray", vmin=0, vmax=255)
         ax.set_axis_off()
-        ax.set_title(row["object_seen"], fontsize=16, pad=5, family="DejaVu Sans Mono")
-    save_png(png_of(figure, 130), "tag-status", 56, ())
+        ax.set_title(row["object_seen"], fontsize=19, pad=5, family="DejaVu Sans Mono")
+    save_png(png_of(figure, 110), "tag-status", 56, ())
 
 
 def tag_corners() -> None:
@@ -355,7 +355,7 @@ def plan() -> None:
     pushes = plan.straight_pushes(scene, here, 500, length=0.05)
     outcome = plan.predict(scene, here, pushes, plan.prior(scene, 20))
     best = outcome.nearest(goal, jam_below=0.05)
-    figure, ax = plt.subplots(figsize=(8, 6.2), layout="constrained")
+    figure, ax = plt.subplots(figsize=(8, 5.4), layout="constrained")
     for path in pushes[:60]:
         ax.annotate("", path[-1, :2], path[0, :2], arrowprops={"arrowstyle": "->", "color": "#c8c8c8", "linewidth": 1})
     plot.scene(scene, object=here, pusher=pushes[best, 0], ax=ax)
@@ -364,7 +364,7 @@ def plan() -> None:
     ax.add_patch(Polygon(placed(np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * 0.025, np.array(goal)), fill=False, edgecolor=GREEN, linewidth=3, linestyle="--"))
     ax.plot(*goal[:2], "+", color=GREEN, markersize=14, markeredgewidth=3)
     ax.annotate("", pushes[best, -1, :2], pushes[best, 0, :2], arrowprops={"arrowstyle": "-|>", "color": ORANGE, "linewidth": 3})
-    ax.autoscale_view()
+    ax.set(xlim=(-0.055, 0.11), ylim=(-0.055, 0.05))
     save_svg(figure, "plan")
 
 
