@@ -143,7 +143,7 @@ fn new_scene_and_prints_are_ready_to_use() {
     let run = succeeds(stickslip().args(["new", &at("")]));
     let told = String::from_utf8(run.stdout).unwrap();
     assert!(
-        told.contains("object.inertia is missing: 2.083e-4 kg m^2 is taken"),
+        told.contains("object.inertia is missing; 2.083e-4 kg m^2 is assumed"),
         "{told}"
     );
     let again = stickslip().args(["new", &at("")]).output().unwrap();
