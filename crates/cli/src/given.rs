@@ -12,15 +12,13 @@ use crate::log_files::log_path;
 /// A log and a scene, in any of the ways that they are given.
 #[derive(Debug, Args)]
 pub struct GivenArgs {
-    /// The recorded experiment: log.csv, an MCAP recording of ROS 2 messages, the folder of a bag,
-    /// or a folder with any of these
+    /// Recorded experiment: log.csv, an MCAP file, a bag's folder, or a folder with one of these
     #[arg(value_name = "LOG")]
     first: PathBuf,
-    /// What is known before the experiment, before or after LOG [default: scene.toml in the log's
-    /// folder or beside it]
+    /// Scene of the experiment [default: scene.toml in the log's folder or next to it]
     #[arg(value_name = "SCENE.toml")]
     second: Option<PathBuf>,
-    /// The same, under any name, or a folder with scene.toml
+    /// Scene under any name, or a folder with scene.toml
     #[arg(long)]
     scene: Option<PathBuf>,
 }
