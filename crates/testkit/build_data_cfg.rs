@@ -10,7 +10,7 @@
 //! ```
 //!
 //! so that they are reported as ignored, never as passed. `STICKSLIP_DATA` names the folder;
-//! without it, `../shared/data` beside the workspace counts. `STICKSLIP_REQUIRE_DATA=1` sets the
+//! without it, `../shared/data` next to the workspace counts. `STICKSLIP_REQUIRE_DATA=1` sets the
 //! cfg in any case: the tests then run, and fail where there is no data. The rule is the one of
 //! `stickslip_testkit::data_root`. An absent folder is not watched (Cargo would rebuild each time):
 //! after unpacking data into the default place, touch this file.

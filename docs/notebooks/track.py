@@ -16,7 +16,7 @@ from stickslip import plot
 
 here = Path.cwd()
 root = next(at for at in [here, *here.parents] if (at / "crates/cli/demo").is_dir())
-folder = root / "crates/cli/demo/slide-ell-disc-110"
+folder = root / "crates/cli/demo/slide-pent-bar-97012"
 scene = stickslip.load_scene(folder / "scene.toml")
 log = stickslip.load_log(folder / "log.csv")
 print(scene, scene.friction, f"{len(log['time'])} rows, {', '.join(log)}")

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def demo() -> Path:
     """An experiment folder with truth: an L-shaped plate, a disc that pushes it, three fixels."""
-    return ROOT / "crates/cli/demo/slide-ell-disc-110"
+    return ROOT / "crates/testkit/experiments/slide-ell-disc-110"
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-//! Which crate may depend on which: what `cargo metadata` says against [`CRATES`].
+//! Allowed dependencies between crates: the output of `cargo metadata` against [`CRATES`].
 
 use std::path::Path;
 use std::process::Command;
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::finding::Finding;
 
-/// A crate of the workspace by its folder, and what it may depend on.
+/// A crate of the workspace by its folder, and its allowed dependencies.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
     /// Folder from the root.
@@ -27,8 +27,8 @@ const TESTKIT: &str = "crates/testkit";
 const CHANCE_AND_THREADS: &[&str] = &["rand", "rand_distr", "rand_core", "rayon"];
 
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, then
-/// lanes, which know of nobody; testbed, rendering and vision stand beside the estimator, and
-/// evaluation brings all together.
+/// lanes, which depends on no other crate. Testbed, rendering and vision stand next to the
+/// estimator, and evaluation brings all together.
 pub const CRATES: [Rules; 16] = [
     Rules {
         must_not_use: CHANCE_AND_THREADS,
@@ -244,7 +244,7 @@ pub fn check(packages: &[Package]) -> Vec<Finding> {
     findings
 }
 
-/// What is wrong with one dependency, if anything, and what to do.
+/// The fault of one dependency, if any, and what to do.
 fn judge(
     rules: &Rules,
     Dependency { package, dev }: &Dependency,
@@ -288,7 +288,7 @@ fn judge(
 mod tests {
     use super::*;
 
-    /// What is found in a workspace of four crates, one of which has this dependency.
+    /// Findings in a workspace of four crates, one of which has this dependency.
     fn found(folder: &str, package: &str, kind: &str) -> Vec<String> {
         let entry = |name: &str, of: &str| {
             let dependencies = if of == folder {

@@ -1,5 +1,5 @@
-//! What sources and documents cite must be there: equations and sections of the method, sections of
-//! the formats, decisions, links between documents.
+//! Checks that citations in sources and documents exist: equations and sections of the method,
+//! sections of the formats, decisions, links between documents.
 //!
 //! `docs/method.md (7)` cites an equation, `docs/method.md, "Jamming"` a section,
 //! `docs/decisions/004...` or `decision 004` a decision; `paper eq. 3` is the paper's own number.
@@ -133,18 +133,18 @@ fn comments_of(source: &str) -> String {
     texts.join("\n")
 }
 
-/// What can be cited.
+/// Targets that can be cited.
 struct Known<'a> {
     tree: &'a Tree,
     /// The largest number of an equation.
     equations: usize,
 }
 
-/// What is wrong with a citation: where it stands, the rule, what to do.
+/// A wrong citation: where it stands, the rule, what to do.
 type Wrong = (usize, String, &'static str);
 
 impl Known<'_> {
-    /// What any text may cite wrongly.
+    /// Wrong citations of any text.
     fn wrong(&self, text: &str) -> Vec<Wrong> {
         let mut wrong = self.wrong_decisions(text);
         for (at, after) in occurrences(text, METHOD) {
@@ -192,7 +192,7 @@ impl Known<'_> {
         wrong
     }
 
-    /// What comments may cite wrongly besides: documents and equations from elsewhere.
+    /// Wrong citations of comments besides: documents and equations from elsewhere.
     fn wrong_in_comments(&self, text: &str) -> Vec<Wrong> {
         let mut wrong = Vec::new();
         for (at, after) in occurrences(text, "eq. ") {
@@ -247,7 +247,7 @@ impl Known<'_> {
     }
 }
 
-/// Where `word` stands, and what follows it, blanks left out.
+/// Positions of `word`, each with the text that follows it, blanks left out.
 fn occurrences<'a>(text: &'a str, word: &str) -> impl Iterator<Item = (usize, &'a str)> {
     let length = word.len();
     text.match_indices(word)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::program::{build, experiments, filter, fnv1a};
 
-/// Where the program's own experiments lie.
+/// Folder of the program's own experiments.
 const EXPERIMENTS: &str = "crates/cli/demo";
 
 /// Build and threads of each run; all are compared with the first.
@@ -40,7 +40,7 @@ pub fn check(root: &Path) -> Result<String, String> {
     Ok(format!("determinism: {digest:016x} from {runs} threads"))
 }
 
-/// Whether two files are the same; otherwise the first line, from 1, where they are not.
+/// Compares two files. If they differ, the error is the first line, from 1, that does.
 fn same(expected: &[u8], found: &[u8]) -> Result<(), usize> {
     if expected == found {
         return Ok(());

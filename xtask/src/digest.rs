@@ -48,8 +48,8 @@ pub fn check(root: &Path, folders: &[&str], against: Option<&Path>) -> Result<St
     ))
 }
 
-/// The ways in which an experiment is filtered: the camera dark as truth.json says, else for the
-/// middle second.
+/// The ways in which an experiment is filtered: with the camera off as truth.json says, else for
+/// the middle second.
 fn ways(truth: &str) -> Vec<String> {
     let truth: serde_json::Value = serde_json::from_str(truth).unwrap_or_default();
     let dark = match truth["occlude_from"].as_u64() {
@@ -67,7 +67,7 @@ fn ways(truth: &str) -> Vec<String> {
     ways
 }
 
-/// What differs between lines that were kept and those found: changed, new, missing.
+/// Differences between lines that were kept and those found: changed, new, missing.
 fn differences(kept: &str, found: &[String]) -> Vec<String> {
     fn table<'a>(lines: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, &'a str> {
         lines.filter_map(|line| line.rsplit_once(' ')).collect()

@@ -1,9 +1,9 @@
 //! The documents: paths that they name exist, every crate has its section and invariant, the README
 //! is short.
 //!
-//! A path is what stands in backticks and either begins with a name at the root (`crates/...`),
-//! ends in `/`, or has an ending; in fenced blocks only the first counts. Of `name.rs` and
-//! `folder/name.rs` there must be a file, in the folder in the heading above where that names one.
+//! A path stands in backticks and either begins with a name at the root (`crates/...`), ends in
+//! `/`, or has an ending; in fenced blocks only the first counts. Of `name.rs` and `folder/name.rs`
+//! there must be a file, in the folder in the heading above where that names one.
 
 use crate::arrows::CRATES;
 use crate::finding::Finding;

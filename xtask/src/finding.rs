@@ -2,16 +2,16 @@
 
 use std::fmt;
 
-/// Where, what and against which rule, and what to do about it.
+/// Place, fault and rule of a finding, and what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Finding {
     /// Path from the workspace root.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
-    /// What was found, and the rule.
+    /// The fault, and the rule.
     pub rule: String,
-    /// What to do.
+    /// Next step.
     pub next: String,
 }
 

@@ -33,7 +33,7 @@ pub fn build(root: &Path, profile: &str) -> Result<PathBuf, String> {
 /// `estimate.csv` of `stickslip filter` on the experiment in a folder.
 ///
 /// # Errors
-/// The run fails, with what it said.
+/// The run fails, with its message.
 pub fn filter(program: &Path, experiment: &Path, options: &[String]) -> Result<Vec<u8>, String> {
     let out = std::env::temp_dir().join(format!("stickslip-xtask-{}", std::process::id()));
     let output = Command::new(program)

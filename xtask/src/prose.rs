@@ -122,7 +122,7 @@ fn doc_comments(text: &str) -> Vec<Line<'_>> {
     lines.collect()
 }
 
-/// What is wrong in the lines of one file.
+/// Faults in the lines of one file.
 fn wrong(path: &str, lines: &[Line<'_>]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut add = |line: usize, rule: String, next: &str| {
@@ -208,8 +208,8 @@ fn replaced(text: &str, line: usize, add: &mut impl FnMut(usize, String, &str)) 
     }
 }
 
-/// Sentences of plain text: they end at a full stop, a question mark, an exclamation mark or a colon
-/// that a capital or a code span follows.
+/// Sentences of plain text. They end at a full stop, a question mark, an exclamation mark, or a
+/// colon that a capital or a code span follows.
 fn sentences(text: &str) -> Vec<&str> {
     let mut sentences = Vec::new();
     let mut from = 0;
@@ -247,7 +247,7 @@ fn plain(text: &str) -> String {
     bare.replace(['[', ']', '*', '_'], "")
 }
 
-/// Whether a line begins an item of a list.
+/// Returns true if a line begins an item of a list.
 fn is_item(text: &str) -> bool {
     item_text(text).len() < text.len()
 }

@@ -1,6 +1,6 @@
 //! Rust source as text: without comments and literals ([`code_only`]), without its tests
-//! ([`without_tests`]), its names ([`names`]), what it names of its own crate ([`own_paths`]) and
-//! its functions ([`functions`]).
+//! ([`without_tests`]), its names ([`names`]), the paths of its own crate ([`own_paths`]) and its
+//! functions ([`functions`]).
 
 /// The source with every comment, string and character literal blanked out; lines stay where they
 /// are.
@@ -165,7 +165,8 @@ pub fn own_paths(code: &str, module: &[&str]) -> Vec<(usize, String)> {
     paths
 }
 
-/// Adds the paths that begin `text`, a path or a group in braces; returns what follows them.
+/// Adds the paths that begin `text`, a path or a group in braces; returns the text that follows
+/// them.
 fn leaves<'a>(text: &'a str, prefix: &str, paths: &mut Vec<String>) -> &'a str {
     let text = text.trim_start();
     if let Some(mut rest) = text.strip_prefix('{') {

@@ -1,4 +1,4 @@
-//! How large the code is: files, lines, public items, circles of files, lengths of functions.
+//! Sizes of the code: files, lines, public items, circles of files, lengths of functions.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -27,7 +27,7 @@ const PUBLIC: [&str; 10] = [
     "pub unsafe ",
 ];
 
-/// What one crate comes to, tests left out but for its lines.
+/// Size of one crate, tests left out but for its lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Size {
     files: usize,

@@ -1,8 +1,8 @@
-//! What Rust sources must not name, and how long they may be.
+//! Names that Rust sources must not contain, and limits on their length.
 //!
-//! Names are looked for as words. Clippy's lists of disallowed methods and types would need every
-//! function of `std::fs` by name, a copy of the shared list in each crate, since a crate's own
-//! `clippy.toml` replaces that of the workspace, and an exception in every test.
+//! Names are sought as words. Clippy's lists of disallowed methods and types would need every
+//! function of `std::fs` by name, and an exception in every test. They would also need a copy of
+//! the shared list in each crate, since a crate's own `clippy.toml` replaces that of the workspace.
 
 use crate::finding::Finding;
 use crate::layers::module_of;
@@ -83,7 +83,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         .collect()
 }
 
-/// What is wrong in a file: the line, the rule, what to do.
+/// A fault in a file: the line, the rule, what to do.
 type Wrong = (usize, String, &'static str);
 
 fn check_file(path: &str, text: &str) -> Vec<Finding> {

@@ -7,10 +7,10 @@ use std::path::Path;
 /// Folders that hold nothing of the project's own.
 const SKIPPED: [&str; 3] = [".git", "target", "out"];
 
-/// Endings of the files whose text is looked at.
+/// Endings of the files whose text is read.
 const TEXT: [&str; 4] = ["rs", "toml", "md", "py"];
 
-/// Paths from the root with `/` between names; the text where it is looked at.
+/// Paths from the root with `/` between names, with the text of those that are read.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     files: BTreeMap<String, Option<String>>,
@@ -52,7 +52,7 @@ impl Tree {
         Ok(())
     }
 
-    /// Whether a file below `folder` has a path that ends with this one, whole names only.
+    /// Returns true if a file below `folder` has a path that ends with this one, whole names only.
     pub fn has_file(&self, folder: &str, path: &str) -> bool {
         let ending = format!("/{path}");
         self.files
@@ -60,7 +60,7 @@ impl Tree {
             .any(|file| file.starts_with(folder) && file.ends_with(&ending))
     }
 
-    /// How many files.
+    /// Number of files.
     pub fn len(&self) -> usize {
         self.files.len()
     }
@@ -77,7 +77,7 @@ impl Tree {
         })
     }
 
-    /// Whether a file or folder of this path exists; a `/` at its end does not matter.
+    /// Returns true if a file or folder of this path exists; a `/` at its end does not matter.
     pub fn exists(&self, path: &str) -> bool {
         let path = path.trim_end_matches('/');
         let folder = format!("{path}/");

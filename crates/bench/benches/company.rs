@@ -1,6 +1,8 @@
-//! `cargo bench -p stickslip-bench --bench company`: contact mode's 500 particles over a recorded
-//! log of 600 frames, alone and beside as many busy processes as there are processors, on one
-//! thread and on two in turn: wall time and the latency of a frame. `... -- N` takes N particles.
+//! `cargo bench -p stickslip-bench --bench company`: wall time and latency of a frame of the robust
+//! model next to busy processes.
+//!
+//! It runs 500 particles over a recorded log of 600 frames, alone and next to as many busy
+//! processes as there are processors. One thread and two take turns. `... -- N` takes N particles.
 
 mod common;
 
@@ -23,13 +25,13 @@ const LOG: &str = "slide-pent-disc-104";
 /// Rounds that are counted.
 const ROUNDS: usize = 21;
 
-/// Runs in a row, so that a time slice of the system is short beside them.
+/// Runs in a row, so that a time slice of the system is short in comparison.
 const RUNS: usize = 5;
 
-/// What the system has to spread the busy processes over its processors.
+/// Time that the system has to spread the busy processes over its processors.
 const SETTLING: Duration = Duration::from_millis(200);
 
-/// What was measured on some number of threads.
+/// Measurements on some number of threads.
 #[derive(Default)]
 struct Times {
     /// Mean time of a run, of each round (ms).
@@ -45,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         options.particles = particles;
     }
 
-    // alone and beside others in turn; one round of each is not counted
+    // alone and in company in turn; one round of each is not counted
     let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
     let pools = [pool(1)?, pool(2)?];
     let (mut alone, mut beside) = Default::default();

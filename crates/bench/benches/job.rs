@@ -1,6 +1,8 @@
-//! `cargo bench -p stickslip-bench --bench job`: the paper's job, 500 particles over a recorded log
-//! of 600 frames, camera and touch sensors weighing throughout, in both modes: wall time and the
-//! latency of a frame, on one thread and on two. `... -- NAME` runs that log only.
+//! `cargo bench -p stickslip-bench --bench job`: wall time and latency of a frame for the paper's
+//! job.
+//!
+//! It runs 500 particles over a recorded log of 600 frames, camera and touch sensors weighing
+//! throughout, with both models, on one thread and on two. `... -- NAME` runs that log only.
 
 use std::error::Error;
 use std::time::Instant;

@@ -2,12 +2,12 @@
 //! `slide-*` log, captured, then solved again.
 //!
 //! `... -- NAME` takes the logs with NAME in their names. 500 particles, camera hidden where the
-//! log's `truth.json` says so. Only the solver's step is timed, one block of the filter at a
-//! time, on one thread; every step starts from what the filter had, noise and warm start included.
+//! log's `truth.json` says so. Only the solver's step is timed, one block of the filter at a time,
+//! on one thread; every step starts from the filter's particles, noise and warm start included.
 //!
-//! A block hides what one particle costs, so each particle's step is also timed alone, as a chunk
+//! A block hides the cost of one particle, so each particle's step is also timed alone, as a chunk
 //! of one lane: that costs more than its share of a block. A thread that has to wait for a
-//! processor looks slow; so the shortest of [`ALONE_ROUNDS`] times counts.
+//! processor seems slow; so the shortest of [`ALONE_ROUNDS`] times counts.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
@@ -32,7 +32,7 @@ struct Captured {
     particles: FilterBlock,
 }
 
-/// Keeps what every step starts from.
+/// Keeps the start of every step.
 #[derive(Debug, Default)]
 struct Capture(Mutex<Vec<Captured>>);
 
@@ -53,7 +53,7 @@ impl Observer for Capture {
     }
 }
 
-/// What the replay of some logs cost.
+/// Cost of the replay of some logs.
 #[derive(Debug, Default)]
 struct Cost {
     /// Time per particle-step of every block, rounds together (ns).

@@ -1,6 +1,8 @@
-//! `cargo run --release -p stickslip-bench --example real_time SEEDS FOLDER...`: how fast whole
-//! runs are, and whether one is much slower than the others. Both modes on all experiments below
-//! some folders, with the camera dark and on, 500 particles, one run after the other.
+//! `cargo run --release -p stickslip-bench --example real_time SEEDS FOLDER...`: real-time factors
+//! of whole runs, and whether one is much slower than the others.
+//!
+//! It runs both models on all experiments below some folders, with the camera off and on, 500
+//! particles, one run after the other.
 //!
 //! A run's real-time factor is the length of the log over the time that its estimate takes, files
 //! not included. A log's time is that of the median of its seeds, for each second of the log.
@@ -17,7 +19,7 @@ use stickslip::{
 };
 use stickslip_testkit::{RecordedCase, recorded_cases};
 
-/// What a run of one experiment cost.
+/// Cost of a run of one experiment.
 struct Timed {
     name: String,
     real_time_factor: f64,

@@ -60,7 +60,7 @@ impl Batch {
         self.blocks.is_empty()
     }
 
-    /// How the last step of each particle ended.
+    /// Outcome of the last step of each particle.
     pub fn reports(&self) -> impl Iterator<Item = &Report> {
         self.blocks
             .iter()

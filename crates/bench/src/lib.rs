@@ -1,8 +1,8 @@
-//! What the benchmarks share: scenes, batches of particles, clocks and the file of results.
+//! Tools that the benchmarks share: scenes, batches of particles, clocks and the file of results.
 //!
-//! `cargo bench -p stickslip-bench --bench timing_scene` and its neighbours print what they measure
-//! and append it to `bench/results/<machine>-<date>.csv`. They measure one thread unless they say
-//! otherwise, after a warm-up, medians of several rounds.
+//! `cargo bench -p stickslip-bench --bench timing_scene` and its neighbours print their
+//! measurements and append them to `bench/results/<machine>-<date>.csv`. They measure one thread
+//! unless they say otherwise, after a warm-up, medians of several rounds.
 
 mod batch;
 mod instruction_sets;

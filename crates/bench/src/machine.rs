@@ -1,4 +1,4 @@
-//! On what and when a benchmark ran: [`processor`], [`date`].
+//! Processor and date of a benchmark: [`processor`], [`date`].
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

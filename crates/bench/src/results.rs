@@ -6,10 +6,10 @@ use std::path::Path;
 
 use crate::machine::{date, processor};
 
-/// Where the files of results lie, from this crate.
+/// Folder of the files of results, from this crate.
 const FOLDER: &str = "../../bench/results";
 
-/// Prints what is measured and appends it to `bench/results/<machine>-<date>.csv`: columns
+/// Prints measurements and appends them to `bench/results/<machine>-<date>.csv`: columns
 /// `name,value,unit`.
 #[derive(Debug)]
 pub struct Results {

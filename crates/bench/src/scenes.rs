@@ -1,4 +1,4 @@
-//! The timing scene of `bench-scene/scene.toml` and what can be changed of it.
+//! The timing scene of `bench-scene/scene.toml` and its variations.
 
 use std::ops::Range;
 
@@ -79,7 +79,7 @@ pub fn timing_scene() -> Result<Scene, ShapeError> {
     Ok(pushed_object(square, disc.clone(), fixels.to_vec()))
 }
 
-/// What drives the timing scene in one frame: 20 mm/s for 6.6 s, then rest.
+/// Input of the timing scene in one frame: 20 mm/s for 6.6 s, then rest.
 #[must_use]
 pub fn timing_input(frame: u32) -> StepInput {
     let stop = MOVING.end as u32;

@@ -1,4 +1,4 @@
-//! How a set of particle-steps ended: [`StepStatistics`].
+//! Outcomes of a set of particle-steps: [`StepStatistics`].
 
 use stickslip_dynamics::{Outcome, Report, Route};
 

@@ -1,8 +1,13 @@
-//! `cargo run --release -p stickslip-cli --example ablation SEEDS FOLDER...`: contact mode on all
-//! experiments in some folders (scene.toml, log.csv, truth.csv, truth.json), 500 particles, whole
-//! and with each of its ingredients left out: weighted RMSE once the camera is dark and over the
-//! same rows with the camera on, median and 90th percentile over the experiments of the median over
-//! seeds; the share of 90 % intervals that hold the truth and the CRPS, means.
+//! Ablation of the robust model: whole, and with each of its ingredients left out.
+//!
+//! ```text
+//! cargo run --release -p stickslip-cli --example ablation SEEDS FOLDER...
+//! ```
+//!
+//! It runs 500 particles on all experiments in some folders (scene.toml, log.csv, truth.csv,
+//! truth.json). It prints the weighted RMSE once the camera is off, and over the same rows with the
+//! camera on: median and 90th percentile over the experiments of the median over seeds. It also
+//! prints the coverage of 90 % intervals and the CRPS, means.
 
 use std::error::Error;
 use std::fs;

@@ -1,4 +1,4 @@
-//! What several commands take: [`Rows`], [`ThreadArgs`] and checked numbers.
+//! Values that several commands take: [`Rows`], [`ThreadArgs`] and checked numbers.
 
 use std::num::NonZero;
 use std::str::FromStr;
@@ -12,7 +12,7 @@ use stickslip::useful_threads;
 /// that results do not depend on it.
 const PER_PROCESSOR: usize = 4;
 
-/// How many threads to work on.
+/// Number of threads to work on.
 #[derive(Debug, Args)]
 pub struct ThreadArgs {
     /// Threads, at most 4 per processor; results do not depend on it [default: 1 per processor, at

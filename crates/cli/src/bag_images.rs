@@ -20,7 +20,7 @@ use crate::output::talk;
 use crate::progress::spinner;
 use crate::verdict::Verdict;
 
-/// Images are looked at together until there are so many of them, or of their bytes.
+/// Images that are processed together, at most; fewer where they reach `BATCH_BYTES`.
 const BATCH: usize = 256;
 const BATCH_BYTES: usize = 1 << 26;
 /// Nanoseconds in a second.
@@ -33,15 +33,15 @@ pub struct BagImages {
     topics: CameraTopics,
 }
 
-/// What a bag of images shows and says.
+/// Poses and sensor readings of a bag of images.
 pub struct TrackedBag {
     /// Times of the images (s).
     pub time: Vec<f64>,
-    /// What they show.
+    /// Poses in them.
     pub track: Track,
-    /// What sensors read at these times.
+    /// Readings of sensors at these times.
     pub readings: Readings,
-    /// Whether all of the bag could be read.
+    /// Says whether all of the bag could be read.
     pub verdict: Verdict,
 }
 
@@ -66,7 +66,7 @@ impl BagImages {
         }))
     }
 
-    /// The lens that CameraInfo tells; `None` without it, and of a camera that was not calibrated.
+    /// The lens of CameraInfo; `None` without it, and of a camera that was not calibrated.
     pub fn lens(&self) -> Result<Option<Lens>> {
         let Some(info) = read_bag_camera_info(self.files.open_all()?, &self.topics)? else {
             return Ok(None);
@@ -151,7 +151,7 @@ impl BagImages {
         })
     }
 
-    /// How many images there are.
+    /// Number of images.
     pub fn count(&self) -> Result<usize> {
         let mut count = 0;
         read_bag_images(self.files.open_all()?, &self.topics, &mut |_| {

@@ -26,10 +26,10 @@ const LENS: [&str; 8] = [
     "fx (px)", "fy (px)", "cx (px)", "cy (px)", "k1", "k2", "p1", "p2",
 ];
 
-/// How many images of a bag a lens is found from.
+/// Number of images of a bag that a lens is found from.
 const FRAMES: usize = 30;
 
-/// What is printed of a calibration.
+/// Printed result of a calibration.
 #[derive(Debug, Serialize)]
 struct Summary {
     frames: usize,
@@ -41,7 +41,7 @@ struct Summary {
     camera_height_m: f64,
 }
 
-/// What is printed of a table that was found alone.
+/// Printed result of a table that was found alone.
 #[derive(Debug, Serialize)]
 struct TableSummary {
     tags: usize,
@@ -171,7 +171,7 @@ fn write(args: &CalibrateArgs, camera: &Camera) -> Result<()> {
     write_file(&args.out, write_camera(camera).as_bytes())
 }
 
-/// The lens that a file tells.
+/// The lens in a file.
 fn lens_of(path: &Path) -> Result<Lens> {
     let (text, name) = (text_of(path, "lens")?, path.display().to_string());
     if path.extension().is_some_and(|ending| ending == "toml") {
@@ -197,7 +197,7 @@ fn number(text: &str) -> Result<usize> {
     })
 }
 
-/// Which of a folder's images shows the board on the table.
+/// Number of the image in a folder that shows the board on the table.
 fn flat(args: &CalibrateArgs, folder: &FrameFolder) -> Result<usize> {
     let Some(name) = &args.flat else {
         return Ok(0);

@@ -12,7 +12,7 @@ use stickslip_vision::{Board, BoardOnTable, BodyTag, TagPlace, Tags, tag_cells};
 
 const OBJECT_TAG: u16 = 0;
 const PUSHER_TAG: u16 = 1;
-/// Room of the plate about what happens (m).
+/// Room of the plate about the motion (m).
 const PLATE_ROOM: f64 = 0.06;
 /// Frames of the board are numbered from here, away from those of the experiment.
 const BOARD_FRAMES: u64 = 1 << 40;
@@ -32,7 +32,7 @@ const THICKNESS: f64 = 0.003;
 pub struct CameraSetup {
     /// The camera before the stage.
     pub renderer: Renderer,
-    /// Which tag is on which body, and where.
+    /// Tags of each body, and their places.
     pub tags: Tags,
     /// Height of the hand (m).
     pub hand_height: f64,
@@ -43,7 +43,7 @@ pub struct CameraSetup {
 pub struct BoardFrames {
     print: rendering::Board,
     poses: Vec<BoardPose>,
-    /// How the board lies in the first frame.
+    /// Place of the board in the first frame.
     pub on_table: BoardOnTable,
 }
 

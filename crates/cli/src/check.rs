@@ -1,4 +1,4 @@
-//! `stickslip check`: what is wrong with a scene and a log.
+//! `stickslip check`: faults of a scene and a log.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use crate::log_files::LogFiles;
 use crate::output::{counted, show_result};
 use crate::verdict::Verdict;
 
-/// A finding as JSON has it.
+/// A finding in JSON.
 #[derive(Debug, Serialize)]
 struct JsonFinding {
     subject: String,

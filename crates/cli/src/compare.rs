@@ -1,6 +1,7 @@
 //! `stickslip compare`: every variant on each experiment folder, medians over seeds, quantiles over
 //! folders.
 
+mod best_baseline;
 mod folders;
 mod page;
 mod played;
@@ -31,13 +32,13 @@ use results::{Comparison, FolderResult, LostFolder, ShownScores};
 /// Runs above which a person would wait.
 const MANY: usize = 8;
 
-/// An experiment folder with what is hidden in it.
+/// An experiment folder with its hidden rows.
 struct Folder {
     path: PathBuf,
     experiment: Experiment,
     occlusion: Occlusion,
     tracking: Tracking,
-    /// Whether all of the log could be read.
+    /// Says whether all of the log could be read.
     verdict: Verdict,
 }
 
@@ -143,7 +144,7 @@ fn compare_all(
     (comparison, folders, cut_off.unwrap_or(Verdict::Done))
 }
 
-/// Reads a folder; hidden is what the options say, else what truth.json says.
+/// Reads a folder; the options say which rows are hidden, else truth.json does.
 fn read(
     args: &CompareArgs,
     (scenes, topics): (Scenes<'_>, &Topics),

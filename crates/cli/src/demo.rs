@@ -1,23 +1,25 @@
-//! `stickslip demo`: two embedded experiments through every method, with tables and figures.
+//! `stickslip demo`: two embedded experiments, all variants, tables, figures and a page.
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::{Estimate, FilterModel, Tracking};
-use stickslip_evaluation::{LearnedParameter, RunConditions, Variant};
+use stickslip::{FilterModel, Tracking};
+use stickslip_evaluation::{RunConditions, Variant};
 use stickslip_formats::Experiment;
-use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Table};
+use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Section};
 
 use crate::args::DemoArgs;
 use crate::experiment::Texts;
-use crate::files::{ready_folder, write_figures, write_report};
+use crate::files::{ready_folder, write_figures, write_file, write_report};
 use crate::origin::origin;
 use crate::output::show;
 use crate::reported_run::reported_run;
 use crate::verdict::Verdict;
 
-/// What the report begins with.
-const SUMMARY: &str = "Two grasps on a table, seen from above: a pusher moves an object against fixed fingers (fixels), and just before the \
-    first one is touched the camera goes dark. From then on each method must guess where the object is. Below, each grasp can be played back.";
+/// Explanation at the end of the page.
+const ABOUT: &str = "A pusher moves an object on a table into fixed bodies, called fixels. The camera turns off 0.2 s before the object \
+    touches the first fixel. From then on, each method has the poses of the pusher, and the particle filter also has the touch sensors of the \
+    fixels. All variants of the methods are in the tables; the figures show six of them. The experiments were chosen by a rule that no particle filter \
+    decides: the median error of every baseline, the extended Kalman filter included, is above 2 mm.";
 
 macro_rules! embedded {
     ($name:literal) => {
@@ -31,15 +33,15 @@ macro_rules! embedded {
     };
 }
 
-/// The experiments, with what happens in them.
+/// The experiments and their motions.
 const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
     (
-        embedded!("stop-square50-bar-000"),
-        "a bar pushes a square until it jams at a fixel",
+        embedded!("turn-square-disc"),
+        "a disc pushes a square between two fixels, where it turns",
     ),
     (
-        embedded!("slide-ell-disc-110"),
-        "a disc pushes an L-shaped plate, which slides and turns on two fixels",
+        embedded!("slide-pent-bar-97012"),
+        "a bar pushes a pentagon, which slides into two fixels",
     ),
 ];
 
@@ -47,12 +49,11 @@ const EXPERIMENTS: [(Texts<'static>, &str); 2] = [
 pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     ready_folder(&args.out)?;
     let pool = args.threads.pool()?;
-    let mut summary = vec![Block::Text(SUMMARY.to_owned())];
     let mut sections = Vec::new();
     let mut figures = 0;
     for (texts, what) in EXPERIMENTS {
         let experiment = texts.parse()?;
-        // the camera is dark from just before the first fixel contact on
+        // the camera turns off just before the first fixel contact
         let conditions = RunConditions {
             model: FilterModel::default(),
             particles: args.particles,
@@ -65,12 +66,20 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
         let reported = ReportedExperiment::new(texts.name, what, &experiment, occlusion, runs);
         show(format_args!("{}\n", tables(&reported)))?;
         figures += write_figures(&args.out, &reported)?;
-        summary.extend(reported.summary());
+        let moving = format!("{}-animation.svg", reported.name);
+        write_file(
+            &args.out.join(moving),
+            reported.animation().to_svg().as_bytes(),
+        )?;
         sections.push(reported.section());
     }
+    sections.push(Section {
+        title: "About these experiments".to_owned(),
+        blocks: vec![Block::Text(ABOUT.to_owned())],
+    });
     let report = Report {
-        title: "stickslip: tracking a pushed object through a camera blackout".to_owned(),
-        summary,
+        title: "stickslip: tracking a pushed object while the camera is off".to_owned(),
+        summary: Vec::new(),
         sections,
         origin: origin([
             ("particles", args.particles.to_string()),
@@ -79,52 +88,28 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     };
     let path = write_report(args.out.join("report.html"), &report)?;
     show(format_args!(
-        "report: {} (open it in a browser), and {figures} figures beside it as SVG and PNG",
+        "page: {} (open it in a browser)\nnext to it: {figures} figures as SVG and PNG, and two animations as SVG",
         path.display()
     ))?;
     Ok(Verdict::Done)
 }
 
-/// Every variant that differs on the experiment.
+/// Runs of all variants that differ on the experiment.
 fn runs(experiment: &Experiment, conditions: &RunConditions) -> Result<Vec<ReportedRun>> {
-    let variants: Vec<Variant> = Variant::drawn_on(&experiment.log, conditions.occlusion).collect();
+    let variants: Vec<Variant> =
+        Variant::compared_on(&experiment.log, conditions.occlusion).collect();
     let runs = variants
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, conditions));
     Ok(runs.collect::<Result<_, _>>()?)
 }
 
+/// Story and scores.
 fn tables(experiment: &ReportedExperiment<'_>) -> String {
     let sentences = experiment.story().sentences().join("\n");
-    let scores = format!(
+    format!(
         "{}\n{sentences}\n\n{}",
         experiment.name,
         experiment.scores()
-    );
-    let mut runs = experiment.runs.iter().map(|run| &run.scored);
-    let particle = runs.find(|run| run.variant == Variant::Particle);
-    let friction = particle.map(|run| friction(experiment, &run.estimate).to_string());
-    [scores]
-        .into_iter()
-        .chain(friction)
-        .collect::<Vec<_>>()
-        .join("\n")
-}
-
-/// The particle filter's friction beside its nominal and true values.
-fn friction(experiment: &ReportedExperiment<'_>, estimate: &Estimate) -> Table {
-    let nominal = &experiment.setup.scene.nominal;
-    let mut table = Table::new(["friction", "nominal", "particle", "truth"]);
-    for (parameter, truth) in LearnedParameter::all(estimate)
-        .iter()
-        .zip(experiment.friction)
-    {
-        table.push([
-            parameter.name.to_owned(),
-            parameter.shown_value(parameter.among(nominal)),
-            parameter.shown(),
-            parameter.shown_value(truth),
-        ]);
-    }
-    table
+    )
 }

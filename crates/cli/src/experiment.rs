@@ -44,8 +44,8 @@ impl Texts<'_> {
     }
 }
 
-/// Reads a scene, a log and the truth: `truth`, else truth.csv beside the log, and truth.json
-/// beside it. The verdict says whether all of the log could be read.
+/// Reads a scene, a log and the truth. The truth is `truth`, else truth.csv next to the log, and
+/// truth.json next to it. The verdict says whether all of the log could be read.
 pub fn read_experiment(
     scene: &Path,
     log: &Path,
@@ -105,7 +105,7 @@ pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<
     }
 }
 
-/// What to call the experiment of a log: its folder where the log has the name that all have.
+/// Name of the experiment of a log: its folder where the log has the name that all have.
 pub fn experiment_name(log: &Path) -> String {
     let folder = log.parent().and_then(Path::file_name);
     let own = matches!(
@@ -119,7 +119,7 @@ pub fn experiment_name(log: &Path) -> String {
     )
 }
 
-/// What an experiment's reference is, in words.
+/// Name of an experiment's reference, in words.
 pub fn reference_name(experiment: &Experiment) -> &'static str {
     if experiment.truth.is_some() {
         "the truth"
@@ -138,8 +138,8 @@ pub fn read_scene_file(path: &Path) -> Result<Setup> {
     Ok(setup)
 }
 
-/// Reads what else a scene file says of how a log is recorded: where tags sit and from which force
-/// a sensor is touched; `topics` are those of the command line.
+/// Reads other values of a scene file about the recording of a log: places of tags, and the force
+/// from which a sensor is touched; `topics` are those of the command line.
 fn bag_options(path: &Path, setup: &Setup, topics: &Topics) -> Result<BagOptions> {
     Ok(BagOptions {
         topics: topics.clone(),
@@ -159,10 +159,10 @@ pub fn read_scene_and_log(
     Ok((setup, log, verdict))
 }
 
-/// The scene of a log that is given without one: `scene.toml` in the folder that is given, else
-/// beside the log.
+/// The scene of a log that is given without one: `scene.toml` in the given folder, else next to the
+/// log.
 pub fn scene_beside(given: &Path) -> Result<PathBuf> {
-    // as the user would write it, where the folder above can be told from that
+    // as the user would write it, where that shows the folder above
     let path = match given.file_name() {
         Some(_) => given.to_owned(),
         None => std::path::absolute(given).unwrap_or(given.to_owned()),

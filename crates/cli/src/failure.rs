@@ -1,4 +1,4 @@
-//! What the program says when something fails: one line `error: ...` and, where there is one, the
+//! Messages of the program when something fails: one line `error: ...` and, where there is one, the
 //! next step as `help: ...`.
 
 use std::fmt;

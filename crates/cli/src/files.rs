@@ -1,4 +1,4 @@
-//! Writing files and folders: what went wrong, and what to do about it.
+//! Writing files and folders: the fault, and the next step.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,10 +10,10 @@ use stickslip_report::{Drawing, Report, ReportedExperiment, png_of};
 
 use crate::failure::hinted;
 
-/// What to do where the folder of `--out` cannot be written to.
+/// Next step where the folder of `--out` cannot be written to.
 const OTHER_OUT: &str = "give a folder that can be written to with --out";
 
-/// What to do where a file cannot be written.
+/// Next step where a file cannot be written.
 const OTHER_FILE: &str = "give a place that can be written to";
 
 /// Makes a folder named by `--out`.
@@ -81,9 +81,9 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     written.map_err(|error| unwritable(path, &error, OTHER_FILE))
 }
 
-/// Writes a file whole or not at all: beside its place first, then in one move over what was there.
-/// Two programs that write one file leave the one or the other, and a full disk leaves what was
-/// there.
+/// Writes a file whole or not at all: next to its place first, then in one move over the file that
+/// was there. Two programs that write one file leave the one or the other, and a full disk leaves
+/// the old file.
 fn write_whole(
     path: &Path,
     content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -106,7 +106,7 @@ fn write_whole(
     write().inspect_err(|_| drop(fs::remove_file(&beside)))
 }
 
-/// Whether a file can be written at `path`, without touching what is there.
+/// Checks that a file can be written at `path`, without touching a file that is there.
 fn try_place(path: &Path) -> io::Result<()> {
     if is_stream(path) {
         return File::options().write(true).open(path).map(drop);
@@ -116,12 +116,12 @@ fn try_place(path: &Path) -> io::Result<()> {
     fs::remove_file(&beside)
 }
 
-/// Whether something is there that no file can take the place of, as `/dev/stdout`.
+/// Returns true if something is there that no file can take the place of, as `/dev/stdout`.
 fn is_stream(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
-/// Where the file for `path` is written first.
+/// Path at which the file for `path` is written first.
 fn beside(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());

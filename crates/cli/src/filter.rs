@@ -37,7 +37,7 @@ const ESTIMATE: &str = "estimate.csv";
 /// Particle steps above which a person would wait.
 const LONG: usize = 200_000;
 
-/// What is printed of a run.
+/// Printed result of a run.
 #[derive(Debug, Serialize)]
 struct Summary<'a> {
     wmse_mm: Option<f64>,
@@ -51,12 +51,12 @@ struct Summary<'a> {
     failed: u64,
     collapses: u32,
     second_tries: u32,
-    /// ln of what the particles expected of the log.
+    /// ln of the evidence of the log.
     log_evidence: Option<f64>,
-    /// What makes the scores doubtful.
+    /// Reasons to doubt the scores.
     warnings: &'a [String],
     real_time_factor: f64,
-    /// In N; `None` is a rigid drive.
+    /// Stall force in N; `None` is a rigid drive.
     stall_force: Option<f64>,
     stall_force_assumed: bool,
     friction: BTreeMap<&'static str, LearnedParameter>,
@@ -172,7 +172,6 @@ fn report(
         summary: warnings
             .iter()
             .map(|text| Block::Note(format!("Warning: {text}")))
-            .chain(reported.summary().iter().cloned())
             .collect(),
         sections: vec![reported.section()],
         origin: origin(
@@ -317,7 +316,7 @@ fn friction_table(experiment: &Experiment, parameters: &[LearnedParameter]) -> T
     table
 }
 
-/// The last estimate beside the measured final pose, where only that is known of the truth.
+/// The last estimate next to the measured final pose, where only that is known of the truth.
 fn final_pose_line(experiment: &Experiment, estimate: &Estimate) -> Option<String> {
     let measured = experiment
         .facts

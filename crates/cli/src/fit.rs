@@ -1,4 +1,4 @@
-//! `stickslip fit`: learns from many pushes what a scene cannot know.
+//! `stickslip fit`: learns parameters that a scene cannot know from many pushes.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -25,12 +25,12 @@ use crate::output::{show_result, talk};
 use crate::progress::stage;
 use crate::verdict::Verdict;
 
-/// What values that predict best do not say.
+/// Limits of values that predict best.
 const CANNOT_KNOW: &str = "what the model cannot know: it is only nearly right, so the value that predicts best \
     is not the constant of the material or the support; \"constant, 90 %\" says what that may be, as on virtual rigs \
     whose predictions drift as much";
 
-/// What is written to fit.json.
+/// Content of fit.json.
 #[derive(Debug, Serialize)]
 struct FitResult {
     /// The folders with the pushes.
@@ -95,8 +95,8 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// The folders of `--test`, none of which may be among `folders`: what was seen is not predicted
-/// blind.
+/// The folders of `--test`, none of which may be among `folders`: a push that was seen is not
+/// predicted blind.
 fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if args.test.is_empty() {
         return Ok(Vec::new());
@@ -115,7 +115,7 @@ fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(test)
 }
 
-/// The fit to `pushes`, what it is worth on each of them left out, and on those of `test`.
+/// The fit to `pushes`, and its accuracy on each of them left out, and on those of `test`.
 fn learn(
     args: &FitArgs,
     folders: &[PathBuf],
@@ -147,7 +147,7 @@ fn learn(
 }
 
 /// All pushes, and whether all of their logs could be read. One that cannot be read is an error:
-/// left out, it would change what is learnt.
+/// left out, it would change the fit.
 fn read_pushes(
     args: &FitArgs,
     topics: &Topics,
@@ -187,7 +187,7 @@ fn text(result: &FitResult) -> String {
     lines.join("\n")
 }
 
-/// Pushes predicted by fits that have not seen them, and what to call them.
+/// Pushes predicted by fits that have not seen them, and their names.
 fn validations(result: &FitResult) -> impl Iterator<Item = (&'static str, &CrossValidation)> {
     let of = [
         ("pushes left out", &result.cross_validation),
@@ -228,7 +228,7 @@ fn page(result: &FitResult, seed: u64) -> Report {
     }
 }
 
-/// What matters most: what was learnt, and what that is worth.
+/// Most important results: values that were learnt, and their accuracy.
 fn headlines(result: &FitResult) -> Vec<String> {
     let (learnt, left): (Vec<_>, Vec<_>) = result
         .fit
@@ -265,7 +265,7 @@ fn headlines(result: &FitResult) -> Vec<String> {
     lines
 }
 
-/// What is to be said besides the tables.
+/// Remarks besides the tables.
 fn remarks(result: &FitResult) -> Vec<String> {
     let fit = &result.fit;
     let mut remarks = Vec::new();
@@ -352,7 +352,7 @@ fn digits(value: f64) -> String {
     format!("{value:.*}", places.clamp(0.0, 9.0) as usize)
 }
 
-/// The two parameters that the pushes tell apart least, and their correlation.
+/// The two parameters that the pushes separate least, and their correlation.
 fn strongest_correlation(fit: &Fit) -> Option<[String; 3]> {
     let name = |k: usize| -> &FittedParameter { &fit.parameters[k] };
     let pairs = (0..fit.parameters.len()).flat_map(|i| (0..i).map(move |j| (j, i)));

@@ -17,7 +17,7 @@ const ENDINGS: [&str; 8] = ["png", "jpg", "jpeg", "bmp", "pgm", "ppm", "pnm", "p
 /// The images of a folder in their order.
 #[derive(Clone, Debug)]
 pub struct FrameFolder {
-    /// Where the images are.
+    /// Folder of the images.
     folder: PathBuf,
     /// Their names in it.
     pub names: Vec<String>,

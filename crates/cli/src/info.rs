@@ -1,4 +1,4 @@
-//! `stickslip info`: what is in a bag, and how to read a log from it.
+//! `stickslip info`: the content of a bag, and how to read a log from it.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::log_files::LogFiles;
 use crate::output::show_result;
 use crate::verdict::Verdict;
 
-/// What is printed of a bag.
+/// Printed description of a bag.
 #[derive(Serialize)]
 struct Shown {
     #[serde(flatten)]
@@ -36,7 +36,7 @@ pub fn info(args: &InfoArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// How to find object and pusher in the bag's images.
+/// Commands that find object and pusher in the bag's images.
 fn image_commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
     if suggestion.is_empty() {
         return Vec::new();
@@ -58,7 +58,7 @@ fn word(path: &Path) -> String {
     quoted(&path.display().to_string())
 }
 
-/// The scene beside a bag, and the command that writes one, if there is none.
+/// The scene next to a bag, and the command that writes one, if there is none.
 fn scene_of(bag: &Path) -> (PathBuf, Option<String>) {
     let folder = bag.parent().filter(|folder| *folder != Path::new(""));
     let folder = folder.unwrap_or(Path::new("."));
@@ -77,7 +77,8 @@ fn topic_options(mappings: &[String]) -> String {
     mappings.iter().map(option).collect()
 }
 
-/// How to check and filter the bag, from a scene beside it on, if there is none.
+/// Commands that check and filter the bag, and before them the one that writes a scene next to it,
+/// if there is none.
 fn commands(bag: &Path, suggestion: &[String]) -> Vec<String> {
     let topics = topic_options(suggestion);
     let (_, begin) = scene_of(bag);
@@ -193,7 +194,7 @@ fn poses_table(poses: &[PosesInfo]) -> Table {
     table
 }
 
-/// Why some poses cannot be read.
+/// Reason why some poses cannot be read.
 fn problems(poses: &[PosesInfo]) -> Vec<String> {
     let told = poses.iter().filter_map(|info| {
         let problem = info.problem.as_ref()?;

@@ -61,7 +61,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let code = match Program::try_parse_from(program.chain(words.iter().cloned())) {
         Ok(program) => command(program.command),
         Err(said) => {
-            // help, version, or what is wrong, in clap's words; that they cannot be told changes nothing
+            // help, version, or the error, in clap's words; that they cannot be printed changes
+            // nothing
             let _ = said.print();
             u8::try_from(said.exit_code()).unwrap_or(1)
         }

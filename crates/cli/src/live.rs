@@ -51,7 +51,7 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     let pool = args.threads.filter_pool(args.particles)?;
     let lines = Lines::read(stdin());
 
-    // one answer per line, until the source ends or nobody reads the answers
+    // one answer per line, until the source ends or the reader of the answers has left
     let ended = pool.install(|| -> Result<()> {
         for line in lines {
             let arrived = line.arrived;

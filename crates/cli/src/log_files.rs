@@ -16,12 +16,12 @@ use crate::failure::hinted;
 use crate::output::talk;
 use crate::verdict::Verdict;
 
-/// What lists the files of a bag in its folder.
+/// File that lists the files of a bag in its folder.
 const METADATA: &str = "metadata.yaml";
 
 /// A log's files: a table, or the recordings of a bag.
 pub struct LogFiles {
-    /// What was given.
+    /// The given path.
     shown: PathBuf,
     /// Files that are there; one or more.
     pub paths: Vec<PathBuf>,
@@ -30,7 +30,7 @@ pub struct LogFiles {
     is_bag: bool,
 }
 
-/// What a file is by its first bytes.
+/// Kind of a file by its first bytes.
 enum Kind {
     Mcap,
     /// A bag of ROS 2 as it was recorded before MCAP.
@@ -64,7 +64,7 @@ pub fn log_path(folder: &Path) -> PathBuf {
     }
 }
 
-/// Whether a folder is one of `ros2 bag record`.
+/// Returns true if a folder is one of `ros2 bag record`.
 pub fn is_bag(folder: &Path) -> bool {
     folder.join(METADATA).is_file() || !recordings_in(folder).is_empty()
 }
@@ -124,14 +124,14 @@ impl LogFiles {
         }
     }
 
-    /// Looks through a bag; warnings go to standard error.
+    /// Describes a bag; warnings go to standard error.
     pub fn info(&self) -> Result<(BagInfo, Verdict)> {
         self.require_bag()?;
         let (info, warnings) = read_bag_info(self.open_all()?)?;
         Ok((info, self.told(&warnings)))
     }
 
-    /// Refuses what is no bag.
+    /// Refuses a log that is no bag.
     pub fn require_bag(&self) -> Result<()> {
         if self.is_bag {
             return Ok(());
@@ -266,7 +266,7 @@ fn recordings_in(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// What is in a folder, by name; nothing where it cannot be read.
+/// Content of a folder, by name; nothing where it cannot be read.
 fn folder_entries(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
@@ -300,7 +300,7 @@ fn kind_of(file: &mut File) -> io::Result<Kind> {
     })
 }
 
-/// How to say on the command line which topic is meant.
+/// Adds the option by which the command line names the topic that is meant.
 fn topic_hint(error: McapError) -> anyhow::Error {
     let help = match *error.problem {
         McapProblem::MissingTopic { topic, .. } => format!("name it with --topic {topic}=TOPIC"),

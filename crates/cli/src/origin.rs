@@ -1,4 +1,4 @@
-//! What made a report: [`origin`].
+//! Origin of a report: [`origin`].
 
 use std::ffi::OsString;
 use std::sync::OnceLock;
@@ -13,7 +13,7 @@ pub fn keep_words(words: Vec<OsString>) -> Vec<OsString> {
     words
 }
 
-/// Program, command line and what else is to be known, name by name.
+/// Program, command line and further facts, name by name.
 pub fn origin(more: impl IntoIterator<Item = (&'static str, String)>) -> Vec<(String, String)> {
     let words = WORDS.get().into_iter().flatten();
     let words = words.map(|word| quoted(&word.to_string_lossy()));

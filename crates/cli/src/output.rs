@@ -1,7 +1,7 @@
 //! The one place where the program speaks: results by [`show`] on standard output, all else by
 //! [`talk`] on standard error.
 //!
-//! A reader may leave early, as `head` does. That is no failure: what is left to tell is dropped,
+//! A reader may leave early, as `head` does. That is no failure: the remaining output is dropped,
 //! files are still written, and the exit code is that of the work.
 
 use std::fmt::Display;
@@ -19,8 +19,8 @@ pub fn counted(count: u64, noun: &str) -> String {
     format!("{count} {noun}{end}")
 }
 
-/// Writes results to standard output, with one newline at their end; to nobody where the reader has
-/// left.
+/// Writes results to standard output, with one newline at their end. Returns `Ok` also where the
+/// reader has left.
 pub fn show(text: impl Display) -> Result<()> {
     match write(&mut io::stdout().lock(), text) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(unwritable(&error)),
@@ -41,7 +41,7 @@ pub fn show_result(
     })
 }
 
-/// Whether somebody reads what is written.
+/// Presence of a reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reader {
     /// As far as one can know.
@@ -66,11 +66,11 @@ fn unwritable(error: &io::Error) -> anyhow::Error {
     )
 }
 
-/// Most characters of a line on standard error; what a damaged file says of itself may be longer.
+/// Most characters of a line on standard error; texts from a damaged file may be longer.
 const LONGEST_LINE: usize = 2000;
 
-/// Writes a line to standard error, without what a terminal would obey; lost where nobody can read
-/// it, since there is no other place to say so.
+/// Writes a line to standard error, without characters that a terminal would obey. It is lost where
+/// it cannot be written, since there is no other place to say so.
 pub fn talk(text: impl Display) {
     let _ = write(&mut io::stderr().lock(), printable(&text.to_string()));
 }
@@ -98,10 +98,10 @@ fn printable(text: &str) -> String {
     }
 }
 
-/// Tells standard error what failed, and ends with that error's exit code.
+/// Writes the failure to standard error, and returns that error's exit code.
 pub fn tell(error: &anyhow::Error) -> Verdict {
     if let Some(error) = error.downcast_ref::<clap::Error>() {
-        // clap's own words; that they cannot be told changes nothing
+        // clap's own words; that they cannot be printed changes nothing
         let _ = error.print();
         return Verdict::BadArguments;
     }

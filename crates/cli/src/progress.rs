@@ -19,7 +19,7 @@ pub fn bar(length: usize, unit: &str, work: Work) -> ProgressBar {
     }
 }
 
-/// A count of `unit` of which nobody knows how many there will be.
+/// A count of `unit` whose total is not known.
 pub fn spinner(unit: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     match ProgressStyle::with_template(&format!("{{spinner}} {{pos}} {unit}, {{elapsed}}")) {
@@ -28,7 +28,8 @@ pub fn spinner(unit: &str) -> ProgressBar {
     }
 }
 
-/// What is being done, with the time since its beginning; for work whose steps nobody can count.
+/// A description of the work, with the time since its beginning; for work whose steps cannot be
+/// counted.
 pub fn stage(doing: String) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     bar.enable_steady_tick(Duration::from_millis(200));
@@ -39,7 +40,7 @@ pub fn stage(doing: String) -> ProgressBar {
     }
 }
 
-/// Whether a person would wait for it.
+/// Duration of work, as a person sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// A second or so.

@@ -79,7 +79,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// Where object and pusher are: the object as the truth has it, else as the log.
+/// Poses of object and pusher: the object's by the truth, else by the log.
 fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<RecordedMotion> {
     let reference = Reference::of(experiment).pose;
     let unknown = reference.iter().position(Option::is_none);

@@ -1,4 +1,4 @@
-//! `stickslip reproduce`: the paper's tables and figures, ours beside the paper's numbers.
+//! `stickslip reproduce`: the paper's tables and figures, ours next to the paper's numbers.
 
 mod camera_view;
 mod figures;
@@ -36,9 +36,9 @@ struct Report {
     seeds: u64,
     /// Rules of the particle filter.
     model: &'static str,
-    /// Whether no estimate uses a later row.
+    /// True if no estimate uses a later row.
     causal: bool,
-    /// The same, as runs take them.
+    /// These settings, as runs take them.
     #[serde(skip)]
     settings: RunSettings,
     /// The tables; from frames where [`Report::equal`] is there.
@@ -47,7 +47,7 @@ struct Report {
     equal: Option<Equal>,
 }
 
-/// What frames are compared with.
+/// Tables that those from frames are compared with.
 #[derive(Debug, Serialize)]
 struct Equal {
     /// Noise of the tracked poses, which is that of the simulated ones, by experiment.

@@ -25,7 +25,7 @@ use crate::output::{show, talk};
 use crate::simulation_args::SimulateArgs;
 use crate::verdict::Verdict;
 
-/// A scene's text with what is known of its truth.
+/// A scene's text with the known part of its truth.
 struct Source {
     name: String,
     scene: String,
@@ -168,7 +168,7 @@ fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
     )
 }
 
-/// The nominal friction beside the true one.
+/// The nominal friction next to the true one.
 fn friction(setup: &Setup, facts: &TruthFacts) -> Table {
     let nominal = setup.scene.nominal;
     let number = |value: f64| format!("{value:.3}");

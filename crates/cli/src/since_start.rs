@@ -6,8 +6,8 @@ use stickslip_report::ReportedRun;
 /// Times that begin at this (s) or later are those of a clock.
 const CLOCK: f64 = 1e6;
 
-/// An experiment and its runs as pages show them, and what all their times are counted from (s), in
-/// whole seconds; `None` where that is 0.
+/// An experiment and its runs as pages show them, and the origin of all their times (s), in whole
+/// seconds; `None` where that is 0.
 pub fn since_start(
     experiment: &Experiment,
     mut runs: Vec<ReportedRun>,
@@ -34,8 +34,8 @@ mod tests {
 
     #[test]
     fn a_clocks_times_count_from_the_logs_start_and_others_stay() {
-        let scene = include_str!("../demo/slide-ell-disc-110/scene.toml");
-        let log = include_bytes!("../demo/slide-ell-disc-110/log.csv");
+        let scene = include_str!("../../testkit/experiments/slide-ell-disc-110/scene.toml");
+        let log = include_bytes!("../../testkit/experiments/slide-ell-disc-110/log.csv");
         let own = Experiment {
             setup: read_scene(scene, "scene.toml").unwrap(),
             log: read_log(&log[..], "log.csv").unwrap().0,

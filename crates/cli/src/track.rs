@@ -29,7 +29,7 @@ const SAME_TIME: f64 = 1e-4;
 /// A tag seen larger or smaller by this share than given was given wrongly, or its height was.
 const SIZE_OFF: f64 = 0.02;
 
-/// What is printed of a body.
+/// Printed result of a body.
 #[derive(Debug, Serialize)]
 struct BodySummary {
     measured: usize,
@@ -41,7 +41,7 @@ struct BodySummary {
     median_tag_size_m: Option<f64>,
 }
 
-/// What is printed of a track.
+/// Printed result of a track.
 #[derive(Debug, Serialize)]
 struct Summary {
     frames: usize,
@@ -92,7 +92,7 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// What a bag of images shows.
+/// Poses in a bag of images.
 fn of_bag(args: &TrackArgs, bag: &BagImages, tags: &Tags) -> Result<TrackedBag> {
     if let Some(rate) = args.rate {
         return Err(hinted(
@@ -113,7 +113,7 @@ fn of_bag(args: &TrackArgs, bag: &BagImages, tags: &Tags) -> Result<TrackedBag> 
     bag.track(&camera, tags, &args.threads)
 }
 
-/// How to say on the command line through which lens the images are seen.
+/// Adds the option by which the command line chooses the lens of the images.
 fn other_lens(error: ConfigError) -> anyhow::Error {
     match error.problem {
         ConfigProblem::OtherLens { .. } => hinted(
@@ -124,7 +124,7 @@ fn other_lens(error: ConfigError) -> anyhow::Error {
     }
 }
 
-/// What a folder of images shows.
+/// Poses in a folder of images.
 fn of_folder(args: &TrackArgs, tags: &Tags) -> Result<TrackedBag> {
     let camera = camera(args)?;
     let folder = FrameFolder::list(&args.frames)?;
@@ -171,7 +171,7 @@ fn times(args: &TrackArgs, folder: &FrameFolder) -> Result<Vec<f64>> {
     }
 }
 
-/// What the frames show, on as many threads as asked for.
+/// Finds the poses in the frames, on as many threads as asked for.
 fn found(args: &TrackArgs, folder: &FrameFolder, camera: &Camera, tags: &Tags) -> Result<Track> {
     let progress = bar(folder.names.len(), "frames", Work::Long);
     let pool = args.threads.pool()?;

@@ -1,6 +1,6 @@
-//! How the program ended: [`Verdict`], an exit code.
+//! Outcome of the program: [`Verdict`], an exit code.
 
-/// How the program ended.
+/// Outcome of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// All was done.
@@ -14,7 +14,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// How two parts ended together, neither of which failed: input is lost where one of them lost
+    /// Outcome of two parts together, neither of which failed: input is lost where one of them lost
     /// some.
     pub fn and(self, other: Self) -> Self {
         match self {

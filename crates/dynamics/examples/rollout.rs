@@ -1,4 +1,4 @@
-//! Which of 200 pushes brings a square nearest to its goal, by simulating all of them:
+//! Choice of the push that brings a square nearest to its goal, by simulating 200 of them:
 //! `cargo run --release -p stickslip-dynamics --example rollout`.
 
 use std::error::Error;

@@ -22,28 +22,28 @@ use crate::se2::{Twist, Wrench};
 /// rounding of its contacts.
 const CLOSED: f64 = 1e-8;
 
-/// Gaps and overlaps up to this at the end of a step, did the object stand, are none where the
-/// pusher is rigid (m): the tail of a smoothed track creeps on for seconds, and asks a wedged
-/// object to move by less than a nanometre a step. What it creeps adds up to an overlap that
-/// exceeds `CLOSED` and then moves the object.
+/// Gaps and overlaps up to this at the end of a step are zero for an object that stood, where the
+/// pusher is rigid (m). The tail of a smoothed track creeps on for seconds, and asks a wedged
+/// object to move by less than a nanometre a step. The creep adds up to an overlap that exceeds
+/// `CLOSED` and then moves the object.
 const STILL: f64 = 1e-9;
 
 /// Cosine of the angle between the pusher's motion and a contact normal below which it is not the
 /// motion that presses.
 const PRESSING: f64 = 0.5;
 
-/// Which contact each row of a chunk's problems stands for.
+/// Contact that each row of a chunk's problems stands for.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly<const W: usize> {
     pub(crate) rows: Vec<Row<W>>,
     /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
-    /// By how much the object is larger than its shape (m).
+    /// Growth of the object beyond its shape (m).
     growth: Lanes<W>,
     pub(crate) scaling: Scaling<W>,
 }
 
-/// What one row stands for.
+/// Contact that a row stands for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const W: usize> {
     pub(crate) body: Body,
@@ -55,7 +55,7 @@ pub(crate) struct Row<const W: usize> {
     pub(crate) gap: Lanes<W>,
 }
 
-/// What turns SI units into those of rows, and back.
+/// Factors that turn SI units into those of rows, and back.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Scaling<const W: usize> {
     pub(crate) mass: f64,
@@ -65,10 +65,10 @@ pub(crate) struct Scaling<const W: usize> {
     inv_rho: f64,
     /// 1/h.
     rate: f64,
-    /// Gap velocities up to this are zero for an object that stands (m/s): none where the pusher
-    /// gives way.
+    /// Gap velocities up to this are zero for an object that stands (m/s); 0 where the pusher
+    /// yields.
     still: f64,
-    /// F_stall h (N s) and the direction in which the pusher gives way, lane by lane.
+    /// F_stall h (N s) and the direction in which the pusher yields, lane by lane.
     pub(crate) stall: Option<(f64, [Lanes<W>; 2])>,
 }
 
@@ -78,7 +78,7 @@ struct Other<'a, const W: usize> {
     shape: &'a Shape,
     transform: Transform<Lanes<W>>,
     mu: Lanes<W>,
-    /// The slip at which friction comes to its bound (m/s); `None` where no contact creeps.
+    /// Slip at which friction reaches its bound (m/s); `None` where no contact creeps.
     creep: Option<Lanes<W>>,
     motion: Option<&'a PusherMotion<Lanes<W>>>,
     /// The lanes in which it may touch the object.
@@ -162,9 +162,9 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// The direction in which the pusher gives way (docs/method.md (12)), written into its
-    /// contacts: along its motion where that presses on the object, else along the normal of its
-    /// nearest contact.
+    /// Writes the direction in which the pusher yields (docs/method.md (12)) into its contacts.
+    /// That is the direction of its motion where the motion presses on the object, else the normal
+    /// of its nearest contact.
     #[inline(always)]
     fn let_pusher_yield(&mut self, particles: &Particles<W>, ncp: &mut Ncp<W>) {
         let rate = self.scaling.rate;
@@ -194,8 +194,8 @@ impl<const W: usize> Assembly<W> {
         }
     }
 
-    /// Where the object may come nearer to a body than contacts are sought: a far body costs no
-    /// more than this.
+    /// Lanes in which the object may come nearer to a body than contacts are sought. A far body
+    /// costs no more than this test.
     #[inline(always)]
     fn may_touch(
         &self,
@@ -217,7 +217,7 @@ impl<const W: usize> Assembly<W> {
         self.search_distance + self.growth.max(Lanes::ZERO)
     }
 
-    /// What does not depend on contacts: free velocity, feet, stall force.
+    /// Sets all that does not depend on contacts: free velocity, feet, stall force.
     #[inline(always)]
     fn set_body(
         &mut self,
@@ -331,8 +331,9 @@ impl<const W: usize> Assembly<W> {
     }
 
     /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`]
-    /// that press, and where the pusher stands. What is unsolved would be a bad start: compliant
-    /// impulses are a million times too large; and so would be what grows from step to step.
+    /// that press, and where the pusher stands. Impulses of unsolved lanes would be a bad start:
+    /// compliant impulses are a million times too large. So would be impulses that grow from step
+    /// to step.
     #[inline(always)]
     pub fn store_warm_start(&self, p: &Unknowns<W>, solved: Mask<W>, particles: &mut Particles<W>) {
         let warm = &mut particles.warm;

@@ -14,7 +14,7 @@ use crate::solver::source::Source;
 pub struct BlockProblems<'a, const W: usize> {
     /// The scene.
     pub scene: &'a PreparedScene,
-    /// What all particles share.
+    /// Step length that all particles share.
     pub context: StepContext,
     /// Their pushers.
     pub pushers: &'a Pushers<'a, W>,
@@ -24,7 +24,7 @@ pub struct BlockProblems<'a, const W: usize> {
     pub asked: Mask<W>,
     /// The particles.
     pub particles: &'a [Particles<W>],
-    /// Where their contacts are remembered.
+    /// Contacts of each chunk, kept from one step to the next.
     pub chunks: &'a mut [Assembly<W>],
     /// Finds contacts.
     pub narrow: &'a mut NarrowPhase<W>,

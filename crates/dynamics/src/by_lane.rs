@@ -12,7 +12,7 @@ use crate::step_work::StepWork;
 
 impl<const W: usize> StepWork<W> {
     /// Advances chunks of particles by `h` seconds, one particle after the other, each as the step
-    /// of one would; what the step tells of them comes from `by_lane`.
+    /// of one would; results of the step come from `by_lane`.
     pub(crate) fn step_by_lane(
         &mut self,
         dynamics: &Dynamics,
@@ -35,7 +35,7 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// What the steps of one chunk's lanes say, side by side.
+    /// Answers of the steps of one chunk's lanes, side by side.
     pub(crate) fn asked_by_lane(
         &self,
         chunk: usize,
@@ -60,7 +60,7 @@ impl<const W: usize> Particles<W> {
 }
 
 impl<const W: usize> Pushers<'_, W> {
-    /// Hands over what one lane of one chunk meets.
+    /// Hands over the bodies that one lane of one chunk meets.
     fn with_lane(&self, chunk: usize, lane: usize, then: impl FnOnce(&Pushers<'_, 1>)) {
         let alone = |[x, y]: &[Lanes<W>; 2]| [Lanes([x.0[lane]]), Lanes([y.0[lane]])];
         match self {

@@ -1,4 +1,4 @@
-//! Where the step is compiled: [`CompiledStep`].
+//! Compilation of the step, once per number of lanes: [`CompiledStep`].
 
 use stickslip_lanes::{on_fused, on_vectors};
 

@@ -1,4 +1,4 @@
-//! How the object stands to one body after a step: what presses, how far it is, how it slips.
+//! State of the contact with one body after a step: impulse, gap and slip.
 
 use stickslip_lanes::Lanes;
 
@@ -34,8 +34,9 @@ impl<const W: usize> Assembly<W> {
         smallest
     }
 
-    /// Slip velocity (m/s) at one body: the mean of its contacts, each by what it presses; where
-    /// none presses, that of the nearest one, and 0 where there is none.
+    /// Slip velocity (m/s) at one body: the mean over its contacts, each weighted by its normal
+    /// impulse. Where none presses, it is that of the nearest contact, and 0 where there is no
+    /// contact.
     #[inline(always)]
     pub fn slips(&self, ncp: &Ncp<W>, p: &Unknowns<W>, body: Body) -> Lanes<W> {
         let (mut pressed, mut pressed_slip) = (Lanes::ZERO, Lanes::ZERO);

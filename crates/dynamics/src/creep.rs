@@ -1,19 +1,19 @@
-//! How contacts creep (docs/method.md (50)): [`creep`].
+//! Creep of contacts (docs/method.md (50)): [`creep`].
 
 use stickslip_lanes::Lanes;
 
 use crate::ncp::rows::FootRow;
 use crate::se2::Twist;
 
-/// Share of the feet's friction with which a contact counts as pressed at least: what a new contact
-/// will carry is not known.
+/// Share of the feet's friction with which a contact counts as pressed at least: the load of a new
+/// contact is not known.
 const LEAST_LOAD: f64 = 0.1;
 
-/// Least friction that a contact comes to (m/s), and feet: keeps quotients finite.
+/// Least friction bound of a contact, and of the feet together (m/s): keeps quotients finite.
 const LEAST_BOUND: f64 = 1e-9;
 
-/// c of a contact that pressed with `p_n` in the step before: it comes to its bound at `slip`,
-/// below that where it is pressed harder than all `feet` resist (all m/s).
+/// Creep c of a contact that pressed with `p_n` in the step before. Its friction reaches its bound
+/// at `slip`, or below where it is pressed harder than all `feet` resist (all m/s).
 #[inline(always)]
 pub(crate) fn creep<const W: usize>(
     slip: Lanes<W>,

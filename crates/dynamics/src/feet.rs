@@ -1,4 +1,4 @@
-//! Where the support's feet stand, and what friction each can bear (docs/method.md (7)).
+//! Positions of the support's feet, and the friction that each can bear (docs/method.md (7)).
 
 use stickslip_lanes::Lanes;
 
@@ -9,7 +9,7 @@ use crate::scene::{Feet, Scene};
 use crate::se2::Pose;
 
 impl Scene {
-    /// Where the feet stand in the object's frame (m); those of a tripod of radius 1.
+    /// Positions of the feet in the object's frame (m); those of a tripod of radius 1.
     pub(crate) fn stance(&self) -> [[f64; 2]; 3] {
         match self.feet {
             Feet::Tripod { angle } => [0.0, 1.0, -1.0].map(|turn| {
@@ -20,8 +20,8 @@ impl Scene {
         }
     }
 
-    /// The feet's arms in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
-    /// (m). With an offset they stand beside the scene's, and are turned about their centre of
+    /// Arms of the feet in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
+    /// (m). An offset shifts the feet from those of the scene, and turns them about their centre of
     /// friction.
     #[inline(always)]
     pub(crate) fn foot_arms<const W: usize>(

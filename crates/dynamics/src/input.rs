@@ -1,4 +1,4 @@
-//! What drives one time step: [`StepInput`].
+//! Input of one time step: [`StepInput`].
 
 use stickslip_lanes::Lanes;
 
@@ -11,13 +11,13 @@ pub struct PusherMotion<T = f64> {
     pub pose: Pose<T>,
     /// Commanded twist during the step.
     pub twist: Twist<T>,
-    /// Unit vector of its commanded translation (the last one where it stands): the direction in
-    /// which it may give way.
+    /// Unit vector of its commanded translation (the last one where it stands). A pusher with a
+    /// force limit may yield in this direction.
     pub direction: [T; 2],
 }
 
 impl PusherMotion {
-    /// The same motion in every lane.
+    /// Copies the motion into every lane.
     #[inline(always)]
     pub(crate) fn splat<const W: usize>(&self) -> PusherMotion<Lanes<W>> {
         let [dx, dy] = self.direction;
@@ -29,30 +29,29 @@ impl PusherMotion {
     }
 }
 
-/// Where pusher, fixels and feet stand beside the poses that the input and the scene give, how much
-/// larger the object is than its shape, and how contacts creep, particle by particle.
+/// Offsets of pusher, fixels and feet from the poses that the input and the scene give, growth of
+/// the object's outline, and creep of its contacts, particle by particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
     /// Offset of the pusher (m), chunk by chunk.
     pub pusher: &'a [[Lanes<W>; 2]],
-    /// By how much the pusher is turned beside its pose (rad), chunk by chunk; empty where it is
-    /// not.
+    /// Angles by which the pusher is turned from its pose (rad), chunk by chunk; empty where it is
+    /// not turned.
     pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
-    /// By how much the object's outline lies outside its shape (m), chunk by chunk: every gap is
-    /// smaller by that.
+    /// Distances by which the object's outline lies outside its shape (m), chunk by chunk: every
+    /// gap is smaller by that.
     pub growth: &'a [Lanes<W>],
-    /// By how far the feet stand beside the scene's (m, m), and are turned about their centre of
-    /// friction (rad), in the object's frame, chunk by chunk; empty where they stand as in the
-    /// scene.
+    /// Offsets of the feet from the scene's (m, m), and their turns about their centre of friction
+    /// (rad), in the object's frame, chunk by chunk. Empty where they stand as in the scene.
     pub foot_offsets: &'a [Pose<Lanes<W>>],
-    /// At which share of the object's speed contacts with pusher and fixels slip where friction
-    /// comes to its bound (docs/method.md (50)), chunk by chunk; empty where none creeps.
+    /// Shares of the object's speed at which the friction of contacts with pusher and fixels
+    /// reaches its bound (docs/method.md (50)), chunk by chunk. Empty where no contact creeps.
     pub creep: &'a [[Lanes<W>; 2]],
 }
 
-/// What drives one step.
+/// Input of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepInput {
     /// Step (s).

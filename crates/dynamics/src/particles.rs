@@ -1,5 +1,5 @@
-//! What a step reads and writes of a particle: [`Particle`], and [`Particles`], `W` of them side by
-//! side.
+//! Numbers of a particle that a step reads and writes: [`Particle`], and [`Particles`], `W` of them
+//! side by side.
 
 use stickslip_lanes::Lanes;
 
@@ -18,8 +18,8 @@ pub struct Particle {
     pub twist: Twist,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
-    /// Way from where the pusher stands to its pose (m), world frame: by so much it gave way in the
-    /// step before; zero where it stands at its pose.
+    /// Vector from the pusher's actual position to its pose (m), world frame: the amount by which
+    /// it yielded in the step before. Zero where it stands at its pose.
     pub pusher_lag: [f64; 2],
     /// Impulses of the step before.
     pub warm: WarmStart,
@@ -30,7 +30,7 @@ pub struct Particle {
 pub struct WarmStart<T = f64> {
     /// Friction impulse of each foot (m/s).
     pub feet: [[T; 2]; 3],
-    /// Speed y by which the pusher gave way (m/s).
+    /// Speed y by which the pusher yielded (m/s).
     pub pusher_yield: T,
     /// The contacts that pressed, at most four.
     pub contacts: [ContactImpulse<T>; REMEMBERED],
@@ -81,7 +81,7 @@ impl<T> WarmStart<T> {
         ]
     }
 
-    /// The same, to be written.
+    /// Its numbers, to be written.
     #[inline(always)]
     pub fn fields_mut(&mut self) -> [&mut T; WarmStart::LEN] {
         let [[ax, ay], [bx, by], [cx, cy]] = &mut self.feet;

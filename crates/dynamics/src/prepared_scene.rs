@@ -1,5 +1,5 @@
-//! What the steps of a scene have in common ([`PreparedScene`]), and what the particles of one step
-//! have: its length ([`StepContext`]) and their [`Pushers`].
+//! Data that the steps of a scene have in common ([`PreparedScene`]), and data that the particles
+//! of one step share: its length ([`StepContext`]) and their [`Pushers`].
 
 use stickslip_lanes::{Lanes, Mask};
 
@@ -8,7 +8,7 @@ use crate::input::{Offsets, PusherMotion};
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
 
-/// A scene, with what of it no step changes.
+/// A scene, with quantities derived from it that no step changes.
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedScene {
     pub scene: Scene,
@@ -19,9 +19,9 @@ pub(crate) struct PreparedScene {
     pub inv_rho: f64,
     pub inv_mass: f64,
     pub inv_inertia: f64,
-    /// Where the feet stand, see [`Scene::stance`].
+    /// Positions of the feet, see [`Scene::stance`].
     pub stance: [[f64; 2]; 3],
-    /// Where the fixels stand.
+    /// Places of the fixels.
     pub fixels: Vec<Transform>,
 }
 
@@ -41,7 +41,7 @@ impl PreparedScene {
         }
     }
 
-    /// What the pusher does in a step of several particles, each with its own.
+    /// Motion of the pusher in a step of several particles, each with its own pusher.
     pub fn pushers<const W: usize>(
         &self,
         pushers: &[Option<PusherMotion>; W],
@@ -73,7 +73,7 @@ impl StepContext {
     }
 }
 
-/// What the particles of one chunk meet in a step.
+/// Bodies that the particles of one chunk meet in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepBodies<'a, const W: usize> {
     pub context: &'a StepContext,
@@ -81,34 +81,34 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub pusher: Option<&'a PusherContext<W>>,
     /// Offsets of the fixels (m); none where they stand as the scene says.
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
-    /// By how much the object is larger than its shape (m).
+    /// Growth of the object beyond its shape (m).
     pub growth: Lanes<W>,
-    /// By how far the feet stand beside the scene's and are turned; `None` where they stand as
-    /// there.
+    /// Offset of the feet from the scene's, and their turn; `None` where they stand as in the
+    /// scene.
     pub foot_offset: Option<&'a Pose<Lanes<W>>>,
-    /// How contacts with pusher and fixels creep; `None` where they do not.
+    /// Creep of contacts with pusher and fixels; `None` where they do not creep.
     pub creep: Option<&'a [Lanes<W>; 2]>,
 }
 
 /// The pusher of every chunk of particles in one step, and where the fixels stand.
 #[derive(Clone, Copy, Debug)]
 pub enum Pushers<'a, const W: usize> {
-    /// The same pusher for all particles.
+    /// One pusher for all particles.
     Shared(SharedPusher),
     /// One for each particle, chunk by chunk.
     Each(&'a [Option<PusherContext<W>>]),
-    /// The same pusher for all, but beside its pose, and fixels beside theirs.
+    /// One pusher for all particles, offset from its pose, and fixels offset from theirs.
     Offset {
         /// The pusher at its pose.
         pusher: SharedPusher,
-        /// How far beside it is, and the fixels.
+        /// Offsets of the pusher and of the fixels.
         offsets: Offsets<'a, W>,
         /// Number of fixels.
         fixels: usize,
     },
 }
 
-/// The same pusher for all particles; its lanes are made where they are used.
+/// One pusher for all particles; its lanes are made where they are used.
 #[derive(Clone, Copy, Debug)]
 pub struct SharedPusher(Option<(PusherMotion, Transform, f64)>);
 
@@ -180,7 +180,8 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// How contacts of one chunk creep, with the pusher and with fixels; `None` where they do not.
+    /// Creep of the contacts of one chunk with the pusher and with fixels; `None` where they do not
+    /// creep.
     #[inline(always)]
     pub fn creep(&self, chunk: usize) -> Option<&[Lanes<W>; 2]> {
         match self {
@@ -189,8 +190,8 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// By how far the feet stand beside the scene's and are turned, in one chunk; `None` where they
-    /// stand as there.
+    /// Offset of the feet from the scene's, and their turn, in one chunk; `None` where they stand
+    /// as in the scene.
     #[inline(always)]
     pub fn foot_offset(&self, chunk: usize) -> Option<&Pose<Lanes<W>>> {
         match self {
@@ -199,7 +200,7 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// By how much the object is larger than its shape (m) in one chunk.
+    /// Growth of the object beyond its shape (m) in one chunk.
     #[inline(always)]
     pub fn growth(&self, chunk: usize) -> Lanes<W> {
         match self {

@@ -22,7 +22,7 @@ pub const ROLLOUT_BLOCK: usize = LANES * CHUNKS;
 /// Working memory of rollouts, made once.
 pub type RolloutWork = StepWork<LANES>;
 
-/// Where a trajectory starts, and the friction that governs it.
+/// Start of a trajectory, and the friction that governs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutStart {
     /// Pose of the object.
@@ -42,17 +42,17 @@ pub struct Rollout {
     pub poses: Vec<Pose>,
     /// Twists of the object (m/s, m/s, rad/s), (N, T + 1).
     pub twists: Vec<Twist>,
-    /// How each trajectory went, (N,).
+    /// End of each trajectory, (N,).
     pub ends: Vec<RolloutEnd>,
 }
 
-/// How a trajectory went besides its motion.
+/// Result of a trajectory besides its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RolloutEnd {
     /// Steps without a certified solution.
     pub unsolved: u32,
-    /// Way from where the pusher stands at the end to its pose (m), world frame: it gave way by so
-    /// much; zero where it stands at its pose.
+    /// Vector from the pusher's actual position at the end to its pose (m), world frame: the amount
+    /// by which it yielded. Zero where it stands at its pose.
     pub pusher_lag: [f64; 2],
     /// Length of the longest such way after any step (m).
     pub most_pusher_lag: f64,
@@ -71,7 +71,7 @@ pub trait RolloutArrays {
     fn keep_end(&mut self, trajectory: usize, end: RolloutEnd);
 }
 
-/// Why a rollout was refused.
+/// Reason why a rollout was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RolloutError {
@@ -163,8 +163,8 @@ impl Dynamics {
         Ok(columns.rollout)
     }
 
-    /// The same with T = `steps`, for trajectories in arrays of the caller's; `work` may be used
-    /// again.
+    /// Same as [`rollout`](Self::rollout) with T = `steps`, for trajectories in arrays of the
+    /// caller's; `work` may be used again.
     ///
     /// # Errors
     /// Where a number is out of range; nothing is kept then.
@@ -189,7 +189,7 @@ impl Dynamics {
     }
 }
 
-/// Refuses what cannot be simulated.
+/// Refuses input that cannot be simulated.
 fn check(
     h: f64,
     steps: usize,

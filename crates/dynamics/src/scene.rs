@@ -1,4 +1,4 @@
-//! What is known before an experiment: object, support, pusher, fixels and nominal friction
+//! Prior knowledge of an experiment: object, support, pusher, fixels and nominal friction
 //! ([`Scene`]).
 
 use crate::friction::Friction;
@@ -23,7 +23,7 @@ impl Object {
     }
 }
 
-/// Where the object stands on the plane.
+/// Positions of the feet on which the object stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feet {
     /// Three feet 120° apart at radius d_tri, a third of the weight each; the first one in
@@ -46,7 +46,7 @@ pub enum Feet {
 pub struct Pusher {
     /// Outline in the pusher frame.
     pub shape: Shape,
-    /// Force at which it gives way (N); `None` is a rigid position source.
+    /// Force at which it yields (N); `None` is a rigid position source.
     pub stall_force: Option<f64>,
 }
 

@@ -1,8 +1,8 @@
 //! Planar rigid-body quantities [`Pose`], [`Twist`] and [`Wrench`], in the world frame, SI units.
 //!
 //! Each is generic over its number: `f64` for one body, [`Lanes`](stickslip_lanes::Lanes) for
-//! several particles side by side. `map`, `fields` and `fields_mut` visit the numbers in the order
-//! in which they are declared, so that no caller has to know that order.
+//! several particles side by side. The methods `map`, `fields` and `fields_mut` visit the numbers
+//! in the order in which they are declared, so that no caller has to know that order.
 
 use std::ops::{Add, Mul};
 
@@ -46,7 +46,7 @@ pub struct Wrench<T = f64> {
 macro_rules! fields {
     ($name:ident, $n:literal: $($field:ident),*) => {
         impl<T> $name<T> {
-            /// The same quantity with every number replaced by a function of it.
+            /// Replaces every number by a function of it.
             #[inline(always)]
             pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> $name<U> {
                 $name { $($field: f(self.$field)),* }
@@ -58,7 +58,7 @@ macro_rules! fields {
                 [$(&self.$field),*]
             }
 
-            /// The same, to be written.
+            /// Its numbers, to be written.
             #[inline(always)]
             pub fn fields_mut(&mut self) -> [&mut T; $n] {
                 [$(&mut self.$field),*]

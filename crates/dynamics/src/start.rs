@@ -1,8 +1,8 @@
-//! How an experiment begins, and what the pusher is commanded to do: [`Start`].
+//! Start of an experiment, and the motion that the pusher is commanded: [`Start`].
 
 use crate::se2::Pose;
 
-/// How an experiment begins, and what the pusher is commanded to do: `[start]` of a scene file.
+/// Start of an experiment, and the motion that the pusher is commanded: `[start]` of a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Pose of the object, at rest.
@@ -13,7 +13,7 @@ pub struct Start {
     pub direction: f64,
     /// Commanded speed of the pusher.
     pub speed: SpeedProfile,
-    /// How long the experiment lasts (s).
+    /// Duration of the experiment (s).
     pub duration: f64,
 }
 
@@ -43,7 +43,7 @@ impl Start {
 }
 
 impl SpeedProfile {
-    /// The same speed at all times (m/s).
+    /// One speed at all times (m/s).
     pub fn constant(speed: f64) -> Self {
         Self {
             knots: vec![[0.0, speed]],

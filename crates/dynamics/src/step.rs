@@ -44,7 +44,7 @@ impl Dynamics {
         }
     }
 
-    /// The same on other vector instructions; no result depends on them.
+    /// Uses other vector instructions; no result depends on them.
     pub fn with_level(self, level: Level) -> Self {
         Self { level, ..self }
     }
@@ -76,9 +76,9 @@ impl Dynamics {
         work.reports[0]
     }
 
-    /// Advances a block of particles by one step; how each ended is in `work`.
+    /// Advances a block of particles by one step; the outcome of each is in `work`.
     ///
-    /// Every contact that could act takes part: where the solved twist could have closed a larger
+    /// Every contact that could act takes part. Where the solved twist could have closed a larger
     /// gap than was looked for, the step is solved again with a wider search. A particle's result
     /// depends on nothing but the particle and the input.
     pub fn step_block<const W: usize>(
@@ -93,8 +93,8 @@ impl Dynamics {
         work.step(self, input.h, &Pushers::Shared(pusher), particles);
     }
 
-    /// The same for particles of which each has a pusher of its own: `pushers` holds those of a
-    /// chunk side by side, `None` off the plane; `h` is the step (s).
+    /// Advances a block of particles of which each has a pusher of its own. `pushers` holds those
+    /// of a chunk side by side, `None` off the plane; `h` is the step (s).
     ///
     /// A particle's result is that of [`step_block`](Self::step_block) with its pusher, bit for
     /// bit.
@@ -122,13 +122,13 @@ impl Dynamics {
         work.pushers = contexts;
     }
 
-    /// The same for particles whose pusher, fixels and feet stand beside the given poses, whose
-    /// object is larger than its shape, and whose contacts creep, each by its own `offsets`.
+    /// Advances a block of particles, each with its own `offsets`. They shift pusher, fixels and
+    /// feet from the given poses, enlarge the object beyond its shape, and let contacts creep.
     ///
     /// # Panics
-    /// If there is not one offset of the pusher and one growth for each chunk of particles, and one
-    /// offset of each fixel; nor one turn of the pusher, one offset of the feet and one creep, or
-    /// none at all.
+    /// If an offset of the pusher or a growth is missing for a chunk of particles, or an offset of
+    /// a fixel. Also if the turns of the pusher, the offsets of the feet or the creeps are neither
+    /// none at all nor one for each chunk.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -295,8 +295,8 @@ impl Dynamics {
         length_at_most(vx, vy) + omega.abs() * self.object_radius
     }
 
-    /// Gap below which contacts of a chunk are looked for (m): what object and pusher can close
-    /// within the step, with room for the velocity that the contacts add.
+    /// Gap below which contacts of a chunk are sought (m): the distance that object and pusher can
+    /// close within the step, with room for the velocity that the contacts add.
     #[inline(always)]
     fn search_distance<const W: usize>(
         &self,

@@ -1,4 +1,4 @@
-//! Working memory of a step, and what it tells of the last one: [`StepWork`].
+//! Working memory of a step, and results of the last one: [`StepWork`].
 
 use stickslip_lanes::Lanes;
 
@@ -32,7 +32,7 @@ pub struct StepWork<const W: usize> {
 }
 
 impl<const W: usize> StepWork<W> {
-    /// How the last step of each particle ended, chunk by chunk.
+    /// Outcomes of the last step, chunk by chunk.
     pub fn reports(&self) -> &[[Report; W]] {
         &self.reports
     }
@@ -48,8 +48,8 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// Smallest gap (m) between the object and a body at the end of the last step, as its contacts
-    /// tell it, by lane of a chunk; infinite where none was near.
+    /// Smallest gap (m) between the object and a body at the end of the last step, by its contacts,
+    /// by lane of a chunk; infinite where none was near.
     #[inline(always)]
     pub fn gaps(&self, chunk: usize, body: Body) -> Lanes<W> {
         if self.by_lane.is_empty() {
@@ -59,10 +59,12 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
-    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk, positive
+    /// Slip velocity (m/s) of the object on a body in the last step, by lane of a chunk. Positive
     /// where the object's surface moves to the left of the contact normal, which points into the
-    /// object: the mean of its contacts, each by what it presses; where none presses, that of the
-    /// nearest one, and 0 where there is none.
+    /// object.
+    ///
+    /// It is the mean over its contacts, each weighted by its normal impulse. Where none presses,
+    /// it is that of the nearest contact, and 0 where there is no contact.
     #[inline(always)]
     pub fn slips(&self, chunk: usize, body: Body) -> Lanes<W> {
         if self.by_lane.is_empty() {

@@ -1,4 +1,4 @@
-//! Tracks a log as if its rows came live, and looks at the particles between them:
+//! Tracks a log as if its rows came live, and prints the likeliest particle between them:
 //! `cargo run --release -p stickslip --example row_by_row`.
 
 use std::error::Error;
@@ -9,7 +9,7 @@ use stickslip::{Tracker, TrackerOptions};
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../cli/demo/slide-ell-disc-110"
+        "/../testkit/experiments/slide-ell-disc-110"
     );
     let scene = fs::read_to_string(format!("{folder}/scene.toml"))?;
     let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;

@@ -1,4 +1,4 @@
-//! Tracks a recorded log and says where the object ended:
+//! Tracks a recorded log and prints where the object ended:
 //! `cargo run --release -p stickslip --example track_log [FOLDER]`.
 
 use std::error::Error;
@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // what is known before, and what was measured
     let embedded = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../cli/demo/slide-ell-disc-110"
+        "/../testkit/experiments/slide-ell-disc-110"
     );
     let folder = std::env::args().nth(1).unwrap_or(embedded.to_owned());
     let scene = fs::read_to_string(format!("{folder}/scene.toml"))?;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // the particle filter over the whole log
     let result = run(&setup, &log, &RunOptions::default(), &mut |_| ())?;
 
-    // what it says of the last row
+    // the estimate at the last row
     let last = result.estimate.rows.last().ok_or("the log has no rows")?;
     println!("pose     {:?}", last.pose.ok_or("no pose was seen")?);
     println!("friction {:?}", last.friction.ok_or("no pose was seen")?);

@@ -9,7 +9,7 @@ pub fn wrapped(angle: f64) -> f64 {
     angle - TAU * ((angle + PI) / TAU).floor()
 }
 
-/// Of every angle the one in [−π, π] that equals it on the circle (rad).
+/// Angles in [−π, π] that equal the given ones on the circle (rad).
 #[inline(always)]
 pub fn nearest_zero<const W: usize>(angles: Lanes<W>) -> Lanes<W> {
     angles - (angles * (1.0 / TAU)).round() * TAU
@@ -20,7 +20,7 @@ pub fn unwrapped(angle: f64, near: f64) -> f64 {
     near + wrapped(angle - near)
 }
 
-/// From `from` to `to`, θ on the circle.
+/// Difference `to` − `from`, with θ taken on the circle.
 pub fn difference(to: &Pose, from: &Pose) -> Pose {
     Pose {
         x: to.x - from.x,

@@ -1,11 +1,11 @@
-//! How noisy one measured pose is: [`PoseCovariance`].
+//! Noise of one measured pose: [`PoseCovariance`].
 
 use stickslip_dynamics::Pose;
 
 use crate::range::Unit;
 
-/// What is left of a variance once the other numbers are known is at least this share of it: less
-/// is rounding, or no covariance.
+/// Least conditional variance of a number given the others, as a share of its variance. Less is
+/// rounding, or the matrix is no covariance.
 const LEAST_LEFT: f64 = 1e-12;
 
 /// The covariance of the errors of a measured pose, in the world's frame.
@@ -25,7 +25,7 @@ pub struct PoseCovariance {
     pub y_theta: f64,
 }
 
-/// Its Cholesky factor L in the order θ, x, y; those on the diagonal inverted.
+/// Cholesky factor L of the covariance in the order θ, x, y; its diagonal is stored inverted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Factor {
     per_theta: f64,
@@ -37,7 +37,8 @@ pub(crate) struct Factor {
 }
 
 impl PoseCovariance {
-    /// Whether it can be one: finite, positive definite, standard deviations that can be meant.
+    /// Returns true if this can be a covariance: finite, positive definite, with plausible standard
+    /// deviations.
     ///
     /// ```
     /// use stickslip::PoseCovariance;
@@ -50,13 +51,13 @@ impl PoseCovariance {
         self.factor().is_some()
     }
 
-    /// Whether all numbers are 0, by which ROS says that a covariance is not known.
+    /// Returns true if all numbers are 0, by which ROS marks an unknown covariance.
     #[must_use]
     pub fn is_unknown(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Its factor; `None` where it has none.
+    /// Returns the Cholesky factor, or `None` if this is no covariance.
     pub(crate) fn factor(&self) -> Option<Factor> {
         let std = |variance: f64, unit: Unit| {
             let std = variance.sqrt();
@@ -82,8 +83,8 @@ impl PoseCovariance {
 }
 
 impl Factor {
-    /// An error as independent numbers of variance 1, those of θ, then of x, then of y. Their
-    /// squares sum to the squared Mahalanobis distance.
+    /// Whitens an error: returns independent numbers of variance 1, that of θ, then of x, then of
+    /// y. Their squares sum to the squared Mahalanobis distance.
     #[inline(always)]
     pub(crate) fn whitened<T>(&self, error: Pose<T>) -> [T; 3]
     where
@@ -95,7 +96,8 @@ impl Factor {
         [theta, x, y]
     }
 
-    /// The error that independent numbers of variance 1 stand for, given in the order x, y, θ.
+    /// Returns the error that independent numbers of variance 1 stand for, given in the order x, y,
+    /// θ.
     pub(crate) fn drawn(&self, [x, y, theta]: [f64; 3]) -> Pose {
         Pose {
             x: self.x_by_theta * theta + x / self.per_x,

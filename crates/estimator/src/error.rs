@@ -1,11 +1,11 @@
-//! Why a run was refused: [`RunError`].
+//! Reasons for which a run is refused: [`RunError`].
 
 use stickslip_filter::{SeriesError, SettingsError};
 
 use crate::range::SetupError;
 use crate::row::{LONGEST_PAUSE, RowError};
 
-/// Why a method could not be run on a log.
+/// Reason why a method could not be run on a log.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
@@ -17,7 +17,7 @@ pub enum RunError {
         /// Rows of the log.
         rows: usize,
     },
-    /// Two rows are so far apart that nothing can be said of what happened between them.
+    /// Two rows are too far apart: what happened between them is unknown.
     #[error(
         "row {row} is at {to} s and the row before it at {from} s; rows must be at most {longest} s apart{}. Give all times in seconds and by one clock, or cut the log in the pause",
         .unit.map_or(String::new(), |unit| format!("; times seem to be in {unit}")),
@@ -62,13 +62,13 @@ pub enum RunError {
     LogRow {
         /// The row, from 0.
         row: usize,
-        /// Why.
+        /// The reason.
         problem: RowError,
     },
-    /// A number of the setup cannot be.
+    /// A number of the setup is not possible.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// A forced number of substeps that cannot be.
+    /// A forced number of substeps is out of range.
     #[error(
         "{substeps} substeps are asked for from row to row; it must be 1 to {most}, or None to choose by the length of the step"
     )]
@@ -78,23 +78,23 @@ pub enum RunError {
         /// The largest one.
         most: u32,
     },
-    /// The time that late rows may take cannot be.
+    /// The time for which late rows may count is out of range.
     #[error("late rows are to count for {late} s; it must be from 0 to {LONGEST_PAUSE} s")]
     Late {
         /// The time asked for (s).
         late: f64,
     },
-    /// The system does not give the memory.
+    /// The system does not provide the memory.
     #[error(
         "{particles} particles take about {megabytes} MB, which the system does not give; ask for fewer particles"
     )]
     Memory {
         /// Particles asked for.
         particles: usize,
-        /// What they take (MB).
+        /// Memory that they take (MB).
         megabytes: usize,
     },
-    /// The method weighs camera poses but the scene has no `[camera]`.
+    /// The method weighs camera poses, but the scene has no `[camera]`.
     #[error(
         "the scene has no [camera] table, which this method needs; add position_std and orientation_std"
     )]

@@ -14,8 +14,8 @@ pub struct Log {
     pub time: Vec<f64>,
     /// Measured object poses.
     pub object: Vec<Option<Pose>>,
-    /// How noisy each of them is, `None`: as the scene's camera says; empty where the log says it
-    /// of none.
+    /// Covariance of each object pose; `None`: the noise of the scene's camera. The column is empty
+    /// if the log has no covariances.
     pub object_covariance: Vec<Option<PoseCovariance>>,
     /// Measured pusher poses.
     pub pusher: Vec<Option<Pose>>,
@@ -37,7 +37,7 @@ impl Log {
         self.time.last().copied().unwrap_or(0.0) - self.time.first().copied().unwrap_or(0.0)
     }
 
-    /// Ends the log after `rows` rows; a shorter one stays as it is.
+    /// Cuts the log off after `rows` rows; a shorter one stays as it is.
     pub fn truncate(&mut self, rows: usize) {
         self.time.truncate(rows);
         self.object.truncate(rows);
@@ -49,7 +49,7 @@ impl Log {
         self.force.truncate(rows);
     }
 
-    /// What was measured at row `row`.
+    /// Returns the measurements of row `row`.
     ///
     /// # Panics
     /// If there is no such row.
@@ -64,8 +64,8 @@ impl Log {
         }
     }
 
-    /// Refuses what no method can use: columns of unequal length, more sensors than `fixels`, times
-    /// that do not rise or pause too long, numbers that cannot be.
+    /// Refuses a log that no method can use: columns of unequal length, more sensors than `fixels`,
+    /// times that do not rise or pause too long, impossible numbers.
     pub(crate) fn check(&self, fixels: usize) -> Result<(), RunError> {
         self.check_columns()?;
         let sensors = self.tactile.len();
@@ -95,7 +95,7 @@ impl Log {
         Ok(())
     }
 
-    /// The unit that its times seem to be in, if that is not the second.
+    /// Returns the unit that the log's times seem to be in, if that is not the second.
     fn unit_of_times(&self) -> Option<&'static str> {
         let steps: Vec<f64> = self.time.array_windows().map(|[a, b]| b - a).collect();
         unit_of_times(quantile(&steps, 0.5)?)
@@ -124,7 +124,7 @@ impl Log {
         }
     }
 
-    /// True where there is no row.
+    /// Returns true if there is no row.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }

@@ -1,17 +1,19 @@
-//! What brings particles to where weighing alone would leave few: [`Moves`].
+//! Ways to move particles to where weighing alone would leave few: [`Moves`].
 
-/// What contact mode does with particles beside weighing and resampling (docs/method.md, (42) to
-/// (45)); by default all. Without any of it very many particles are needed for the same belief;
-/// paper mode has none.
+/// Ways in which the robust model moves particles, in addition to weighing and resampling
+/// (docs/method.md, (42) to (45)). All are on by default. Without any one of them, the same belief
+/// needs very many particles. The paper's model has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moves {
-    /// Steps since a blackout that explain touch and pusher too badly are made again (42).
+    /// Re-simulation of the steps since an occlusion began, if they explain touch and pusher too
+    /// badly (42).
     pub second_tries: bool,
-    /// Latency is exchanged for the pusher's offset under a steady push (43).
+    /// Exchange of latency for pusher offset under a steady push (43).
     pub steady_push: bool,
-    /// The pose of an object that waits is drawn anew from what all camera poses add up to (44).
+    /// Redrawing the pose of an object that waits, from the belief that all camera poses add up to
+    /// (44).
     pub waiting: bool,
-    /// A camera pose that would leave few particles moves them, too (45).
+    /// Ensemble update by a camera pose that would leave few particles (45).
     pub camera: bool,
 }
 

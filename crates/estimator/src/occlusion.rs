@@ -1,8 +1,8 @@
-//! Which rows' object poses are hidden from a method: [`Occlusion`].
+//! Rows whose object poses are hidden from a method: [`Occlusion`].
 
 use crate::log::Log;
 
-/// A blackout of the camera; the hidden poses are still scored against.
+/// Occlusion of the camera. Scores still use the hidden poses as a reference.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Occlusion {
     /// Nothing is hidden.
@@ -17,13 +17,13 @@ pub enum Occlusion {
     },
     /// Rows within this many seconds about the middle of the log, half on either side.
     Middle {
-        /// Length of the blackout (s).
+        /// Length of the occlusion (s).
         seconds: f64,
     },
 }
 
 impl Occlusion {
-    /// For every row, whether its object pose is hidden.
+    /// Returns for every row whether its object pose is hidden.
     ///
     /// ```
     /// # use stickslip::{Log, Occlusion};

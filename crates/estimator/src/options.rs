@@ -1,29 +1,30 @@
-//! How a run is made: [`RunOptions`].
+//! Options of a run: [`RunOptions`].
 
 use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::pusher::track::Tracking;
 
-/// How a log is turned into estimates.
+/// Method that turns a log into estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
     /// The particle filter over contact dynamics.
     #[default]
     Particle,
-    /// A constant-velocity Kalman filter that knows nothing of contact.
+    /// A constant-velocity Kalman filter, without contacts.
     Kalman,
-    /// The same, at rest from the first tactile contact in the dark on.
+    /// The Kalman filter; while the camera is off, the object rests from the first tactile contact
+    /// on.
     KalmanStops,
-    /// The same, which in the dark moves with the pusher as if glued to it.
+    /// The Kalman filter; while the camera is off, the object moves as if glued to the pusher.
     WithPusher,
-    /// An extended Kalman filter over contact dynamics, which does not feel touch.
+    /// An extended Kalman filter over contact dynamics, which does not use touch.
     ExtendedKalman,
-    /// The nominal simulation, which never looks at the camera after the first pose.
+    /// The nominal simulation, which uses no camera pose after the first.
     Nominal,
 }
 
-/// Whether tactile data is used.
+/// Use of tactile data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum TactileUse {
     /// Tactile readings weigh the particles.
@@ -38,7 +39,7 @@ pub enum TactileUse {
 pub struct RunOptions {
     /// Method.
     pub method: Method,
-    /// Rules of the particle filter.
+    /// Configuration of the particle filter.
     pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
@@ -46,13 +47,13 @@ pub struct RunOptions {
     pub seed: u64,
     /// Use of tactile data.
     pub tactile: TactileUse,
-    /// How the pusher is tracked.
+    /// Tracking of the pusher.
     pub tracking: Tracking,
     /// Forced number of substeps per row; `None`: by the length of the step.
     pub substeps: Option<u32>,
-    /// What is hidden from the method.
+    /// Rows whose object poses are hidden from the method.
     pub occlusion: Occlusion,
-    /// What brings particles to where weighing alone would leave few (contact mode).
+    /// Ways to move particles to where weighing alone would leave few (robust model).
     pub moves: Moves,
 }
 

@@ -1,4 +1,4 @@
-//! How many particles can be done in time: [`ParticleBudget`].
+//! Number of particles that can be computed in time: [`ParticleBudget`].
 
 use std::collections::VecDeque;
 use std::num::NonZero;
@@ -9,7 +9,7 @@ use crate::tracker::StepSize;
 /// Rows whose costs are remembered.
 const REMEMBERED: usize = 50;
 
-/// Share of the remembered rows that cost no more than what is reckoned with.
+/// Share of the remembered rows that cost no more than the planned cost.
 const RECKONED: f64 = 0.9;
 
 /// Share of the time left that a row should take.
@@ -18,27 +18,29 @@ const AIM: f64 = 0.6;
 /// Share of the time left from which on there are too many particles.
 const TOO_MUCH: f64 = 0.8;
 
-/// Share of the deadline that is planned with where less is left: the row before was held up, which
-/// fewer particles do not undo.
+/// Least time that is planned with, as a share of the deadline. If less is left, the row before was
+/// held up, which fewer particles do not undo.
 const FLOOR: f64 = 0.25;
 
-/// Share of the particles that stays where the deadline has passed before the row begins.
+/// Share of the particles that stays if the deadline has passed before the row begins.
 const LATE: f64 = 0.9;
 
-/// Growth of the number of particles, and after how many rows it comes.
+/// Growth of the number of particles, and the number of rows after which it happens.
 const GROWTH: f64 = 1.25;
 const GROWS_AFTER: u32 = 25;
 
-/// Least number of particles, where not fewer were asked for.
+/// Least number of particles, unless fewer were asked for.
 const LEAST: u32 = 64;
 
-/// How many particles each row is given, so that its answer is there in time.
+/// Number of particles for each row, so that its answer is there in time.
 ///
-/// It knows no clock: it is told how long rows took. What a row costs goes by particles times
-/// substeps, at the rate that 90 % of the last 50 rows kept. The number falls at once to what fits
-/// into 60 % of the time left, but for the rows behind one that was held up by a tenth each, and
-/// rises again by a quarter every 25 rows where that fits. It stays between 64 and the number asked
-/// for, so that a machine which is too slow still misses.
+/// It reads no clock: the caller reports how long rows took. The cost of a row is proportional to
+/// particles times substeps, at the rate that 90 % of the last 50 rows kept.
+///
+/// The number falls at once to what fits into 60 % of the time left. For rows behind one that was
+/// held up, it falls by a tenth each. It rises again by a quarter every 25 rows if that fits. It
+/// stays between 64 and the number asked for, so that a machine which is too slow still misses
+/// deadlines.
 ///
 /// ```
 /// use std::num::NonZero;
@@ -56,13 +58,13 @@ pub struct ParticleBudget {
     least: u32,
     /// Time from a row's arrival until its answer is due (s).
     deadline: f64,
-    /// What the last rows cost per particle and substep (s).
+    /// Costs of the last rows per particle and substep (s).
     costs: VecDeque<f64>,
     since_change: u32,
 }
 
 impl ParticleBudget {
-    /// At most `most` particles, for answers that are due `deadline` (s) after their row.
+    /// Plans at most `most` particles, for answers that are due `deadline` (s) after their row.
     #[must_use]
     pub fn new(most: NonZero<u32>, deadline: f64) -> Self {
         Self {
@@ -74,8 +76,8 @@ impl ParticleBudget {
         }
     }
 
-    /// The number of particles for a step whose answer is due in `left` (s); negative where it is
-    /// late already.
+    /// Returns the number of particles for a step whose answer is due in `left` (s). `left` is
+    /// negative if the answer is late already.
     pub fn particles(&mut self, step: StepSize, left: f64) -> NonZero<u32> {
         self.since_change = self.since_change.saturating_add(1);
         let before = step.particles.get();
@@ -110,8 +112,7 @@ impl ParticleBudget {
         before
     }
 
-    /// Takes how long (s) the step took that was just made; times that are no positive number are
-    /// left out.
+    /// Records how long (s) the latest step took. Times that are not positive numbers are left out.
     pub fn took(&mut self, step: StepSize, seconds: f64) {
         let work = f64::from(step.particles.get()) * f64::from(step.substeps.max(1));
         if seconds.is_finite() && seconds > 0.0 {
@@ -137,7 +138,7 @@ mod tests {
     struct Machine {
         budget: ParticleBudget,
         particles: NonZero<u32>,
-        /// When it is free (s).
+        /// Time at which it is free (s).
         free: f64,
         missed: usize,
     }
@@ -152,7 +153,8 @@ mod tests {
             }
         }
 
-        /// Answers a row that arrives at a time and costs so much per particle and substep (s).
+        /// Answers a row that arrives at time `arrives` (s) and costs `cost` (s) per particle and
+        /// substep.
         fn answer(&mut self, arrives: f64, substeps: u32, cost: f64) {
             let begins = self.free.max(arrives);
             let mut step = StepSize {
@@ -167,7 +169,7 @@ mod tests {
             self.missed += usize::from(self.free > arrives + DEADLINE);
         }
 
-        /// The same for rows that come regularly; how many missed.
+        /// Answers rows that come regularly; returns how many missed their deadline.
         fn run(&mut self, rows: usize, period: f64, cost: f64) -> usize {
             let (before, from) = (self.missed, self.free);
             for row in 0..rows {

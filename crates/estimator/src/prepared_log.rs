@@ -17,19 +17,19 @@ use crate::tracker::TrackerOptions;
 pub(crate) struct PreparedLog<'a> {
     /// The log.
     pub log: &'a Log,
-    /// Whether the object's pose is hidden, row by row.
+    /// True for each row whose object pose is hidden.
     pub hidden: Vec<bool>,
     /// First row with a visible object pose: row 0 of the estimate.
     pub first: usize,
-    /// The last one.
+    /// Last row with a visible object pose.
     pub last_seen: usize,
-    /// The pose in the first one.
+    /// Pose in row `first`.
     pub start: Pose,
     /// The pusher's track.
     pub track: PusherTrack,
     /// The substeps from row to row.
     pub schedule: Schedule,
-    /// Is shown every time step.
+    /// Observer of every time step.
     pub observer: Option<&'a dyn Observer>,
 }
 
@@ -60,18 +60,18 @@ impl<'a> PreparedLog<'a> {
         })
     }
 
-    /// The object pose of a row, where it was measured and is not hidden.
+    /// Returns the object pose of a row if it was measured and is not hidden.
     pub fn visible(&self, row: usize) -> Option<Pose> {
         self.log.object[row].filter(|_| !self.hidden[row])
     }
 
-    /// How noisy that pose is, where the log says it.
+    /// Returns the covariance of that pose if the log has one.
     pub fn covariance(&self, row: usize) -> Option<PoseCovariance> {
         let covariance = self.log.object_covariance.get(row).copied().flatten();
         covariance.filter(|_| self.visible(row).is_some())
     }
 
-    /// Empty rows for every row of the log.
+    /// Returns an estimate with an empty row for every row of the log.
     pub fn empty_estimate(&self, setup: &Setup) -> Estimate {
         Estimate {
             time: self.log.time.clone(),

@@ -1,4 +1,4 @@
-//! An experiment as the particle filter expects it: [`PriorSample`].
+//! Experiments drawn from the particle filter's own model: [`PriorSample`].
 
 use std::sync::Mutex;
 
@@ -18,40 +18,41 @@ use crate::particle::view::ParticleView;
 use crate::run::run_observed;
 use crate::setup::{Camera, Setup};
 
-/// One experiment drawn from what the particle filter believes before it: an object that moves
-/// under the logged pusher as a particle does, its friction, the rig's errors and the forces that
-/// disturb it drawn from their priors, and what camera and sensors then read, by the rules that the
-/// filter weighs by (docs/method.md, "Contact mode").
+/// One experiment drawn from the particle filter's prior (docs/method.md, "Contact mode").
 ///
-/// The filter's beliefs of such experiments are true as far as its particles are enough
-/// (simulation-based calibration, Talts et al. 2018), and where real logs look unlike them, its
-/// model is wrong (prior predictive check). No camera pose is wrong, and `likelihood_scale` counts
-/// as 1.
+/// An object moves under the logged pusher as a particle does. Its friction, the rig's errors and
+/// the disturbing forces are drawn from their priors. Camera and sensors read it by the rules that
+/// the filter weighs by.
+///
+/// The filter's beliefs about such experiments are calibrated if it has enough particles
+/// (simulation-based calibration, Talts et al. 2018). If real logs look unlike them, its model is
+/// wrong (prior predictive check). No camera pose is an outlier, and `likelihood_scale` counts as
+/// 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorSample {
-    /// What was measured: times, pusher and first object pose of the log given; further poses and
-    /// readings where that has some.
+    /// Measurements. Times, pusher and first object pose are those of the given log. Further poses
+    /// and readings are drawn where that log has some.
     pub log: Log,
-    /// What is true, by row from the first one with an object pose on.
+    /// True states, by row from the first one with an object pose on.
     pub truth: Vec<SampledState>,
-    /// Probability, up to a constant, that a pusher which the object may hold up goes as the log
-    /// says: of samples, so many count.
+    /// Weight of the sample: the probability, up to a constant, that the pusher moves as logged
+    /// although the object may hold it up.
     pub chance: f64,
 }
 
-/// What is true at a row.
+/// True state at a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledState {
     /// The object's pose.
     pub pose: Pose,
-    /// The friction that governs it.
+    /// Friction that governs it.
     pub friction: Friction,
 }
 
 impl PriorSample {
-    /// Draws one under the pusher of `log`, from around its first object pose on. That pose stays:
-    /// the filter knows nothing of where the object is before, so that what it believes first is a
-    /// distribution around what the camera shows first.
+    /// Draws one under the pusher of `log`, from around its first object pose on. That pose stays,
+    /// because the filter knows nothing of the object before it. The filter's first belief is then
+    /// a distribution around the first camera pose.
     ///
     /// # Errors
     /// Those of [`run`](crate::run).
@@ -63,8 +64,9 @@ impl PriorSample {
         let first = log.object.iter().position(Option::is_some);
         let first = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
 
-        // what happens: second tries would favour what the pusher agrees with, as `chance` does already, and
-        // where the object waits is known as well as the first pose is
+        // the motion. Re-simulations would favour what agrees with the pusher, as `chance` does
+        // already. The pose of a waiting object is not redrawn, because the first pose is all that
+        // is known of it
         let options = RunOptions {
             model,
             particles: 1,
@@ -91,7 +93,7 @@ impl PriorSample {
         let rows = witness.state.into_inner();
         let rows = rows.expect("no thread panicked").rows;
 
-        // what is measured of it
+        // its measurements
         let readings = Readings {
             setup: &setup,
             camera,
@@ -107,7 +109,7 @@ impl PriorSample {
     }
 }
 
-/// The camera, as noisy as nobody knows.
+/// Returns the camera with its unknown noise drawn from the prior.
 fn with_noise_drawn(camera: Camera, setup: &Setup, model: FilterModel, streams: Streams) -> Camera {
     let prior = NoisePrior::new(setup.uncertainty.camera_noise);
     let prior = prior.filter(|_| model == FilterModel::Robust);
@@ -119,7 +121,7 @@ fn with_noise_drawn(camera: Camera, setup: &Setup, model: FilterModel, streams: 
     }
 }
 
-/// What one particle says of a row.
+/// State of one particle at a row.
 #[derive(Clone, Debug)]
 struct Witnessed {
     truth: SampledState,
@@ -129,7 +131,7 @@ struct Witnessed {
     touch: Vec<f64>,
 }
 
-/// Looks on as a single particle moves.
+/// Observer that records the states of a single particle.
 #[derive(Debug)]
 struct Witness<'a> {
     setup: &'a Setup,
@@ -140,7 +142,7 @@ struct Witness<'a> {
 #[derive(Debug, Default)]
 struct WitnessState {
     rows: Vec<Witnessed>,
-    /// Of each fixel in the latest step: impulse and gap, in the units of [`felt_or_idle`].
+    /// Impulse and gap of each fixel in the latest step, in the units of [`felt_or_idle`].
     contacts: Vec<(f64, f64)>,
 }
 
@@ -153,7 +155,8 @@ impl<'a> Witness<'a> {
         }
     }
 
-    /// Impulse and gap of a fixel, from all contacts with it; the gap is that after the step.
+    /// Returns impulse and gap of a fixel, over all contacts with it. The gap is that after the
+    /// step.
     fn contact(&self, step: &SolvedStep<'_>, fixel: usize) -> (f64, f64) {
         let SolvedStep {
             problem, solution, ..
@@ -205,19 +208,19 @@ impl Observer for Witness<'_> {
     }
 }
 
-/// What camera and sensors read.
+/// Camera and sensors that read a particle.
 #[derive(Clone, Copy, Debug)]
 struct Readings<'a> {
     setup: &'a Setup,
-    /// With its true noise.
+    /// Camera with its true noise.
     camera: Camera,
     model: FilterModel,
     streams: Streams,
 }
 
 impl Readings<'_> {
-    /// Writes what they read of a particle into `log`, where that has readings; its first object
-    /// pose stays.
+    /// Writes readings of a particle into `log` where that has readings. Its first object pose
+    /// stays.
     fn write(&self, rows: &[Witnessed], log: &mut Log) {
         let streams = self.streams;
         let first = log.len() - rows.len();
@@ -245,7 +248,7 @@ impl Readings<'_> {
         }
     }
 
-    /// What sensor `j` reads, row by row.
+    /// Draws the readings of sensor `j`, row by row.
     fn read_touch<'r>(
         &self,
         j: usize,
@@ -276,6 +279,6 @@ impl Readings<'_> {
     }
 }
 
-/// Numbers of the streams, beside 0 for the camera's noise.
+/// Particle numbers of the random streams. Number 0 draws the errors of the camera's poses.
 const NOISE_LEVELS: u32 = 1;
 const FIRST_SENSOR: u32 = 3;

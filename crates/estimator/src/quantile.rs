@@ -1,7 +1,7 @@
-//! The [`quantile`] of some numbers.
+//! Quantiles of numbers: [`quantile`].
 
-/// The `q`-quantile of some numbers, `q` in \[0, 1\], linear between order statistics: position
-/// q (n − 1) from the smallest; `None` of nothing.
+/// Returns the `q`-quantile of some numbers, with `q` in \[0, 1\]. It is linear between order
+/// statistics, at position q (n − 1) from the smallest. Returns `None` if there is no number.
 ///
 /// ```
 /// # use stickslip::quantile;

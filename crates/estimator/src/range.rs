@@ -1,12 +1,12 @@
-//! Which numbers can be: [`Rule`], within what is possible in a [`Unit`].
+//! Numbers that are possible on a table top: [`Rule`], within the limits of a [`Unit`].
 //!
 //! Nothing on a table top is a billion metres wide or weighs a microgram. Numbers like these are
-//! slips, and with them arithmetic overflows or a step never ends.
+//! slips. With them arithmetic overflows or a step never ends.
 
 use std::fmt;
 use std::ops::Bound::{self, Excluded, Included};
 
-/// What a number counts.
+/// Unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// A plain number.
@@ -29,7 +29,7 @@ pub enum Unit {
     Newton,
 }
 
-/// What a number must be.
+/// Rule that a number must obey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Any number.
@@ -62,8 +62,8 @@ impl Unit {
         }
     }
 
-    /// The smallest positive and the largest number that can be meant, slips by a factor of 1000 or
-    /// two, which `diagnosis` names, included.
+    /// Smallest positive and largest plausible number. Slips by one or two factors of 1000 are
+    /// within these limits, because `diagnosis` names them.
     const fn limits(self) -> [f64; 2] {
         match self {
             Self::None => [1e-6, 1e6],
@@ -80,19 +80,19 @@ impl Unit {
 }
 
 impl Unit {
-    /// The smallest positive number that can be meant.
+    /// Returns the smallest positive number that is plausible.
     pub(crate) const fn least(self) -> f64 {
         self.limits()[0]
     }
 
-    /// Whether a coordinate in it is one that can be.
+    /// Returns true if a coordinate in this unit is plausible.
     pub(crate) fn holds(self, coordinate: f64) -> bool {
         coordinate.abs() <= self.limits()[1]
     }
 }
 
 impl Rule {
-    /// What `value` must be and is not, in words; `None` where it may be as it is.
+    /// Returns the rule that `value` breaks, in words; `None` if it breaks none.
     ///
     /// ```
     /// use stickslip::{Rule, Unit};
@@ -156,7 +156,8 @@ impl Rule {
         }
     }
 
-    /// A coordinate or a share may be as near to 0 as it likes; a size may not.
+    /// Returns true if numbers near 0 are refused. A coordinate or a share may be as near to 0 as
+    /// it likes; a size may not.
     fn forbids_tiny(self) -> bool {
         !matches!(self, Self::Finite | Self::Share | Self::Probability)
     }
@@ -173,16 +174,16 @@ impl Rule {
     }
 }
 
-/// A number of a setup that cannot be.
+/// An impossible number in a setup.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetupError {
-    /// The way to it from the setup, as `scene.object.mass`.
+    /// Path to it from the setup, as `scene.object.mass`.
     pub name: String,
     /// The number.
     pub value: f64,
     /// Its unit.
     pub unit: Unit,
-    /// What it must be.
+    /// Rule that it must obey.
     pub rule: String,
 }
 

@@ -1,19 +1,19 @@
-//! What one camera frame brings: [`Row`].
+//! Measurements of one camera frame: [`Row`].
 
 use stickslip_dynamics::Pose;
 
 use crate::covariance::PoseCovariance;
 use crate::range::Unit;
 
-/// Longest time between two rows (s): a log that pauses longer is in milliseconds, or mixes two
-/// clocks or two recordings, and its substeps would fill the memory.
+/// Longest time between two rows (s). A log that pauses longer is in milliseconds, or mixes two
+/// clocks or two recordings. Its substeps would fill the memory.
 pub(crate) const LONGEST_PAUSE: f64 = 5.0;
 
-/// Latest time (s): that of our day in nanoseconds is earlier, which is told better by other rules.
+/// Latest time (s). Today's time in nanoseconds is earlier: other rules refuse it with a better
+/// message.
 const LATEST: f64 = 1e19;
 
-/// The unit that times seem to be in whose typical step from row to row is this; `None` for
-/// seconds.
+/// Returns the unit of times whose typical step from row to row is `step`; `None` for seconds.
 pub(crate) fn unit_of_times(step: f64) -> Option<&'static str> {
     match step {
         step if step > 5e5 => Some("nanoseconds"),
@@ -28,24 +28,25 @@ pub(crate) fn unit_of_times(step: f64) -> Option<&'static str> {
 pub struct Row {
     /// Time (s).
     pub time: f64,
-    /// Pose of the object as the camera measured it; it shows the object one latency earlier.
+    /// Pose of the object as the camera measured it. It shows the object one latency earlier.
     pub object: Option<Pose>,
-    /// How noisy that pose is; `None`: as the scene's camera says. It says nothing without a pose.
+    /// Covariance of that pose; `None`: the noise of the scene's camera. It is ignored without a
+    /// pose.
     pub object_covariance: Option<PoseCovariance>,
     /// Pose of the pusher.
     pub pusher: Option<Pose>,
-    /// Tactile readings over the interval that ends here, sensor k on fixel k; sensors past the end
+    /// Tactile readings over the interval that ends here, sensor k on fixel k. Sensors past the end
     /// are silent.
     pub tactile: Vec<Option<bool>>,
     /// Force of the pusher on the object over the same interval, world frame (N).
     pub force: Option<[f64; 2]>,
 }
 
-/// Why a row was refused; the tracker is as it was before.
+/// Reason why a row was refused. The tracker stays as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RowError {
-    /// The time is none.
+    /// The time is not a plausible number.
     #[error("the row's time is {time:?} s; it must be finite, and at most 1e19")]
     Time {
         /// The time found (s).
@@ -64,7 +65,7 @@ pub enum RowError {
         /// The pose found.
         pose: Pose,
     },
-    /// A pose is where none can be.
+    /// A pose is implausibly far away.
     #[error(
         "the {body}'s pose at {time} s is ({x:?}, {y:?}, {theta:?}); no coordinate may be beyond 1e6 m or 1e6 rad; give None where nothing was measured",
         x = pose.x, y = pose.y, theta = pose.theta
@@ -77,7 +78,7 @@ pub enum RowError {
         /// The pose found.
         pose: Pose,
     },
-    /// A covariance that is none.
+    /// A matrix that is no covariance.
     #[error(
         "the covariance of the object's pose at {time} s is {covariance:?}; it must be finite and positive definite, with standard deviations between 1e-9 and 1e6; give None where it is not known"
     )]
@@ -99,7 +100,7 @@ pub enum RowError {
         /// Fixels of the scene.
         fixels: usize,
     },
-    /// Nothing can be said of what happened since the row before.
+    /// The time since the previous row is too long: what happened in it is unknown.
     #[error(
         "the row is at {to} s and the latest before it at {from} s; rows must be at most {longest} s apart. Give all times in seconds and by one clock, or start a new tracker",
         longest = LONGEST_PAUSE
@@ -119,13 +120,13 @@ pub enum RowError {
         time: f64,
         /// Time of the latest row (s).
         latest: f64,
-        /// How far back a row may lie (s).
+        /// Longest time by which a row may be behind the latest one (s).
         remembered: f64,
     },
 }
 
 impl Row {
-    /// Refuses what no tracker can use.
+    /// Refuses a row that no tracker can use.
     pub(crate) fn check(&self, fixels: usize) -> Result<(), RowError> {
         let time = self.time;
         if time.is_nan() || time.abs() > LATEST {

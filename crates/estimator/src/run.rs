@@ -17,23 +17,25 @@ use crate::row::Row;
 use crate::setup::{Camera, Setup};
 use crate::tracker::{Tracker, TrackerOptions};
 
-/// What a run produced.
+/// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// One row per log row.
     pub estimate: Estimate,
-    /// Particle-steps without a certified solution, over all rows.
+    /// Number of particle-steps without a certified solution, over all rows.
     pub unsolved: u64,
-    /// Of those, the ones whose solver gave up; for the others it proved that there is no solution.
+    /// Number of these whose solver gave up; for the others it proved that there is no solution.
     pub failed: u64,
-    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    /// Number of rows at which no particle explained the camera pose, so that all were
+    /// reinitialised around it.
     pub collapses: u32,
-    /// How often the steps since a blackout were made again with other random numbers, since the
-    /// particles explained pusher and touch ever worse (contact mode; docs/method.md (42)).
+    /// Number of re-simulations, with new random numbers, of the steps since an occlusion began.
+    /// They happen when the particles explain pusher and touch ever worse (robust model;
+    /// docs/method.md (42)).
     pub second_tries: u32,
-    /// ln of the evidence of the log: of two scenes, or of two modes, the one with the higher
-    /// evidence expected the camera poses and tactile readings more. Up to a constant of the log;
-    /// rows at which the filter collapsed are left out. `None` for methods without particles.
+    /// ln of the evidence of the log, up to a constant of the log. Of two scenes or two models, the
+    /// one with the higher evidence predicted camera poses and tactile readings better. Rows at
+    /// which the filter collapsed are left out. `None` for methods without particles.
     pub log_evidence: Option<f64>,
 }
 
@@ -42,13 +44,13 @@ pub struct Run {
 /// ```
 /// use stickslip::{Occlusion, RunOptions, run};
 ///
-/// # let folder = "../cli/demo/slide-ell-disc-110";
+/// # let folder = "../testkit/experiments/slide-ell-disc-110";
 /// let scene = std::fs::read_to_string(format!("{folder}/scene.toml"))?;
 /// let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;
 /// let file = std::fs::File::open(format!("{folder}/log.csv"))?;
 /// let (log, _) = stickslip_formats::read_log(file, "log.csv")?;
 ///
-/// // the camera is dark from row 200 on
+/// // the camera is off from row 200 on
 /// let occlusion = Occlusion::Rows { from: 200, to: None };
 /// let options = RunOptions { occlusion, ..RunOptions::default() };
 /// let result = run(&setup, &log, &options, &mut |_| ())?;
@@ -59,8 +61,8 @@ pub struct Run {
 /// ```
 ///
 /// # Errors
-/// Where the log has no visible object pose, the scene lacks what the method needs, or options are
-/// out of range.
+/// If the log has no visible object pose, the scene lacks what the method needs, or options are out
+/// of range.
 pub fn run(
     setup: &Setup,
     log: &Log,
@@ -75,8 +77,8 @@ pub fn run(
     )
 }
 
-/// The same, with an `observer` that is shown every time step solved on the way and the particles
-/// after every row; it changes no result.
+/// Runs a method like [`run`], with an `observer` that is shown every time step solved on the way
+/// and the particles after every row. It changes no result.
 ///
 /// # Errors
 /// Those of [`run`].
@@ -141,7 +143,7 @@ fn run_prepared(
     })
 }
 
-/// What a run says of itself where it has particles.
+/// Counts of a run, and its evidence if it has particles.
 #[derive(Clone, Copy, Debug, Default)]
 struct ParticleRun {
     collapses: u32,
@@ -149,7 +151,7 @@ struct ParticleRun {
     log_evidence: Option<f64>,
 }
 
-/// The particle filter, driven by the pusher's smoothed track; with what it says of itself.
+/// Runs the particle filter, driven by the pusher's smoothed track; also returns its counts.
 fn track_smoothed(
     setup: &Setup,
     camera: Camera,
@@ -217,7 +219,7 @@ fn track_smoothed(
     Ok((estimate, run))
 }
 
-/// The particle filter row by row, as a [`Tracker`] takes them; with what it says of itself.
+/// Runs the particle filter row by row, as a [`Tracker`] takes the rows; also returns its counts.
 fn track_causal(
     setup: &Setup,
     prepared: &PreparedLog<'_>,
@@ -248,8 +250,8 @@ fn track_causal(
 }
 
 impl PreparedLog<'_> {
-    /// Shows the observer the particles after a row: those that have the friction of the estimate,
-    /// and those that say where the object is.
+    /// Shows the observer the particles after a row: those with the friction of the estimate, then
+    /// those of the pose.
     fn show(
         &self,
         row: usize,
@@ -267,7 +269,7 @@ impl PreparedLog<'_> {
         }
     }
 
-    /// Writes what was measured at `row` and is not hidden; memory is reused.
+    /// Writes the measurements of `row` that are not hidden; memory is reused.
     fn read(&self, row: usize, tactile: TactileUse, to: &mut Row) {
         to.time = self.log.time[row];
         to.object = self.visible(row);

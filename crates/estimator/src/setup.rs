@@ -1,5 +1,5 @@
-//! What a run is given besides its log: the [`Setup`] (scene, sensors, filter settings), as
-//! `scene.toml` holds it.
+//! Inputs of a run other than its log: the [`Setup`] (scene, sensors, filter settings), as
+//! `scene.toml` has it.
 
 use stickslip_dynamics::{Feet, Friction, Part, Scene, Start};
 
@@ -53,14 +53,14 @@ pub struct Limits {
 /// `[filter]` of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterSettings {
-    /// w_app per step of 1/30 s, as a share of μ_s m g h per linear axis, times the radius of
-    /// gyration for rotation (docs/method.md (19)).
+    /// Standard deviation of w_app per step of 1/30 s, as a share of μ_s m g h per linear axis,
+    /// times the radius of gyration for rotation (docs/method.md (19)).
     pub force_std: f64,
-    /// w_β per step of 1/30 s, multiplicative (docs/method.md (20)).
+    /// Standard deviation of w_β per step of 1/30 s, multiplicative (docs/method.md (20)).
     pub parameter_std: f64,
     /// Effective sample size / N below which the set is resampled (docs/method.md (18)).
     pub resample_below: f64,
-    /// Widens the camera's standard deviations (docs/method.md (23)).
+    /// Factor that widens the camera's standard deviations (docs/method.md (23)).
     pub likelihood_scale: f64,
     /// Physical limits of the friction parameters, of d_tri in m, to which proposed values are
     /// clamped (docs/method.md (20)).
@@ -97,8 +97,9 @@ impl Default for FilterSettings {
 }
 
 impl FilterSettings {
-    /// The defaults for an object whose friction is near `nominal`: limits reach to half and twice
-    /// of that at least, of d_tri to 1.6 times, for objects larger than most.
+    /// Returns the defaults for an object whose friction is near `nominal`. The limits reach at
+    /// least from half to twice the nominal value; for d_tri the factor is 1.6, for objects larger
+    /// than most.
     pub fn around(nominal: &Friction) -> Self {
         let mut settings = Self::default();
         let nominal = nominal.fields().into_iter();
@@ -113,11 +114,11 @@ impl FilterSettings {
     }
 }
 
-/// Standard deviations of a logged pusher position within which the pusher stands.
+/// Largest lag of a pusher behind its logged position, in standard deviations of that position.
 const PUSHER_SIGMAS: f64 = 3.0;
 
-/// Stall force of a drive that nothing is known of, as a multiple of the force μ_s m g that slides
-/// the object alone at its nominal friction (docs/method.md, "Jamming").
+/// Stall force of an unspecified drive, as a multiple of the force μ_s m g that slides the object
+/// alone at its nominal friction (docs/method.md, "Jamming").
 pub const ASSUMED_STALL: f64 = 20.0;
 
 /// A scene with its sensors and filter settings.
@@ -125,7 +126,7 @@ pub const ASSUMED_STALL: f64 = 20.0;
 pub struct Setup {
     /// Bodies and nominal friction.
     pub scene: Scene,
-    /// Whether the pusher's stall force is [`ASSUMED_STALL`], because nobody gave one.
+    /// True if the pusher's stall force is [`ASSUMED_STALL`], because the scene gives none.
     pub stall_force_assumed: bool,
     /// The camera; needed by the particle and Kalman methods only.
     pub camera: Option<Camera>,
@@ -133,15 +134,15 @@ pub struct Setup {
     pub tactile: Tactile,
     /// Filter settings.
     pub filter: FilterSettings,
-    /// What the numbers above leave open.
+    /// Uncertainty of the numbers above.
     pub uncertainty: Uncertainty,
-    /// How the experiment begins; only simulations read it.
+    /// Start of the experiment; only simulations read it.
     pub start: Option<Start>,
 }
 
 impl Setup {
-    /// Standard deviation of the angle (rad) by which the pusher may be turned beside its logged
-    /// poses, on a rig as rough as told; 0 where turning it changes nothing.
+    /// Standard deviation (rad) of the pusher's angle about its logged one, on a rig of nominal
+    /// roughness. It is 0 if turning the pusher changes nothing.
     pub(crate) fn pusher_turn(&self) -> f64 {
         let parts = self.scene.pusher.shape.parts();
         let round = matches!(parts, [Part::Disc { centre, .. }] if *centre == [0.0, 0.0]);
@@ -149,25 +150,25 @@ impl Setup {
         camera.map_or(0.0, |camera| camera.pusher_orientation_std)
     }
 
-    /// Whether particles differ by where their feet stand.
+    /// Returns true if the particles differ in where their feet stand.
     pub(crate) fn support_is_uncertain(&self) -> bool {
         self.uncertainty.centre_of_friction > 0.0 || self.uncertainty.tripod_angle > 0.0
     }
 
-    /// How far behind its logged pose a pusher that gave way may stand (m): [`PUSHER_SIGMAS`]
-    /// standard deviations of that pose (docs/method.md (13)). What stood farther behind the log
-    /// contradicts: it is dragged to that distance.
+    /// Largest distance (m) of a pusher that yielded behind its logged pose: [`PUSHER_SIGMAS`]
+    /// standard deviations of that pose (docs/method.md (13)). A pusher farther behind contradicts
+    /// the log: it is dragged to that distance.
     pub(crate) fn most_pusher_lag(&self) -> f64 {
         PUSHER_SIGMAS * self.camera.map_or(0.0, |camera| camera.pusher_position_std)
     }
 
-    /// r_v, the weight of an angle in the scores, where no other is given: the object's radius of
-    /// gyration (m).
+    /// Returns r_v, the default weight of an angle in the scores: the object's radius of gyration
+    /// (m).
     pub fn virtual_radius(&self) -> f64 {
         self.scene.object.gyration_radius()
     }
 
-    /// Friction from its prior, by four standard normal numbers (docs/method.md (33)).
+    /// Draws friction from its prior, by four standard normal numbers (docs/method.md (33)).
     pub fn drawn_friction(&self, normals: [f64; 4]) -> Friction {
         let (stds, limits) = (
             self.uncertainty.friction.fields(),
@@ -181,7 +182,7 @@ impl Setup {
         friction
     }
 
-    /// Whether the tripod radius is a parameter (false where the feet are known).
+    /// Returns true if the tripod radius is a parameter. It is false if the feet are known.
     pub fn has_tripod(&self) -> bool {
         matches!(self.scene.feet, Feet::Tripod { .. })
     }

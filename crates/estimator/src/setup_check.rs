@@ -1,6 +1,6 @@
-//! Whether the numbers of a [`Setup`] can be: [`Setup::check`].
+//! Check that the numbers of a [`Setup`] are possible: [`Setup::check`].
 //!
-//! A scene file's numbers are checked at their place when it is read; a program may put any numbers
+//! A scene file's numbers are checked at their place when it is read. A program may put any numbers
 //! into a setup.
 
 use stickslip_dynamics::{Feet, Friction, Scene};
@@ -9,11 +9,11 @@ use crate::range::{Rule, SetupError, Unit};
 use crate::setup::{Camera, FilterSettings, Limits, Setup, Tactile};
 use crate::uncertainty::Uncertainty;
 
-/// A number with its name, what it must be and its unit.
+/// A number with its name, its rule and its unit.
 type Number = (&'static str, f64, Rule, Unit);
 
 impl Setup {
-    /// Refuses numbers that cannot be.
+    /// Refuses impossible numbers.
     ///
     /// # Errors
     /// The first such number, with its name and what it must be.
@@ -31,7 +31,7 @@ impl Setup {
     }
 }
 
-/// Refuses a number that cannot be.
+/// Refuses an impossible number.
 pub(crate) fn check(name: &str, value: f64, rule: Rule, unit: Unit) -> Result<(), SetupError> {
     match rule.broken_by(value, unit) {
         None => Ok(()),

@@ -22,13 +22,13 @@ use crate::pusher::tracked_pose::{TrackedPose, motion, step_length};
 use crate::row::{LONGEST_PAUSE, Row, RowError};
 use crate::setup::{Camera, Setup};
 
-/// Direction in which a pusher that has not moved yet may give way.
+/// Direction in which a pusher that has not moved yet may yield.
 const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
 
-/// Most substeps from row to row.
+/// Largest number of substeps from row to row.
 const MOST_SUBSTEPS: u32 = 10_000;
 
-/// Memory that a particle takes (bytes), with that of those that learn friction beside it, as
+/// Memory per particle (bytes), including that of the one that learns friction with it. It was
 /// measured with four bodies to touch; past poses are not counted.
 fn particle_bytes(model: FilterModel) -> usize {
     match model {
@@ -37,12 +37,12 @@ fn particle_bytes(model: FilterModel) -> usize {
     }
 }
 
-/// How a tracker works; the defaults are those of the program.
+/// Options of a tracker; the defaults are those of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerOptions {
-    /// Rules of the particle filter.
+    /// Configuration of the particle filter.
     pub model: FilterModel,
-    /// Number of particles that say where the object is; in contact mode as many learn its
+    /// Number of particles that estimate the pose. The robust model has as many more that learn
     /// friction.
     pub particles: usize,
     /// Seed of all random numbers.
@@ -51,10 +51,10 @@ pub struct TrackerOptions {
     pub tactile: TactileUse,
     /// Forced number of substeps from row to row; `None`: by the length of the step.
     pub substeps: Option<u32>,
-    /// How far behind the latest row a row may come and still count (s); the particles keep their
-    /// poses for as long.
+    /// Longest time (s) by which a row may be behind the latest one and still count. The particles
+    /// keep their poses for as long.
     pub late: f64,
-    /// What brings particles to where weighing alone would leave few (contact mode).
+    /// Ways to move particles to where weighing alone would leave few (robust model).
     pub moves: Moves,
 }
 
@@ -68,7 +68,7 @@ impl Default for TrackerOptions {
 }
 
 impl TrackerOptions {
-    /// Those of a run over a whole log, whose rows are never late.
+    /// Options of a run over a whole log, whose rows are never late.
     pub fn of(options: &RunOptions) -> Self {
         Self {
             model: options.model,
@@ -81,7 +81,7 @@ impl TrackerOptions {
         }
     }
 
-    /// Refuses what cannot be.
+    /// Refuses options that are out of range.
     pub(crate) fn check(&self) -> Result<(), RunError> {
         let (particles, late) = (self.particles, self.late);
         if let Some(substeps) = self.substeps.filter(|n| !(1..=MOST_SUBSTEPS).contains(n)) {
@@ -102,10 +102,10 @@ impl TrackerOptions {
     }
 }
 
-/// What a step costs: its time goes by the product.
+/// Cost of a step: its time is proportional to the product of both numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepSize {
-    /// Substeps that lead to the row; 0 at the first one.
+    /// Number of substeps that lead to the row; 0 at the first one.
     pub substeps: u32,
     /// Number of particles.
     pub particles: NonZero<u32>,
@@ -113,15 +113,19 @@ pub struct StepSize {
 
 /// The particle filter over contact dynamics, one row at a time.
 ///
-/// It gives what [`run`](crate::run) gives with [`Tracking::Causal`](crate::Tracking), bit for bit:
-/// the pusher is tracked from the rows so far (docs/method.md, "The pusher's track"). After the
-/// first rows, on one thread, a row allocates nothing, but at the first contact, where the
-/// particles that learn friction are made, in the dark, whose rows are kept and may be made again,
-/// where the number of particles changes, and where a step needs the search over contact modes.
+/// It returns the same bits as [`run`](crate::run) with [`Tracking::Causal`](crate::Tracking): the
+/// pusher is tracked from the rows so far (docs/method.md, "The pusher's track").
+///
+/// After the first rows, a row on one thread allocates nothing, except
+///
+/// - at the first contact, where the particles that learn friction are created,
+/// - while the camera is off, because rows are kept for re-simulation,
+/// - where the number of particles changes,
+/// - where a step needs the search over contact modes.
 ///
 /// ```
 /// use stickslip::{Row, Tracker, TrackerOptions};
-/// # let folder = "../cli/demo/slide-ell-disc-110";
+/// # let folder = "../testkit/experiments/slide-ell-disc-110";
 /// let scene = std::fs::read_to_string(format!("{folder}/scene.toml"))?;
 /// let setup = stickslip_formats::read_scene(&scene, "scene.toml")?;
 /// let mut tracker = Tracker::new(&setup, &TrackerOptions::default())?;
@@ -142,7 +146,7 @@ pub struct Tracker<'o> {
     options: TrackerOptions,
     observer: Option<&'o dyn Observer>,
     pusher: CausalTrack,
-    /// How often the pusher is seen, from the first row on.
+    /// Clock of the pusher's poses, from the first row on.
     pusher_clock: Option<PoseClock>,
     /// The pusher at the latest step's end.
     tracked: Option<TrackedPose>,
@@ -152,9 +156,9 @@ pub struct Tracker<'o> {
     time: Option<f64>,
     /// Time of the latest step's end (s).
     stepped: Option<f64>,
-    /// From the first object pose on.
+    /// The filter, from the first object pose on.
     filter: Option<LearningFilter<'o>>,
-    /// The row before there is a pose.
+    /// Empty row, for rows before the first object pose.
     nothing: EstimateRow,
 }
 
@@ -162,14 +166,14 @@ impl Tracker<'static> {
     /// A tracker that waits for its first row.
     ///
     /// # Errors
-    /// Where the scene has no camera, or its numbers or the options are out of range.
+    /// If the scene has no camera, or its numbers or the options are out of range.
     pub fn new(setup: &Setup, options: &TrackerOptions) -> Result<Self, RunError> {
         Self::build(setup, options, None)
     }
 }
 
 impl<'o> Tracker<'o> {
-    /// The same, with an `observer` that is shown every time step solved; it changes no result.
+    /// A tracker with an `observer` that is shown every time step solved; it changes no result.
     ///
     /// # Errors
     /// Those of [`Tracker::new`].
@@ -220,24 +224,27 @@ impl<'o> Tracker<'o> {
         }
     }
 
-    /// Takes one row; returns the estimate at the latest row, whose cells are empty before the
-    /// first object pose.
+    /// Takes one row and returns the estimate at the latest row. The cells of the estimate are
+    /// empty before the first object pose.
     ///
-    /// A row without an object pose is blacked out. A row that is not later than the latest one is
-    /// late: its object pose is weighed against each particle's own pose at that time, up to
-    /// [`TrackerOptions::late`] back; the rest of it is not used, since the step that it would have
-    /// driven is made.
+    /// A row without an object pose is occluded. A row that is not later than the latest one is
+    /// late. Its object pose is weighed against each particle's own pose at that time, up to
+    /// [`TrackerOptions::late`] back. The rest of a late row is not used: the step that it would
+    /// have driven is made already.
     ///
     /// # Errors
-    /// [`RowError`] where the row cannot be used; the tracker then is as it was before.
+    /// [`RowError`] if the row cannot be used; the tracker then is as it was before.
     pub fn push(&mut self, row: &Row) -> Result<&EstimateRow, RowError> {
         self.push_sized(row, |step| step.particles)
     }
 
-    /// The same with as many particles as `particles` says once the size of the step to the row is
-    /// known, its number of particles being that of the row before; it is not asked at late rows
-    /// and before the first object pose. Where the number changes, the particles are resampled
-    /// first, by which the estimate of this row and later ones depends on when it changed.
+    /// Takes one row like [`push`](Self::push), with the number of particles that `particles`
+    /// returns. Its argument is the size of the step to the row, with the number of particles of
+    /// the row before. It is not called at late rows, at rows to which no step leads, and before
+    /// the first object pose.
+    ///
+    /// If the number changes, the particles are resampled first. The estimates of this row and
+    /// later ones then depend on when it changed.
     ///
     /// # Errors
     /// Those of [`push`](Self::push).
@@ -304,8 +311,8 @@ impl<'o> Tracker<'o> {
         Ok(self.estimate())
     }
 
-    /// Writes the substeps from the latest step's end to `time`, at whose end the pusher is `next`:
-    /// none where it is too near.
+    /// Writes the substeps from the end of the latest step to `time`, where the pusher is `next`.
+    /// There is none if `time` is too near.
     fn plan_substeps(&mut self, time: f64, next: Option<TrackedPose>) {
         self.substeps.clear();
         let Some(from) = self.stepped else {
@@ -353,20 +360,20 @@ impl<'o> Tracker<'o> {
             .map_or(&self.nothing, LearningFilter::latest)
     }
 
-    /// The particles that say where the object is, after the latest row; `None` before the first
-    /// object pose. The friction of the estimate is learned by others, docs/method.md (52).
+    /// The particles that estimate the pose, after the latest row; `None` before the first object
+    /// pose. Other particles learn the friction of the estimate, docs/method.md (52).
     pub fn particles(&self) -> Option<ParticleView<'_>> {
         self.filter.as_ref().map(LearningFilter::particles)
     }
 
-    /// Those that have its friction.
+    /// The particles that have the friction of the estimate.
     pub(crate) fn friction_particles(&self) -> Option<ParticleView<'_>> {
         self.filter
             .as_ref()
             .and_then(LearningFilter::friction_particles)
     }
 
-    /// The camera will show no more: nothing is learned from here on.
+    /// Stops learning friction, because no camera pose will follow.
     pub(crate) fn learn_no_more(&mut self) {
         if let Some(filter) = &mut self.filter {
             filter.learn_no_more();
@@ -378,18 +385,19 @@ impl<'o> Tracker<'o> {
         self.time
     }
 
-    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    /// Number of rows at which no particle explained the camera pose, so that all were
+    /// reinitialised around it.
     pub fn collapses(&self) -> u32 {
         self.filter.as_ref().map_or(0, LearningFilter::collapses)
     }
 
-    /// Poses of the pusher that counted as missing, since it could not have come there since the
-    /// ones before (docs/method.md, "The pusher's track").
+    /// Number of pusher poses that counted as missing, since the pusher could not have come there
+    /// in time (docs/method.md, "The pusher's track").
     pub fn pusher_poses_left_out(&self) -> u32 {
         self.pusher.left_out()
     }
 
-    /// How often the steps since a blackout were made again, see
+    /// Number of re-simulations of the steps since an occlusion began, see
     /// [`Run::second_tries`](crate::Run::second_tries).
     pub fn second_tries(&self) -> u32 {
         self.filter.as_ref().map_or(0, LearningFilter::second_tries)

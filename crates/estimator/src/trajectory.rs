@@ -1,8 +1,8 @@
-//! The object's known motion between given instants: [`Trajectory`].
+//! Known motion of the object between given instants: [`Trajectory`].
 
 use stickslip_dynamics::Pose;
 
-/// Largest offset of an instant from the one asked for that is only rounding in a file (s).
+/// Largest difference of two times that is only rounding in a file (s).
 const SAME_TIME: f64 = 1e-4;
 
 /// Poses at rising times.
@@ -15,8 +15,8 @@ pub struct Trajectory<'a> {
 }
 
 impl Trajectory<'_> {
-    /// The pose at `time` (s), linear between instants, that of an instant within 0.1 ms as it
-    /// stands; `None` outside them.
+    /// Returns the pose at `time` (s), linear between instants. The pose of an instant within 0.1
+    /// ms is returned as it is. Returns `None` outside the instants.
     ///
     /// ```
     /// # use stickslip::{Trajectory, dynamics::Pose};

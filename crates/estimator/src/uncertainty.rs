@@ -1,26 +1,25 @@
-//! What a scene file does not know, and how badly: [`Uncertainty`], which contact mode allows for
+//! Uncertainty of a scene file's numbers: [`Uncertainty`], which the robust model allows for
 //! (docs/method.md, "Contact mode").
 
 use stickslip_dynamics::{Friction, Lanes};
 
-/// `[uncertainty]` of a scene file: what its other numbers leave open. Paper mode takes them as
-/// they are.
+/// `[uncertainty]` of a scene file: priors of what its other numbers leave open. The paper's model
+/// takes those numbers as exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Standard deviations of ln β, the priors of the friction parameters: 0.45 is 45 %.
     pub friction: Friction,
-    /// Standard deviation of where the centre of friction lies beside that of the scene's feet,
-    /// which is the centre of mass for a tripod, on each axis, as a share of the radius of
-    /// gyration.
+    /// Standard deviation of the centre of friction about that of the scene's feet, on each axis,
+    /// as a share of the radius of gyration. The centre of a tripod is the centre of mass.
     pub centre_of_friction: f64,
     /// Standard deviation of the angle by which the feet are turned about that centre (rad).
     pub tripod_angle: f64,
-    /// Random step of ln β per step of 1/30 s, while the camera looks or the pusher moves; it keeps
+    /// Random step of ln β per step of 1/30 s, while the camera is on or the pusher moves. It keeps
     /// the prior.
     pub drift: f64,
     /// Standard deviation of the logarithm by which friction differs from place to place.
     pub variation: f64,
-    /// Way over which that variation forgets itself (m).
+    /// Correlation length of that variation (m).
     pub variation_length: f64,
     /// Disturbing force per step of 1/30 s, as a share of μ_s m g on each axis, times the radius of
     /// gyration for rotation.
@@ -31,8 +30,8 @@ pub struct Uncertainty {
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
-    /// Standard deviation of the way by which a pusher that a jam holds back is behind its logged
-    /// pose (m).
+    /// Standard deviation of the distance of a pusher that a jam holds back behind its logged pose
+    /// (m).
     pub pusher_lag: f64,
     /// Standard deviation of the error of each fixel's position, on each axis (m).
     pub fixel_position: f64,
@@ -41,24 +40,25 @@ pub struct Uncertainty {
     /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs
     /// differ.
     pub roughness: f64,
-    /// Factor of `fixel_position`, `outline`, `latency` and, in the dark, `force_std` on the
-    /// smoother half of rigs, and its fourth root that of `pusher_offset`: below 1 where some rigs
-    /// are measured much better than others.
+    /// Factor on the smoother half of rigs of `fixel_position`, `outline`, `latency` and, while the
+    /// camera is off, `force_std`. Its fourth root is the factor of `pusher_offset`. A value below
+    /// 1 means that some rigs are measured much better than others.
     pub well_measured: f64,
-    /// Standard deviation of the logarithm by which the camera's noise differs from what is told.
+    /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
+    /// value.
     pub camera_noise: f64,
     /// Mean time by which the camera lags more than the scene says (s).
     pub latency: f64,
-    /// Share of the object's speed at which a contact slips where friction comes to its bound, the
-    /// median of a log-normal prior (docs/method.md (50)); 0 is Coulomb's law.
+    /// Share of the object's speed at which a contact slips when friction reaches its bound: the
+    /// median of a log-normal prior (docs/method.md (50)). 0 is Coulomb's law.
     pub creep: f64,
-    /// Gap at which object and body may touch already, beside the errors of their poses and shapes
-    /// (m).
+    /// Gap at which object and body may already touch, in addition to the errors of their poses and
+    /// shapes (m).
     pub touch_gap: f64,
 }
 
-/// Standard deviation of the angle of a tripod that may stand anyhow (rad): it is the same after a
-/// third of a turn.
+/// Standard deviation of the angle of a tripod that may stand at any angle (rad). A third of a turn
+/// changes nothing.
 const ANY_ANGLE: f64 = std::f64::consts::FRAC_PI_3;
 
 impl Default for Uncertainty {
@@ -91,11 +91,10 @@ impl Default for Uncertainty {
     }
 }
 
-/// How steeply the factor of well measured rigs changes between the halves, per unit of ln of
-/// roughness.
+/// Steepness of the transition between the two halves of rigs, per unit of ln of roughness.
 const BETWEEN_HALVES: f64 = 10.0;
 
-/// At least what particles that learn friction have of `force_spread` and `creep`.
+/// Least values of `force_spread` and `creep` for particles that learn friction.
 const FORCE_SPREAD_OF_LEARNERS: f64 = 1.0;
 const CREEP_OF_LEARNERS: f64 = 0.1;
 
@@ -103,7 +102,7 @@ const CREEP_OF_LEARNERS: f64 = 0.1;
 const LATEST: f64 = 10.0;
 
 impl Uncertainty {
-    /// The same where the feet are known to stand as the scene says.
+    /// Returns the uncertainty with feet that are known to stand as the scene says.
     #[must_use]
     pub fn with_known_feet(self) -> Self {
         Self {
@@ -113,9 +112,10 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/method.md (36): the factor of `fixel_position`, `outline`, `latency` and, in the
-    /// dark, `force_std` on a rig of logarithm `roughness`, beside its own; `well_measured` on the
-    /// smoother half of rigs, 1 on the others.
+    /// b of docs/method.md (36), the factor of `fixel_position`, `outline`, `latency` and, while
+    /// the camera is off, `force_std`. The logarithm of the rig's roughness is `roughness`, whose
+    /// own factor is not included. b is `well_measured` on the smoother half of rigs, 1 on the
+    /// others.
     #[inline(always)]
     pub(crate) fn well_measured_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         let one = Lanes::splat(1.0);
@@ -126,13 +126,13 @@ impl Uncertainty {
         one - smooth * (1.0 - self.well_measured)
     }
 
-    /// b^¼: the factor of `pusher_offset`.
+    /// b^¼, the factor of `pusher_offset`.
     #[inline(always)]
     pub(crate) fn well_registered_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         self.well_measured_at(roughness).sqrt().sqrt()
     }
 
-    /// What particles that learn friction do not know, docs/method.md (52): pushes may be smoother
+    /// Uncertainty for particles that learn friction, docs/method.md (52): pushes may be smoother
     /// than others, and contacts may creep.
     pub(crate) fn of_learners(&self) -> Self {
         Self {

@@ -1,16 +1,16 @@
-//! Whether what an estimate says of its own errors is true: [`Belief`].
+//! Accuracy of the errors that an estimate reports of itself: [`Belief`].
 
 use stickslip::dynamics::Pose;
 
-/// Standard deviations on either side of the centre that hold 90 % of a normal distribution.
+/// Standard deviations on either side of the centre that contain 90 % of a normal distribution.
 pub(crate) const NINETY_PERCENT: f64 = 1.644_853_626_951_472_7;
 
-/// How an estimate's poses and standard deviations agree with a reference over some rows; `None`
+/// Agreement of an estimate's poses and standard deviations with a reference over some rows; `None`
 /// over no rows, and for methods without a spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Belief {
-    /// Share of the 90 % intervals of x, y and θ, estimate ± 1.645 standard deviations, that hold
-    /// the reference; 0.9 where the belief is true.
+    /// Share of the 90 % intervals of x, y and θ, estimate ± 1.645 standard deviations, that cover
+    /// the reference; 0.9 where the belief is calibrated.
     pub covered: Option<f64>,
     /// Continuous ranked probability score of normal distributions with these centres and standard
     /// deviations, the mean over x, y and r_v θ (mm); the lower the better, an absolute error where
@@ -18,7 +18,7 @@ pub struct Belief {
     pub crps_mm: Option<f64>,
 }
 
-/// Estimate minus reference at one row, with what the estimate says of it.
+/// Estimate minus reference at one row, with the estimate's own standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Judged {
     /// Errors (m, m, rad), θ on the circle.

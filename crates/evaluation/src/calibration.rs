@@ -1,5 +1,5 @@
-//! Whether beliefs are true: simulated experiments whose friction is drawn from the prior, and
-//! where the truth then lies in the belief ([`CalibrationRun`], [`Tally`]); simulation-based
+//! Calibration of beliefs by simulated experiments whose friction is drawn from the prior, and the
+//! rank of the truth in the belief ([`CalibrationRun`], [`Tally`]). This is simulation-based
 //! calibration, Talts et al. 2018.
 
 use std::sync::Mutex;
@@ -20,17 +20,17 @@ use crate::variant::Variant;
 /// Quantities of a run: the pose at its end, the four friction parameters.
 pub const QUANTITIES: [&str; 7] = ["x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];
 
-/// How many of them are of the pose.
+/// Number of pose quantities among them.
 const POSE: usize = 3;
 
-/// Where the truth lies in a belief.
+/// Place of the truth in a belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Weight of the particles below the truth; uniform from 0 to 1 where beliefs are true.
+    /// Weight of the particles below the truth; uniform from 0 to 1 where beliefs are calibrated.
     pub rank: f64,
     /// Distance of the belief's mean from the truth (SI).
     pub error: f64,
-    /// The same of what was believed before the run; of a pose, that of its mean.
+    /// Distance of the prior's mean from the truth; of a pose, that of the belief's mean.
     pub prior_error: f64,
 }
 
@@ -38,40 +38,40 @@ pub struct Placed {
 /// pose is that of the last row, friction that of the row which the run reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationRun {
-    /// Where the truth of each lies.
+    /// Place of the truth of each.
     pub placed: [Option<Placed>; 7],
     /// Rank of the truth of each at the last row that the camera saw, observed or not.
     pub seen: [f64; 7],
 }
 
-/// What moves the object.
+/// Source of the object's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TruthSource {
-    /// The filter's own model, noise and measurements included ([`PriorSample`]): of such truths,
-    /// true beliefs hold as much as they say.
+    /// The filter's own model, noise and measurements included ([`PriorSample`]): calibrated
+    /// beliefs cover such truths as often as they say.
     Prior,
     /// A simulation by the filter's dynamics without noise, or by the testbed.
     Simulated(Physics),
 }
 
-/// What is simulated, and how it is estimated.
+/// Options of the simulation and of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationOptions {
-    /// What moves the object.
+    /// Source of the object's motion.
     pub source: TruthSource,
     /// Rules of the particle filter.
     pub model: FilterModel,
-    /// What scenes leave open, of truths and in contact mode.
+    /// Uncertainty of scenes: that of truths, and that of the robust model.
     pub uncertainty: Uncertainty,
-    /// Whether it feels and not only sees, and whether the camera stays on where it else goes dark
-    /// before the first contact with a fixel.
+    /// Sensors of the run: whether touch is used, and whether the camera stays on. Otherwise the
+    /// camera turns off before the first contact with a fixel.
     pub variant: Variant,
     /// Number of particles.
     pub particles: usize,
 }
 
 impl Placed {
-    /// Whether the central 90 % of the belief hold the truth.
+    /// Returns true if the central 90 % of the belief cover the truth.
     #[must_use]
     pub fn is_held(&self) -> bool {
         covers(self.rank)
@@ -90,11 +90,12 @@ impl CalibrationRun {
             .collect()
     }
 
-    /// Simulates `paper` with friction drawn from its scene's prior, and tracks it, through a
-    /// blackout that begins before the first contact with a fixel; where the filter's own model
-    /// moves the object, that is the contact of the simulation whose pusher it has, so that no
-    /// blackout tells of the truth. `None` where no fixel is met, or the drawn rig cannot be
-    /// simulated.
+    /// Simulates `paper` with friction drawn from its scene's prior, and tracks it through an
+    /// occlusion. `None` where no fixel is met, or the drawn rig cannot be simulated.
+    ///
+    /// The occlusion begins before the first contact with a fixel. If the filter's own model moves
+    /// the object, that is the contact of the simulation whose pusher it has, so that the occlusion
+    /// reveals nothing of the truth.
     ///
     /// # Panics
     /// If an embedded scene cannot be run.
@@ -181,7 +182,7 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
     })
 }
 
-/// An experiment drawn from what the filter believes before it, under the pusher of a simulation.
+/// An experiment drawn from the filter's prior, under the pusher of a simulation.
 fn sampled(setup: &Setup, seed: u64, model: FilterModel) -> Option<KnownExperiment> {
     let mut experiment = simulated(setup, seed, Physics::Model)?.experiment;
     let seed = seed + OTHER_SEEDS;
@@ -268,7 +269,7 @@ impl Ranks<'_> {
     }
 }
 
-/// Where the truth lies at the end of a run.
+/// Place of the truth in the belief at the end of a run.
 fn placed(
     known: &KnownExperiment,
     run: &ScoredRun,
@@ -304,17 +305,17 @@ fn placed(
     Some(all)
 }
 
-/// Whether the central 90 % of a belief hold a truth of this rank.
+/// Returns true if the central 90 % of a belief cover a truth of this rank.
 fn covers(rank: f64) -> bool {
     (0.05..=0.95).contains(&rank)
 }
 
-/// How many truths beliefs hold, and how evenly their ranks are spread.
+/// Number of truths that beliefs cover, and the distribution of their ranks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RankTally {
     /// Number of beliefs.
     pub count: usize,
-    /// Share of them whose central 90 % hold the truth.
+    /// Share of them whose central 90 % cover the truth.
     pub covered: f64,
     /// Standard error of that share.
     pub standard_error: f64,
@@ -347,7 +348,7 @@ impl RankTally {
     }
 }
 
-/// What many runs say of one quantity.
+/// Results of many runs for one quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tally {
     /// In the runs that observed it, `None` where none did.
@@ -356,14 +357,14 @@ pub struct Tally {
     pub seen: RankTally,
 }
 
-/// What the runs that observed a quantity say of it.
+/// Results of the runs that identified a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observed {
-    /// Where the truth lies.
+    /// Ranks of the truth.
     pub ranks: RankTally,
     /// Median distance from the truth (SI).
     pub error: f64,
-    /// The same of what was believed before the run; for a pose that of what is believed.
+    /// Median distance of the prior's mean from the truth; for a pose, that of the belief's mean.
     pub prior_error: f64,
 }
 

@@ -1,9 +1,10 @@
-//! What contact mode is made of, to be left out one by one: [`Ingredient`].
+//! Parts of the robust model, to be left out one by one: [`Ingredient`].
 
 use stickslip::dynamics::Friction;
 use stickslip::{RunOptions, Setup, TactileUse};
 
-/// One thing that contact mode allows for or does, see docs/decisions/007.
+/// One part of the robust model: an uncertainty that it allows for or a step that it takes, see
+/// docs/decisions/007.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ingredient {
     /// Priors of the friction parameters, and their drift.
@@ -32,11 +33,11 @@ pub enum Ingredient {
     Latency,
     /// Touch.
     Touch,
-    /// Steps made again, (42).
+    /// Re-simulation of steps, (42).
     SecondTries,
     /// Latency exchanged for offset under a steady push, (43).
     SteadyPush,
-    /// The pose of an object that waits drawn anew, (44).
+    /// Redrawing of the pose of an object that waits, (44).
     Waiting,
     /// Camera poses that move particles, (45).
     CameraMoves,
@@ -64,7 +65,7 @@ impl Ingredient {
         Self::CameraMoves,
     ];
 
-    /// What a run without it is called.
+    /// Name of a run without it.
     #[must_use]
     pub fn left_out(self) -> &'static str {
         match self {

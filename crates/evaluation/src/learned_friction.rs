@@ -1,12 +1,13 @@
-//! What a run knows of friction when it ends: [`LearnedParameter`].
+//! Friction that a run has learnt when it ends: [`LearnedParameter`].
 //!
-//! In paper mode particles get new friction values only where the camera sees the object and Φ
-//! keeps them (docs/method.md (20), (21)): at rest the set is resampled without new values, until
-//! all its particles are copies of a few, and its spread shrinks though nothing has been learnt.
-//! Contact mode keeps at rest and in the dark what was known before (52). So the last row that
-//! informs about a parameter has its estimate, and where there is none it was not observed. Where
-//! particles begin with a prior (contact mode), a parameter whose spread is not much narrower than
-//! that was not observed, either.
+//! With the paper's model, particles get new friction values only where the camera sees the object
+//! and Φ keeps them (docs/method.md (20), (21)). At rest the set is resampled without new values,
+//! until all its particles are copies of a few. Its spread then shrinks though nothing has been
+//! learnt. The robust model keeps its last estimate at rest and while the camera is off (52).
+//!
+//! So the estimate of a parameter is that of the last row that informs about it; without such a row
+//! it is not identified. With the robust model, particles begin with a prior. A parameter whose
+//! spread is not much narrower than the prior's is not identified, either.
 
 use serde::Serialize;
 use stickslip::dynamics::Friction;
@@ -15,8 +16,8 @@ use stickslip::{Estimate, EstimateRow};
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
 
-/// Share of the prior's spread below which a parameter was observed: what is known of it then is
-/// nearer the truth than the prior's mean by almost half (docs/log/2026-11-robust-model.md).
+/// Share of the prior's spread below which a parameter is identified: its estimate then is nearer
+/// the truth than the prior's mean by almost half (docs/log/2026-11-robust-model.md).
 const NARROWER: f64 = 0.6;
 
 /// One friction parameter at the end of a run.
@@ -27,14 +28,14 @@ pub struct LearnedParameter {
     pub name: &'static str,
     /// Posterior mean (SI), at the last row that informed; where none did, that of the prior.
     pub mean: f64,
-    /// Posterior standard deviation of the same row (SI); 0 in a prior of paper mode, which leaves
-    /// nothing open.
+    /// Posterior standard deviation of the same row (SI); 0 in a prior of the paper's model, which
+    /// leaves nothing open.
     pub std: f64,
-    /// Whether the rows told enough of it.
+    /// True if the rows identify it.
     pub observed: bool,
     /// The last row that informed, where it was observed.
     pub row: Option<usize>,
-    /// The same, if it told too little for it to be observed, too.
+    /// The last row that informed, also where it is too little to identify the parameter.
     #[serde(skip)]
     pub informed: Option<usize>,
 }
@@ -112,7 +113,7 @@ impl LearnedParameter {
     #[must_use]
     pub fn shown(&self) -> String {
         match (self.observed, self.name) {
-            (false, _) => "not observed".to_owned(),
+            (false, _) => "not identifiable".to_owned(),
             (true, "d_tri") => format!("{:.1} ± {:.1} mm", 1e3 * self.mean, 1e3 * self.std),
             (true, _) => format!("{:.3} ± {:.3}", self.mean, self.std),
         }
@@ -189,7 +190,7 @@ mod tests {
                 EstimateRow::default(),
                 row(0.3, 0.0, 0.0, [0.0, 0.0], true),
                 row(0.31, 0.1, 0.02, [1.0, 0.0], true),
-                // free of the pusher, then at rest, then in the dark with a fixel
+                // free of the pusher, then at rest, then occluded with a fixel
                 row(0.32, 0.2, 0.02, [0.1, 0.0], true),
                 row(0.33, 0.01, 0.0, [1.0, 0.0], true),
                 row(0.34, 0.001, 0.02, [1.0, 1.0], false),
@@ -209,7 +210,7 @@ mod tests {
                 ("d_tri", Some(3), 0.32, 0.2)
             ]
         );
-        assert_eq!(all[2].shown(), "not observed");
+        assert_eq!(all[2].shown(), "not identifiable");
         assert_eq!(all[3].shown(), "320.0 ± 200.0 mm");
         let known_feet = Estimate {
             has_tripod: false,

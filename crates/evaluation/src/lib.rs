@@ -1,4 +1,4 @@
-//! Evaluation: what is compared ([`Variant`]), one scored run of it ([`ScoredRun`]), statistics
+//! Evaluation: the compared methods ([`Variant`]), one scored run of it ([`ScoredRun`]), statistics
 //! over seeds, simulated experiments ([`Simulation`]) and the paper's evaluation ([`paper`]).
 //!
 //! Nothing here opens a file or reads a clock. The same arguments give the same bits.

@@ -1,6 +1,5 @@
-//! How near few particles come to the belief that the model and the data amount to: [`Agreement`]
-//! with a reference of very many particles, which tells what an error is owed to, sampling or
-//! model.
+//! Agreement of few particles with the belief of model and data: [`Agreement`] with a reference of
+//! very many particles. It shows whether an error is owed to sampling or to the model.
 
 use stickslip::{
     Estimate, FilterModel, Moves, RunError, RunOptions, Tracking, quantile, run, wrapped,
@@ -11,17 +10,17 @@ use crate::run::ScoredRun;
 use crate::score::Scores;
 use crate::variant::Variant;
 
-/// Two runs over the same experiment with touch, its camera dark as the experiment says: of a few
-/// particles as the program does it, and the reference, which many particles reach by weighing
-/// alone.
+/// Two runs over the same experiment with touch, its camera off as the experiment says. One has a
+/// few particles, as the program runs them. The reference has many particles, which weighing alone
+/// updates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
     /// Scores of the few.
     pub few: Scores,
     /// Scores of the reference.
     pub reference: Scores,
-    /// Root mean square over the dark rows and x, y, θ of (mean − the reference's mean) / its
-    /// standard deviation. What N independent particles would have is 1/√N.
+    /// Root mean square over the occluded rows and x, y, θ of (mean − the reference's mean) / its
+    /// standard deviation. It would be 1/√N for N independent particles.
     pub distance: f64,
     /// Median over the same of the standard deviation over the reference's.
     pub spread: f64,

@@ -9,16 +9,16 @@ use stickslip_formats::Experiment;
 use crate::score::{Reference, Scores, score};
 use crate::variant::Variant;
 
-/// What all variants of a comparison have in common on one experiment and seed.
+/// Conditions that all variants of a comparison have in common on one experiment and seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunConditions {
     /// Rules of the particle filter.
     pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
-    /// How the pusher is tracked: from the whole log, or causally, as live.
+    /// Tracking of the pusher: from the whole log, or causally, as live.
     pub tracking: Tracking,
-    /// What is hidden, but for variants whose camera stays on.
+    /// Hidden rows, except for variants whose camera stays on.
     pub occlusion: Occlusion,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -27,9 +27,9 @@ pub struct RunConditions {
 /// One run of a variant, with its scores.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScoredRun {
-    /// What ran.
+    /// The variant.
     pub variant: Variant,
-    /// What it estimated, row by row.
+    /// Its estimate, row by row.
     pub estimate: Estimate,
     /// Its scores; those over hidden rows are over the same rows where its camera stayed on.
     pub scores: Scores,
@@ -41,7 +41,7 @@ pub struct ScoredRun {
     pub failed: u64,
     /// Rows at which no particle explained the camera.
     pub collapses: u32,
-    /// How often the steps since a blackout were made again.
+    /// Number of re-simulations of the steps since an occlusion began.
     pub second_tries: u32,
     /// ln of the evidence of the log, see [`Run::log_evidence`].
     pub log_evidence: Option<f64>,

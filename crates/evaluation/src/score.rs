@@ -1,4 +1,4 @@
-//! How far an estimate is from a reference: [`Scores`].
+//! Scores of an estimate against a reference: [`Scores`].
 //!
 //! The main score is the weighted root mean square error of the pose, √(mean(Δx² + Δy² + r_v²
 //! Δθ²)), which the paper, and the scores' names after it, call WMSE.
@@ -24,7 +24,7 @@ const SAME_TIME: f64 = 1e-4;
 /// says little.
 const SETTLED: f64 = 1.0;
 
-/// Time after the reference has come to rest up to which a row still counts as on the way (s).
+/// Time after the reference has come to rest up to which a row still counts as in motion (s).
 const AFTER_REST: f64 = 1.0;
 
 /// The trajectory an estimate is scored against.
@@ -49,8 +49,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// What estimates of an experiment are scored against: the truth at the log's times, linear
-    /// between its rows; without a truth the log's own poses, hidden ones included.
+    /// The reference of an experiment: the truth at the log's times, linear between its rows;
+    /// without a truth the log's own poses, hidden ones included.
     #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
         let Experiment {
@@ -80,8 +80,8 @@ impl Reference {
         }
     }
 
-    /// The log's own poses, hidden ones included, whether there is a truth or not: what the paper
-    /// scores against.
+    /// The log's own poses, hidden ones included, whether there is a truth or not: the paper scores
+    /// against these.
     #[must_use]
     pub fn measured(experiment: &Experiment) -> Self {
         Self {
@@ -110,7 +110,7 @@ impl Reference {
         }
     }
 
-    /// Where the object was at `time` (s), linear between the rows that show it then; `None` where
+    /// Pose of the object at `time` (s), linear between the rows that show it then; `None` where
     /// one of the two shows no pose.
     #[must_use]
     pub fn pose_at(&self, time: f64) -> Option<Pose> {
@@ -131,21 +131,21 @@ impl Reference {
 pub struct Scores {
     /// Weighted RMSE over all scored rows (mm).
     pub wmse_mm: Option<f64>,
-    /// The same over the rows whose pose was hidden (mm).
+    /// Weighted RMSE over the rows whose pose was hidden (mm).
     pub wmse_occluded_mm: Option<f64>,
-    /// The same from the first pusher contact to the last motion of the reference (mm).
+    /// Weighted RMSE from the first pusher contact to the last motion of the reference (mm).
     pub wmse_moving_mm: Option<f64>,
-    /// The same over the hidden rows up to 1 s after the last motion of the reference (mm).
+    /// Weighted RMSE over the hidden rows up to 1 s after the last motion of the reference (mm).
     pub wmse_until_rest_mm: Option<f64>,
-    /// What `wmse_occluded_mm` would be if the estimate's own standard deviations told the truth
-    /// (mm): root of the mean variance over the hidden rows.
+    /// Expected value of `wmse_occluded_mm` by the estimate's own standard deviations (mm): root of
+    /// the mean variance over the hidden rows.
     pub spread_occluded_mm: Option<f64>,
     /// Distance of the last scored positions (mm); where the reference is measured, length of the
     /// mean error over the last second.
     pub final_error_mm: Option<f64>,
     /// Difference of the last scored angles, on the circle (degrees), or that mean of it.
     pub final_error_deg: Option<f64>,
-    /// Whether the belief is true over all scored rows.
+    /// Calibration of the estimate over all scored rows.
     pub belief: Belief,
     /// Over the hidden rows.
     pub belief_occluded: Belief,
@@ -235,8 +235,8 @@ impl Error {
         }
     }
 
-    /// With what the estimate says of it, and the reference's own noise; `None` where it says
-    /// nothing.
+    /// The error with the estimate's standard deviations, and the reference's own noise; `None`
+    /// where the estimate has none.
     fn judged(self, estimate: &Estimate, reference: &Reference, row: usize) -> Option<Judged> {
         let own = estimate.std_at(reference.time[row] - reference.latency)?;
         let noise = reference.std;

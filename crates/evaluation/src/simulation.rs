@@ -14,10 +14,11 @@ pub const REPEATS: f64 = 0.02;
 /// on a hundred sightings.
 pub const PUSHER_MEMORY: f64 = 0.15;
 
-/// Time from the blackout to the first contact with a fixel (s): five frames at 30 Hz.
+/// Time from the start of the occlusion to the first contact with a fixel (s): five frames at 30
+/// Hz.
 const BLACKOUT_LEAD: f64 = 1.0 / 6.0;
 
-/// What moves the object of a simulation.
+/// Source of the object's motion in a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Physics {
     /// A rig with compliant contacts, uneven friction and a drive that lags and stalls.
@@ -26,10 +27,10 @@ pub enum Physics {
     Model,
 }
 
-/// How to simulate.
+/// Options of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulationOptions {
-    /// What moves the object.
+    /// Source of the object's motion.
     pub physics: Physics,
     /// Seed of everything that is random.
     pub seed: u64,
@@ -44,17 +45,17 @@ pub struct SimulationOptions {
 /// A simulated experiment.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    /// What happened.
+    /// Record of the motion.
     pub trace: Trace,
-    /// What was measured.
+    /// The measurements.
     pub log: Log,
-    /// What is true.
+    /// The truth.
     pub truth: Truth,
     /// True friction and events.
     pub facts: TruthFacts,
 }
 
-/// Why an experiment cannot be simulated.
+/// Reason why an experiment cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -131,8 +132,8 @@ impl Simulation {
         })
     }
 
-    /// The experiment as its files would say it; `setup` is what was simulated, as the methods are
-    /// to know it.
+    /// The experiment in the form of its files; `setup` is the methods' view of the simulated
+    /// scene.
     ///
     /// # Panics
     /// If `setup` has fewer fixels than the simulated one.
@@ -143,7 +144,7 @@ impl Simulation {
     }
 }
 
-/// The true friction: what is known, else the nominal one.
+/// The true friction where it is known, else the nominal one.
 fn friction(setup: &Setup, known: &TruthFacts) -> Friction {
     let nominal = setup.scene.nominal;
     Friction {

@@ -30,7 +30,7 @@ impl Band {
 /// Pairs below which a median has no standard error.
 pub const FEWEST_PAIRS: usize = 6;
 
-/// By how much one method's scores are above another's, seed by seed.
+/// Difference of one method's scores from another's, seed by seed.
 ///
 /// Scores of methods that lose the object now and then have heavy tails, so that the median of the
 /// differences is reported, not their mean.
@@ -46,7 +46,7 @@ pub struct PairedDifference {
     pub pairs: usize,
 }
 
-/// What a difference says, once its error is taken into account.
+/// Direction of a difference, once its error is taken into account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// The first is below the second.

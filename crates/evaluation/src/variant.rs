@@ -1,39 +1,40 @@
-//! What is compared: [`Variant`], a method with what it may use.
+//! Methods that are compared: [`Variant`], a method with the measurements that it may use.
 
 use stickslip::{Log, Method, Occlusion, TactileUse};
 
-/// A method with what it may use: tactile readings or not, the camera during an occlusion or not.
+/// A method with the measurements that it may use: touch or not, the camera during an occlusion or
+/// not.
 ///
-/// How the pusher is tracked (smoothed or causal) is no variant: it is the same for all that are
-/// compared, see [`crate::RunConditions`].
+/// All variants of a comparison track the pusher in one way, smoothed or causal
+/// ([`crate::RunConditions`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variant {
-    /// Simulation with the nominal friction, which sees the first pose only.
+    /// Simulation with the nominal friction from the first pose on.
     Nominal,
-    /// Constant-velocity Kalman filter, which knows nothing of contact.
+    /// Constant-velocity Kalman filter without contacts.
     Kalman,
-    /// The Kalman filter with nothing hidden from it.
+    /// Kalman filter, camera on.
     KalmanCameraOn,
-    /// The Kalman filter that comes to rest at the first tactile contact in the dark.
+    /// Kalman filter that stops at the first touch while the camera is off.
     KalmanStops,
-    /// The Kalman filter that in the dark moves with the pusher as if glued to it.
+    /// Kalman filter; while the camera is off, the object is glued to the pusher.
     WithPusher,
-    /// Extended Kalman filter over contact dynamics, which does not feel touch.
+    /// Extended Kalman filter over contact dynamics, without touch.
     ExtendedKalman,
-    /// The same with nothing hidden from it.
+    /// Extended Kalman filter, camera on.
     ExtendedKalmanCameraOn,
-    /// Particle filter without tactile readings.
+    /// Particle filter without touch.
     ParticleNoTouch,
-    /// The same with nothing hidden from it.
+    /// Particle filter without touch, camera on.
     ParticleNoTouchCameraOn,
-    /// Particle filter with all that the log has.
+    /// Particle filter with touch.
     Particle,
-    /// The same with nothing hidden from it.
+    /// Particle filter with touch, camera on.
     ParticleCameraOn,
 }
 
 impl Variant {
-    /// Those that `compare` runs, in the order of its tables.
+    /// Variants that `compare` and `demo` run, in the order of their tables.
     pub const COMPARED: [Self; 10] = [
         Self::Nominal,
         Self::Kalman,
@@ -47,16 +48,17 @@ impl Variant {
         Self::ParticleCameraOn,
     ];
 
-    /// Those that are drawn, in the order of tables.
-    pub const DRAWN: [Self; 5] = [
+    /// Variants that figures show, in the order of tables.
+    pub const DRAWN: [Self; 6] = [
         Self::Nominal,
         Self::Kalman,
+        Self::WithPusher,
+        Self::ExtendedKalman,
         Self::ParticleNoTouch,
         Self::Particle,
-        Self::ParticleCameraOn,
     ];
 
-    /// The variant of a method from which an occlusion hides the object.
+    /// Variant of a method whose camera is off during an occlusion.
     #[must_use]
     pub fn of(method: Method, tactile: TactileUse) -> Self {
         match (method, tactile) {
@@ -70,34 +72,23 @@ impl Variant {
         }
     }
 
-    /// Those of [`Variant::COMPARED`] that differ on a log of which `occlusion` hides rows.
-    pub fn compared_on(log: &Log, occlusion: Occlusion) -> impl Iterator<Item = Self> {
-        Self::different_on(&Self::COMPARED, log, occlusion)
-    }
-
-    /// Those of [`Variant::DRAWN`] that differ on a log of which `occlusion` hides rows.
-    pub fn drawn_on(log: &Log, occlusion: Occlusion) -> impl Iterator<Item = Self> {
-        Self::different_on(&Self::DRAWN, log, occlusion)
-    }
-
-    fn different_on<'a>(
-        all: &'a [Self],
-        log: &Log,
-        occlusion: Occlusion,
-    ) -> impl Iterator<Item = Self> + use<'a> {
+    /// Variants of [`Variant::COMPARED`] that differ on a log of which `occlusion` hides rows.
+    pub fn compared_on(log: &Log, occlusion: Occlusion) -> impl Iterator<Item = Self> + use<> {
         let (touch, hides) = (
             !log.tactile.is_empty(),
             occlusion.hidden(log).contains(&true),
         );
-        all.iter().copied().filter(move |variant| match variant {
-            Self::ParticleNoTouch => touch,
-            Self::ParticleCameraOn
-            | Self::KalmanCameraOn
-            | Self::ExtendedKalmanCameraOn
-            | Self::WithPusher => hides,
-            Self::KalmanStops => touch && hides,
-            _ => true,
-        })
+        Self::COMPARED
+            .into_iter()
+            .filter(move |variant| match variant {
+                Self::ParticleNoTouch => touch,
+                Self::ParticleCameraOn
+                | Self::KalmanCameraOn
+                | Self::ExtendedKalmanCameraOn
+                | Self::WithPusher => hides,
+                Self::KalmanStops => touch && hides,
+                _ => true,
+            })
     }
 
     /// Its method.
@@ -113,7 +104,7 @@ impl Variant {
         }
     }
 
-    /// Whether it weighs by tactile readings.
+    /// Use of touch.
     #[must_use]
     pub fn tactile(self) -> TactileUse {
         match self {
@@ -122,7 +113,7 @@ impl Variant {
         }
     }
 
-    /// Whether its camera stays on during an occlusion.
+    /// Returns true if its camera stays on during an occlusion.
     #[must_use]
     pub fn camera_on(self) -> bool {
         matches!(
@@ -134,7 +125,7 @@ impl Variant {
         )
     }
 
-    /// Whether a run depends on its seed.
+    /// Returns true if a run depends on its seed.
     #[must_use]
     pub fn is_random(self) -> bool {
         self.method() == Method::Particle
@@ -158,7 +149,7 @@ impl Variant {
         self.words()[2]
     }
 
-    /// Name in the JSON of `reproduce`, which says of every particle filter whether it feels.
+    /// Name in the JSON of `reproduce`, which names the use of touch for every particle filter.
     #[must_use]
     pub fn paper_key(self) -> &'static str {
         match self {
@@ -168,7 +159,7 @@ impl Variant {
         }
     }
 
-    /// Name in the tables and figures of `reproduce`, as the paper's columns.
+    /// Name in the tables and figures of `reproduce`, as in the paper's columns.
     #[must_use]
     pub fn paper_title(self) -> &'static str {
         match self {
@@ -195,7 +186,7 @@ impl Variant {
                 "kalman, stops at touch",
                 "Kalman filter that stops at touch",
             ],
-            Self::WithPusher => ["with_pusher", "with the pusher", "moved with the pusher"],
+            Self::WithPusher => ["with_pusher", "glued to pusher", "glued to the pusher"],
             Self::ExtendedKalman => [
                 "extended_kalman",
                 "extended kalman",
@@ -208,12 +199,12 @@ impl Variant {
             ],
             Self::ParticleNoTouch => [
                 "particle_no_tactile",
-                "particle, no tactile",
+                "particle, no touch",
                 "particle filter without touch",
             ],
             Self::ParticleNoTouchCameraOn => [
                 "particle_no_tactile_camera_on",
-                "particle, no tactile, camera on",
+                "particle, no touch, camera on",
                 "particle filter without touch, camera on",
             ],
             Self::Particle => ["particle", "particle", "particle filter"],

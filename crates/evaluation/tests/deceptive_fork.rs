@@ -1,5 +1,5 @@
-//! An object that tips off a fixel in the dark: at the fork its sensors are explained better by a
-//! jam, which the pusher contradicts a second later.
+//! An object tips off a fixel while the camera is off. At the bifurcation a jam explains its
+//! sensors better, and the pusher contradicts the jam a second later.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! What an experiment is scored against, by motions that are known in closed form.
+//! References that an experiment is scored against, by motions that are known in closed form.
 
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, EstimateRow, Log, Setup};

@@ -1,5 +1,5 @@
-//! A strong drive presses an object against a fixel, both give, and it stands there for seconds
-//! (testbed): a belief in the dark must not creep out of the jam.
+//! A strong drive presses an object against a fixel, both yield, and the pusher stands there for
+//! seconds (testbed). While the camera is off, the belief must not creep out of the jam.
 
 use stickslip::{Occlusion, RunOptions, run};
 use stickslip_evaluation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};

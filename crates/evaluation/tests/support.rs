@@ -1,11 +1,11 @@
-//! An object that stands on other feet than its scene says: the push that the camera sees tells
-//! where its centre of friction lies, and the belief in the dark goes by that.
+//! An object stands on other feet than its scene says. The push that the camera sees shows where
+//! its centre of friction lies, and the belief uses that while the camera is off.
 
 use stickslip::{Occlusion, RunOptions, run};
 use stickslip_evaluation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
 
-/// Row from which all is dark, in the middle of the push.
+/// First occluded row, in the middle of the push.
 const DARK: usize = 75;
 
 /// A box that is pushed along its middle; `support` is all that its scenes differ by.
@@ -23,7 +23,7 @@ start   = {{ object = [0, 0, 0], pusher = [-0.05, 0.0, 0], speed = 0.02, duratio
     )
 }
 
-/// What the rig logs, whose object stands on feet 5 mm beside its middle.
+/// Log of the rig, whose object stands on feet 5 mm off its middle.
 fn logged(seed: u64) -> Experiment {
     let feet = "feet = [[0.0, 0.028], [0.02, -0.007], [-0.02, -0.007]], foot_loads = [0.333, 0.333, 0.334]";
     let setup = read_scene(&scene(feet), "feet.toml").expect("a scene");
@@ -38,8 +38,8 @@ fn logged(seed: u64) -> Experiment {
     simulation.expect("it runs").into_experiment(setup)
 }
 
-/// In how many standard deviations the belief at the end of the dark is off (root mean square of x,
-/// y and θ), and how far (m), where the file says `more` of what it does not know.
+/// Error of the belief at the end of the occlusion: in standard deviations (root mean square of x,
+/// y and θ), and as a distance (m). The scene file adds `more` uncertainty.
 fn off(experiment: &Experiment, more: &str, seed: u64) -> (f64, f64) {
     let scene = scene("tripod_radius = 0.022") + more;
     let setup = read_scene(&scene, "scene.toml").expect("a scene");

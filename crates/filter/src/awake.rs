@@ -9,12 +9,13 @@ use std::time::Duration;
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How often a thread looks for work before it sleeps: some 100 to 250 µs, longer than a filter
-/// mostly takes between two parallel loops, and than it takes to wake a thread.
+/// Number of times that a thread looks for work before it sleeps: some 100 to 250 µs. That is
+/// longer than a filter mostly takes between two parallel loops, and than it takes to wake a
+/// thread.
 const LOOKS: u32 = 1 << 12;
 
-/// After so long a sleeping thread looks for work once, so that nothing that called nobody waits
-/// for ever.
+/// Sleep after which a thread looks for work once, uncalled. So work that woke no thread does not
+/// wait for ever.
 const NAP: Duration = Duration::from_millis(20);
 
 /// Runs `body` on the current pool while the pool's other threads wait for the parallel loops of
@@ -72,10 +73,10 @@ fn with_crew(body: impl FnOnce(&Crew)) {
 #[derive(Default)]
 struct Crew {
     finished: AtomicBool,
-    /// Whether the threads were no use in the last loop.
+    /// True if the threads were no use in the last loop.
     useless: AtomicBool,
     asleep: AtomicUsize,
-    /// How often they have been called.
+    /// Number of times that they have been called.
     calls: Mutex<u64>,
     called: Condvar,
 }

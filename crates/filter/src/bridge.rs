@@ -1,7 +1,8 @@
-//! From the particle filter to the ensemble Kalman filter and back (Frei & Künsch 2013, "Bridging
-//! the ensemble Kalman and particle filters"): where an observation would leave few particles, or a
-//! model asks for it, a part of it weighs them and the rest moves them. [`Bridge`]; docs/method.md
-//! (45), (52).
+//! Bridge between the particle filter and the ensemble Kalman filter: [`Bridge`] (Frei & Künsch
+//! 2013, "Bridging the ensemble Kalman and particle filters"); docs/method.md (45), (52).
+//!
+//! An observation is split where weighing alone would leave few particles, or where a model asks
+//! for it. One part of it weighs the particles, the rest moves them.
 
 use stickslip_lanes::exponentials;
 
@@ -16,9 +17,9 @@ use crate::weights::LogWeights;
 /// one that is left with a tenth less resamples once in some ten observations.
 const LEFT: f64 = 0.9;
 
-/// ln of the least likelihood, beside the mean one, of particles that an observation moves by which
-/// weighing alone would leave enough: few lie so far from it then, and the covariances of the
-/// others say nothing of them.
+/// ln of the least likelihood, relative to the mean one, of particles that an observation moves
+/// even though weighing alone would leave enough. Few lie farther from it than that, and the
+/// covariances of the others say nothing of them.
 const FAR: f64 = -8.0;
 
 /// Weight of the particles near an observation below which it moves none.
@@ -33,8 +34,8 @@ pub(crate) struct Bridge {
     ensemble: Ensemble,
     /// Weights by a share of an observation, or weights of the particles that move, (N,).
     weights: Vec<f64>,
-    /// Whether the latest observation gave particles other weights than the pass over them did, or
-    /// moved them.
+    /// True if the latest observation moved particles, or gave them other weights than the pass
+    /// over them did.
     parted: bool,
 }
 
@@ -53,8 +54,8 @@ impl Bridge {
         }
     }
 
-    /// Whether sums of the pass over the particles hold no longer: the latest observation was
-    /// parted into what weighs them and what moves them.
+    /// Returns true if sums of the pass over the particles are out of date: the latest observation
+    /// was parted into a part that weighs them and a part that moves them.
     pub fn parted(&self) -> bool {
         self.parted
     }
@@ -84,8 +85,9 @@ impl Bridge {
         sum * sum / squares
     }
 
-    /// Weights of the particles that move, summing to 1; the others have none. Whether there are
-    /// any to speak of: what does not move can tell against all of them.
+    /// Weights of the particles that move, summing to 1; the others have none. Returns true if
+    /// their weight is large enough: the part of the observation that does not move particles can
+    /// speak against all of them.
     fn weigh_near(&mut self, far: f64, weights: &LogWeights, moving: &[f64]) -> bool {
         self.weights.copy_from_slice(weights.weights());
         if moving.iter().all(|likelihood| *likelihood >= far) {
@@ -167,7 +169,8 @@ impl<M: Model> ParticleFilter<M> {
             .bridge
             .share(least, &self.weights, log_likelihood, &self.resetting);
         for (all, moving) in log_likelihood.iter_mut().zip(&self.resetting) {
-            // one that does not move is weighed by all of it, beside what it is to the others
+            // a particle that does not move is weighed by all of it, relative to its weight for the
+            // others
             *all -= share * if *moving < far { evidence } else { *moving };
         }
         self.unnormalised.weigh(&self.weights);

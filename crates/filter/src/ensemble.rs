@@ -9,7 +9,8 @@ use crate::streams::Draw;
 /// Independent partial sums: a single one would wait for every addition.
 const PARTIAL: usize = 8;
 
-/// What an observation may move, as a model reads it from its particles.
+/// Quantities that an observation may move, and their errors, as a model reads them from its
+/// particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EnsembleShape {
     /// Quantities that are moved, on scales on which they are about normal.
@@ -30,10 +31,12 @@ impl EnsembleShape {
     }
 }
 
-/// Groups of particles, each of which goes by what the others say: a particle that had a part in
-/// its own gain would go too near to the measurement, and all of them would end too close together
-/// (Houtekamer & Mitchell 1998). Descendants of one particle lie side by side, mostly in one group.
-/// Of fewer parts there are as many groups; one group goes by itself.
+/// Number of groups of particles; the gain of each comes from the other groups. A particle with a
+/// part in its own gain would go too near to the measurement, and all would end too close together
+/// (Houtekamer & Mitchell 1998).
+///
+/// Descendants of one particle lie side by side, mostly in one group. If there are fewer parts of
+/// blocks, there are as many groups as parts. A single group uses its own gain.
 const GROUPS: usize = 8;
 
 /// Particles of one part of a block; a group is some parts.
@@ -99,7 +102,7 @@ impl Ensemble {
         self.values.chunks(self.stride())
     }
 
-    /// The same, to be filled.
+    /// Columns of every block, to be filled.
     pub fn blocks_mut(
         &mut self,
     ) -> impl ExactSizeIterator<Item = &mut [f64]> + DoubleEndedIterator + Send {
@@ -266,7 +269,7 @@ impl Sums {
 struct Part<'a> {
     /// `[column][part]`.
     block: &'a [[f64; PART]],
-    /// Which part.
+    /// Number of the part.
     part: usize,
 }
 
@@ -288,8 +291,8 @@ fn group(part: usize, parts: usize) -> usize {
     part * parts.min(GROUPS) / parts
 }
 
-/// By how much a column moves where an error does by one that is observed under noise; a covariance
-/// that is not `certain` counts only by the share that is not chance.
+/// Gain: the motion of a column where an error that is observed under noise moves by one. A
+/// covariance that is not `certain` counts only by the share that is not chance.
 #[inline(always)]
 fn gain_by(weight: &Weight, of: &Sums, error: &Sums, noise_variance: f64, certain: bool) -> f64 {
     let (x, e) = (of.x / weight.w, error.x / weight.w);

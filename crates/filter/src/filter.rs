@@ -28,7 +28,7 @@ pub struct ParticleFilter<M: Model> {
     pub(crate) bridge: Bridge,
     ancestors: Vec<u32>,
     pub(crate) lineage: Lineage,
-    /// Whether their number has changed since the last step.
+    /// True if their number has changed since the last step.
     resized: bool,
     scratch: PerThread<M::Scratch>,
     /// The sums over every block, and over all.
@@ -36,12 +36,12 @@ pub struct ParticleFilter<M: Model> {
     sums: M::Sums,
 }
 
-/// What a step does beside moving and weighing the particles.
+/// Parts of a step other than moving and weighing the particles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepParts {
-    /// Whether it resamples them where the condition for that is met.
+    /// True if it resamples them where the condition for that is met.
     pub resampling: bool,
-    /// Whether it takes the sums over them.
+    /// True if it takes the sums over them.
     pub sums: bool,
 }
 
@@ -102,17 +102,17 @@ impl<M: Model> ParticleFilter<M> {
     /// Calculate estimated mean using {g_i}            Model::sum, combine_sums
     /// ```
     ///
-    /// What concerns one block of particles happens in one parallel pass over the blocks; what
-    /// needs all of them comes before it (choosing ancestors) and after it (normalising the
-    /// weights, adding the blocks' sums). If no particle explains the part of the observation that
-    /// a reinitialisation can improve, or all weights are zero, the particles are reinitialised
-    /// around it. Where a model lets an observation move them, it does as far as weighing alone
-    /// would leave few, or the model asks for.
+    /// Work on one block of particles happens in one parallel pass over the blocks. Work on all of
+    /// them comes before it (choosing ancestors) and after it (normalising the weights, adding the
+    /// blocks' sums). If no particle explains the part of the observation that a reinitialisation
+    /// can improve, or all weights are zero, the particles are reinitialised around it. If the
+    /// model allows it, an observation also moves the particles: as far as weighing alone would
+    /// leave few, or as far as the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
         self.make_step(input, observation, StepParts::ALL)
     }
 
-    /// The same, of these parts.
+    /// One time step with these parts.
     pub(crate) fn make_step(
         &mut self,
         input: &M::Input,
@@ -173,8 +173,8 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.reset();
     }
 
-    /// Goes on with another number of particles: resamples by the weights, which become equal. What
-    /// is estimated stays that of the last step; where the number is the same, nothing changes.
+    /// Goes on with another number of particles: resamples by the weights, which become equal. The
+    /// estimate stays that of the last step. If the number is unchanged, nothing changes.
     ///
     /// # Errors
     /// If the number is out of range; nothing changes then.
@@ -242,8 +242,8 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// Bayes' rule with the likelihoods of the pass; after a collapse, reinitialises the particles.
-    /// Also ln of the mean likelihood of what reinitialising can improve, by the weights before,
-    /// where the model judges it.
+    /// Also returns ln of the mean likelihood, by the weights before, of the part that
+    /// reinitialising can improve, where the model judges it.
     fn update_weights(&mut self, observation: &M::Observation) -> (WeightUpdate, Option<f64>) {
         let judged = self.model.judges_resetting(observation);
         let judged = judged.then(|| self.resetting_log_evidence(observation));
@@ -289,7 +289,8 @@ impl<M: Model> ParticleFilter<M> {
         self.weights.log_mean_likelihood(&self.resetting)
     }
 
-    /// ln of the likelihoods of what reinitialising can improve, and what moves.
+    /// Computes ln of the likelihoods of the part of the observation that reinitialising can
+    /// improve, and that moves particles.
     pub(crate) fn weigh_resetting(&mut self, observation: &M::Observation) {
         let model = &self.model;
         self.particles
@@ -299,7 +300,7 @@ impl<M: Model> ParticleFilter<M> {
     }
 
     /// Sensor resetting (Lenser & Veloso 2000) after a collapse: resamples by the weights before
-    /// the observation, then has the model draw the particles anew around it.
+    /// the observation, then has the model redraw the particles around it.
     fn reinitialise(&mut self, observation: &M::Observation) {
         self.choose_ancestors(Purpose::ResampleAfterCollapse);
         let (model, draw) = (&self.model, self.draw(Purpose::Reinitialise));

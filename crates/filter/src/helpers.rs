@@ -1,4 +1,4 @@
-//! The threads that are at work in a loop beside the one that called it: [`Helpers`].
+//! The threads that work on a loop together with the one that called it: [`Helpers`].
 
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -8,12 +8,13 @@ use std::time::Duration;
 use crate::pace::Help;
 use crate::parallel::lock;
 
-/// How often the calling thread looks whether the others are done before it sleeps: some 100 to 250
-/// µs, longer than the last piece of a loop mostly takes, and than it takes to wake a thread.
+/// Number of times that the calling thread checks whether the others are done before it sleeps:
+/// some 100 to 250 µs. That is longer than the last piece of a loop mostly takes, and than it takes
+/// to wake a thread.
 const LOOKS: u32 = 1 << 12;
 
-/// How often it waits on after the last has left the loop: the thread still has to report to the
-/// pool, and what waits there gives its processor away.
+/// Number of times that it waits on after the last has left the loop: the thread still has to
+/// report to the pool, and a thread that waits there yields its processor.
 const FAREWELL: u32 = 8;
 
 /// A helping thread that keeps the calling one waiting for longer was not run by the system (s):
@@ -28,7 +29,7 @@ pub(crate) struct Helpers {
     taken_by_caller: AtomicUsize,
     useful: AtomicBool,
     late: AtomicBool,
-    /// Whether the calling thread sleeps until the others are gone.
+    /// True if the calling thread sleeps until the others are gone.
     caller_asleep: Mutex<bool>,
     all_gone: Condvar,
 }
@@ -73,7 +74,7 @@ impl Helpers {
         }
     }
 
-    /// What they brought to the loop, now that it is over.
+    /// Help that they brought to the loop, now that it is over.
     pub fn brought(&self) -> Help {
         if self.late.load(Ordering::Relaxed) {
             Help::Late

@@ -1,8 +1,8 @@
 //! Particle filtering over any [`Model`], and the Kalman filter and smoother.
 //!
 //! A [`ParticleFilter`] owns a [`ParticleSet`] (columns of f64 in blocks of [`BLOCK`] particles),
-//! its [`LogWeights`] and counter-based random [`Streams`]; what a particle means is the model's
-//! business.
+//! its [`LogWeights`] and counter-based random [`Streams`]; the meaning of a particle is left to
+//! the model.
 //!
 //! Invariants:
 //! - every result is a function of (model, inputs, seed, number of particles): random numbers are a

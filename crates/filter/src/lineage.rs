@@ -1,4 +1,4 @@
-//! Which particles of earlier steps those of now descend from: [`Lineage`].
+//! Descent of the present particles from those of earlier steps: [`Lineage`].
 
 /// Counts ancestors: of the latest step, and of a generation further back.
 ///
@@ -14,7 +14,7 @@ pub struct Lineage {
     /// Particles of that generation, and before that step.
     generation: usize,
     before_step: usize,
-    /// Whether the latest step is over: what follows is of the next one.
+    /// True if the latest step is over: further ancestors belong to the next one.
     over: bool,
     counted: Vec<bool>,
 }
@@ -78,8 +78,8 @@ impl Lineage {
         }
     }
 
-    /// The same with ancestors of this set or, counted on, of `other`, whose roots are of the same
-    /// generation. Each set has parents of its own.
+    /// Like [`follow`](Self::follow), with ancestors of this set or of `other`, whose numbers
+    /// follow on from this set's. Both have roots of one generation, but parents of their own.
     pub(crate) fn follow_both(&mut self, other: &Self, ancestors: &[u32]) {
         assert_eq!(self.generation, other.generation, "one generation");
         let (here, before) = (self.roots.len(), self.before_step as u32);

@@ -1,4 +1,4 @@
-//! What a particle is, how it moves and how likely it makes an observation: [`Model`].
+//! The model of a particle, its motion and the likelihood of observations: [`Model`].
 
 use crate::ensemble::EnsembleShape;
 use crate::particles::{Block, BlockMut};
@@ -21,17 +21,17 @@ impl WeightedSums for () {
 
 /// A state-space model over blocks of particles.
 ///
-/// Methods work on a block at a time and may run on any thread in any order: what they write may
+/// Methods work on a block at a time and may run on any thread in any order: their results may
 /// depend only on their arguments. All random numbers come from `draw`, with the particle's index
 /// in the set ([`BlockMut::particles`]) and draw numbers of the model's choosing; each method has
 /// streams of its own.
 pub trait Model: Sync {
-    /// What is known of one step: its length, controls, ...
+    /// Input of one step: its length, controls, ...
     type Input: Sync + ?Sized;
     /// One observation.
     type Observation: Sync + ?Sized;
-    /// Working memory of one thread, made once. No result may depend on what it holds at the start
-    /// of a call: a thread takes any block. State of a particle belongs in a column.
+    /// Working memory of one thread, made once. No result may depend on its content at the start of
+    /// a call: a thread takes any block. State of a particle belongs in a column.
     type Scratch: Send;
     /// The sums that the step's estimate is made of; `()` where none is needed.
     type Sums: WeightedSums;
@@ -64,13 +64,14 @@ pub trait Model: Sync {
     /// Writes the weighted sums over one block.
     fn sum(&self, input: &Self::Input, block: &Block<'_>, weights: &[f64], sums: &mut Self::Sums);
 
-    /// Whether a resampling may copy particle `i` of a block, as by default any: not one whose last
-    /// move is unknown. Where none of positive weight may be copied, all may.
+    /// Returns true if a resampling may copy particle `i` of a block; by default any. A particle
+    /// whose last move is unknown may not be copied. If none of positive weight may be copied, all
+    /// may.
     fn may_be_copied(&self, _block: &Block<'_>, _i: usize) -> bool {
         true
     }
 
-    /// Whether no particle explains the observation, given the largest log-likelihood among
+    /// Returns true if no particle explains the observation, given the largest log-likelihood among
     /// particles of positive weight. A largest value of -inf is always a collapse.
     fn collapsed(&self, best_log_likelihood: f64) -> bool {
         best_log_likelihood == f64::NEG_INFINITY
@@ -91,21 +92,22 @@ pub trait Model: Sync {
         self.log_likelihood(observation, block, out);
     }
 
-    /// Whether [`StepReport::resetting_log_evidence`](crate::StepReport::resetting_log_evidence) is
-    /// to tell how well the particles expected that part of an observation; by default not.
+    /// Returns true if the model wants
+    /// [`StepReport::resetting_log_evidence`](crate::StepReport::resetting_log_evidence): how well
+    /// the particles expected that part of an observation. By default it does not.
     fn judges_resetting(&self, _observation: &Self::Observation) -> bool {
         false
     }
 
-    /// What observations may move beside weighing it; by default nothing.
+    /// Quantities that observations may move, in addition to weighing; by default none.
     fn ensemble(&self) -> EnsembleShape {
         EnsembleShape::default()
     }
 
-    /// Whether an observation may move what [`ensemble`](Self::ensemble) says. The part of it that
-    /// moves is that of [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about
-    /// normal: ln of its likelihood is −½ the sum of the squares of errors over their noise, up to
-    /// a constant.
+    /// Returns true if an observation may move the quantities of [`ensemble`](Self::ensemble). The
+    /// part of it that moves is that of
+    /// [`resetting_log_likelihood`](Self::resetting_log_likelihood), and about normal: ln of its
+    /// likelihood is −½ the sum of the squares of errors over their noise, up to a constant.
     fn moves(&self, _observation: &Self::Observation) -> bool {
         false
     }
@@ -114,8 +116,8 @@ pub trait Model: Sync {
     /// enough of them; by default none. Particles that lie far from it stay then, and are weighed
     /// by all of it.
     ///
-    /// Weighing by many observations that each tell little leaves few particles all the same, and
-    /// where nothing disturbs them, those stay what they are.
+    /// Weighing by many observations that each say little leaves few particles all the same. Where
+    /// nothing disturbs these, they do not change.
     fn least_moved(&self, _observation: &Self::Observation) -> f64 {
         0.0
     }
@@ -127,17 +129,17 @@ pub trait Model: Sync {
     }
 
     /// Writes columns of [`BLOCK`](crate::BLOCK) numbers: each quantity that may be moved, then
-    /// each error, what a particle expects less what was observed, then the standard deviation of
-    /// each error's noise that the particle believes in. Places past the block's last particle hold
-    /// any finite number.
+    /// each error, then the standard deviation of each error's noise by the particle's own
+    /// estimate. An error is the value that a particle expects less the observed one. Places past
+    /// the block's last particle hold any finite number.
     fn read_ensemble(&self, _observation: &Self::Observation, _block: &Block<'_>, _to: &mut [f64]) {
     }
 
     /// Takes the quantities back into the block.
     fn write_ensemble(&self, _from: &[f64], _block: &mut BlockMut<'_>) {}
 
-    /// Draws particles anew around the observation after a collapse; the columns hold the
-    /// propagated particles, resampled by their weights before the observation. The observation is
-    /// not weighed again.
+    /// Redraws particles around the observation after a collapse; the columns hold the propagated
+    /// particles, resampled by their weights before the observation. The observation is not weighed
+    /// again.
     fn reinitialise(&self, observation: &Self::Observation, draw: Draw, block: &mut BlockMut<'_>);
 }

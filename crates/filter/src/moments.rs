@@ -1,4 +1,4 @@
-//! Moments of one column, for what no [`Model::Sums`] carries.
+//! Moments of one column, for quantities that no [`Model::Sums`] has.
 
 use std::f64::consts::{PI, TAU};
 

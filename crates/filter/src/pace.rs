@@ -1,12 +1,13 @@
-//! When a loop asks other threads for help: [`Pace`].
+//! Rule by which a loop asks other threads for help: [`Pace`].
 //!
-//! Beside other busy processes the system may run a helping thread late, or in turn with the thread
-//! that it should help. Such help costs more than it brings: waking a thread takes as long as a
-//! block of particles, and a piece of the loop in the hands of a thread that the system does not
-//! run holds the whole loop up for a time slice. So where loops got no help, a thread goes on alone
-//! for a while before it asks again. Loops of one place in the program take about as long; what a
-//! short one teaches, which is over before another thread is awake, does not hold for a long one.
-//! No result depends on it.
+//! If other processes are busy, the system may run a helping thread late, or in turn with the
+//! thread that it should help. Such help costs more than it brings. Waking a thread takes as long
+//! as a block of particles. A piece of the loop in the hands of a thread that the system does not
+//! run holds the whole loop up for a time slice.
+//!
+//! So after loops that got no help, a thread goes on alone for a while before it asks again. Loops
+//! of one place in the program take about as long. A short loop is over before another thread is
+//! awake, and teaches nothing about a long one. No result depends on it.
 
 use std::cell::RefCell;
 use std::panic::Location;
@@ -16,7 +17,7 @@ use std::panic::Location;
 /// loop always asks.
 const LONGEST_REST: usize = 64;
 
-/// What the other threads brought to a loop.
+/// Help that the other threads brought to a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Help {
     /// One of them worked while the calling thread did.
@@ -27,7 +28,7 @@ pub(crate) enum Help {
     Late,
 }
 
-/// How one thread goes about the loops of one place.
+/// Rule of one thread for the loops of one place.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pace {
     /// Pieces that the thread still does alone.
@@ -36,19 +37,20 @@ struct Pace {
     last_rest: usize,
 }
 
-/// Where in the program a loop is called.
+/// Place in the program at which a loop is called.
 type Place = &'static Location<'static>;
 
 thread_local! {
     static PACES: RefCell<Vec<(Place, Pace)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Whether the calling thread should ask for help with a loop at `place` of so many `pieces`.
+/// Returns true if the calling thread should ask for help with a loop at `place` of so many
+/// `pieces`.
 pub(crate) fn asks_for_help(place: Place, pieces: usize) -> bool {
     with_pace(place, |pace| pace.asks_for_help(pieces))
 }
 
-/// Takes into account what asking brought to a loop at `place` of so many `pieces`.
+/// Takes into account the help that asking brought to a loop at `place` of so many `pieces`.
 pub(crate) fn learn(place: Place, pieces: usize, help: Help) {
     with_pace(place, |pace| pace.learn(pieces, help));
 }

@@ -40,7 +40,7 @@ impl<S> PerThread<S> {
     }
 }
 
-/// Where the calling thread looks for a slot first.
+/// Slot that the calling thread tries first.
 fn own_slot(slots: usize) -> usize {
     rayon::current_thread_index().unwrap_or(0) % slots
 }
@@ -88,7 +88,7 @@ pub(crate) fn for_each<I>(
     pace::learn(place, count, brought);
 }
 
-/// Calls `own_work`, and `help` so many times beside it, each on another thread if one is free.
+/// Calls `own_work`, and with it `help` so many times, each on another thread if one is free.
 fn with_help(times: usize, own_work: &(impl Fn() + Sync), help: &(impl Fn() + Sync)) {
     if times == 0 {
         return own_work();
@@ -140,7 +140,7 @@ mod tests {
     use super::*;
     use crate::keep_threads_awake;
 
-    /// How often `body` is run on each item of many loops on three threads.
+    /// Number of times that `body` is run on each item of many loops on three threads.
     fn times_run(body: impl Fn(usize) + Sync) -> Vec<usize> {
         let times: Vec<AtomicUsize> = (0..10).map(|_| AtomicUsize::new(0)).collect();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();

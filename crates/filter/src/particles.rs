@@ -236,7 +236,7 @@ fn gather_block(source: &[f64], ancestors: &[u32], target: &mut [f64]) {
     }
 }
 
-/// Which particles a block holds.
+/// Particles of a block: the first one and their number.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     first: usize,

@@ -1,14 +1,14 @@
-//! How a filter step went: [`StepReport`].
+//! Report of a filter step: [`StepReport`].
 
-/// How a step went.
+/// Report of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct StepReport {
     /// The effective sample size at the end of the step, in [1, N].
     pub effective_sample_size: f64,
-    /// Whether the step began with resampling, or the number of particles changed before it.
+    /// True if the step began with resampling, or the number of particles changed before it.
     pub resampled: bool,
-    /// What the observation did to the weights.
+    /// Effect of the observation on the weights.
     pub weight_update: WeightUpdate,
     /// ln of the mean likelihood, by the weights before, of the part of the observation that
     /// [`reinitialise`](crate::Model::reinitialise) draws the particles around; where the model
@@ -17,13 +17,13 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Whether no particle explained the observation.
+    /// Returns true if no particle explained the observation.
     pub fn collapsed(&self) -> bool {
         matches!(self.weight_update, WeightUpdate::Collapsed { .. })
     }
 }
 
-/// What a step's observation did to the weights.
+/// Effect of a step's observation on the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum WeightUpdate {

@@ -1,5 +1,5 @@
-//! Going back: where the particles come to explain what they observe ever worse, the steps since a
-//! [`Checkpoint`] are made again with other random numbers, see [`ParticleFilter::try_again`].
+//! Re-simulation. If the particles explain their observations ever worse, the steps since a
+//! [`Checkpoint`] are re-simulated with other random numbers, see [`ParticleFilter::try_again`].
 
 use crate::filter::{ParticleFilter, StepParts};
 use crate::lineage::Lineage;
@@ -21,7 +21,7 @@ pub struct Checkpoint {
 /// Independent sets of particles that made the same steps, drawn together into one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pool {
-    /// How many sets they are.
+    /// Number of sets.
     pub sets: u32,
     /// ln of the mean of their evidences.
     pub log_evidence: f64,
@@ -57,23 +57,25 @@ impl Default for Pool {
     }
 }
 
-/// How far ln of a try's evidence may fall below that of the sets before it: 1 in 10²¹. A try that
+/// Fall of ln of a try's evidence below that of the sets before it, at most: 1 in 10²¹. A try that
 /// falls farther would have no particle, and makes no more steps.
 const GIVEN_UP: f64 = 50.0;
 
-/// One of the times that steps are made again.
+/// One re-simulation of the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attempt {
-    /// Which one since the checkpoint, from 1 on: each has random numbers of its own.
+    /// Number of the re-simulation since the checkpoint, from 1 on: each has random numbers of its
+    /// own.
     pub number: u64,
-    /// Whether the particles are resampled on the way, as they were the first time. Where they are
-    /// not, but before the first step and the last one, each goes its way and is judged by all
-    /// observations but the last at once: one that early observations speak against and later ones
-    /// for is not lost, but few are left, of which the last step makes many.
+    /// True if the particles are resampled on the way, as they were the first time. If false, they
+    /// are resampled before the first step and the last one only. Each then goes its way and is
+    /// judged by all observations but the last at once. A particle that early observations speak
+    /// against and later ones for is not lost. But few are left, and the last step makes many
+    /// copies of them.
     pub resampling: bool,
 }
 
-/// What a second try was worth.
+/// Result of a re-simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondTry {
     /// ln of the evidence of the steps since the checkpoint under the new particles; −∞ where they
@@ -112,15 +114,18 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.lineage.clone_from(&self.lineage);
     }
 
-    /// Makes all steps since `checkpoint` again, with the random numbers of this `attempt`, and
-    /// draws as many particles from the new set as its evidence is worth beside that of the sets in
-    /// `pool`, which the present particles are drawn from: independent particle filters of the same
-    /// observations, each weighed by its estimate of their likelihood, are one of as many particles
-    /// as all have (Del Moral 2004, section 7.4). The weights become equal.
+    /// Re-simulates all steps since `checkpoint`, with the random numbers of this `attempt`. Then
+    /// draws particles from the new set and from the sets in `pool`, which the present particles
+    /// are drawn from. The share of each set is its share of the evidence. The weights become
+    /// equal.
+    ///
+    /// Independent particle filters of the same observations, each weighed by its estimate of their
+    /// likelihood, act as one filter with as many particles as all have (Del Moral 2004, section
+    /// 7.4).
     ///
     /// A new set is given up, and gets no share, as soon as its evidence is below e⁻⁵⁰ of the mean
-    /// of the others': with a model whose likelihoods are at most 1 that is exact but for one
-    /// particle in 10²¹, with another a step whose evidence would be above e⁵⁰ comes too late.
+    /// of the others'. With a model whose likelihoods are at most 1 that is exact but for one
+    /// particle in 10²¹. With another, a step whose evidence would be above e⁵⁰ comes too late.
     ///
     /// # Panics
     /// If the checkpoint is not as many steps old as there are `steps`, or of another number of

@@ -1,8 +1,8 @@
-//! How a particle filter runs: [`Settings`].
+//! Settings of a particle filter: [`Settings`].
 
 use crate::resample::Resampling;
 
-/// How a filter runs.
+/// Settings of a filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The number N of particles, at least 1.
@@ -45,7 +45,7 @@ impl Settings {
     }
 }
 
-/// Why settings were refused.
+/// Reason why settings were refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {

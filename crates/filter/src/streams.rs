@@ -1,6 +1,6 @@
 //! Counter-based random numbers: Philox4x32-10 and Box–Muller.
 //!
-//! A random number is a pure function of (seed, purpose, step, particle, draw): no generator has a
+//! A random number is a pure function of (seed, purpose, step, particle, draw). No generator has a
 //! state, so neither the order of evaluation nor the number of threads can matter (Salmon, Moraes,
 //! Dror & Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011). The seed is Philox's key;
 //! the counter's 128 bits are
@@ -20,7 +20,7 @@ const LOW_WORD: u64 = 0xFFFF_FFFF;
 /// Particles side by side in [`Draw::normal_columns`].
 const LANES: usize = 8;
 
-/// What a random number is for. Streams of different purposes are independent.
+/// Purpose of a random number. Streams of different purposes are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 #[non_exhaustive]
@@ -76,7 +76,7 @@ impl Streams {
         }
     }
 
-    /// The same seed's streams for another purpose.
+    /// Streams of this seed for another purpose.
     pub fn of(self, purpose: Purpose) -> Self {
         Streams { purpose, ..self }
     }

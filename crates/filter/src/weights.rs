@@ -22,7 +22,7 @@ const GRAIN: usize = 256 * BLOCK;
 /// Independent partial results: a single one would wait for every operation before it.
 const PARTIAL: usize = 8;
 
-/// Why weights were refused.
+/// Reason why weights were refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WeightError {
@@ -384,7 +384,7 @@ fn best_log_likelihood(first: usize, log_weights: &[f64], log_likelihood: &[f64]
     })
 }
 
-/// Whether `log` is no logarithm of a weight or a likelihood.
+/// Returns true if `log` is no logarithm of a weight or a likelihood.
 fn is_broken(log: f64) -> bool {
     log.is_nan() || log == f64::INFINITY
 }

@@ -1,7 +1,8 @@
-//! How often 90 % intervals hold the truth, those of the values that predict best and those of the
-//! constants, over sets of simulated pushes of one plate whose friction is drawn from the prior:
-//! `cargo run --release -p stickslip-fit --example recovery -- 30 model`; `testbed` is another
-//! physics, and a third argument the number of pushes in a set.
+//! Coverage of 90 % intervals over sets of simulated pushes of one plate whose friction is drawn
+//! from the prior. It is counted for the values that predict best and for the constants:
+//! `cargo run --release -p stickslip-fit --example recovery -- 30 model`.
+//!
+//! `testbed` is another physics, and a third argument is the number of pushes in a set.
 #![allow(
     clippy::unwrap_used,
     reason = "a simulated set that cannot be made ends it"

@@ -68,7 +68,7 @@ impl Chain {
     }
 
     /// The largest split R̂ of the coordinates (Gelman et al., Bayesian Data Analysis, 3rd ed.,
-    /// 11.4): the halves of every walker's way are compared; 1 where all tell the same.
+    /// 11.4): the halves of every walker's way are compared; 1 where all agree.
     pub fn split_rhat(&self) -> f64 {
         (0..self.dimension)
             .map(|k| self.split_rhat_of(k))

@@ -1,11 +1,13 @@
-//! What a model that is only nearly right cannot know: [`Constant`].
+//! Discrepancy of a model that is only nearly right: [`Constant`].
 //!
 //! No tripod slides as a face under uneven pressure does, and friction differs from place to place.
-//! The value that predicts best takes such differences up. They are the same in all pushes of a
-//! rig, so that more pushes do not average them out, and the posterior, which is about the value
-//! that predicts best, does not hold them. How large they are was learnt on random virtual rigs
-//! whose constants are known; what tells a rig on which the model is right from one on which it is
-//! not is the drift of its predictions (`crates/fit/examples/rigs`, docs/guide/fit.md).
+//! The value that predicts best absorbs such differences. They are equal in all pushes of a rig, so
+//! that more pushes do not average them out. The posterior is about the value that predicts best,
+//! and does not cover them.
+//!
+//! Their size was learnt on random virtual rigs whose constants are known. The drift of its
+//! predictions distinguishes a rig on which the model is right from one on which it is not
+//! (`crates/fit/examples/rigs`, docs/guide/fit.md).
 
 use serde::Serialize;
 
@@ -23,18 +25,18 @@ const HALF_DRIFT: f64 = 0.02;
 /// since rigs differ in how far the model is off.
 const NINETY_PERCENT: f64 = 1.943;
 
-/// Largest posterior over prior standard deviation that is taken for what it is; beyond, the pushes
-/// say nothing.
+/// Largest posterior over prior standard deviation that is used as it is; beyond, the pushes say
+/// nothing.
 const NOTHING: f64 = 0.97;
 
 /// The discrepancy of one parameter, of logarithms.
 #[derive(Clone, Copy, Debug)]
 struct Discrepancy {
-    /// By how much it multiplies the spread that the pushes leave.
+    /// Factor on the spread that the pushes leave.
     growth: f64,
     /// Its standard deviation on top of that.
     std: f64,
-    /// By how much the value that predicts best is above the constant, in the mean.
+    /// Mean excess of the value that predicts best over the constant.
     bias: f64,
 }
 
@@ -50,8 +52,8 @@ const TRIPOD_RADIUS: Discrepancy = Discrepancy {
     bias: 0.05,
 };
 
-/// The constant of a rig, as far as fitted values of the model tell of it: friction as one would
-/// measure it by itself, the radius of the tripod with the torque of the real support in pure spin.
+/// The constant of a rig, estimated from fitted values of the model: friction as one would measure
+/// it by itself, the radius of the tripod with the torque of the real support in pure spin.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Constant {
     /// Best guess, in the parameter's unit.
@@ -62,7 +64,7 @@ pub struct Constant {
     pub high_90: f64,
 }
 
-/// Whether a fit of these parameters is one whose discrepancy was learnt: of `mu_p` and
+/// Returns true if the discrepancy of a fit of these parameters was learnt: of `mu_p` and
 /// `tripod_radius`, with no others that change how an object answers a push.
 pub(crate) fn is_known(parameters: &[Parameter]) -> bool {
     use Parameter::{MuF, MuP, MuS, TripodRadius};
@@ -133,8 +135,8 @@ mod tests {
         logs(&Constant::behind(parameter, &PRIOR, coordinate, drift).expect("a constant"))
     }
 
-    /// Where nothing drifts the spread is the posterior's, up to the factor for the pusher's noise
-    /// and the heavier tails.
+    /// Without drift the spread is the posterior's, up to the factor for the pusher's noise and the
+    /// heavier tails.
     #[test]
     fn a_model_that_is_right_adds_little() {
         let [value, low, high] = behind(Parameter::MuP, [0.8, 0.1], 0.0);

@@ -1,14 +1,14 @@
-//! Why a fit was refused: [`FitError`].
+//! Reason why a fit was refused: [`FitError`].
 
 use stickslip::RunError;
 use stickslip_dynamics::ShapeError;
 use stickslip_formats::SceneError;
 
-/// Why a fit was refused.
+/// Reason why a fit was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Too few pushes for what is asked.
+    /// Too few pushes for the request.
     #[error("there are {pushes} pushes; at least {least} are needed. Give more folders")]
     TooFewPushes {
         /// Pushes given.
@@ -110,7 +110,7 @@ pub enum FitError {
     Run {
         /// The push.
         push: String,
-        /// What is wrong with it.
+        /// Its error.
         source: RunError,
     },
 }

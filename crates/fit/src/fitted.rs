@@ -1,4 +1,4 @@
-//! What pushes teach: [`fit`].
+//! Fit of parameters to pushes: [`fit`].
 
 use serde::Serialize;
 use stickslip::Setup;
@@ -19,8 +19,8 @@ use crate::sampler::sample;
 /// Posterior over prior standard deviation below which a parameter counts as determined.
 const DETERMINED: f64 = 0.5;
 
-/// The same up to which it takes the value that predicts best; above, the pushes say next to
-/// nothing, and it keeps its first guess.
+/// Posterior over prior standard deviation up to which a parameter takes the value that predicts
+/// best. Above, the pushes say next to nothing, and it keeps its first guess.
 const LEARNT: f64 = 0.8;
 
 /// Vectors drawn from the prior, the best of which start searches.
@@ -35,7 +35,7 @@ const SETTLED: f64 = 1.2;
 /// Samples that stand for the posterior.
 const KEPT_SAMPLES: usize = 512;
 
-/// What is to be learnt, and by which random numbers.
+/// Parameters to learn, and the random numbers to use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitOptions {
     /// The free parameters.
@@ -44,7 +44,7 @@ pub struct FitOptions {
     pub seed: u64,
 }
 
-/// What some pushes teach.
+/// Result of a fit to some pushes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fit {
     /// Number of pushes.
@@ -53,9 +53,9 @@ pub struct Fit {
     pub parameters: Vec<FittedParameter>,
     /// Their posterior correlation, row by row.
     pub correlation: Vec<Vec<f64>>,
-    /// How far measured poses are from predicted ones.
+    /// Deviation of measured poses from predicted ones.
     pub noise: Noise,
-    /// How the posterior was explored.
+    /// Facts about the exploration of the posterior.
     pub sampling: Sampling,
     /// Samples of the posterior, as [`Posterior`] takes them.
     #[serde(skip)]
@@ -67,7 +67,7 @@ pub struct Fit {
 pub struct FittedParameter {
     /// Its name.
     pub name: &'static str,
-    /// Which one it is.
+    /// The parameter.
     #[serde(skip)]
     pub parameter: Parameter,
     /// Symbol of its unit; empty for a bare number.
@@ -76,7 +76,7 @@ pub struct FittedParameter {
     pub value: f64,
     /// Standard deviation; that of the prior where nothing was learnt of it.
     pub std: f64,
-    /// What was believed before.
+    /// Its prior.
     pub prior: Prior,
     /// Its centre, in the parameter's unit.
     pub prior_value: f64,
@@ -85,17 +85,17 @@ pub struct FittedParameter {
     /// Posterior over prior standard deviation: 0 where the pushes say all, 1 where they say
     /// nothing.
     pub std_ratio: f64,
-    /// Whether `std_ratio` is below 0.5.
+    /// True if `std_ratio` is below 0.5.
     pub determined: bool,
-    /// Whether it is below 0.8, and `value` the fit's.
+    /// True if it is below 0.8, and `value` the fit's.
     pub learnt: bool,
-    /// What the constant of the rig is, which `value` imitates. It is known of `mu_p` and
-    /// `tripod_radius` where both are free and at most `mu_s` and `mu_f` beside them: for other
-    /// fits nobody knows how far apart they are.
+    /// Constant of the rig, which `value` imitates. It is known of `mu_p` and `tripod_radius` if
+    /// both are free, and besides them at most `mu_s` and `mu_f`. For other fits the difference
+    /// between both is unknown.
     pub constant: Option<Constant>,
 }
 
-/// How the posterior was explored.
+/// Facts about the exploration of the posterior.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Sampling {
     /// Vectors of parameters with which all pushes were predicted.
@@ -104,7 +104,7 @@ pub struct Sampling {
     pub acceptance: f64,
     /// Largest split R̂ of the parameters and the noise.
     pub split_rhat: f64,
-    /// Whether the chains agree (R̂ up to 1.2).
+    /// True if the chains agree (R̂ up to 1.2).
     pub settled: bool,
     /// Steps without a certified solution in the predictions with the fitted values.
     pub unsolved: u32,
@@ -217,8 +217,8 @@ fn settle(
     Ok((values, smaller.noise(&best[0]), tried))
 }
 
-/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; what it says
-/// of the constant is left open.
+/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; the constant
+/// is left open.
 fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
     let learnt = std < LEARNT;
     let value = prior.value(z);
@@ -298,7 +298,7 @@ impl Fit {
         of_parameters.chain(of_noise).collect()
     }
 
-    /// The same with the number of steps without a certified solution at the whitened `values`.
+    /// Adds the number of steps without a certified solution at the whitened `values`.
     fn with_unsolved(mut self, posterior: &Posterior<'_>, values: &[f64]) -> Self {
         let vector = [values.to_vec()];
         let unsolved = (0..posterior.pushes.len())

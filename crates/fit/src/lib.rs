@@ -1,9 +1,9 @@
-//! Learns from many pushes what a scene cannot know: [`fit`].
+//! Learns parameters that a scene cannot know from many pushes: [`fit`].
 //!
 //! A vector of parameters is judged by how well it predicts every push blind, from the first pose
 //! of the object and the recorded pusher alone. The posterior is explored by an optimiser with
-//! several starts and by an ensemble of Markov chains; [`cross_validate`] says what the fit is
-//! worth on pushes that it has not seen.
+//! several starts and by an ensemble of Markov chains; [`cross_validate`] gives the accuracy of the
+//! fit on pushes that it has not seen.
 
 mod chain;
 mod discrepancy;

@@ -1,9 +1,9 @@
-//! How likely measured poses are, given a prediction: [`Noise`] and [`log_likelihood`].
+//! Likelihood of measured poses, given a prediction: [`Noise`] and [`log_likelihood`].
 //!
 //! A prediction errs for two reasons. The camera adds noise to every pose, independent from row to
 //! row. The model drifts away from the truth on the way: its error grows by a share of the way that
-//! the pusher goes, and that share forgets itself over about one radius of gyration (an
-//! Ornstein–Uhlenbeck process over the way). Neither can be told in advance, so both are estimated.
+//! the pusher goes. That share decorrelates over about one radius of gyration (an
+//! Ornstein–Uhlenbeck process over the way). Both are estimated, since neither is known in advance.
 //! A model without drift would take a hundred rows of one push for a hundred independent witnesses.
 //!
 //! Per axis (x, y and the angle times the radius of gyration) that is a linear-Gaussian state of
@@ -19,13 +19,13 @@ pub(crate) const FREEDOM: f64 = 5.0;
 /// Share of pushes that drift more than the others.
 pub(crate) const STRAY_SHARE: f64 = 0.1;
 
-/// How much more these drift.
+/// Factor by which these drift more.
 pub(crate) const STRAY_FACTOR: f64 = 4.0;
 
 /// Parts of the memory length that one step of the filter may cover.
 const STEPS_PER_MEMORY: f64 = 4.0;
 
-/// How far measured poses are from predicted ones.
+/// Deviation of measured poses from predicted ones.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Noise {
     /// Factor of the camera's standard deviations in the scene.

@@ -1,4 +1,4 @@
-//! What can be learnt: [`Parameter`].
+//! Parameters that can be learnt: [`Parameter`].
 
 use stickslip::Setup;
 use stickslip_dynamics::{Feet, Friction, Part, Shape, ShapeError};
@@ -7,10 +7,10 @@ use stickslip_formats::nearest;
 use crate::error::FitError;
 use crate::prior::Prior;
 
-/// How well the size of an outline is known.
+/// Standard deviation of the size of an outline.
 const SCALE_STD: f64 = 0.02;
 
-/// How well it is known where an outline lies about the tracked frame (m).
+/// Standard deviation of the place of an outline about the tracked frame (m).
 const OFFSET_STD: f64 = 1e-3;
 
 /// A number of a scene that pushes can teach.
@@ -30,19 +30,19 @@ pub enum Parameter {
     CentreY,
     /// Factor of the object's outline.
     OutlineScale,
-    /// By how much the object's outline lies to the x of the scene's, object frame (m).
+    /// Offset of the object's outline from the scene's along x, object frame (m).
     OutlineX,
-    /// The same for y.
+    /// Offset of the object's outline from the scene's along y, object frame (m).
     OutlineY,
-    /// By how much the pusher's outline lies to the x of the scene's, pusher frame (m).
+    /// Offset of the pusher's outline from the scene's along x, pusher frame (m).
     PusherX,
-    /// The same for y.
+    /// Offset of the pusher's outline from the scene's along y, pusher frame (m).
     PusherY,
     /// Time by which object poses lag the pusher's (s).
     Latency,
 }
 
-/// What a name on the command line stands for.
+/// Parameters for each name on the command line.
 const GROUPS: [(&str, &[Parameter]); 9] = [
     ("mu_s", &[Parameter::MuS]),
     ("mu_p", &[Parameter::MuP]),
@@ -123,7 +123,7 @@ impl Parameter {
         }
     }
 
-    /// Whether predictions with several values of it have one scene, but for friction.
+    /// Returns true if predictions with several values of it have one scene, but for friction.
     pub(crate) fn keeps_scene(self) -> bool {
         matches!(
             self,
@@ -131,7 +131,7 @@ impl Parameter {
         )
     }
 
-    /// Whether it is a number of the tripod.
+    /// Returns true if it is a number of the tripod.
     pub(crate) fn needs_tripod(self) -> bool {
         matches!(self, Self::TripodRadius | Self::CentreX | Self::CentreY)
     }
@@ -147,7 +147,7 @@ impl Parameter {
         }
     }
 
-    /// Where a scene file has it, and the standard deviation of its logarithm.
+    /// Keys of a scene file for it, and for the standard deviation of its logarithm.
     pub(crate) fn scene_keys(self) -> Option<[[&'static str; 2]; 2]> {
         let keys = match self {
             Self::MuS => (["support", "friction"], "mu_s"),
@@ -159,7 +159,7 @@ impl Parameter {
         Some([keys.0, ["uncertainty", keys.1]])
     }
 
-    /// What `setup` believes of it.
+    /// Its prior by `setup`.
     #[must_use]
     pub fn prior(self, setup: &Setup) -> Prior {
         let log_normal = |median, relative_std| Prior::LogNormal {
@@ -288,7 +288,7 @@ impl Change {
         }
     }
 
-    /// Where a point of the outline is then (m).
+    /// Place of a point of the outline then (m).
     pub fn of_point(self, [x, y]: [f64; 2]) -> [f64; 2] {
         [
             self.scale * x + self.offset[0],

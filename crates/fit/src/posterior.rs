@@ -1,7 +1,7 @@
-//! How plausible a vector of parameters is after some pushes: [`Posterior`].
+//! Posterior of a vector of parameters after some pushes: [`Posterior`].
 //!
-//! A vector holds a whitened coordinate for each free parameter, then one for the camera's noise
-//! and one for the model's drift; all are standard normal before any push.
+//! A vector has a whitened coordinate for each free parameter, then one for the camera's noise and
+//! one for the model's drift; all are standard normal before any push.
 
 use std::borrow::Cow;
 
@@ -21,25 +21,25 @@ pub(crate) const LANES: usize = 8;
 /// Numbers of a vector that are no parameters.
 pub(crate) const NUISANCES: usize = 2;
 
-/// What is believed of the factor of the camera's noise.
+/// Prior of the factor of the camera's noise.
 const CAMERA_SCALE: Prior = Prior::LogNormal {
     median: 1.0,
     relative_std: 0.7,
 };
 
-/// What is believed of the drift (m/m).
+/// Prior of the drift (m/m).
 const DRIFT: Prior = Prior::LogNormal {
     median: 0.03,
     relative_std: 1.5,
 };
 
-/// The pushes and what is open.
+/// The pushes and the free parameters.
 #[derive(Debug)]
 pub(crate) struct Posterior<'a> {
     pub pushes: Vec<&'a PreparedPush>,
-    /// When the poses of each push were taken.
+    /// Times at which the poses of each push were taken.
     instants: Vec<Vec<Instant>>,
-    /// Whether all vectors have one scene, but for friction.
+    /// True if all vectors have one scene, but for friction.
     side_by_side: bool,
     pub parameters: Vec<(Parameter, Prior)>,
 }
@@ -74,7 +74,8 @@ impl<'a> Posterior<'a> {
         self.parameters.len() + NUISANCES
     }
 
-    /// Whether vectors have scenes of their own, so that their predictions do not run side by side.
+    /// Returns true if vectors have scenes of their own, so that their predictions do not run side
+    /// by side.
     pub fn is_costly(&self) -> bool {
         !self.side_by_side
     }
@@ -102,7 +103,7 @@ impl<'a> Posterior<'a> {
         densities
     }
 
-    /// The same of one vector.
+    /// Log density of one vector.
     pub fn log_density(&self, vector: &[f64]) -> f64 {
         self.log_densities(&[vector.to_vec()])[0]
     }
@@ -140,7 +141,7 @@ impl<'a> Posterior<'a> {
         predictions.into_iter().map(Ok).collect()
     }
 
-    /// When the poses of a push were taken, as a vector has it.
+    /// Times at which the poses of a push were taken, by the latency of a vector.
     pub fn instants(&self, push: usize, vector: &[f64]) -> Cow<'_, [Instant]> {
         let mut values = self.values(vector).into_iter();
         match values.find(|(parameter, _)| *parameter == Parameter::Latency) {

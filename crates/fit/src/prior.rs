@@ -1,4 +1,4 @@
-//! What is believed of a parameter before any push: [`Prior`].
+//! Prior of a parameter before any push: [`Prior`].
 
 use serde::Serialize;
 
@@ -47,7 +47,7 @@ impl Prior {
         }
     }
 
-    /// Whether it leaves anything open.
+    /// Returns true if it leaves anything open.
     #[must_use]
     pub fn is_open(&self) -> bool {
         match *self {

@@ -21,9 +21,9 @@ const LEAST_NOISE: f64 = 1e-6;
 /// A recorded push.
 #[derive(Clone, Debug)]
 pub struct Push {
-    /// What to call it.
+    /// Its name.
     pub name: String,
-    /// Scene, sensors and what is not known of them.
+    /// Scene, sensors and their uncertainty.
     pub setup: Setup,
     /// The log.
     pub log: Log,
@@ -41,7 +41,7 @@ pub(crate) struct PreparedPush {
     pub travelled: Vec<f64>,
 }
 
-/// When a measured pose was taken, between two rows of a prediction.
+/// Time at which a measured pose was taken, between two rows of a prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Instant {
     /// The row before.
@@ -105,7 +105,8 @@ impl PreparedPush {
         self.measured.iter().zip(instants).map(residual).collect()
     }
 
-    /// When each measured pose was taken, its latency allowed for; not before the first row.
+    /// Times at which the measured poses were taken, corrected for latency; not before the first
+    /// row.
     pub fn instants(&self, latency: f64) -> Vec<Instant> {
         let time = &self.push.log.time;
         let instant = |(row, _): &(usize, Pose)| {

@@ -20,12 +20,12 @@ const FIRST_MOVE: u64 = 1 << 32;
 /// Draws of one walker in one move: its partner, its stretch, whether it is accepted.
 const DRAWS: [u32; 3] = [0, 1, 2];
 
-/// Moves of every walker between two looks at whether the chains have settled, and most rounds of
+/// Moves of every walker between two checks whether the chains have settled, and most rounds of
 /// them.
 const ROUNDS: [usize; 2] = [200, 6];
 
-/// The same where every vector has a scene of its own: its pushes are predicted one by one then,
-/// which takes ten times as long.
+/// Moves and rounds where every vector has a scene of its own: its pushes are predicted one by one
+/// then, which takes ten times as long.
 const COSTLY_ROUNDS: [usize; 2] = [80, 4];
 
 /// Walkers for vectors of `dimension` numbers: four for each, and a multiple of two blocks of

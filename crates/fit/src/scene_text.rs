@@ -1,4 +1,4 @@
-//! A scene file with what was learnt: [`Fit::scene_text`].
+//! A scene file with the learnt values: [`Fit::scene_text`].
 
 use stickslip::Setup;
 use stickslip_dynamics::Feet;
@@ -10,8 +10,8 @@ use crate::parameter::Parameter;
 use crate::validation::CrossValidation;
 
 impl Fit {
-    /// A scene file with the fitted values and their spreads in place; what nothing was learnt of
-    /// stays as it is, and so does all where `validation` says that fitting does not pay. Values
+    /// A scene file with the fitted values and their spreads in place; a parameter that was not
+    /// learnt stays as it is. So do all if `validation` says that fitting does not pay. Values
     /// without a key of their own (an offset, a scale) are worked into the outlines and feet, and
     /// said in comments on top. `name` is shown in errors.
     ///
@@ -77,7 +77,7 @@ impl Fit {
         Ok(edit.text())
     }
 
-    /// How well the centre of friction is known, on one axis, as a share of the radius of gyration.
+    /// Uncertainty of the centre of friction, on one axis, as a share of the radius of gyration.
     fn spread_of_centre(&self, setup: &Setup) -> f64 {
         let is_centre = |p| matches!(p, Parameter::CentreX | Parameter::CentreY);
         let centre = self
@@ -88,7 +88,7 @@ impl Fit {
         variance.sqrt() / setup.scene.object.gyration_radius()
     }
 
-    /// What was learnt, for people.
+    /// Comments on the parameters that were learnt, for people.
     fn comments(&self) -> Vec<String> {
         let value = |fitted: &FittedParameter| {
             let said = format!(
@@ -116,7 +116,7 @@ impl Fit {
     }
 }
 
-/// Why a scene keeps its first guesses.
+/// Reason why a scene keeps its first guesses.
 fn refusal(validation: &CrossValidation) -> String {
     let [gain, error] = validation.gain_mm;
     format!(

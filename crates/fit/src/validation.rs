@@ -1,4 +1,4 @@
-//! What a fit is worth on pushes that it has not seen: [`cross_validate`].
+//! Accuracy of a fit on pushes that it has not seen: [`cross_validate`].
 
 use serde::Serialize;
 use stickslip::{Method, RunOptions, Setup, quantile, run};
@@ -34,10 +34,10 @@ pub struct CrossValidation {
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
-    /// By how much the fitted scene is better than the unfitted one, in the final position error
-    /// plus the WMSE (mm): mean over the pushes, and its standard error.
+    /// Gain of the fitted scene over the unfitted one, in the final position error plus the WMSE
+    /// (mm): mean over the pushes, and its standard error.
     pub gain_mm: [f64; 2],
-    /// Whether that mean is above 0. Where it is not, a scene keeps its first guesses.
+    /// True if that mean is above 0. If it is not, a scene keeps its first guesses.
     pub pays: bool,
 }
 
@@ -52,12 +52,12 @@ pub struct HeldOut {
     pub final_mm: [f64; 2],
     /// WMSE over all rows of the unfitted and the fitted scene (mm).
     pub wmse_mm: [f64; 2],
-    /// Whether the last measured x, y and θ lie in the 90 % interval predicted for them.
+    /// True for each of x, y and θ whose last measured value lies in the 90 % interval predicted
+    /// for it.
     pub covered: [bool; 3],
 }
 
-/// Parts that so many pushes are dealt into where nobody says how many: 0, none, for fewer than
-/// four.
+/// Default number of parts that so many pushes are dealt into: 0, none, for fewer than four.
 #[must_use]
 pub fn default_folds(pushes: usize) -> usize {
     match pushes {
@@ -146,7 +146,7 @@ fn summary(folds: usize, pushes: Vec<HeldOut>) -> CrossValidation {
 }
 
 impl HeldOut {
-    /// By how much the fitted scene is better (mm).
+    /// Gain of the fitted scene (mm).
     fn gain_mm(&self) -> f64 {
         let [unfitted, fitted] = [0, 1].map(|k| self.final_mm[k] + self.wmse_mm[k]);
         unfitted - fitted
@@ -211,7 +211,7 @@ fn scores(push: &PreparedPush, setup: &Setup) -> Result<Scores, FitError> {
     ))
 }
 
-/// Whether the last measured pose lies in the intervals predicted for it, axis by axis.
+/// Checks, axis by axis, whether the last measured pose lies in the intervals predicted for it.
 fn covered(
     push: &PreparedPush,
     fit: &Fit,

@@ -7,16 +7,16 @@ use serde::Deserialize;
 /// Most bytes of the file; one with hundreds of topics and splits has 100 kB.
 const LIMIT: usize = 1 << 24;
 
-/// What `metadata.yaml` says of a bag.
+/// Content of a bag's `metadata.yaml`.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct BagMetadata {
-    /// How its files are stored: `mcap` or `sqlite3`.
+    /// Storage of its files: `mcap` or `sqlite3`.
     pub storage_identifier: String,
     /// Its files in the order of recording, from the bag's folder.
     pub relative_file_paths: Vec<String>,
 }
 
-/// Why `metadata.yaml` was refused.
+/// Reason why `metadata.yaml` was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BagMetadataError {
@@ -37,7 +37,7 @@ pub enum BagMetadataError {
     Content {
         /// Display name of the file.
         file: String,
-        /// What does not fit, with line and column.
+        /// The fault, with line and column.
         why: String,
     },
     /// A file elsewhere.
@@ -57,8 +57,8 @@ struct Document {
     rosbag2_bagfile_information: BagMetadata,
 }
 
-/// Reads `metadata.yaml` of a bag's folder; `name` is shown in errors. Only what is needed to find
-/// the files is looked at.
+/// Reads `metadata.yaml` of a bag's folder; `name` is shown in errors. It parses only what is
+/// needed to find the files.
 ///
 /// # Errors
 /// No YAML, a missing key or one of another type, a path that leaves the folder, 16 MiB and more.

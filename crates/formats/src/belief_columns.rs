@@ -1,5 +1,5 @@
-//! The columns of `estimate.csv` that say what the belief looks like, in a row and body by body:
-//! [`names`], [`numbers`].
+//! The columns of `estimate.csv` that describe the belief, in a row and body by body: [`names`],
+//! [`numbers`].
 
 use stickslip::{ContactSlip, EstimateRow};
 
@@ -31,7 +31,7 @@ pub(crate) fn names(fixels: usize) -> impl Iterator<Item = String> {
     OF_ROW.map(str::to_owned).into_iter().chain(of_bodies)
 }
 
-/// What a row has in them; `None` where the method has no value.
+/// Numbers of a row in these columns; `None` where the method has no value.
 ///
 /// # Panics
 /// If the row says how the object slips on another number of bodies than there are.

@@ -1,4 +1,4 @@
-//! Why a CSV file was refused: [`CsvError`].
+//! Reason why a CSV file was refused: [`CsvError`].
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub struct CsvColumn {
     pub name: String,
 }
 
-/// Why a CSV file was refused, and where.
+/// Reason why a CSV file was refused, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct CsvError {
     /// Display name of the file.
@@ -22,11 +22,11 @@ pub struct CsvError {
     pub line: usize,
     /// Column; `None` where the whole line or file is meant.
     pub column: Option<CsvColumn>,
-    /// What is wrong.
+    /// The problem.
     pub problem: CsvProblem,
 }
 
-/// Why a log was refused.
+/// Reason why a log was refused.
 pub type LogError = CsvError;
 
 impl fmt::Display for CsvError {
@@ -39,7 +39,7 @@ impl fmt::Display for CsvError {
     }
 }
 
-/// What is wrong with a CSV file.
+/// Problem of a CSV file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CsvProblem {
@@ -62,7 +62,7 @@ pub enum CsvProblem {
     MissingColumn {
         /// Its name.
         column: String,
-        /// What is there instead: empty, or starts with a comma or a semicolon.
+        /// Description of the first line instead: empty, or starts with a comma or a semicolon.
         hint: String,
     },
     /// Two columns have the same name.
@@ -141,7 +141,7 @@ pub enum CsvProblem {
     NotBinary {
         /// The cell.
         found: String,
-        /// Whether the column allows empty cells.
+        /// True if the column allows empty cells.
         may_be_empty: bool,
     },
     /// Not a whole number from 0 up.
@@ -174,7 +174,7 @@ pub enum CsvProblem {
     /// Filled in one row and empty in another although the column is one or the other as a whole.
     #[error("the cell is {}, unlike in the rows before; where feet are known all of this column is empty, else it goes with `mu_s`", if *.filled { "filled" } else { "empty" })]
     Uneven {
-        /// Whether this cell is filled.
+        /// True if this cell is filled.
         filled: bool,
     },
 }

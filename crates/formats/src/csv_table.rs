@@ -183,7 +183,7 @@ impl CsvTable {
         are_numbers.then_some(first)
     }
 
-    /// What a person may have done instead of naming `column`.
+    /// Mistake that a person may have made instead of naming `column`.
     fn missing_hint(&self, column: &str) -> String {
         if let Some(number) = self.number_for_name() {
             return format!("; the first line has numbers for names, `{number}` to begin with");
@@ -346,7 +346,8 @@ fn read_text(mut reader: impl Read) -> Result<String, (usize, CsvProblem)> {
         .unwrap_or(text))
 }
 
-/// Whether a cell of a first line is a measurement rather than a name; `nan` and `inf` are names.
+/// Returns true if a cell of a first line is a measurement rather than a name; `nan` and `inf` are
+/// names.
 fn is_number(cell: &str) -> bool {
     cell.parse().is_ok_and(f64::is_finite)
 }

@@ -40,8 +40,8 @@ pub fn estimate_columns(estimate: &Estimate) -> Vec<(String, Vec<f64>)> {
     columns
 }
 
-/// The estimate that such columns hold, as far as scores need it: times, poses and their standard
-/// deviations. Other columns are not looked at.
+/// The estimate in such columns, as far as scores need it: times, poses and their standard
+/// deviations. Other columns are ignored.
 ///
 /// # Errors
 /// `time`, `x`, `y` or `theta` is missing, time does not rise, or a pose is given in part.

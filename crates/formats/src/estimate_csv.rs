@@ -1,9 +1,16 @@
-//! `estimate.csv`, what a filter writes, one row per log row: [`write_estimate`],
-//! [`read_estimate`].
+//! `estimate.csv`, a filter's output, one row per log row: [`write_estimate`], [`read_estimate`].
 //!
-//! `time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f, std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta,collapsed,distinct,ancestors,modes, mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...`,
-//! in this order. A cell is empty where the method has no value; `d_tri` and `std_d_tri` are empty
-//! throughout where the feet are known.
+//! The columns are, in this order:
+//!
+//! ```text
+//! time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,
+//! std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed,
+//! cov_x_y,cov_x_theta,cov_y_theta,collapsed,distinct,ancestors,
+//! modes,mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...
+//! ```
+//!
+//! A cell is empty where the method has no value; `d_tri` and `std_d_tri` are empty throughout
+//! where the feet are known.
 
 use std::io::{Read, Write};
 
@@ -87,15 +94,16 @@ pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::R
 
 /// Reads an estimate; `name` is shown in errors.
 ///
-/// Of the modes of a belief the file tells the first one only: rows that are read have none.
+/// Of the modes of a belief the file has only the first one: rows that are read have none.
 ///
 /// `has_tripod` is true unless a row has friction values and an empty `d_tri`; `d_tri` then reads
 /// as 0.
 ///
 /// # Errors
-/// The header is not that of an estimate, a row has a wrong number of cells, a cell is no finite
-/// number, time does not rise, a pose, twist or set of friction values is given in part, or there
-/// is no row.
+/// - The header is not that of an estimate, or there is no row.
+/// - A row has a wrong number of cells, or a cell is no finite number.
+/// - Time does not rise.
+/// - A pose, twist or set of friction values is given in part.
 pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError> {
     let table = CsvTable::read(reader, name)?;
     let mut estimate = Estimate {
@@ -120,12 +128,12 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
     Ok(estimate)
 }
 
-/// Which columns an estimate has, and which are filled.
+/// Columns that an estimate has, and those that are filled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EstimateColumns {
     /// Number of fixels.
     pub fixels: usize,
-    /// Whether d_tri is a parameter.
+    /// True if d_tri is a parameter.
     pub has_tripod: bool,
 }
 
@@ -252,7 +260,7 @@ fn pose_numbers(pose: Pose) -> [f64; 3] {
 struct RowReader<'r, 't> {
     row: &'r Row<'t>,
     fixels: usize,
-    /// How many of the columns that came later there are.
+    /// Number of the columns that came later.
     later: usize,
 }
 

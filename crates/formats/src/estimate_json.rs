@@ -1,11 +1,11 @@
 //! An estimate's row as one line of JSON: [`estimate_json`], keys named as the columns of
-//! `estimate.csv`, and what a deadline did to it.
+//! `estimate.csv`, and the effect of a deadline on it.
 
 use stickslip::{EstimateRow, Setup};
 
 use crate::estimate_csv::{EstimateColumns, cells, header};
 
-/// What a deadline did to the estimates so far.
+/// Effect of a deadline on the estimates so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
     /// Particles that this estimate is made of.
@@ -43,7 +43,7 @@ pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup, pace: Option<P
 mod tests {
     use super::*;
 
-    const SCENE: &str = include_str!("../../cli/demo/slide-ell-disc-110/scene.toml");
+    const SCENE: &str = include_str!("../../testkit/experiments/slide-ell-disc-110/scene.toml");
 
     #[test]
     fn line_is_json_with_the_columns_as_keys() {

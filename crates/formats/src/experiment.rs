@@ -6,7 +6,7 @@ use crate::log_csv::{SensorError, check_sensors};
 use crate::truth_csv::Truth;
 use crate::truth_json::TruthFacts;
 
-/// A scene, a log and what is known of the truth.
+/// A scene, a log and the known part of the truth.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     /// Scene, sensors and filter settings.

@@ -1,8 +1,14 @@
-//! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and its sensors against the
-//! scene's fixels: [`check_sensors`].
+//! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and the check of its sensors
+//! against the scene's fixels: [`check_sensors`].
 //!
-//! `time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta[,tactile_1,...][,pusher_force_x,pusher_force_y][,object_var_x,...]`,
-//! the columns found by name, in any order. An empty cell is a missing measurement.
+//! The columns are found by name, in any order:
+//!
+//! ```text
+//! time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta
+//! [,tactile_1,...][,pusher_force_x,pusher_force_y][,object_var_x,...]
+//! ```
+//!
+//! An empty cell is a missing measurement.
 
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
@@ -41,7 +47,7 @@ pub struct SensorError {
     pub fixels: usize,
 }
 
-/// Where the columns of a log stand.
+/// Positions of a log's columns.
 struct Columns {
     time: usize,
     object: [usize; 3],
@@ -54,9 +60,9 @@ struct Columns {
 /// Reads a log; `name` is shown in errors and warnings.
 ///
 /// # Errors
-/// A required column is missing or named twice, a row has a wrong number of cells, a cell is no
-/// finite number, time does not rise, a pose, force or covariance is given in part, a covariance is
-/// none, a tactile cell is neither 0 nor 1, or there is no row.
+/// A required column is missing or named twice, or there is no row. A row has a wrong number of
+/// cells, a cell is no finite number, or time does not rise. A pose, force or covariance is given
+/// in part, or numbers are no covariance. A tactile cell is neither 0 nor 1.
 ///
 /// ```
 /// let text = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta\n0,0.1,0,0,0,0,0\n0.03,,,,0.01,0,0\n";
@@ -255,7 +261,7 @@ fn optional_columns<const N: usize>(
     }
 }
 
-/// What a row says of its pose's noise.
+/// Covariance of a row's pose, by its own columns.
 fn own_covariance(row: &Row<'_>, columns: [usize; 6]) -> Result<Option<PoseCovariance>, LogError> {
     let numbers = row.group(&columns)?;
     let numbers = numbers.and_then(|numbers| <[f64; 6]>::try_from(numbers).ok());

@@ -1,4 +1,4 @@
-//! What was odd about a log and did not keep it from being read: [`LogWarning`].
+//! Oddities of a log that did not keep it from being read: [`LogWarning`].
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub enum LogWarning {
         at: u64,
         /// Bytes of the file.
         size: u64,
-        /// What is wrong there.
+        /// The fault there.
         why: String,
     },
     /// Poses that are not in the plane; only their turn about the vertical was read.
@@ -30,9 +30,9 @@ pub enum LogWarning {
         file: String,
         /// Name of the topic.
         topic: String,
-        /// How many are tilted by more than 5°.
+        /// Number of poses tilted by more than 5°.
         count: usize,
-        /// How many there are.
+        /// Number of all poses.
         of: usize,
         /// Largest tilt (rad).
         largest: f64,
@@ -43,7 +43,7 @@ pub enum LogWarning {
         file: String,
         /// Topic and frames.
         place: String,
-        /// How many stamps.
+        /// Number of stamps.
         count: usize,
         /// Of how many.
         of: usize,
@@ -54,7 +54,7 @@ pub enum LogWarning {
         file: String,
         /// Name of the topic.
         topic: String,
-        /// How many there are.
+        /// Number of covariances.
         count: usize,
         /// Of how many poses.
         of: usize,
@@ -73,7 +73,7 @@ pub enum LogWarning {
 }
 
 impl LogWarning {
-    /// Whether some of the file could not be read.
+    /// Returns true if some of the file could not be read.
     #[must_use]
     pub fn is_loss(&self) -> bool {
         matches!(self, Self::CutOff { .. })

@@ -1,4 +1,4 @@
-//! How tags sit on the bodies: [`Mounts`].
+//! Places of tags on the bodies: [`Mounts`].
 
 use std::collections::BTreeMap;
 

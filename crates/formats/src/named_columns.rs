@@ -3,7 +3,7 @@
 
 use crate::number;
 
-/// Why columns were refused.
+/// Reason why columns were refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColumnError {

@@ -65,8 +65,8 @@ impl<W: Write + Seek> McapRecorder<W> {
         self.messages.write(&one_row(row, self.sensors))
     }
 
-    /// Ends the chunk at hand and writes it, up to the operating system: what is written by then
-    /// can be read whatever happens to the program.
+    /// Ends the chunk at hand and writes it, up to the operating system: data written by then can
+    /// be read whatever happens to the program.
     ///
     /// # Errors
     /// Those of the writer.

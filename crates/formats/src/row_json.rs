@@ -14,7 +14,7 @@ use crate::nearest::nearest;
 /// Most tactile sensors of a row.
 const MOST_SENSORS: usize = 1000;
 
-/// Why a line is no row.
+/// Reason why a line is no row.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RowJsonError {
@@ -43,7 +43,7 @@ pub enum RowJsonError {
         key: String,
         /// The value.
         found: String,
-        /// What it must be.
+        /// Expected value.
         expected: &'static str,
     },
     /// A pose or force without all of its numbers.

@@ -47,7 +47,7 @@ impl Truth {
     }
 }
 
-/// Where each column stands.
+/// Position of each column.
 struct Columns {
     pose: [usize; 4],
     twist: Option<[usize; 3]>,
@@ -197,7 +197,7 @@ impl Columns {
     }
 }
 
-/// The motion that such columns hold: times and poses; other columns are not looked at.
+/// The motion in such columns: times and poses; other columns are ignored.
 ///
 /// # Errors
 /// `time`, `x`, `y` or `theta` is missing, time does not rise, or a number is NaN or infinite.

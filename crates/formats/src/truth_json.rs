@@ -1,4 +1,4 @@
-//! `truth.json`, the true friction values and what happened when: [`TruthFacts`],
+//! `truth.json`, the true friction values and the times of events: [`TruthFacts`],
 //! [`read_truth_json`], [`write_truth_json`]. For scoring only.
 
 use std::io::Write;
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use stickslip::Occlusion;
 use stickslip_dynamics::Pose;
 
-/// What is known of an experiment after it; `None` where the file does not say.
+/// Facts that are known of an experiment after it; `None` where the file does not say.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TruthFacts {
-    /// Where the truth comes from, in words.
+    /// Source of the truth, in words.
     pub source: Option<String>,
     /// True μ_s.
     pub mu_s: Option<f64>,
@@ -31,7 +31,7 @@ pub struct TruthFacts {
 }
 
 impl TruthFacts {
-    /// What the camera does not see: everything from `occlude_from` on.
+    /// Rows that the camera does not see: everything from `occlude_from` on.
     #[must_use]
     pub fn occlusion(&self) -> Occlusion {
         self.occlude_from
@@ -39,7 +39,7 @@ impl TruthFacts {
     }
 }
 
-/// Why a `truth.json` was refused, and where.
+/// Reason why a `truth.json` was refused, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}:{column}: {}{problem}. Write one JSON object with numbers, row indices from 0 and null where nothing is known", if .key.is_empty() { String::new() } else { format!("`{key}`: ") })]
 pub struct TruthFactsError {

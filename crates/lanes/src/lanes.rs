@@ -122,13 +122,13 @@ impl<const W: usize> Lanes<W> {
         Self(from_fn(|i| (-a.0[i]).mul_add(b.0[i], self.0[i])))
     }
 
-    /// Where `self > other`.
+    /// Lanes in which `self > other`.
     #[inline(always)]
     pub fn gt(self, other: Self) -> Mask<W> {
         Mask(from_fn(|i| if self.0[i] > other.0[i] { YES } else { 0 }))
     }
 
-    /// Where `self < other`.
+    /// Lanes in which `self < other`.
     #[inline(always)]
     pub fn lt(self, other: Self) -> Mask<W> {
         other.gt(self)

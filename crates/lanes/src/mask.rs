@@ -15,7 +15,7 @@ pub struct Mask<const W: usize>(pub(crate) [u64; W]);
 pub(crate) const YES: u64 = u64::MAX;
 
 impl<const W: usize> Mask<W> {
-    /// The same condition in every lane.
+    /// One condition for every lane.
     #[inline(always)]
     pub const fn splat(value: bool) -> Self {
         Self([if value { YES } else { 0 }; W])
@@ -27,7 +27,7 @@ impl<const W: usize> Mask<W> {
         Self(from_fn(|i| if lane(i) { YES } else { 0 }))
     }
 
-    /// Whether the condition holds in one lane.
+    /// Returns true if the condition is met in one lane.
     #[inline(always)]
     pub fn lane(self, i: usize) -> bool {
         self.0[i] != 0
@@ -53,13 +53,13 @@ impl<const W: usize> Mask<W> {
         Lanes(from_fn(|i| f64::from_bits(self.0[i] & yes.0[i].to_bits())))
     }
 
-    /// Whether the condition holds in every lane.
+    /// Returns true if the condition is met in every lane.
     #[inline(always)]
     pub fn all(self) -> bool {
         self.0.iter().fold(YES, |all, lane| all & lane) != 0
     }
 
-    /// Whether the condition holds in some lane.
+    /// Returns true if the condition is met in some lane.
     #[inline(always)]
     pub fn any(self) -> bool {
         self.0.iter().fold(0, |any, lane| any | lane) != 0
@@ -76,7 +76,7 @@ impl<const W: usize> Mask<W> {
         })
     }
 
-    /// In how many lanes the condition holds.
+    /// Number of lanes in which the condition is met.
     #[inline(always)]
     pub fn count(self) -> u32 {
         self.bits().count_ones()

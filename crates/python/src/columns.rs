@@ -19,7 +19,7 @@ impl<'py> Columns<'py> {
         dict.iter().map(column).collect::<PyResult<_>>().map(Self)
     }
 
-    /// The same for the library.
+    /// The columns for the library.
     pub fn named(&self) -> PyResult<NamedColumns<'_>> {
         let mut columns = Vec::with_capacity(self.0.len());
         for (name, array) in &self.0 {

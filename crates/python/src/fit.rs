@@ -1,4 +1,4 @@
-//! What many pushes teach: [`fit`].
+//! Fit of friction parameters to many pushes: [`fit`].
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;

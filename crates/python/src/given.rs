@@ -1,5 +1,5 @@
-//! What Python gives as a dict, refused with its name and value where it is of a wrong type:
-//! [`Given`].
+//! Values that Python gives as a dict, refused with their name and value where they are of a wrong
+//! type: [`Given`].
 
 use pyo3::prelude::*;
 

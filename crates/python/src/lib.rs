@@ -1,7 +1,7 @@
 //! The Python module `stickslip._native`: the library on NumPy arrays.
 //!
 //! It maps arguments to the library's types and results to arrays, and holds no logic of its own;
-//! what Python users see, with its documentation, is the package in `python/stickslip/`. Columns of
+//! the package that Python users see, with its documentation, is in `python/stickslip/`. Columns of
 //! logs and estimates go in and out under the names that they have in files. The library works
 //! without the interpreter's lock, on threads of its own.
 

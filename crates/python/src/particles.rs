@@ -14,8 +14,8 @@ use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
 
-/// What is kept of a particle: the weight, the pose and the friction, then weight and friction of
-/// one of those that have the estimate's.
+/// Columns that are kept of a particle: the weight, the pose and the friction, then weight and
+/// friction of one of those that have the estimate's.
 const NAMES: [&str; 13] = [
     "weight",
     "x",

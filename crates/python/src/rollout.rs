@@ -92,7 +92,7 @@ pub fn rollout<'py>(
     to_dict(py, &ends)
 }
 
-/// How trajectories ended, as arrays.
+/// Ends of trajectories, as arrays.
 fn to_dict<'py>(py: Python<'py>, ends: &[RolloutEnd]) -> PyResult<Bound<'py, PyDict>> {
     let lags = PyArray1::from_iter(py, ends.iter().flat_map(|end| end.pusher_lag));
     let most = PyArray1::from_iter(py, ends.iter().map(|end| end.most_pusher_lag));
@@ -146,11 +146,11 @@ fn placed(error: RolloutError, first: usize) -> RolloutError {
 struct Block<'a> {
     rows: usize,
     pushers: &'a [Numbers],
-    /// Whether all trajectories have the same pusher.
+    /// True if all trajectories have one pusher.
     shared: bool,
     poses: &'a mut [Numbers],
     twists: &'a mut [Numbers],
-    /// How they ended; those past the last trajectory mean nothing.
+    /// Ends of the trajectories; those past the last trajectory mean nothing.
     ends: [RolloutEnd; ROLLOUT_BLOCK],
 }
 

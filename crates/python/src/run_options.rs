@@ -1,4 +1,4 @@
-//! How a log is run, as Python says it: [`RunArguments`].
+//! Options of a run over a log, as Python gives them: [`RunArguments`].
 
 use pyo3::prelude::*;
 use stickslip::{FilterModel, Method, Occlusion, RunOptions, TactileUse, Tracking};
@@ -44,7 +44,7 @@ impl RunArguments {
         })
     }
 
-    /// What is hidden.
+    /// Rows that are hidden.
     pub fn occlusion(&self) -> PyResult<Occlusion> {
         match (self.occlude, self.occlude_middle) {
             (None, None) => Ok(Occlusion::None),
@@ -83,7 +83,7 @@ pub fn model(name: &str) -> PyResult<FilterModel> {
     }
 }
 
-/// Whether touch counts.
+/// Use of touch: used or ignored.
 pub fn touch(used: bool) -> TactileUse {
     if used {
         TactileUse::Used

@@ -9,8 +9,7 @@ use stickslip_formats::read_scene;
 
 use crate::error::refused;
 
-/// What is known before an experiment: scene, sensors and filter settings, as scene.toml holds
-/// them.
+/// Prior knowledge of an experiment: scene, sensors and filter settings, as in scene.toml.
 #[pyclass(frozen, module = "stickslip")]
 pub struct Scene {
     pub setup: Setup,

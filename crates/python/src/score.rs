@@ -1,4 +1,4 @@
-//! How far an estimate is from what happened: [`score`].
+//! Scores of an estimate against the truth or the log: [`score`].
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +12,7 @@ use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
 
-/// What an estimate is scored on.
+/// Data that an estimate is scored on.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Arguments<'py> {

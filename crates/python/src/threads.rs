@@ -12,7 +12,7 @@ use crate::error::refused;
 
 /// Threads that are kept for the next call.
 struct Kept {
-    /// The process that they run in: a fork has none of its parent's threads.
+    /// The process that they run in: a forked process has none of its parent's threads.
     process: u32,
     threads: usize,
     pool: Arc<ThreadPool>,
@@ -56,7 +56,7 @@ fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
         threads,
         pool: Arc::clone(&pool),
     });
-    // the threads of a parent process cannot be told to stop
+    // the threads of a parent process cannot be stopped from here
     if let Some(before) = before.filter(|before| before.process != process) {
         std::mem::forget(before);
     }

@@ -1,4 +1,5 @@
-//! What the planar scene leaves open: heights, tags, the plate and the hand, [`Appearance`].
+//! Looks of a scene that its planar shapes leave open: heights, tags, the plate and the hand,
+//! [`Appearance`].
 
 use stickslip_dynamics::{Part, Pose, Scene};
 
@@ -25,7 +26,7 @@ pub struct Hand {
     pub heights: [f64; 2],
 }
 
-/// What the camera sees of a scene besides its planar shapes.
+/// Looks of a scene besides its planar shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Appearance {
     /// Two opposite corners of the plate, the lower left and the upper right (m).

@@ -83,7 +83,7 @@ impl BoardPose {
         std::array::from_fn(|i| self.origin[i] + x * self.axes[0][i] + y * self.axes[1][i])
     }
 
-    /// Where a ray meets the board's plane, in its frame, and how high above the table.
+    /// Intersection of a ray with the board's plane, in its frame, and its height above the table.
     fn intersect(&self, ray: &Ray) -> ([f64; 2], f64) {
         let normal = cross(self.axes[0], self.axes[1]);
         let direction = [ray.slope[0], ray.slope[1], -1.0];
@@ -131,7 +131,7 @@ pub fn calibration_poses(
     let middle = camera.point_at(size.map(|n| (n - 1.0) / 2.0), 0.0)?;
     let flat = BoardPose::flat([middle[0] - half[0], middle[1] - half[1]], thickness);
     let held = (1..count).map(|k| {
-        // nine places over the image in turn, turned and tilted anew each time
+        // nine places over the image in turn, with another turn and tilt each time
         let place = [k % 3, (k / 3) % 3].map(|third| 0.3 + 0.2 * third as f64);
         let height = 0.06 + 0.02 * (k % 4) as f64;
         let at = camera.point_at([place[0] * size[0], place[1] * size[1]], height)?;

@@ -4,7 +4,7 @@ use crate::lens::Lens;
 use crate::ray::Ray;
 use crate::vector::{cross, dot, sub, unit};
 
-/// A camera above the table: a lens, where it is and where it looks.
+/// A camera above the table: a lens, its position and its orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     lens: Lens,
@@ -14,11 +14,11 @@ pub struct Camera {
     forward: [f64; 3],
 }
 
-/// Why a camera was refused.
+/// Reason why a camera was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
-    /// The camera is not above what it looks at.
+    /// The camera is not above its target.
     #[error(
         "the camera's height is {height} m; it must be positive. Put the camera above the table"
     )]
@@ -26,7 +26,7 @@ pub enum CameraError {
         /// Its height (m).
         height: f64,
     },
-    /// A pixel looks past the table.
+    /// A pixel sees past the table.
     #[error(
         "the pixel ({x}, {y}) looks at or above the horizon; every pixel must look down. Tilt the camera less"
     )]
@@ -49,8 +49,8 @@ pub enum CameraError {
 }
 
 impl Camera {
-    /// A camera at `centre` (m) that looks at a point of the table (m), the world's y axis upwards
-    /// in the image.
+    /// A camera at `centre` (m) that is aimed at a point of the table (m), the world's y axis
+    /// upwards in the image.
     ///
     /// # Errors
     /// The camera is not above the table, or a corner of its image sees no point of it.

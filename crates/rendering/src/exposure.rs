@@ -1,4 +1,4 @@
-//! Where everything is while the shutter is open: [`Exposure`], [`BodyPoses`].
+//! Poses of all bodies while the shutter is open: [`Exposure`], [`BodyPoses`].
 
 use stickslip_dynamics::Pose;
 

@@ -1,13 +1,13 @@
-//! What a prism covers of the table: [`Footprint`], one convex part.
+//! Area of the table that a prism covers: [`Footprint`], one convex part.
 
 use stickslip_dynamics::Part;
 
 /// A convex region of the plane that line segments can be tested against.
 #[derive(Clone, Debug)]
 pub(crate) enum Footprint {
-    /// Where n · p <= offset for every (n, offset).
+    /// Points p with n · p <= offset for every (n, offset).
     Polygon(Vec<([f64; 2], f64)>),
-    /// Where |rows (p - centre)| <= 1.
+    /// Points p with |rows (p - centre)| <= 1.
     Ellipse {
         centre: [f64; 2],
         rows: [[f64; 2]; 2],
@@ -47,8 +47,8 @@ impl Footprint {
         }
     }
 
-    /// Where the segment from `start` to `start + run` enters the region, as a share of it in
-    /// [0, 1]; `None` where it does not.
+    /// Entry of the segment from `start` to `start + run` into the region, as a share of it in [0,
+    /// 1]; `None` where it does not enter.
     pub(crate) fn entry(&self, start: [f64; 2], run: [f64; 2]) -> Option<f64> {
         match self {
             Self::Polygon(sides) => entry_of_polygon(sides, start, run),
@@ -85,7 +85,7 @@ fn entry_of_polygon(sides: &[([f64; 2], f64)], start: [f64; 2], run: [f64; 2]) -
     (from <= to).then_some(from)
 }
 
-/// The same for the unit circle: the smaller root of |start + s run| = 1.
+/// Entry into the unit circle: the smaller root of |start + s run| = 1.
 fn entry_of_circle(start: [f64; 2], run: [f64; 2]) -> Option<f64> {
     let c = dot(start, start) - 1.0;
     if c <= 0.0 {

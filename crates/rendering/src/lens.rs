@@ -2,10 +2,16 @@
 
 /// A pinhole with radial and tangential distortion (Brown 1966) and a raster of pixels.
 ///
-/// A point with the direction (x, y, 1) in the camera's frame (x right, y down), r² = x² + y², is
-/// seen at x' = x (1 + k1 r² + k2 r⁴) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2 r⁴) + p1
-/// (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy). The centre of the first
-/// pixel is (0, 0).
+/// The camera's frame has x right and y down. A point with the direction (x, y, 1) is seen at (x',
+/// y'):
+///
+/// ```text
+/// r² = x² + y²
+/// x' = x (1 + k1 r² + k2 r⁴) + 2 p1 x y + p2 (r² + 2 x²)
+/// y' = y (1 + k1 r² + k2 r⁴) + p1 (r² + 2 y²) + 2 p2 x y
+/// ```
+///
+/// Its pixel is (fx x' + cx, fy y' + cy). The centre of the first pixel is (0, 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Columns and rows of the raster.
@@ -33,7 +39,7 @@ impl Lens {
         }
     }
 
-    /// Where the direction (x, y, 1) is seen (px).
+    /// Pixel at which the direction (x, y, 1) is seen.
     pub fn pixel(&self, direction: [f64; 2]) -> [f64; 2] {
         let seen = self.distort(direction);
         [

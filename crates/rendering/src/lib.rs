@@ -1,11 +1,11 @@
 //! An overhead camera: frames of a scene as a real camera would deliver them.
 //!
-//! A [`Renderer`] looks through a [`Camera`] (perspective, [`Lens`] distortion) at a
-//! [`RenderScene`] (plate, fixels, object, pusher, their tags, a hand) and renders 8-bit grey
-//! frames: every quarter of a pixel is the mean over rays spread over its area and over the
-//! exposure; then come defocus, uneven light, shot and read noise ([`Optics`]). A [`Video`] shows a
-//! recorded motion frame by frame; its [`FrameGrabber`] now and then delivers a frame twice. A
-//! [`Board`] of tags, held in many poses, serves calibration.
+//! A [`Renderer`] sees a [`RenderScene`] (plate, fixels, object, pusher, their tags, a hand)
+//! through a [`Camera`] (perspective, [`Lens`] distortion), and renders 8-bit grey frames. Every
+//! quarter of a pixel is the mean over rays spread over its area and over the exposure. Defocus,
+//! uneven light, shot and read noise follow ([`Optics`]). A [`Video`] shows a recorded motion frame
+//! by frame; its [`FrameGrabber`] now and then delivers a frame twice. A [`Board`] of tags, held in
+//! many poses, serves calibration.
 //!
 //! Lengths in m, world frame: x and y on the table, z up from it. Pixels: x right, y down, the
 //! centre of the first pixel at (0, 0). Greys of surfaces are the shares of light that they return,

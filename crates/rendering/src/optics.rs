@@ -31,7 +31,7 @@ pub struct Lighting {
 /// Noise of the sensor, in grey levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// Standard deviation in the dark.
+    /// Standard deviation without light.
     pub read_noise: f64,
     /// Variance per grey level of light, on top of it.
     pub shot_noise: f64,
@@ -238,8 +238,8 @@ mod tests {
         );
     }
 
-    /// Mean and variance of the bytes of an even image against what was asked for, rounding (1/12)
-    /// included.
+    /// Mean and variance of the bytes of an even image, compared with the requested ones, rounding
+    /// (1/12) included.
     #[test]
     fn capture_has_the_noise_asked_for() {
         let lighting = Lighting {

@@ -6,7 +6,7 @@ use crate::footprint::Footprint;
 use crate::ray::Ray;
 use crate::tag::{PAPER, Tag};
 
-/// What a prism moves with.
+/// Body that a prism moves with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parent {
     Table,
@@ -15,7 +15,7 @@ pub(crate) enum Parent {
     Hand,
 }
 
-/// What is on a prism's top.
+/// Texture of a prism's top.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Texture {
     Plain(f32),
@@ -40,7 +40,7 @@ pub(crate) struct Prism {
     pub(crate) footprint: Footprint,
 }
 
-/// Where a prism is at one instant.
+/// Place of a prism at one instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     /// The middle of its disc (m).
@@ -49,7 +49,7 @@ pub(crate) struct Placement {
     cos: f64,
 }
 
-/// Where a ray meets a surface.
+/// Intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit {
     /// Height (m); of two hits a descending ray meets the higher first.
@@ -94,7 +94,7 @@ impl Prism {
         }
     }
 
-    /// Where the prism is with its parent at `parent`.
+    /// Place of the prism with its parent at `parent`.
     pub(crate) fn place(&self, parent: Pose) -> Placement {
         let [x, y] = parent.transform([self.mount.x, self.mount.y]);
         let pose = Pose::new(x, y, parent.theta + self.mount.theta);
@@ -115,7 +115,7 @@ impl Prism {
         ]
     }
 
-    /// Where `ray` meets the prism first.
+    /// First intersection of `ray` with the prism.
     pub(crate) fn hit(&self, placement: &Placement, ray: &Ray) -> Option<Hit> {
         // the ray between the top's and the bottom's height, seen from above
         let (top, thickness) = (ray.at(self.top), self.top - self.bottom);

@@ -1,4 +1,4 @@
-//! What one point of the sensor sees: [`Ray`].
+//! Line of sight of one point of the sensor: [`Ray`].
 
 /// A straight line from the camera's centre down to the table.
 #[derive(Clone, Copy, Debug)]
@@ -10,7 +10,7 @@ pub(crate) struct Ray {
 }
 
 impl Ray {
-    /// Where the ray is at height `z` (m).
+    /// Point of the ray at height `z` (m).
     pub(crate) fn at(&self, z: f64) -> [f64; 2] {
         let descent = self.origin[2] - z;
         [

@@ -6,7 +6,7 @@ use stickslip_dynamics::{Pose, Scene, Shape};
 
 use crate::appearance::{Appearance, TagMount};
 
-/// Where object and pusher are, one entry per frame.
+/// Poses of object and pusher, one entry per frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedMotion {
     /// Middle of the exposure (s), strictly rising.

@@ -1,4 +1,4 @@
-//! What stands before the camera: [`RenderScene`].
+//! Bodies in front of the camera: [`RenderScene`].
 
 use stickslip_dynamics::{Part, Pose, Scene, Shape};
 
@@ -32,7 +32,7 @@ pub(crate) struct PlacedPrism<'a> {
     placements: Vec<Placement>,
 }
 
-/// What may be seen in a part of the image during one exposure.
+/// Prisms that may be seen in a part of the image during one exposure.
 #[derive(Clone, Debug)]
 pub(crate) struct VisiblePart<'a> {
     pub(crate) plate: [[f64; 2]; 2],
@@ -113,7 +113,7 @@ impl<'a> PlacedPrism<'a> {
         Some(Self { prism, placements })
     }
 
-    /// Whether it moves during the exposure.
+    /// Returns true if it moves during the exposure.
     pub(crate) fn moves(&self) -> bool {
         self.placements.len() > 1
     }
@@ -133,7 +133,7 @@ impl<'a> PlacedPrism<'a> {
 }
 
 impl VisiblePart<'_> {
-    /// What a ray meets first at an instant; the table where it meets no prism.
+    /// First surface that a ray meets at an instant; the table where it meets no prism.
     pub(crate) fn hit(&self, ray: &Ray, instant: usize) -> Hit {
         let [x, y] = ray.at(0.0);
         let [from, to] = self.plate;
@@ -166,7 +166,7 @@ impl View for VisiblePart<'_> {
     }
 }
 
-/// What holds the pusher's tag up, and a rod from there to the pusher.
+/// The post that carries the pusher's tag, and a rod from there to the pusher.
 fn tag_holder(mount: &TagMount) -> [Prism; 2] {
     let post = Prism::plain(
         Parent::Pusher,

@@ -72,8 +72,9 @@ impl Renderer {
         self.optics.capture(&light, self.camera.lens().size, draw)
     }
 
-    /// The light that reaches the sensor, subpixel by subpixel: that of the background, rendered
-    /// anew in tiles where `differs` holds of the prisms that may be seen in them.
+    /// The light that reaches the sensor, subpixel by subpixel. It is that of the background,
+    /// except in tiles where `differs` is true of the prisms that may be seen there: these are
+    /// rendered again.
     fn light(
         &self,
         exposure: &Exposure,

@@ -26,10 +26,10 @@ const TILE_SIDE: usize = 16 * SUBPIXELS;
 
 /// Something to look at.
 pub(crate) trait View {
-    /// Grey of what a ray meets at an instant, below [`INSTANTS`], of the exposure.
+    /// Grey of the surface that a ray meets at an instant, below [`INSTANTS`], of the exposure.
     fn grey(&self, ray: &Ray, instant: usize) -> f32;
 
-    /// Whether it looks the same at every instant.
+    /// Returns true if it is equal at every instant.
     fn is_static(&self) -> bool;
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Sampler {
     /// Slopes of the rays through the subpixels' corners, a row of `columns + 1` for every line
     /// between rows.
     corners: Vec<[f64; 2]>,
-    /// Where in a subpixel the rays are cast, before a random shift.
+    /// Points of a subpixel at which the rays are cast, before a random shift.
     offsets: Vec<[f64; 2]>,
 }
 
@@ -92,8 +92,8 @@ impl Sampler {
         })
     }
 
-    /// A box that holds what a tile sees between two heights: its lower left and upper right corner
-    /// (m).
+    /// A box that contains all that a tile sees between two heights: its lower left and upper right
+    /// corner (m).
     pub(crate) fn seen_box(&self, tile: &Tile, heights: [f64; 2]) -> [[f64; 2]; 2] {
         let rows = [tile.rows.start, tile.rows.end];
         let corners = rows.map(|row| {
@@ -141,7 +141,7 @@ impl Sampler {
         }
     }
 
-    /// What the corners above a row see: a grey, or NaN where it changes during the exposure.
+    /// Greys at the corners above a row, or NaN where the grey changes during the exposure.
     fn corner_greys(&self, view: &impl View, tile: &Tile, row: usize) -> Vec<f32> {
         let instants = if view.is_static() {
             &PROBES[..1]

@@ -15,11 +15,11 @@ use crate::renderer::Renderer;
 const APPROACH_TIME: f64 = 0.35;
 /// Distance that it comes (m).
 const APPROACH: f64 = 0.30;
-/// How far the hand's middle is past the tag it covers, seen from the pusher, whose own tag it
+/// Distance of the hand's middle past the tag it covers, seen from the pusher, whose own tag it
 /// leaves free (m).
 const PAST_TAG: f64 = 0.022;
 
-/// How a motion is captured.
+/// Settings for the capture of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaptureSettings {
     /// Time that the shutter is open (s).
@@ -39,7 +39,7 @@ pub struct Video<'a> {
     pub renderer: &'a Renderer,
     /// The motion.
     pub motion: &'a RecordedMotion,
-    /// How it is captured.
+    /// Its settings.
     pub settings: CaptureSettings,
 }
 

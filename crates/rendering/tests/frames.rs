@@ -1,4 +1,4 @@
-//! Rendered frames against rays cast one by one, and what must hold of a video.
+//! Rendered frames against rays cast one by one, and properties of a video.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -56,7 +56,7 @@ const ELLIPSE: Part = Part::Ellipse {
     angle: 0.3,
 };
 
-/// What a line of sight can meet.
+/// Surface that a line of sight can meet.
 enum Surface {
     Top,
     Side,

@@ -89,7 +89,7 @@ class Live {
     while (this.bodies.length < row.particles.length) this.bodies.push(add(this.cloud, "path", { d: this.data.object.line }));
     this.bodies.forEach((body, k) => place(body, row.particles[k]));
     this.find(".stage").classList.toggle("blind", row.object === null);
-    this.say(row.object === null ? "camera dark" : "camera on");
+    this.say(row.object === null ? "camera off" : "camera on");
     this.find(".clock").textContent = `${estimate.time.toFixed(2)} s`;
     this.root.dataset.time = estimate.time;
     this.touch(row);

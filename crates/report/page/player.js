@@ -265,11 +265,11 @@ class Player {
     });
     this.showContacts(row);
     const seconds = (data.time[row] / 1000).toFixed(2);
-    const dark = blind ? "camera dark" : "camera on";
+    const camera = blind ? "camera off" : "camera on";
     this.find(".clock").textContent = `${seconds} s · row ${data.first + row}`;
-    this.find(".badge").textContent = dark;
+    this.find(".badge").textContent = camera;
     this.slider.value = row;
-    this.slider.setAttribute("aria-valuetext", `${seconds} s, ${dark}`);
+    this.slider.setAttribute("aria-valuetext", `${seconds} s, ${camera}`);
     this.head.setAttribute("d", `M${this.place(row)} 0V100`);
     this.root.dataset.row = row;
     this.zoom(row);

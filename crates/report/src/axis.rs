@@ -1,6 +1,6 @@
 //! One axis of a chart: [`Axis`], from values to pixels, with its ticks.
 
-/// How values are spread along an axis.
+/// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Scale {
     /// Evenly.

@@ -9,11 +9,11 @@ use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
 use crate::time_figure::{Curve, Panel, TimeFigure};
 
-/// Probability of contact from which a body is worth a panel.
+/// Probability of contact from which a body gets a panel.
 const TOUCHED: f64 = 0.5;
 
 impl ReportedExperiment<'_> {
-    /// How many of the learner's particles count, and into how many groups they fall.
+    /// Figure of the number of the learner's particles that count, and of their modes.
     pub(crate) fn particles(&self) -> Option<Figure> {
         let run = self.learner()?;
         let count = |of: Option<u32>| of.map(f64::from);
@@ -57,7 +57,8 @@ impl ReportedExperiment<'_> {
         known.then(|| Figure::new("particles", figure.drawing(), text))
     }
 
-    /// Whether the object sticks to the bodies that it touches or slides on them.
+    /// Figure of the probabilities that the object sticks to the bodies it touches or slides on
+    /// them.
     pub(crate) fn slips(&self) -> Option<Figure> {
         let run = self.learner()?;
         let rows = &run.scored.estimate.rows;

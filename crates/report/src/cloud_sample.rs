@@ -26,7 +26,7 @@ impl CloudSample {
         }
     }
 
-    /// The run with what was kept of each of its rows; nothing where it has no particles.
+    /// The run with the particles kept of each of its rows; none where it has no particles.
     #[must_use]
     pub fn into_run(self, scored: ScoredRun) -> ReportedRun {
         let rows = scored.estimate.rows.len();

@@ -7,9 +7,9 @@ use stickslip_evaluation::Variant;
 pub struct Colour(pub u8, pub u8, pub u8);
 
 impl Colour {
-    /// Text, axes and what is true.
+    /// Text, axes and the truth.
     pub const INK: Self = Self(51, 51, 51);
-    /// Bodies that stand still, and what needs no name.
+    /// Bodies that stand still, and parts that need no name.
     pub const GREY: Self = Self(153, 153, 153);
     /// Orange.
     pub const ORANGE: Self = Self(230, 159, 0);
@@ -61,7 +61,7 @@ impl Colour {
     }
 }
 
-/// How a line is drawn; the later ones lie on the earlier ones, which one sees through their gaps.
+/// Style of a line. The later ones lie on the earlier ones, which one sees through their gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Line {
     /// Through.
@@ -74,8 +74,8 @@ pub enum Line {
 }
 
 impl Line {
-    /// Of a variant, in every figure and playback: what uses less is broken, so that it covers
-    /// nothing.
+    /// Of a variant, in every figure and playback: the line of a variant that uses less is broken,
+    /// so that it covers nothing.
     #[must_use]
     pub fn of(variant: Variant) -> Self {
         match variant {

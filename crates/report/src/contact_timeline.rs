@@ -1,4 +1,4 @@
-//! Who touches when: [`ContactTimeline`], true contacts against sensed and estimated ones.
+//! Times of contact: [`ContactTimeline`], true contacts against sensed and estimated ones.
 
 use maud::{Markup, html};
 
@@ -35,9 +35,9 @@ pub struct ContactTimeline {
 pub struct ContactLane {
     /// The body.
     pub name: String,
-    /// When it truly touches (s), from..to; `None` where that is not known.
+    /// Times at which it truly touches (s), from..to; `None` where they are not known.
     pub truth: Option<Vec<[f64; 2]>>,
-    /// When its sensor reads 1 (s), from..to; `None` where it has none.
+    /// Times at which its sensor reads 1 (s), from..to; `None` where it has none.
     pub sensed: Option<Vec<[f64; 2]>>,
     /// Estimated probabilities of contact.
     pub estimates: Vec<ContactEstimate>,
@@ -62,7 +62,7 @@ impl ContactLane {
 }
 
 impl ContactTimeline {
-    /// Whether anything is known of any contact.
+    /// Returns true if anything is known of any contact.
     #[must_use]
     pub fn tells(&self) -> bool {
         let known = |body: &ContactLane| {
@@ -77,7 +77,7 @@ impl ContactTimeline {
         self.drawing().to_svg()
     }
 
-    /// The figure, to be put beside others.
+    /// The figure, to be put next to others.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let narrow = Some(Box::new(self.of_width(COLUMN)));
@@ -158,7 +158,7 @@ impl ContactTimeline {
             );
         }
         if !self.dark.is_empty() {
-            legend.push(Swatch::Dark, "camera dark");
+            legend.push(Swatch::Dark, "camera off");
         }
         legend
     }

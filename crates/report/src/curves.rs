@@ -48,8 +48,8 @@ impl PoseError {
     }
 }
 
-/// The errors of an estimate at every row of the reference, as scores have them, each at the time
-/// of which it speaks; NaN where either has no pose.
+/// The errors of an estimate at every row of the reference, as in scores, each at the time of its
+/// pose; NaN where either has no pose.
 #[must_use]
 pub fn pose_errors(estimate: &Estimate, reference: &Reference) -> Vec<PoseError> {
     let rows = reference.time.iter().zip(&reference.pose);
@@ -190,7 +190,7 @@ impl FrictionParameter {
 }
 
 /// A parameter of one estimate with a band of one standard deviation to either side, up to the last
-/// row that informs about it; what follows is dotted and has no band.
+/// row that informs about it; later rows are dotted and have no band.
 pub(crate) fn friction_curves(
     name: &str,
     colour: Colour,

@@ -1,7 +1,7 @@
-//! A finished picture: [`Drawing`], with what all pictures share: text, paper, numbers as SVG
-//! writes them.
+//! A finished picture: [`Drawing`], with the parts that all pictures share: text, paper, numbers in
+//! the form of SVG.
 //!
-//! Presentation attributes give the look on white paper; the classes `ink`, `grid`, `axis`, `paper`
+//! Presentation attributes give the look on white paper. The classes `ink`, `grid`, `axis`, `paper`
 //! and `dark` let a page give another one, as its dark mode does. Nothing has an `id`, so any
 //! number of drawings can stand in one page.
 
@@ -13,7 +13,7 @@ use crate::font::{FAMILY, Weight, width};
 /// Grid lines.
 pub(crate) const GRID: Colour = Colour(228, 228, 228);
 
-/// Behind what happened while the camera was dark.
+/// Background of the times while the camera was off.
 pub(crate) const DARK: Colour = Colour(236, 233, 226);
 
 /// Width below which a figure does not fill a page (px).
@@ -34,7 +34,7 @@ pub(crate) const TITLE: f64 = 16.0;
 /// From line to line of a title (px).
 const LINE: f64 = 20.0;
 
-/// How much wider than in our font a text may be in another.
+/// Factor by which a text may be wider in another font than in ours.
 const LOOSE: f64 = 1.06;
 
 /// A picture as SVG.
@@ -44,11 +44,11 @@ pub struct Drawing {
     pub width: f64,
     /// Height (px).
     pub height: f64,
-    /// What it shows, in words, for those who cannot see it; empty where a caption says it.
+    /// Description of the picture, for those who cannot see it; empty where a caption says it.
     pub label: String,
     /// SVG elements.
     pub(crate) body: Markup,
-    /// The same in one column, for a phone; `None`: this one fits.
+    /// The picture in one column, for a phone; `None`: this one fits.
     pub(crate) narrow: Option<Box<Drawing>>,
 }
 
@@ -59,8 +59,8 @@ impl Drawing {
         self.sized("", 1.0)
     }
 
-    /// The same for print: labels of 8 pt, so that 441 px are a column of 252 pt and 882 px a page
-    /// of two.
+    /// The picture for print: labels of 8 pt, so that 441 px are a column of 252 pt and 882 px a
+    /// page of two.
     #[must_use]
     pub fn to_print_svg(&self) -> String {
         self.sized("pt", PRINT / LABEL)
@@ -119,7 +119,7 @@ impl Drawing {
         }
     }
 
-    /// The same under a title.
+    /// Adds a title above.
     #[must_use]
     pub fn titled(self, title: &str) -> Self {
         let (lines, head) = title_lines(title, 12.0, self.width - 24.0);
@@ -161,7 +161,7 @@ pub(crate) fn title_lines(title: &str, left: f64, room: f64) -> (Markup, f64) {
     (text, height)
 }
 
-/// Where text stands about its point.
+/// Place of a text about its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -197,7 +197,7 @@ impl<'a> Text<'a> {
         self.element(size, html! { (self.text) })
     }
 
-    /// The same with letters after an underscore as indices: `mu_s`.
+    /// The text with letters after an underscore as indices: `mu_s`.
     pub fn with_indices(&self, size: f64) -> Markup {
         let mut parts = self.text.split('_');
         let first = parts.next().unwrap_or_default();
@@ -251,7 +251,7 @@ pub(crate) fn path(points: impl IntoIterator<Item = [f64; 2]>, closed: bool) -> 
 }
 
 /// The path through points, closed or open, on a grid of `per_unit` lines; broken where a number is
-/// not finite. Its points are told by the way to them, which takes half of the letters.
+/// not finite. Each point is written relative to the one before, which takes half of the letters.
 pub(crate) fn path_on_grid(
     points: impl IntoIterator<Item = [f64; 2]>,
     closed: bool,

@@ -27,9 +27,9 @@ const FLOOR: f64 = 0.01;
 pub struct Figure {
     /// Short name, for files.
     pub name: &'static str,
-    /// What is drawn.
+    /// The drawing.
     pub drawing: Drawing,
-    /// What one sees.
+    /// Caption.
     pub caption: String,
 }
 
@@ -50,36 +50,36 @@ impl ReportedExperiment<'_> {
     #[must_use]
     pub fn figures(&self) -> Vec<Figure> {
         let shaded = match self.learner() {
-            Some(_) => "; shaded in a method's colour: its own standard deviation",
+            Some(_) => ". Band: standard deviation of the particle filter",
             None => "",
         };
         let errors = Figure::new(
             "errors",
             self.errors().drawing(),
-            &format!("Errors against time, those below {FLOOR} drawn there{shaded}."),
+            &format!("Errors against time; smaller ones are drawn at {FLOOR}{shaded}."),
         );
         let poses = Figure::new(
             "poses",
             self.poses(),
-            "Bodies at the first contact with a fixel, if one is known, and at the end of the time shown; an estimate far off may be outside the picture.",
+            "Object and estimates at the first contact with a fixel and at the end. Thin outlines: particles. An estimate far off may be outside the picture.",
         );
         let timeline = self.contact_timeline();
         let contacts = timeline.tells().then(|| {
             let rule = TouchRule::measured(self.setup);
-            let text = format!("Who touches the object when: {}.", rule.words());
+            let text = format!("Contacts of the object against time: {}.", rule.words());
             Figure::new("contacts", timeline.drawing(), &text)
         });
         let friction = self.friction_figure().map(|figure| {
             Figure::new(
                 "friction",
                 figure.drawing(),
-                "Estimated friction, mean and one standard deviation; its nominal value; the truth, where it is known. Dotted from \
-                 the last row on that told anything about a parameter: the camera sees the object, it moves, and the parameter acts on it. Not observed: there is no such row, or the standard \
-                 deviation in it is more than 0.6 of what it was at first.",
+                "Estimated friction: mean and one standard deviation, the nominal value, and the truth if known. A curve is dotted after \
+                 the last informative row: camera on, object in motion, parameter acting on it. Not identifiable: no such row, or a standard \
+                 deviation of more than 0.6 of the prior's.",
             )
         });
         let cloud = self.clouds().map(|drawing| {
-            let text = "Particles at the same instants; the ellipse holds 95 % of a normal distribution with their covariance.";
+            let text = "Particles at these instants. The ellipse covers 95 % of a normal distribution with their covariance.";
             Figure::new("cloud", drawing, text)
         });
         let shown = [
@@ -117,7 +117,7 @@ impl ReportedExperiment<'_> {
             Panel {
                 label: label.to_owned(),
                 scale: Scale::Log { floor: FLOOR },
-                curves: self.runs.iter().map(curve).collect(),
+                curves: self.drawn().map(curve).collect(),
                 ..Panel::default()
             }
         };
@@ -135,7 +135,7 @@ impl ReportedExperiment<'_> {
             ],
             band_name: self
                 .learner()
-                .map(|run| format!("own standard deviation of the {}", run.title()))
+                .map(|run| format!("standard deviation of the {}", run.title()))
                 .unwrap_or_default(),
             ..self.time_figure()
         }
@@ -160,7 +160,7 @@ impl ReportedExperiment<'_> {
         );
         for (panel, learned) in panels.iter_mut().zip(&learned) {
             if !learned.observed {
-                panel.title = "not observed".to_owned();
+                panel.title = "not identifiable".to_owned();
             }
         }
         Some(TimeFigure {
@@ -172,7 +172,7 @@ impl ReportedExperiment<'_> {
         })
     }
 
-    /// What all figures against time share.
+    /// Figure against time without panels.
     pub(crate) fn time_figure(&self) -> TimeFigure {
         TimeFigure {
             span: self.span(),
@@ -247,11 +247,11 @@ impl ReportedExperiment<'_> {
         times.map(|time| self.row_at(time)).collect()
     }
 
-    /// All estimated poses at a row over what stands around.
+    /// All estimated poses at a row over the known bodies.
     #[must_use]
     pub fn poses_at(&self, row: usize) -> Overlay {
         let shape = &self.setup.scene.object.shape;
-        let estimates = self.runs.iter().filter_map(|run| {
+        let estimates = self.drawn().filter_map(|run| {
             let pose = run.scored.estimate.rows.get(row)?.pose?;
             Some(
                 Body::new(run.title(), shape, &pose, run.colour())
@@ -260,20 +260,27 @@ impl ReportedExperiment<'_> {
         });
         let mut estimates: Vec<Body> = estimates.collect();
         estimates.sort_by_key(|body| body.line);
+        let particles = self.learner().into_iter().flat_map(|run| {
+            let cloud = run.cloud.get(row).map_or(&[][..], Vec::as_slice);
+            cloud
+                .iter()
+                .map(|pose| Body::new("", shape, pose, run.colour()).thin())
+        });
         Overlay {
             title: self.instant(row),
             view: Some(view_of(self.in_view(row))),
             bodies: self
                 .known_bodies(row)
                 .into_iter()
+                .chain(particles)
                 .chain(estimates)
                 .collect(),
             width: 441.0,
         }
     }
 
-    /// What a picture has to hold: what is known, and in place of an object of which nothing is
-    /// known the learner's, or the first run's.
+    /// Bodies that a picture shows in full: the known ones, and the learner's object if the true one is
+    /// unknown.
     fn in_view(&self, row: usize) -> Vec<Body> {
         let mut bodies = self.known_bodies(row);
         if self.reference.pose_at(self.time_of(row)).is_none() {
@@ -285,22 +292,22 @@ impl ReportedExperiment<'_> {
         bodies
     }
 
-    /// "5.27 s, camera dark".
+    /// "5.27 s, camera off".
     fn instant(&self, row: usize) -> String {
-        let dark = if self.hidden.get(row) == Some(&true) {
-            ", camera dark"
+        let off = if self.hidden.get(row) == Some(&true) {
+            ", camera off"
         } else {
             ""
         };
-        format!("{:.2} s{dark}", self.time_of(row))
+        format!("{:.2} s{off}", self.time_of(row))
     }
 
-    fn time_of(&self, row: usize) -> f64 {
+    pub(crate) fn time_of(&self, row: usize) -> f64 {
         self.log.time.get(row).copied().unwrap_or(0.0)
     }
 
-    /// Fixels, pusher and the object where it was.
-    fn known_bodies(&self, row: usize) -> Vec<Body> {
+    /// Fixels, pusher and the object at its reference pose.
+    pub(crate) fn known_bodies(&self, row: usize) -> Vec<Body> {
         let scene = &self.setup.scene;
         let pusher = self.log.pusher.get(row).copied().flatten();
         let truth = self.reference.pose_at(self.time_of(row));

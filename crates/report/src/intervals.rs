@@ -1,4 +1,4 @@
-//! Where flags are set: [`row_ranges`], [`intervals`] and [`times`].
+//! Stretches over which flags are set: [`row_ranges`], [`intervals`] and [`times`].
 
 /// Every stretch of set flags: its first row and the row after its last one.
 pub(crate) fn row_ranges(flags: impl IntoIterator<Item = bool>) -> Vec<[usize; 2]> {
@@ -12,7 +12,7 @@ pub(crate) fn row_ranges(flags: impl IntoIterator<Item = bool>) -> Vec<[usize; 2
     ranges
 }
 
-/// The times over which flags are set; the flag of a row speaks of the interval that ends at it.
+/// The times over which flags are set; the flag of a row applies to the interval that ends at it.
 pub(crate) fn intervals(time: &[f64], flags: &[bool]) -> Vec<[f64; 2]> {
     let set = flags.iter().take(time.len()).copied();
     row_ranges(set)
@@ -21,7 +21,7 @@ pub(crate) fn intervals(time: &[f64], flags: &[bool]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The time over which rows from..to speak; `to` is after `from` and within the times.
+/// The time to which rows from..to apply; `to` is after `from` and within the times.
 pub(crate) fn times(time: &[f64], [from, to]: [usize; 2]) -> [f64; 2] {
     [time[from.saturating_sub(1)], time[to - 1]]
 }

@@ -1,4 +1,4 @@
-//! What the filter that learns says of itself, of friction and of contact, in sentences:
+//! Expected error, friction and contact according to the particle filter, in sentences:
 //! [`ReportedExperiment::learnt`].
 
 use stickslip_evaluation::LearnedParameter;
@@ -7,70 +7,63 @@ use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
 use crate::touch::TouchRule;
 
-/// What each parameter is.
-const MEANINGS: [(&str, &str); 4] = [
-    ("mu_s", "is friction on the table"),
-    ("mu_p", "at the pusher"),
-    ("mu_f", "at the fixels"),
-    (
-        "d_tri",
-        "how far the three feet that carry the object are from its centre of mass",
-    ),
-];
-
-/// "mu_s is friction on the table, mu_p at the pusher".
-fn meanings(parameters: &[LearnedParameter]) -> String {
-    let shown = MEANINGS
-        .iter()
-        .filter(|(name, _)| parameters.iter().any(|parameter| parameter.name == *name));
-    let words = shown.map(|(name, meaning)| format!("{name} {meaning}"));
-    words.collect::<Vec<_>>().join(", ")
-}
-
 impl ReportedExperiment<'_> {
-    /// What the learner says of itself, of friction and of contact.
+    /// Expected error, friction and first touch according to the learner.
     pub(crate) fn learnt(&self) -> Vec<String> {
         let Some(run) = self.learner() else {
             return Vec::new();
         };
-        let spread = run.scored.scores.spread_occluded_mm.map(|spread| {
+        let expected = run.scored.scores.spread_occluded_mm.map(|expected| {
+            let found = run.wmse_mm().map(|error| match &*self.reference_name {
+                "truth" => format!("; the true one is {error:.2} mm"),
+                reference => format!("; the one against the {reference} is {error:.2} mm"),
+            });
             format!(
-                "By its own account, the {} is off by {spread:.2} mm in the dark.",
-                run.title()
+                "The filter expects an error of {expected:.2} mm{}.",
+                found.unwrap_or_default()
             )
         });
-        let parameters = LearnedParameter::all(&run.scored.estimate);
-        let values = parameters.iter().zip(self.friction);
-        let values: Vec<String> = values
-            .map(|(parameter, truth)| self.told(parameter, truth))
-            .collect();
-        let friction = (!values.is_empty()).then(|| {
-            format!(
-                "Friction according to the {}: {}. Here {}.",
-                run.title(),
-                values.join(", "),
-                meanings(&parameters)
-            )
-        });
-        spread
+        expected
             .into_iter()
-            .chain(friction)
+            .chain(self.friction_sentence(run))
             .chain(self.contact_sentence(run))
             .collect()
     }
 
-    /// "mu_s 0.28 ± 0.02 (truth 0.27)", "mu_f not observed (told 0.25)".
-    fn told(&self, parameter: &LearnedParameter, truth: Option<f64>) -> String {
-        let nominal = parameter.among(&self.setup.scene.nominal);
-        let beside = match (parameter.observed, truth) {
-            (true, Some(_)) => format!(" (truth {})", parameter.shown_value(truth)),
-            (true, None) => String::new(),
-            (false, _) => format!(" (told {})", parameter.shown_value(nominal)),
-        };
-        format!("{} {}{beside}", parameter.name, parameter.shown())
+    /// "Friction: mu_p 0.31 ± 0.02 (truth 0.30). Not identifiable from this push: mu_s."
+    fn friction_sentence(&self, run: &ReportedRun) -> Option<String> {
+        let parameters = LearnedParameter::all(&run.scored.estimate);
+        let unknown: Vec<&str> = parameters
+            .iter()
+            .filter(|parameter| !parameter.observed)
+            .map(|parameter| parameter.name)
+            .collect();
+        let known = parameters.iter().zip(self.friction);
+        let known: Vec<String> = known
+            .filter(|(parameter, _)| parameter.observed)
+            .map(|(parameter, truth)| {
+                let truth =
+                    truth.map(|truth| format!(" (truth {})", parameter.shown_value(Some(truth))));
+                let value = parameter.shown();
+                format!("{} {value}{}", parameter.name, truth.unwrap_or_default())
+            })
+            .collect();
+        match (known.is_empty(), unknown.is_empty()) {
+            (true, true) => None,
+            (true, false) => Some(
+                "Friction: not identifiable from this push; the scene's values were used."
+                    .to_owned(),
+            ),
+            (false, true) => Some(format!("Friction: {}.", known.join(", "))),
+            (false, false) => Some(format!(
+                "Friction: {}. Not identifiable from this push: {}.",
+                known.join(", "),
+                unknown.join(", ")
+            )),
+        }
     }
 
-    /// When the first fixel is touched, according to the learner and in truth.
+    /// First touch of a fixel, estimated and true.
     fn contact_sentence(&self, run: &ReportedRun) -> Option<String> {
         let probabilities = self.touch_probabilities(run);
         let time = |row: usize| self.log.time.get(row).copied();
@@ -86,18 +79,17 @@ impl ReportedExperiment<'_> {
         let truly = match self.touches.get(body)? {
             None => String::new(),
             Some(touches) => match touches.iter().position(|touch| *touch).and_then(time) {
-                Some(truly) => format!(", and truly at {truly:.2} s"),
-                None => ", and truly never".to_owned(),
+                Some(truly) => format!(" (true: {truly:.2} s)"),
+                None => " (true: never)".to_owned(),
             },
         };
         Some(format!(
-            "According to the {}, fixel {body} is first touched at {at:.2} s{truly}.",
-            run.title()
+            "The object first touches fixel {body} at an estimated {at:.2} s{truly}."
         ))
     }
 
-    /// Probabilities of contact with the pusher, then with each fixel, row by row, as a run has
-    /// them; `None` in rows without.
+    /// Probabilities of contact with the pusher, then with each fixel, row by row; `None` in rows
+    /// without.
     pub(crate) fn touch_probabilities(&self, run: &ReportedRun) -> Vec<Option<Vec<f64>>> {
         let rule = TouchRule::measured(self.setup);
         let rows = run.scored.estimate.rows.iter().enumerate();

@@ -1,4 +1,4 @@
-//! What the colours of a figure mean: [`Legend`], in as many lines as it needs.
+//! Meaning of the colours of a figure: [`Legend`], in as many lines as it needs.
 
 use maud::{Markup, html};
 
@@ -10,7 +10,7 @@ const LINE_HEIGHT: f64 = 22.0;
 const SWATCH: f64 = 26.0;
 const GAP: f64 = 22.0;
 
-/// What stands before a name.
+/// Sample before a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Swatch {
     Line(Colour, Line),

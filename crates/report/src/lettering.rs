@@ -11,9 +11,9 @@ use crate::font::{self, Weight};
 
 /// An SVG with a path in the place of every `text`, in the fonts of every figure.
 ///
-/// Understood is what [`Drawing`](crate::Drawing) writes: one line with x, y, size, weight, anchor
-/// and transform, parts of it in another size and above or below the line (`tspan` with `dy`).
-/// Letters stand as far apart as [`font::width`] says; those that the fonts lack are left out.
+/// It reads the output of [`Drawing`](crate::Drawing): one line with x, y, size, weight, anchor and
+/// transform, parts of it in another size and above or below the line (`tspan` with `dy`). Letters
+/// stand as far apart as [`font::width`] says; those that the fonts lack are left out.
 ///
 /// # Errors
 /// The text is no XML.
@@ -75,7 +75,7 @@ struct Run<'a> {
     text: &'a str,
     /// Font size (px).
     size: f64,
-    /// How far it lies below what stands before it (px).
+    /// Shift down from the text before it (px).
     drop: f64,
 }
 
@@ -93,7 +93,7 @@ fn runs<'a>(text: Node<'a, '_>) -> Vec<Run<'a>> {
         .collect()
 }
 
-/// An attribute of a node or of what it is in.
+/// An attribute of a node or of its nearest ancestor that has it.
 fn inherited<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     node.ancestors().find_map(|of| of.attribute(name))
 }
@@ -104,7 +104,7 @@ fn number(text: Option<&str>) -> Option<f64> {
 
 /// Writes letters as path data.
 struct Pen {
-    /// Where the next letter stands (px).
+    /// Place of the next letter (px).
     at: [f64; 2],
     /// Size of a font unit (px).
     scale: f64,
@@ -163,7 +163,7 @@ mod tests {
 
     use super::*;
 
-    /// What the text of an SVG covers, without the space about its letters.
+    /// Area that the text of an SVG covers, without the space about its letters.
     fn covered(text: &str) -> Rect {
         let svg = format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="4000" height="4000">{text}</svg>"#

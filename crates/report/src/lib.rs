@@ -5,6 +5,7 @@
 //! colours of the page that holds them, and the same code draws bodies on camera images. [`png_of`]
 //! turns them into pixels.
 
+mod animation;
 mod axis;
 mod belief_figures;
 mod cloud_sample;

@@ -15,9 +15,9 @@ const GAP: f64 = 10.0;
 /// An event on the time axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mark {
-    /// When, in the unit of the time axis.
+    /// Time, in the unit of the time axis.
     pub time: f64,
-    /// What.
+    /// Name.
     pub name: String,
 }
 

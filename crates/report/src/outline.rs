@@ -1,11 +1,11 @@
-//! Outlines of bodies: [`Outline`], what of a union of parts is drawn.
+//! Outlines of bodies: [`Outline`], the drawn lines of a union of parts.
 
 use stickslip_dynamics::{Part, Pose, Shape};
 
 /// Corners by which a full circle is drawn.
 const TURN: usize = 48;
 
-/// Distance outside a part's edge at which another part is looked for, as a share of the shape's
+/// Distance outside a part's edge at which another part is sought, as a share of the shape's
 /// bounding radius: an edge with a part beyond it is a seam.
 const BESIDE: f64 = 1e-4;
 
@@ -153,7 +153,7 @@ fn visible(shape: &Shape, own: usize, area: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     lines
 }
 
-/// Whether a point lies in a part.
+/// Returns true if a point lies in a part.
 fn holds(part: &Part, [x, y]: [f64; 2]) -> bool {
     match part {
         Part::Polygon { vertices } => {

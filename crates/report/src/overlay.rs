@@ -25,8 +25,8 @@ pub struct Overlay {
     pub title: String,
     /// Bodies, the lowest one first.
     pub bodies: Vec<Body>,
-    /// What is shown of the plane: two corners (m); `None`: all bodies. On an image: what is shown
-    /// of the image, in its pixels.
+    /// Section of the plane that is shown: two corners (m); `None`: all bodies. On an image:
+    /// section of the image, in its pixels.
     pub view: Option<[[f64; 2]; 2]>,
     /// Width of the picture (px).
     pub width: f64,
@@ -39,17 +39,19 @@ pub struct Body {
     pub name: String,
     /// Name written on the body; may be empty.
     pub tag: String,
-    /// Where its points are in the world (m).
+    /// Outline in the world (m).
     pub outline: Outline,
     /// Colour.
     pub colour: Colour,
-    /// How its boundary is drawn.
+    /// Style of its boundary.
     pub line: Line,
-    /// How far its inside is covered, 0 to 1.
+    /// Opacity of its inside, 0 to 1.
     pub opacity: f64,
+    /// True for one of many, whose boundary is a faint hairline.
+    pub thin: bool,
 }
 
-/// A camera image, and where it shows what.
+/// A camera image, and the map from the plane to its pixels.
 pub struct CameraImage<'a> {
     /// The image as PNG.
     pub png: &'a [u8],
@@ -58,7 +60,7 @@ pub struct CameraImage<'a> {
     pub pixel: &'a dyn Fn([f64; 2]) -> Option<[f64; 2]>,
 }
 
-/// Why a camera image could not be drawn on.
+/// Reason why a camera image could not be drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the camera image is no PNG; give the bytes of a whole PNG file")]
 pub struct ImageError;
@@ -94,22 +96,29 @@ impl Body {
             colour,
             line: Line::Solid,
             opacity: 0.0,
+            thin: false,
         }
     }
 
-    /// The same, drawn with this line.
+    /// The body as a faint hairline, one of many.
+    #[must_use]
+    pub fn thin(self) -> Self {
+        Self { thin: true, ..self }
+    }
+
+    /// Draws its boundary with this line.
     #[must_use]
     pub fn line(self, line: Line) -> Self {
         Self { line, ..self }
     }
 
-    /// The same with its inside covered, 0 to 1.
+    /// Covers its inside, 0 to 1.
     #[must_use]
     pub fn filled(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
-    /// What stands around: fixels with their numbers, and the pusher where it is on the table.
+    /// Bodies about the object: fixels with their numbers, and the pusher where it is on the table.
     #[must_use]
     pub fn surroundings(scene: &Scene, pusher: Option<&Pose>) -> Vec<Self> {
         let fixel = |(k, fixel): (usize, &stickslip_dynamics::Fixel)| Self {
@@ -143,7 +152,7 @@ impl Overlay {
         Ok(self.drawing_on(image)?.to_svg())
     }
 
-    /// The bodies in the plane, to be put beside other drawings.
+    /// The bodies in the plane, to be put next to other drawings.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let [[left, low], [right, high]] = self.view.unwrap_or_else(|| self.whole_view());
@@ -151,10 +160,10 @@ impl Overlay {
         let scale = inner / (right - left).max(1e-9);
         let map = |[x, y]: [f64; 2]| Some([scale * (x - left), scale * (high - y)]);
         let size = [inner, scale * (high - low)];
-        self.framed(size, html! { (grid(left, high, scale, size)) }, scale, &map)
+        self.framed(size, html! { path class="grid" d=(grid_lines([left, high], scale, size)) stroke=(GRID.hex()) fill="none" {} }, scale, &map)
     }
 
-    /// Corners of what holds all bodies, with some room (m).
+    /// Corners of the box that contains all bodies, with some room (m).
     #[must_use]
     pub fn whole_view(&self) -> [[f64; 2]; 2] {
         let all = bounds(
@@ -166,7 +175,7 @@ impl Overlay {
         with_room(all.unwrap_or([[-0.05, -0.05], [0.05, 0.05]]))
     }
 
-    /// The bodies on a camera image, to be put beside other drawings.
+    /// The bodies on a camera image, to be put next to other drawings.
     ///
     /// # Errors
     /// The image is no PNG.
@@ -255,7 +264,7 @@ impl Body {
         html! {
             path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
             @if on_image { path d=(boundary) fill="none" stroke="#ffffff" stroke-width="4.5" stroke-opacity="0.75" stroke-linejoin="round" {} }
-            path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round"
+            path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width=(if self.thin { "1" } else { "2" }) stroke-opacity=[self.thin.then_some("0.16")] stroke-linejoin="round" stroke-linecap="round"
                 stroke-dasharray=[self.line.dashes()] {}
             @if let Some(at) = middle.filter(|_| !self.tag.is_empty()) {
                 (Text { anchor: Anchor::Middle, weight: Weight::Bold, ..Text::at(at, &self.tag) }.sized(LABEL))
@@ -270,8 +279,8 @@ fn with_room([[left, low], [right, high]]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     [[left - room, low - room], [right + room, high + room]]
 }
 
-/// A line every 10 mm.
-fn grid(left: f64, high: f64, scale: f64, [width, height]: [f64; 2]) -> Markup {
+/// Path with a line every 10 mm, over a picture whose corner is at the left and upper end (m).
+pub(crate) fn grid_lines([left, high]: [f64; 2], scale: f64, [width, height]: [f64; 2]) -> String {
     let step = 0.01;
     let count = (width.max(height) / (scale * step)).min(500.0) as u32;
     let [first_x, first_y] = [
@@ -280,11 +289,10 @@ fn grid(left: f64, high: f64, scale: f64, [width, height]: [f64; 2]) -> Markup {
     ];
     let across = (0..=count).map(|k| scale * (first_x + step * f64::from(k)));
     let down = (0..=count).map(|k| scale * (first_y + step * f64::from(k)));
-    let lines: String = across
+    across
         .map(|x| path([[x, 0.0], [x, height]], false))
         .chain(down.map(|y| path([[0.0, y], [width, y]], false)))
-        .collect();
-    html! { path class="grid" d=(lines) stroke=(GRID.hex()) fill="none" {} }
+        .collect()
 }
 
 /// A bar of a round length that ends below the picture's right corner (px), with the length; and

@@ -46,7 +46,7 @@ impl ParticleCloud {
         self.drawing().to_svg()
     }
 
-    /// The figure, to be put beside others.
+    /// The figure, to be put next to others.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let width = if self.width > 0.0 { self.width } else { 480.0 };
@@ -90,8 +90,8 @@ impl ParticleCloud {
         }
     }
 
-    /// What holds 95 % of a normal distribution with the particles' mean and covariance (mm, from
-    /// the centre).
+    /// Ellipse that contains 95 % of a normal distribution with the particles' mean and covariance
+    /// (mm, from the centre).
     fn ellipse(&self) -> Vec<[f64; 2]> {
         let count = self.particles.len() as f64;
         let points = || self.particles.iter().map(|pose| self.relative(pose));
@@ -120,7 +120,7 @@ impl ParticleCloud {
         ]
     }
 
-    /// The same length on both axes.
+    /// Limits of equal length on both axes.
     fn limits(&self) -> ([f64; 2], [f64; 2]) {
         let all = self
             .particles

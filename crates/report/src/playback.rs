@@ -11,10 +11,10 @@ use crate::marks::Mark;
 use crate::outline::Outline;
 use crate::playback_data::{data, has_cloud, knows_contacts};
 
-/// What is shown of an experiment, row by row; every column has one entry per row of the log.
+/// Data of an experiment that is shown row by row; every column has one entry per row of the log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Playback {
-    /// What is played back, for those who cannot see it.
+    /// Name of the experiment, for those who cannot see it.
     pub name: String,
     /// Time of each row (s).
     pub time: Vec<f64>,
@@ -28,13 +28,13 @@ pub struct Playback {
     pub pusher: Outline,
     /// The fixels in the world (m).
     pub fixels: Vec<Outline>,
-    /// Where the object was: its truth, or what the camera measured.
+    /// Poses of the object: its truth, or the camera's measurements.
     pub reference: Vec<Option<Pose>>,
-    /// What that is, as "truth".
+    /// Name of these poses, as "truth".
     pub reference_name: String,
-    /// Where the pusher was measured.
+    /// Measured poses of the pusher.
     pub pusher_poses: Vec<Option<Pose>>,
-    /// Whether the camera was dark.
+    /// True for rows at which the camera was off.
     pub hidden: Vec<bool>,
     /// Contacts of the object: with the pusher, then with each fixel.
     pub touches: Vec<Touch>,
@@ -42,7 +42,7 @@ pub struct Playback {
     pub marks: Vec<Mark>,
     /// The runs.
     pub runs: Vec<PlaybackRun>,
-    /// In which order they are drawn, by number; those that agree cover each other. Runs that are
+    /// Order in which they are drawn, by number; those that agree cover each other. Runs that are
     /// not here follow.
     pub lowest_first: Vec<usize>,
 }
@@ -52,20 +52,20 @@ pub struct Playback {
 pub struct Touch {
     /// The body.
     pub name: String,
-    /// Whether they touch; `None` where that is not known.
+    /// True for rows at which they touch; `None` where that is not known.
     pub truth: Option<Vec<bool>>,
-    /// What the body's sensor reads; `None` where it has none.
+    /// Readings of the body's sensor; `None` where it has none.
     pub sensed: Option<Vec<Option<bool>>>,
 }
 
-/// What is played back of one run.
+/// Data of one run that is played back.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaybackRun {
     /// Name.
     pub name: String,
     /// Colour.
     pub colour: Colour,
-    /// How it is drawn.
+    /// Style of its line.
     pub line: Line,
     /// Estimated poses.
     pub poses: Vec<Option<Pose>>,
@@ -79,7 +79,7 @@ pub struct PlaybackRun {
 }
 
 impl PlaybackRun {
-    /// The run of an estimate, beside the reference that it is scored against, without contacts;
+    /// The run of an estimate, next to the reference that it is scored against, without contacts;
     /// `cloud` as [`crate::ReportedRun`] has it.
     #[must_use]
     pub fn new(
@@ -107,8 +107,8 @@ impl PlaybackRun {
 }
 
 impl Playback {
-    /// A log with what it is compared to; runs, true contacts, and marks are to be added. All
-    /// rows are played back.
+    /// A log with its reference; runs, true contacts, and marks are to be added. All rows are
+    /// played back.
     #[must_use]
     pub fn new(scene: &Scene, log: &Log, reference: &Reference, hidden: Vec<bool>) -> Self {
         let touch = |name: String, sensed: Option<&Vec<Option<bool>>>| Touch {
@@ -172,7 +172,7 @@ impl Playback {
                     div class="marks" {}
                     div class="strip" {
                         svg viewBox="0 0 1000 100" preserveAspectRatio="none" role="img"
-                            aria-label="Position errors against time; dark where the camera is" {}
+                            aria-label="Position errors against time; shaded while the camera is off" {}
                         span class="quantity" { "position error" }
                     }
                     input type="range" min="0" max=(last) value="0" step="1" aria-label="time";
@@ -183,7 +183,7 @@ impl Playback {
         }
     }
 
-    /// What is drawn how; nothing is named that is not there.
+    /// Legend of the drawing; nothing is named that is not there.
     fn legend(&self) -> String {
         let any = |of: fn(&Touch) -> bool| self.touches.iter().any(of);
         let yellow = if any(|touch| touch.truth.is_some()) {
@@ -205,7 +205,7 @@ impl Playback {
             false => "",
         };
         format!(
-            "Filled: the {}, dashed while the camera is dark. Coloured outlines: estimates{particles}.{yellow}{rims}",
+            "Filled: the {}, dashed while the camera is off. Coloured outlines: estimates{particles}.{yellow}{rims}",
             self.reference_name
         )
     }

@@ -35,7 +35,7 @@ pub(crate) fn data(playback: &Playback) -> Value {
         json!([row, mark.name])
     });
 
-    // where the camera is dark
+    // rows at which the camera is off
     let is_hidden = |row: usize| playback.hidden.get(row) == Some(&true);
     let hidden: Vec<u8> = rows.clone().map(|row| u8::from(is_hidden(row))).collect();
 
@@ -134,12 +134,12 @@ fn run(run: &PlaybackRun, bodies: usize, rows: Range<usize>) -> Value {
     })
 }
 
-/// Whether a run has probabilities of contact.
+/// Returns true if a run has probabilities of contact.
 pub(crate) fn knows_contacts(run: &PlaybackRun) -> bool {
     run.contacts.iter().any(Option::is_some)
 }
 
-/// Whether particles of a run are drawn.
+/// Returns true if particles of a run are drawn.
 pub(crate) fn has_cloud(run: &PlaybackRun) -> bool {
     run.cloud.iter().any(|row| !row.is_empty())
 }
@@ -181,9 +181,9 @@ fn contact(touch: &Touch, rows: Range<usize>) -> Value {
     json!({ "name": touch.name, "truth": touch.truth.as_ref().map(truth), "sensed": touch.sensed.as_ref().map(sensed) })
 }
 
-/// Left, low, width and height (mm) of what holds the object and the pusher on their way, and the
-/// fixels; where nobody knows the object's way, that of the run whose contacts are shown, or of the
-/// first.
+/// Left, low, width and height (mm) of the box that contains the object and the pusher on their
+/// way, and the fixels. Without a reference, the object's way is that of the run whose contacts are
+/// shown, or of the first run.
 fn view(playback: &Playback) -> [f64; 4] {
     let rows = playback.shown();
     let swept = |outline: &Outline, poses: &[Option<Pose>]| -> Vec<[f64; 2]> {

@@ -33,7 +33,7 @@ impl Plot<'_> {
         [left, top, right - left, bottom - top]
     }
 
-    /// Bands from top to bottom where the camera was dark.
+    /// Bands from top to bottom while the camera was off.
     pub fn shades(&self, dark: &[[f64; 2]]) -> Markup {
         let [_, top, _, height] = self.frame();
         let [low, high] = self.x.limits;
@@ -93,7 +93,7 @@ impl Plot<'_> {
         }
     }
 
-    /// How far left of the axis its label stands: the same in every panel, unless the numbers need
+    /// Distance of the axis' label left of the axis: equal in every panel, unless the numbers need
     /// more.
     fn label_distance(&self, ticks: &[Tick]) -> f64 {
         let widest = ticks
@@ -135,7 +135,7 @@ impl Plot<'_> {
             .collect()
     }
 
-    /// What is drawn in pixels of the whole drawing, cut off at the rectangle.
+    /// Content in pixels of the whole drawing, cut off at the rectangle.
     pub fn clipped(&self, content: Markup) -> Markup {
         let [left, top, width, height] = self.frame().map(px);
         html! {

@@ -5,7 +5,7 @@ use resvg::usvg::{Options, Tree};
 
 use crate::lettering::outlined;
 
-/// Why an SVG gave no pixels.
+/// Reason why an SVG gave no pixels.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PngError {

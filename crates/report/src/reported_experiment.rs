@@ -3,7 +3,7 @@
 
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip::{Log, Occlusion, Setup};
-use stickslip_evaluation::{Reference, Scores};
+use stickslip_evaluation::{Reference, Scores, Variant};
 use stickslip_formats::Experiment;
 
 use crate::colour::Line;
@@ -23,38 +23,38 @@ const AFTER: f64 = 4.0;
 /// Time after the last contact begins at which the playback shows its first picture (s).
 const POSTER: f64 = 1.5;
 
-/// An experiment and what several variants made of it.
+/// An experiment and the runs of several variants on it.
 #[derive(Clone, Debug)]
 pub struct ReportedExperiment<'a> {
     /// Name, as that of its folder.
     pub name: String,
-    /// What moves, as "a bar pushes a square until it jams at a fixel"; empty where nobody knows.
+    /// Motion, as "a bar pushes a square until it jams at a fixel"; empty if unknown.
     pub what: String,
-    /// What was known before it.
+    /// The scene.
     pub setup: &'a Setup,
-    /// What was measured.
+    /// The log.
     pub log: &'a Log,
-    /// What estimates are scored against.
+    /// Poses that estimates are scored against.
     pub reference: Reference,
-    /// What that is, as "truth".
+    /// Name of these poses, as "truth".
     pub reference_name: String,
-    /// Whether each row's object pose was hidden.
+    /// For each row, true if the object is occluded.
     pub hidden: Vec<bool>,
-    /// Whether the object truly touches the pusher, then each fixel, row by row; `None` where that
-    /// is not known.
+    /// True contacts of the object with the pusher, then with each fixel, row by row; `None` if
+    /// unknown.
     pub touches: Vec<Option<Vec<bool>>>,
     /// First contacts (s).
     pub contacts: Vec<Mark>,
     /// When the object first touched a fixel (s).
     pub first_fixel: Option<f64>,
-    /// True values of μ_s, μ_p, μ_f and d_tri (m), where they are known.
+    /// True values of μ_s, μ_p, μ_f and d_tri (m), if known.
     pub friction: [Option<f64>; 4],
     /// The runs.
     pub runs: Vec<ReportedRun>,
 }
 
 impl<'a> ReportedExperiment<'a> {
-    /// An experiment with runs made while `occlusion` hid the object.
+    /// An experiment with runs under an `occlusion`.
     #[must_use]
     pub fn new(
         name: &str,
@@ -104,7 +104,7 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
-    /// What happened, in words made from numbers.
+    /// Story of the experiment, made from numbers.
     #[must_use]
     pub fn story(&self) -> Story {
         let outcome = |run: &ReportedRun| Outcome {
@@ -112,13 +112,13 @@ impl<'a> ReportedExperiment<'a> {
             camera_on: run.camera_on(),
             wmse_mm: run.wmse_mm(),
         };
-        let dark = self.darkness();
-        let within = |row: &usize| dark.is_some_and(|[from, to]| (from..to).contains(row));
+        let off = self.occluded();
+        let within = |row: &usize| off.is_some_and(|[from, to]| (from..to).contains(row));
         let lost = (0..self.log.len()).filter(|row| self.log.object[*row].is_none());
         Story {
             what: self.what.clone(),
             duration: self.log.duration(),
-            dark: dark.map(|rows| times(&self.log.time, rows)),
+            off: off.map(|rows| times(&self.log.time, rows)),
             lost: lost.filter(|row| !within(row)).count(),
             rows: self.log.len(),
             lag: self.reference.latency,
@@ -128,37 +128,25 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
-    /// What a reader should know after a minute.
-    #[must_use]
-    pub fn summary(&self) -> [Block; 2] {
-        let story = self.story();
-        let title = if self.what.is_empty() {
-            String::new()
-        } else {
-            format!("{}. ", story.title())
-        };
-        [
-            Block::Text(format!("{title}{}", story.darkness())),
-            Block::Fates(story),
-        ]
-    }
-
-    /// Playback, scores and figures.
+    /// Playback and picture, then the story, scores and the other figures.
     #[must_use]
     pub fn section(&self) -> Section {
+        let story = self.story();
         let title = if self.what.is_empty() {
             self.name.clone()
         } else {
-            self.story().title()
+            story.title()
         };
         let head = [
             Block::Playback(Box::new(self.playback())),
+            Block::Text(story.occlusion()),
+            Block::Fates(story),
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
-                "WMSE, the paper's name for the weighted root mean square error: root of the mean of squared errors, \
-                 angles weighted by the radius of gyration, against the {}{}. {} Own spread: what a method holds that error \
-                 to be; moving: from the pusher's first contact to the object's last motion; final: at the last row. Unsolved: \
-                 steps of particles that the solver left unsolved; collapses: rows that no particle explained. Contact: {}.",
+                "Pose RMSE: root of the mean squared error of the pose against the {}{}. Angles are multiplied by the radius \
+                 of gyration. (The paper calls it WMSE.) {} Expected error: the error that the method itself expects. Moving: from \
+                 the pusher's first contact to the object's last motion. Final: at the last row. Unsolved: steps of \
+                 particles without a certified solution. Collapses: rows that no particle explains. Contact: {}.",
                 self.reference_name,
                 self.where_known(),
                 Fate::rule(),
@@ -192,7 +180,7 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
-    /// ", known in 2 of 199 rows" of what estimates are scored against; nothing where it always is.
+    /// ", known in 2 of 199 rows" of the reference; empty if it is known in all rows.
     fn where_known(&self) -> String {
         let rows = &self.reference.pose;
         let known = rows.iter().filter(|pose| pose.is_some()).count();
@@ -205,17 +193,17 @@ impl<'a> ReportedExperiment<'a> {
     /// The scores of all runs.
     #[must_use]
     pub fn scores(&self) -> Table {
-        let wmse = if self.hidden.contains(&true) {
-            "WMSE in the dark (mm)"
+        let rmse = if self.hidden.contains(&true) {
+            "pose RMSE, camera off (mm)"
         } else {
-            "WMSE (mm)"
+            "pose RMSE (mm)"
         };
         let mut table = Table::new([
             "method",
-            wmse,
-            "own spread (mm)",
+            rmse,
+            "expected error (mm)",
             "verdict",
-            "WMSE moving (mm)",
+            "pose RMSE, moving (mm)",
             "final (mm)",
             "final (°)",
             "unsolved",
@@ -257,9 +245,9 @@ impl<'a> ReportedExperiment<'a> {
         for (touch, truth) in playback.touches.iter_mut().zip(&self.touches) {
             touch.truth.clone_from(truth);
         }
-        let dark = self.darkness().map(|rows| Mark {
+        let off = self.occluded().map(|rows| Mark {
             time: times(&self.log.time, rows)[0],
-            name: "camera dark".to_owned(),
+            name: "camera off".to_owned(),
         });
 
         // contacts are shown of the learner only
@@ -278,8 +266,9 @@ impl<'a> ReportedExperiment<'a> {
             track
         };
 
-        let mut lowest_first: Vec<usize> = (0..self.runs.len()).collect();
-        lowest_first.sort_by_key(|k| Line::of(self.runs[*k].scored.variant));
+        let drawn: Vec<&ReportedRun> = self.drawn().collect();
+        let mut lowest_first: Vec<usize> = (0..drawn.len()).collect();
+        lowest_first.sort_by_key(|k| Line::of(drawn[*k].scored.variant));
 
         let [from, to] = self.span();
         let name = if self.what.is_empty() {
@@ -292,23 +281,30 @@ impl<'a> ReportedExperiment<'a> {
             rows: self.row_at(from)..self.row_at(to) + 1,
             poster: self.poster(),
             reference_name: self.reference_name.clone(),
-            marks: self.contacts.iter().cloned().chain(dark).collect(),
-            runs: self.runs.iter().map(track).collect(),
+            marks: self.contacts.iter().cloned().chain(off).collect(),
+            runs: drawn.into_iter().map(track).collect(),
             lowest_first,
             ..playback
         }
     }
 
-    /// Whether no row's pose is there for the methods: it was hidden, or the camera has lost it.
-    fn blind(&self) -> Vec<bool> {
+    /// Runs that figures show: those of [`Variant::DRAWN`] if there are more runs than these.
+    pub(crate) fn drawn(&self) -> impl Iterator<Item = &ReportedRun> {
+        let all = self.runs.len() <= Variant::DRAWN.len();
+        self.runs
+            .iter()
+            .filter(move |run| all || Variant::DRAWN.contains(&run.scored.variant))
+    }
+
+    /// For each row, true if the methods get no pose of the object.
+    pub(crate) fn blind(&self) -> Vec<bool> {
         let rows = self.hidden.iter().zip(&self.log.object);
         rows.map(|(hidden, pose)| *hidden || pose.is_none())
             .collect()
     }
 
-    /// The rows without a pose that hold the hidden ones, from..to: where the camera had lost the
-    /// object before it was hidden, from there on.
-    fn darkness(&self) -> Option<[usize; 2]> {
+    /// Occluded rows from..to, with the rows next to them in which the camera lost the object.
+    fn occluded(&self) -> Option<[usize; 2]> {
         let first = self.hidden.iter().position(|hidden| *hidden)?;
         let last = self.hidden.iter().rposition(|hidden| *hidden)?;
         let blind = row_ranges(self.blind());
@@ -325,8 +321,8 @@ impl<'a> ReportedExperiment<'a> {
         intervals(&self.log.time, &self.blind())
     }
 
-    /// From a little before the first contact to a while after the last one begins, and on to where
-    /// the estimates can be compared to something; all times where no contact is known.
+    /// Times from a little before the first contact to a while after the last one begins, extended
+    /// to the next reference pose; all times if no contact is known.
     pub(crate) fn span(&self) -> [f64; 2] {
         let time = &self.log.time;
         let first = time.first().copied().unwrap_or(0.0);
@@ -351,7 +347,7 @@ impl<'a> ReportedExperiment<'a> {
         after.saturating_sub(1)
     }
 
-    /// The row whose picture tells most.
+    /// Row that the playback shows first.
     pub(crate) fn poster(&self) -> usize {
         let [from, to] = self.span();
         let contacts = self.contacts.iter().map(|mark| mark.time);
@@ -360,8 +356,8 @@ impl<'a> ReportedExperiment<'a> {
         self.row_at(shown.min(to).max(from))
     }
 
-    /// The run whose particles and friction are shown: the last one that learns friction with the
-    /// camera dark.
+    /// Run whose particles and friction are shown: the last one that estimates friction with the
+    /// camera off.
     pub(crate) fn learner(&self) -> Option<&ReportedRun> {
         let learns = |run: &&ReportedRun| {
             let mut rows = run.scored.estimate.rows.iter();

@@ -1,11 +1,11 @@
-//! One run with what is drawn of its particles: [`ReportedRun`].
+//! One run with the particles of it that are drawn: [`ReportedRun`].
 
 use stickslip::dynamics::Pose;
 use stickslip_evaluation::ScoredRun;
 
 use crate::colour::Colour;
 
-/// One run with what is drawn of its particles.
+/// One run with the particles of it that are drawn.
 #[derive(Clone, Debug)]
 pub struct ReportedRun {
     /// The run.
@@ -27,7 +27,7 @@ impl ReportedRun {
         Colour::of(self.scored.variant)
     }
 
-    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
+    /// Weighted RMSE while the camera was off, over all rows where it never was (mm).
     #[must_use]
     pub fn wmse_mm(&self) -> Option<f64> {
         let scores = &self.scored.scores;

@@ -7,41 +7,41 @@ pub const KEPT_MM: f64 = 2.0;
 /// Weighted RMSE from which it lost the object (mm).
 pub const LOST_MM: f64 = 10.0;
 
-/// What happened in an experiment, and how its methods fared.
+/// Course of an experiment, and the errors of its methods.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Story {
-    /// What moves, as "a bar pushes a square until it jams at a fixel"; empty where nobody knows.
+    /// Motion, as "a bar pushes a square until it jams at a fixel"; empty if unknown.
     pub what: String,
     /// Length of the recording (s).
     pub duration: f64,
-    /// When the camera was dark: from, to (s), with poses that it had lost just before and after.
-    pub dark: Option<[f64; 2]>,
+    /// Time without a camera: from, to (s), with poses lost just before and after.
+    pub off: Option<[f64; 2]>,
     /// Rows outside that time in which the camera lost the object.
     pub lost: usize,
     /// All rows.
     pub rows: usize,
-    /// By how much the camera lags (s), where errors are told against its poses; else 0.
+    /// Latency of the camera (s) if its poses are the reference; else 0.
     pub lag: f64,
     /// When the object first touched a fixel (s).
     pub first_fixel: Option<f64>,
     /// The methods.
     pub outcomes: Vec<Outcome>,
-    /// What the filter that learns says of itself, of friction and of contact, in sentences.
+    /// Expected error, friction and contact according to the particle filter, in sentences.
     pub learnt: Vec<String>,
 }
 
-/// How one method fared.
+/// Error of one method.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Name.
     pub name: String,
-    /// Whether its camera stayed on.
+    /// True if its camera stayed on.
     pub camera_on: bool,
-    /// Weighted RMSE while the camera was dark, over all rows where it never was (mm).
+    /// Pose RMSE on occluded rows, over all rows if none is occluded (mm).
     pub wmse_mm: Option<f64>,
 }
 
-/// Whether a method still knew where the object was.
+/// Verdict on the error of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
     /// Weighted RMSE up to [`KEPT_MM`].
@@ -81,13 +81,13 @@ impl Fate {
     #[must_use]
     pub fn rule() -> String {
         format!(
-            "Kept track: WMSE of at most {KEPT_MM:.0} mm; lost it: more than {LOST_MM:.0} mm; drifted: between."
+            "Kept track: a pose RMSE of at most {KEPT_MM:.0} mm. Lost it: more than {LOST_MM:.0} mm. Drifted: between."
         )
     }
 }
 
 impl Story {
-    /// What happened, and which methods kept track, drifted or lost the object.
+    /// Course of the experiment, and the methods that kept track, drifted or lost the object.
     #[must_use]
     pub fn sentences(&self) -> Vec<String> {
         let what = (!self.what.is_empty()).then(|| format!("{}.", self.title()));
@@ -96,74 +96,74 @@ impl Story {
             .into_iter()
             .map(|(fate, names)| format!("{}: {names}.", fate.name()));
         what.into_iter()
-            .chain([self.darkness()])
+            .chain([self.occlusion()])
             .chain(fates)
             .chain(self.seen())
             .chain(self.learnt.iter().cloned())
             .collect()
     }
 
-    /// What moves, with a capital; empty where nobody knows.
+    /// Motion with a capital letter; empty if unknown.
     #[must_use]
     pub fn title(&self) -> String {
         capital(&self.what)
     }
 
-    /// When the camera was dark.
+    /// Time without a camera, lost poses and latency.
     #[must_use]
-    pub fn darkness(&self) -> String {
-        let lost = match (self.lost, self.dark) {
+    pub fn occlusion(&self) -> String {
+        let lost = match (self.lost, self.off) {
             (0, _) => String::new(),
             (lost, None) => format!(" The camera gives no pose in {lost} of {} rows.", self.rows),
             (lost, Some(_)) => format!(
-                " Besides, it gives no pose in {lost} of {} rows.",
+                " It also gives no pose in {lost} of {} other rows.",
                 self.rows
             ),
         };
         let late = match self.lag > 0.0 {
             true => format!(
-                " The camera lags by {:.2} s: its poses, and errors against them, stand at the times that they show, darkness where no pose comes.",
+                " The camera lags by {:.2} s: its poses and errors are drawn at the times of exposure.",
                 self.lag
             ),
             false => String::new(),
         };
-        let Some([from, to]) = self.dark else {
+        let Some([from, to]) = self.off else {
             return match self.lost {
-                0 => format!("The camera sees the object all the time.{late}"),
-                _ => format!("Nothing is hidden from the methods.{lost}{late}"),
+                0 => format!("The camera is on all the time.{late}"),
+                _ => format!("No row is occluded on purpose.{lost}{late}"),
             };
         };
         let contact = match self.first_fixel.map(|contact| contact - from) {
             Some(ahead) if ahead >= 0.0 => {
-                format!(", {ahead:.1} s before the object first touches a fixel,")
+                format!(", {ahead:.1} s before the object touches a fixel,")
             }
-            Some(after) => format!(", {:.1} s after the object first touched a fixel,", -after),
+            Some(after) => format!(", {:.1} s after the object touched a fixel,", -after),
             None => String::new(),
         };
         let end = if to >= self.duration - 0.1 {
-            "stays dark to the end".to_owned()
+            "stays off".to_owned()
         } else {
-            format!("is back at {to:.1} s")
+            format!("is on again at {to:.1} s")
         };
-        format!("At {from:.1} s{contact} the camera goes dark; it {end}.{lost}{late}")
+        format!("The camera turns off at {from:.1} s{contact} and {end}.{lost}{late}")
     }
 
-    /// The methods by their fates, those whose camera stayed on left out: "particle filter (0.12
-    /// mm), nominal simulation (0.30 mm)".
+    /// Methods without a camera by their verdicts: "particle filter (0.12 mm), nominal simulation
+    /// (0.30 mm)".
     #[must_use]
     pub fn fates(&self) -> Vec<(Fate, String)> {
-        let mut dark: Vec<&Outcome> = self
+        let mut occluded: Vec<&Outcome> = self
             .outcomes
             .iter()
             .filter(|outcome| !outcome.camera_on)
             .collect();
-        dark.sort_by(|a, b| {
+        occluded.sort_by(|a, b| {
             a.wmse_mm
                 .unwrap_or(f64::INFINITY)
                 .total_cmp(&b.wmse_mm.unwrap_or(f64::INFINITY))
         });
         let listed = |fate: Fate| {
-            let named = dark
+            let named = occluded
                 .iter()
                 .filter(|outcome| Fate::of(outcome.wmse_mm) == fate)
                 .map(|outcome| outcome.named());
@@ -176,8 +176,7 @@ impl Story {
             .collect()
     }
 
-    /// How well the object could be known: of several methods whose camera stayed on, each by its
-    /// name.
+    /// Errors of the methods whose camera stayed on, by name if there are several.
     #[must_use]
     pub fn seen(&self) -> Option<String> {
         let mut scored: Vec<(&str, f64)> = self
@@ -198,7 +197,7 @@ impl Story {
                 named.collect::<Vec<_>>().join(", ")
             }
         };
-        Some(format!("With the camera always on: {said}."))
+        Some(format!("Camera always on: {said}."))
     }
 }
 
@@ -245,7 +244,7 @@ mod tests {
         let story = Story {
             what: "a bar pushes a square".to_owned(),
             duration: 20.0,
-            dark: Some([5.1, 20.0]),
+            off: Some([5.1, 20.0]),
             first_fixel: Some(5.27),
             outcomes: vec![
                 outcome("nominal", false, 4.0),
@@ -259,17 +258,17 @@ mod tests {
             story.sentences(),
             [
                 "A bar pushes a square.",
-                "At 5.1 s, 0.2 s before the object first touches a fixel, the camera goes dark; it stays dark to the end.",
+                "The camera turns off at 5.1 s, 0.2 s before the object touches a fixel, and stays off.",
                 "Kept track: particle (0.12 mm).",
                 "Drifted: nominal (4.00 mm).",
                 "Lost it: kalman (143 mm).",
-                "With the camera always on: 0.07 mm."
+                "Camera always on: 0.07 mm."
             ]
         );
     }
 
     #[test]
-    fn sentences_know_logs_without_darkness_and_without_survivors() {
+    fn sentences_know_logs_without_occlusion_and_without_survivors() {
         let story = Story {
             outcomes: vec![outcome("kalman", false, 12.0)],
             ..Story::default()
@@ -277,7 +276,7 @@ mod tests {
         assert_eq!(
             story.sentences(),
             [
-                "The camera sees the object all the time.",
+                "The camera is on all the time.",
                 "Lost it: kalman (12.0 mm)."
             ]
         );
@@ -295,8 +294,8 @@ mod tests {
         assert_eq!(
             unscored.sentences(),
             [
-                "Nothing is hidden from the methods. The camera gives no pose in 3 of 40 rows. \
-                 The camera lags by 0.16 s: its poses, and errors against them, stand at the times that they show, darkness where no pose comes.",
+                "No row is occluded on purpose. The camera gives no pose in 3 of 40 rows. \
+                 The camera lags by 0.16 s: its poses and errors are drawn at the times of exposure.",
                 "Not scored: kalman.",
                 "mu_s 0.3."
             ]

@@ -39,7 +39,7 @@ pub struct TimeFigure {
     pub columns: usize,
     /// Size of one panel, its own axis included (px).
     pub panel_size: [f64; 2],
-    /// What bands are, as "10–90 % of 20 seeds"; empty: not shown.
+    /// Meaning of bands, as "10–90 % of 20 seeds"; empty: not shown.
     pub band_name: String,
 }
 
@@ -50,11 +50,11 @@ pub struct Panel {
     pub title: String,
     /// Quantity with its unit, as "position error (mm)".
     pub label: String,
-    /// How values are spread.
+    /// Spacing of values.
     pub scale: Scale,
-    /// Smallest and largest value shown; `None`: what holds all curves and levels.
+    /// Smallest and largest value shown; `None`: a range that contains all curves and levels.
     pub limits: Option<[f64; 2]>,
-    /// What is shown at least, from lowest to highest; 0: as little as there is.
+    /// Smallest range that is shown, from lowest to highest; 0: as little as there is.
     pub least_span: f64,
     /// Times without a camera where they differ from the figure's.
     pub dark: Option<Vec<[f64; 2]>>,
@@ -72,7 +72,7 @@ pub struct Curve {
     pub name: String,
     /// Colour.
     pub colour: Colour,
-    /// How it is drawn.
+    /// Style of the line.
     pub line: Line,
     /// Times and values; a NaN breaks the line.
     pub points: Vec<[f64; 2]>,
@@ -89,11 +89,11 @@ pub struct Level {
     pub value: f64,
     /// Colour.
     pub colour: Colour,
-    /// How it is drawn.
+    /// Style of the line.
     pub line: Line,
 }
 
-/// Where a panel stands.
+/// Place of a panel.
 struct Place {
     corner: [f64; 2],
     size: [f64; 2],
@@ -126,7 +126,7 @@ impl TimeFigure {
         self.drawing().to_svg()
     }
 
-    /// The figure, to be put beside others; on a phone its panels stand one below the other.
+    /// The figure, to be put next to others; on a phone its panels stand one below the other.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let columns = self.columns.clamp(1, self.panels.len().max(1));
@@ -243,7 +243,7 @@ impl TimeFigure {
         }
         let dark = |panel: &Panel| !panel.dark.as_ref().unwrap_or(&self.dark).is_empty();
         if self.panels.iter().any(dark) {
-            legend.push(Swatch::Dark, "camera dark");
+            legend.push(Swatch::Dark, "camera off");
         }
         legend
     }

@@ -1,7 +1,8 @@
-//! Who touches the object: [`TouchRule`], by gap or by force, so that it holds at rest too.
+//! Contact of the object with other bodies: [`TouchRule`], by gap or by force, so that it applies
+//! at rest too.
 //!
 //! The force that a filter or a simulation has for a contact at rest may be zero, and says nothing
-//! then: friction holds the object whether the pusher presses on it or only stands there.
+//! then: friction keeps the object in place whether the pusher presses on it or only stands there.
 
 use stickslip::dynamics::{Placed, Pose, Scene, Shape, narrow_phase};
 use stickslip::{EstimateRow, Setup};
@@ -16,7 +17,7 @@ const GAP: f64 = 2e-4;
 /// Largest offset of a row of the truth from a row of the log at the same time (s).
 const SAME_TIME: f64 = 5e-4;
 
-/// What counts as contact in a scene.
+/// Rule for contact in a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchRule<'a> {
     scene: &'a Scene,
@@ -61,8 +62,8 @@ impl<'a> TouchRule<'a> {
         1 + self.scene.fixels.len()
     }
 
-    /// Whether the object at a pose touches the pusher (0), which may be off the table, or a fixel
-    /// (from 1 on).
+    /// Returns true if the object at a pose touches the pusher (0), which may be off the table, or
+    /// a fixel (from 1 on).
     pub fn touches(&self, object: Pose, pusher: Option<Pose>, body: usize) -> bool {
         let Scene { fixels, .. } = self.scene;
         match body.checked_sub(1).map(|fixel| &fixels[fixel]) {
@@ -102,8 +103,8 @@ impl<'a> TouchRule<'a> {
     }
 }
 
-/// Whether the object truly touches the pusher, then each fixel, row by row: it is pressed, or the
-/// gap is closed; `None` where there is no truth.
+/// True contacts of the object with the pusher, then with each fixel, row by row: it is pressed, or
+/// the gap is closed. `None` where there is no truth.
 pub(crate) fn true_touches(
     experiment: &Experiment,
     reference: &Reference,

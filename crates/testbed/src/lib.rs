@@ -1,5 +1,5 @@
 //! A virtual testbed for pushing experiments: [`Rig`], a compliant physics finer than the model's,
-//! [`Model`], the model itself, and a [`TrackingCamera`] that measures what either of them did.
+//! [`Model`], the model itself, and a [`TrackingCamera`] that measures the motion of either.
 //!
 //! All of it is a function of scene, start, settings and seed; the same arguments give the same
 //! bits.

@@ -1,8 +1,8 @@
-//! What happened in a simulated experiment: [`Trace`], one [`Frame`] per camera frame.
+//! Record of a simulated experiment: [`Trace`], one [`Frame`] per camera frame.
 
 use stickslip_dynamics::{Body, Friction, Pose, Twist};
 
-/// A simulated experiment: the truth at every camera frame, and what the touch sensors read.
+/// A simulated experiment: the truth at every camera frame, and the readings of the touch sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The true friction: μ_s is the mean along the object's path, d_tri the radius of the tripod
@@ -31,7 +31,7 @@ pub struct Frame {
     pub pusher_force: [f64; 2],
     /// Normal force of each fixel on the object, mean over the interval that ends here (N).
     pub fixel_forces: Vec<f64>,
-    /// What each fixel's touch sensor reads for that interval.
+    /// Readings of the fixels' touch sensors for that interval.
     pub tactile: Vec<bool>,
 }
 
@@ -40,7 +40,7 @@ pub struct Frame {
 pub struct Contact {
     /// The other body.
     pub body: Body,
-    /// Where, world frame (m).
+    /// Position in the world frame (m).
     pub point: [f64; 2],
     /// Unit normal into the object.
     pub normal: [f64; 2],

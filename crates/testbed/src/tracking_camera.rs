@@ -30,14 +30,14 @@ pub struct TrackingCamera {
     pub repeats: f64,
 }
 
-/// What was measured in one frame.
+/// Measurement of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraMeasurement {
     /// Pose of the object.
     pub object: Pose,
     /// Pose of the pusher.
     pub pusher: Pose,
-    /// Whether the frame is the one before once more.
+    /// True if the frame repeats the one before.
     pub repeated: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What is simulated: [`Trial`], and why it cannot be: [`TrialError`].
+//! Experiment to simulate, [`Trial`], and the reasons why it cannot be simulated: [`TrialError`].
 
 use stickslip_dynamics::{Body, Gap, Placed, Scene, Start, narrow_phase};
 
@@ -18,7 +18,7 @@ pub struct Trial<'a> {
     pub seed: u64,
 }
 
-/// Why an experiment cannot be simulated.
+/// Reason why an experiment cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrialError {
@@ -35,7 +35,7 @@ pub enum TrialError {
         "the true {name} is {value}; it must be a finite number from 0 up. Give a coefficient of friction"
     )]
     Friction {
-        /// Which one.
+        /// Name of the number.
         name: &'static str,
         /// The value found.
         value: f64,
@@ -70,7 +70,7 @@ impl Trial<'_> {
         frame as f64 / self.rate
     }
 
-    /// Refuses what no physics can simulate.
+    /// Refuses trials that no physics can simulate.
     pub(crate) fn check(&self, friction: [(&'static str, f64); 3]) -> Result<(), TrialError> {
         if !(1.0..=1000.0).contains(&self.rate) {
             return Err(TrialError::Rate { rate: self.rate });

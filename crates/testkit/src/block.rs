@@ -2,7 +2,7 @@
 //! spinning and pivoting on its tripod.
 //!
 //! The block stands on an equal tripod of radius d with support friction bound b = μ m g h in all
-//! (b/3 per foot) and has no contacts; nothing acts on it but what a function's arguments name.
+//! (b/3 per foot) and has no contacts; only the loads that a function's arguments name act on it.
 //! With h fixed, every step of the scheme is exact, so tests may ask for rounding accuracy.
 
 use stickslip_dynamics::{Foot, StepProblem, StepSolution, Twist, Wrench};
@@ -24,7 +24,7 @@ pub struct Block {
     pub d_tri: f64,
 }
 
-/// Where a motion stops that loses the same speed in every step.
+/// Stop of a motion that loses the same speed in every step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
     /// The first step at whose end the speed is zero; 0 for a motion that never began.
@@ -89,8 +89,8 @@ impl Block {
         remaining(omega, self.spin_loss(), k)
     }
 
-    /// Where and when a pure translation of initial `speed` (m/s) stops; the friction must not be
-    /// zero.
+    /// Place and time at which a pure translation of initial `speed` (m/s) stops; the friction must
+    /// not be zero.
     #[must_use]
     pub fn slide_stop(&self, speed: f64) -> Stop {
         stop(speed, self.slide_loss(), self.h)

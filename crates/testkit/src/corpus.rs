@@ -4,8 +4,8 @@
 //! that `Family::ALL.len()` successive indices hold each once and failures are counted per family.
 //!
 //! Not every problem has a rigid solution: a rigid pusher into a jam and fixels that overlap from
-//! two sides have none, and the solver must say so. [`crate::gap_margin`] tells some of them;
-//! [`Corpus::witness`] gives a solution where one is known by construction.
+//! two sides have none, and the solver must say so. The function [`crate::gap_margin`] detects some
+//! of them; [`Corpus::witness`] gives a solution where one is known by construction.
 
 use stickslip_dynamics::{StepProblem, StepSolution, Twist, Wrench};
 
@@ -14,7 +14,7 @@ use crate::problem_builder::{Other, ProblemBuilder};
 use crate::rng::SplitMix64;
 use crate::vector::left;
 
-/// What is hard about a problem.
+/// Difficulty of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     /// No contact; slides on or stops within the step.
@@ -38,7 +38,7 @@ pub enum Family {
     Scattered,
     /// A rigid pusher presses the object against one to three fixels that face it.
     Jam,
-    /// The same with a drive that may stall.
+    /// Jam with a drive that may stall.
     StalledJam,
     /// A face of the pusher against a face of fixels, half of them with a drive that may stall.
     FaceJam,

@@ -1,8 +1,8 @@
-//! Where the recorded experiments lie: [`data_root`].
+//! Folder of the recorded experiments: [`data_root`].
 //!
-//! `STICKSLIP_DATA` names the folder; without it, `../shared/data` beside the workspace counts. The
-//! build script `build_data_cfg.rs` applies the same rule at compile time, so that tests without
-//! data are reported as ignored.
+//! `STICKSLIP_DATA` names the folder; without it, `../shared/data` next to the workspace counts.
+//! The build script `build_data_cfg.rs` applies the same rule at compile time, so that tests
+//! without data are reported as ignored.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ pub fn data_root() -> Option<PathBuf> {
     )
 }
 
-/// What an absent folder means.
+/// Reaction to an absent folder.
 #[derive(Clone, Copy)]
 enum Absent {
     Skip,

@@ -2,14 +2,14 @@
 
 use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, StepSolution, Twist, Wrench};
 
-/// One step a line; its comments say what the numbers are.
+/// One step a line; its comments explain the numbers.
 const TEXT: &str = include_str!("../data/hard_steps.txt");
 
 /// A step of a particle filter over a recorded experiment, scaled to mass 1, radius of gyration 1
 /// and step length 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HardStep {
-    /// What was hard about it.
+    /// Class of its difficulty.
     pub class: String,
     /// The problem.
     pub problem: StepProblem,

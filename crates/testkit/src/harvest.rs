@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-9;
 /// Disturbed forms of each harvested step.
 const DISTURBED: u64 = 2;
 
-/// A step of a recorded experiment, with what the filter's solver made of it.
+/// A step of a recorded experiment, with the answer of the filter's solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HarvestedStep {
     /// The problem.
@@ -35,7 +35,7 @@ pub struct HarvestedStep {
 /// The steps of one run.
 #[derive(Clone, Debug, Default)]
 pub struct Harvest {
-    /// How they ended; residuals are the larger of the solver's own and [`judged_residual`].
+    /// Outcomes of the steps; residuals are the larger of the solver's own and [`judged_residual`].
     pub tally: Tally,
     /// Some of those with contacts.
     pub kept: Vec<HarvestedStep>,
@@ -43,7 +43,7 @@ pub struct Harvest {
     pub refuted: Vec<StepProblem>,
 }
 
-/// How a harvest is made.
+/// Options of a harvest.
 #[derive(Clone, Copy, Debug)]
 pub struct HarvestOptions {
     /// Particles of the filter, at most [`MOST_PARTICLES`].
@@ -121,7 +121,7 @@ impl Observer for StepCollector {
     }
 }
 
-/// A number that tells steps apart: their twist and the noise impulse differ.
+/// A number that distinguishes steps: their twist and the noise impulse differ.
 fn fingerprint(problem: &StepProblem) -> u64 {
     let numbers = [
         problem.twist.vx,
@@ -135,8 +135,8 @@ fn fingerprint(problem: &StepProblem) -> u64 {
         .fold(0, |hash, number| mix(hash ^ number.to_bits()))
 }
 
-/// How the solver does on harvested steps from a cold start: as they are, and disturbed.
-/// Independent of the number of threads.
+/// Results of the solver on harvested steps from a cold start: as they are, and disturbed. They do
+/// not depend on the number of threads.
 ///
 /// The disturbance of step k is a pure function of (seed, k).
 #[must_use]

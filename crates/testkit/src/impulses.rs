@@ -1,9 +1,9 @@
 //! Impulses that belong to a given twist: [`impulses_for_twist`], a convex feasibility problem.
 //!
 //! Once v⁺ and y are known, every contact is open or closed and every slip velocity zero or not,
-//! and what is left is linear: Newton–Euler, friction on the cone's edge where something slips,
-//! friction inside the cone where it sticks. Where several sets of impulses do (a face that sticks,
-//! an object wedged at rest) the one of least norm is returned.
+//! and the remaining problem is linear: Newton–Euler, friction on the cone's edge where something
+//! slips, friction inside the cone where it sticks. Where several sets of impulses do (a face that
+//! sticks, an object wedged at rest) the one of least norm is returned.
 
 use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist};
 
@@ -18,7 +18,7 @@ const STILL: f64 = 1e-9;
 /// Worst accepted residual, relative to the same.
 const ACCURACY: f64 = 1e-8;
 
-/// What the twist says about a direction.
+/// Condition of the twist on a direction.
 #[derive(Clone, Copy, PartialEq)]
 enum Motion {
     Still,

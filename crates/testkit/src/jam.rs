@@ -1,12 +1,14 @@
-//! When a step can fail to have a solution: [`gap_margin`], [`may_jam`] and [`is_solvable`].
+//! Conditions under which a step can fail to have a solution: [`gap_margin`], [`may_jam`] and
+//! [`is_solvable`].
 //!
-//! One-sided answers. Below zero margin the gap rows exclude each other, at any speed that is
-//! sought: no solution. Where the friction cones admit no impulses that cancel each other (their
+//! The answers are one-sided. Below zero margin the gap rows exclude each other, at any speed that
+//! is sought: no solution. Where the friction cones admit no impulses that cancel each other (their
 //! sum is a pointed cone) there is always a solution: impulses p that grow without bound along a
 //! homotopy would have W p/|p| tend to zero. In between, jamming by friction, both are silent.
-//! Faces that close on an object at a slight angle meet both conditions: their solution squeezes it
-//! out at an absurd speed, and none is sought there. So a step *must* be solved where its solutions
-//! are slow enough, too: [`is_solvable`].
+//!
+//! Faces that close on an object at a slight angle meet both conditions. Their solution squeezes it
+//! out at an absurd speed, and none is sought there. So a step *must* be solved only where its
+//! solutions are slow enough, too: [`is_solvable`].
 
 use stickslip_dynamics::StepProblem;
 
@@ -19,9 +21,9 @@ use crate::vector::left;
 /// Wrenches of unit impulses that sum to less than this may cancel each other.
 const CANCELLED: f64 = 1e-5;
 
-/// How fast all gaps can open at once (m/s), at most `cap`, at speeds up to [`speed_limit`].
+/// Speed at which all gaps can open at once (m/s), at most `cap`, at speeds up to [`speed_limit`].
 ///
-/// Negative where the gap rows exclude each other: then there is no solution of such a speed,
+/// It is negative where the gap rows exclude each other: then there is no solution of such a speed,
 /// whatever the friction.
 ///
 /// # Panics
@@ -62,8 +64,8 @@ fn unit(j: usize, value: f64) -> Vec<f64> {
     row
 }
 
-/// Whether impulses within the friction cones can cancel each other while a drive with a force
-/// limit does not push.
+/// Returns true if impulses within the friction cones can cancel each other while a drive with a
+/// force limit does not push.
 ///
 /// Where they cannot, a solution exists, though perhaps none as slow as is sought: [`is_solvable`].
 /// Impulses that cancel to 1e-5 of their size count as cancelling, open contacts as closed.
@@ -72,14 +74,16 @@ pub fn may_jam(problem: &StepProblem) -> bool {
     !problem.contacts.is_empty() && least_wrench(problem) < CANCELLED
 }
 
-/// Whether a step certainly has a solution that is sought: impulses cannot cancel each other, and
-/// those that a solution needs give it no speed above [`speed_limit`].
+/// Returns true if a step certainly has a solution that is sought: impulses cannot cancel each
+/// other, and those that a solution needs give it no speed above [`speed_limit`].
 ///
-/// Let the wrenches of impulses P in all, with the positive part of the push, come to δ P at least.
-/// Balance bounds P: δ P ≤ |v| + |free| + F + Q, with F what the feet can resist and Q the drive's
-/// impulse. Work bounds |v|: the feet and the slips take power, the drive takes y Q, a closed gap
-/// gives p_n times its offset and a slip p_t times its own, so that |v|² + y Q ≤ |v| |free| + P g,
-/// with g the largest such offset. All in mass-normalised units.
+/// Let the wrenches of impulses P in all, with the positive part of the push, be at least δ P.
+/// Balance bounds P: δ P ≤ |v| + |free| + F + Q, with F the resistance of the feet and Q the
+/// drive's impulse.
+///
+/// Work bounds |v|. The feet and the slips take power, and the drive takes y Q. A closed gap gives
+/// p_n times its offset and a slip p_t times its own. So |v|² + y Q ≤ |v| |free| + P g, with g the
+/// largest such offset. All is in mass-normalised units.
 #[must_use]
 pub fn is_solvable(problem: &StepProblem) -> bool {
     if problem.contacts.is_empty() {
@@ -109,8 +113,8 @@ pub fn is_solvable(problem: &StepProblem) -> bool {
         && impulses * scaled.speed() <= LARGEST_IMPULSE
 }
 
-/// Less than which the sum of wrenches, with the push along the drive, cannot be for impulses whose
-/// normal parts sum to one.
+/// Least size of the sum of wrenches, with the push along the drive, for impulses whose normal
+/// parts sum to one.
 fn least_wrench(problem: &StepProblem) -> f64 {
     let scaled = ScaledProblem::new(problem);
     // the edges of the friction cones: wrench, then push

@@ -7,15 +7,15 @@
 //! - [`impulses_for_twist`]: whether a twist is a solution, and by which impulses.
 //! - [`gap_margin`], [`may_jam`], [`is_solvable`]: whether a step certainly has no solution, or
 //!   certainly has one.
-//! - [`speed_limit`], [`is_sought`]: how fast a solution may be that is sought;
-//!   [`judged_residual`]: both at once.
+//! - [`speed_limit`], [`is_sought`]: highest speed of a solution that is sought;
+//!   [`judged_residual`]: residual and speed at once.
 //! - [`Block`]: closed forms of the time-stepping scheme.
 //! - [`Corpus`]: a fixed sequence of hard random problems.
-//! - [`survey`]: how the solver does on it.
+//! - [`survey`]: results of the solver on it.
 //! - [`hard_steps`]: steps that a solver once failed on, or took long for.
 //! - [`ClosedLoop`]: random scenes that the particle filter follows, every step judged.
 //! - [`pushed_scene`]: a scene with given shapes.
-//! - [`data_root`], [`recorded_cases`]: where recorded experiments lie, and how they are run.
+//! - [`data_root`], [`recorded_cases`]: folder of recorded experiments, and how they are run.
 //! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
 //!   problems.
 

@@ -73,7 +73,7 @@ fn after(builder: &mut ProblemBuilder, motion: Motion, fastest: f64) -> Twist {
     }
 }
 
-/// A closed or open contact whose gap is what the motion asks for.
+/// A closed or open contact whose gap follows from the motion.
 fn add_contact(builder: &mut ProblemBuilder, solution: &mut StepSolution) {
     let other = if builder.rng.one_in(2) {
         Other::Pusher

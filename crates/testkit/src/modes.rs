@@ -3,9 +3,9 @@
 //! A mode says of each contact whether it separates, sticks or slips to the left or right, of the
 //! feet whether all slide, one sticks or all do, and of the drive whether it follows its command.
 //! Within a mode the conditions are smooth equations; a damped Newton iteration solves them from
-//! several starts, first with the corner of |s_k| rounded off, and what passes the residual is
-//! kept. Where a mode leaves impulses undetermined, those of least norm that respect the cones are
-//! looked for at the twist it yields.
+//! several starts, first with the corner of |s_k| rounded off, and solutions that pass the residual
+//! are kept. Where a mode leaves impulses undetermined, those of least norm that respect the cones
+//! are sought at its twist.
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 

@@ -1,9 +1,9 @@
 //! Random step problems, put together part by part: [`ProblemBuilder`] adds contacts and loads to a
 //! body on its feet with a pusher.
 //!
-//! Everything keeps to the scale of a table-top experiment: masses 0.02–5 kg, radii of gyration ρ
-//! 3–60 mm, steps 0.1–33 ms, speeds up to 0.3 m/s, contacts within 2.1 ρ of the centre of mass
-//! (faces 3.2 ρ), gaps within ±2 mm.
+//! Everything keeps to the scale of a table-top experiment. Masses are 0.02–5 kg, radii of gyration
+//! ρ 3–60 mm, steps 0.1–33 ms, speeds up to 0.3 m/s. Contacts lie within 2.1 ρ of the centre of
+//! mass (faces 3.2 ρ), gaps within ±2 mm.
 
 use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, Twist, Wrench};
 

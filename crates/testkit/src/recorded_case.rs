@@ -1,4 +1,4 @@
-//! Recorded experiments with what is hidden of them: [`RecordedCase`]s, read from a folder by
+//! Recorded experiments with their hidden rows: [`RecordedCase`]s, read from a folder by
 //! [`recorded_cases`].
 
 use std::fs;
@@ -21,11 +21,11 @@ pub struct RecordedCase {
     pub setup: Setup,
     /// The log.
     pub log: Log,
-    /// What is hidden.
+    /// Rows that are hidden.
     pub occlusion: Occlusion,
 }
 
-/// Why an experiment could not be read.
+/// Reason why an experiment could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordedError {
     /// A file or folder cannot be read.
@@ -33,10 +33,10 @@ pub enum RecordedError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         cause: std::io::Error,
     },
-    /// A file does not hold what it should.
+    /// A file does not have the right content.
     #[error(transparent)]
     Content(Box<dyn std::error::Error + Send + Sync>),
     /// No folder holds an experiment.
@@ -90,7 +90,7 @@ pub fn recorded_cases(root: &Path) -> Result<Vec<RecordedCase>, RecordedError> {
     }
 }
 
-/// Nothing hidden, and where that differs, what is to be hidden.
+/// No occlusion; then the occlusion of truth.json, or else of the middle, if it hides a pose.
 fn occlusions(facts: &TruthFacts, log: &Log) -> Vec<Occlusion> {
     let occlusion = match facts.occlude_from {
         Some(from) => Occlusion::Rows { from, to: None },
@@ -137,7 +137,7 @@ fn folders_with_log(root: &Path) -> Result<Vec<PathBuf>, RecordedError> {
     Ok(found)
 }
 
-/// What a folder holds, by name.
+/// Contents of a folder, by name.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, RecordedError> {
     let read = || {
         fs::read_dir(folder)?

@@ -17,7 +17,7 @@ use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution};
 
 use crate::vector::{cross, dot, left};
 
-/// Which condition a residual belongs to; the numbers index contacts and feet.
+/// Condition to which a residual belongs; the numbers index contacts and feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResidualRow {
     /// Newton's law along x.
@@ -86,7 +86,7 @@ pub fn residual_rows_si(problem: &StepProblem, solution: &StepSolution) -> Vec<(
         .collect()
 }
 
-/// What a contact pushes the object with (N s).
+/// Impulse of a contact on the object (N s).
 fn contact_impulse(contact: &ContactPoint, normal: f64, tangential: f64) -> [f64; 2] {
     let (n, t) = (contact.normal, left(contact.normal));
     [

@@ -2,8 +2,8 @@
 //! numerical oracles solve it.
 //!
 //! Twists become z = (vx, vy, ρ ω)/S and impulses p/(m S), with ρ = sqrt(J/m) and S the largest
-//! speed in the data, so that Newton's law reads z = z_free + Σ c p with columns c = (direction,
-//! arm × direction / ρ) and the velocity along a direction is c·z.
+//! speed in the data. Then Newton's law reads z = z_free + Σ c p with columns c = (direction, arm ×
+//! direction / ρ) and the velocity along a direction is c·z.
 
 use stickslip_dynamics::{ContactPoint, StepProblem, Twist};
 
@@ -84,18 +84,18 @@ impl<'a> ScaledProblem<'a> {
         self.problem.feet[k].bound / self.impulse()
     }
 
-    /// What the gap velocity is at z = 0, y = 0: ψ/h − n·u.
+    /// Gap velocity at z = 0, y = 0: ψ/h − n·u.
     pub fn gap_offset(&self, contact: &ContactPoint) -> f64 {
         (contact.gap / self.problem.h - dot(contact.normal, contact.surface_velocity)) / self.speed
     }
 
-    /// What the slip velocity is at z = 0, y = 0: −t·u.
+    /// Slip velocity at z = 0, y = 0: −t·u.
     pub fn slip_offset(&self, contact: &ContactPoint) -> f64 {
         -dot(left(contact.normal), contact.surface_velocity) / self.speed
     }
 
-    /// How fast the contact's surface retreats along −`direction` per unit of the pusher's yield:
-    /// d·direction, 0 for a fixel.
+    /// Speed at which the contact's surface retreats along −`direction` per unit of the pusher's
+    /// yield: d·direction, 0 for a fixel.
     pub fn yielding(&self, contact: &ContactPoint, direction: [f64; 2]) -> f64 {
         self.problem
             .stall

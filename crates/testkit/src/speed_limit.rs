@@ -1,4 +1,4 @@
-//! How fast a solution may be that the solver seeks: [`speed_limit`], [`is_sought`],
+//! Highest speed of a solution that the solver seeks: [`speed_limit`], [`is_sought`],
 //! [`judged_residual`].
 
 use stickslip_dynamics::{StepProblem, StepSolution};
@@ -26,7 +26,7 @@ pub fn speed_limit(problem: &StepProblem) -> f64 {
     (LIMIT * scaled.speed() * fastest.fold(0.0, f64::max)).max(LEAST)
 }
 
-/// Whether a solution is slow enough for its problem.
+/// Returns true if a solution is slow enough for its problem.
 #[must_use]
 pub fn is_sought(problem: &StepProblem, solution: &StepSolution) -> bool {
     let scaled = ScaledProblem::new(problem);

@@ -11,7 +11,7 @@ use crate::corpus::{Corpus, Family};
 use crate::jam::is_solvable;
 use crate::speed_limit::is_sought;
 
-/// How the problems of one family ended.
+/// Outcomes of the problems of one family.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     /// Problems.

@@ -1,5 +1,5 @@
-//! How good tracking is on rendered frames with known truth: `cargo run --release -p
-//! stickslip-vision --example accuracy`.
+//! Accuracy of tracking on rendered frames with known truth:
+//! `cargo run --release -p stickslip-vision --example accuracy`.
 
 #[path = "../tests/it/common/mod.rs"]
 #[allow(dead_code, reason = "tests use the rest")]

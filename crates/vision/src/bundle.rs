@@ -36,7 +36,7 @@ pub(crate) struct Bundle {
     pub(crate) views: Vec<View>,
 }
 
-/// Where a bundle fits best.
+/// Best fit of a bundle.
 #[derive(Clone, Debug)]
 pub(crate) struct Adjusted {
     pub(crate) bundle: Bundle,
@@ -121,7 +121,7 @@ impl LeastSquares for Bundle {
 }
 
 impl View {
-    /// The same view with its motion turned and moved by six numbers.
+    /// Turns and moves the view's motion by six numbers.
     pub(crate) fn moved(&self, by: &SVector<f64, 6>) -> Self {
         let turn = rotation(Vector3::new(by[0], by[1], by[2]));
         let translation = self.motion.translation + Vector3::new(by[3], by[4], by[5]);

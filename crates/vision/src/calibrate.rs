@@ -16,7 +16,7 @@ use crate::homography::{Match, focal_length, homography, plane_motion};
 use crate::lens::Lens;
 use crate::motion::Motion;
 
-/// Times that corners are fitted anew with the lens found so far.
+/// Times that corners are refitted with the lens found so far.
 const ROUNDS: usize = 2;
 /// A tag with a corner this many times the mean misfit off is left out.
 const OUTLIER: f64 = 6.0;
@@ -78,7 +78,7 @@ pub fn calibrate(
     let first = first_bundle(views.iter().map(|view| view.matches.as_slice()), *size);
     let mut adjusted = first.and_then(Bundle::adjust).ok_or(NO_TILT)?;
 
-    // corners fitted anew with the lens found so far
+    // corners refitted with the lens found so far
     for _ in 0..ROUNDS {
         adjusted = refitted(&adjusted, &views, board).adjust().ok_or(NO_TILT)?;
     }
@@ -169,8 +169,8 @@ fn check(adjusted: &Adjusted) -> Result<(), CalibrationError> {
     Ok(())
 }
 
-/// Refuses copies of few views: each makes the numbers look better known, and none tells anything
-/// new.
+/// Refuses copies of few views: each makes the numbers seem better known, and none adds
+/// information.
 fn check_distinct(views: &[BoardView<'_>]) -> Result<(), CalibrationError> {
     let mut distinct: Vec<&BoardView<'_>> = Vec::new();
     for view in views {

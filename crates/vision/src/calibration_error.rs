@@ -1,4 +1,4 @@
-//! Why a calibration was refused: [`CalibrationError`].
+//! Reason why a calibration was refused: [`CalibrationError`].
 
 /// Fewest of the board's tags that make a frame usable.
 pub(crate) const FEWEST_TAGS: usize = 4;
@@ -7,7 +7,7 @@ pub(crate) const FEWEST_FRAMES: usize = 4;
 /// Largest mean misfit (px).
 pub(crate) const WORST_MISFIT: f64 = 1.0;
 
-/// Why a calibration was refused.
+/// Reason why a calibration was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CalibrationError {
@@ -85,7 +85,7 @@ pub enum CalibrationError {
         /// All frames.
         frames: usize,
     },
-    /// The frames do not tell the focal length from the distance.
+    /// The frames do not separate the focal length from the distance.
     #[error("the frames leave the focal length open{}: the board must be seen tilted. Record frames with the board tilted by 20 to 40 degrees to all sides", spread(*.relative_std))]
     NoTilt {
         /// Its relative standard deviation, where there is one.

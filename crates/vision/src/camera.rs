@@ -7,7 +7,7 @@ use crate::config::{ConfigError, Document};
 use crate::lens::Lens;
 use crate::motion::{Motion, nearest_rotation};
 
-/// What to do about a file that is no calibration.
+/// Next step for a file that is no calibration.
 const MAKE_IT: &str = "Make the file with `stickslip calibrate`";
 /// Lenses that see every direction at most this far apart are one (px).
 const SAME_LENS: f64 = 0.5;

@@ -8,7 +8,7 @@ use crate::lens::Lens;
 /// Models of distortion that are Brown–Conrady's, as far as their numbers beyond the fifth are 0.
 const BROWN_CONRADY: [&str; 3] = ["plumb_bob", "rational_polynomial", ""];
 
-/// What ROS calls CameraInfo: how a camera maps directions to pixels.
+/// Map from directions to pixels, called CameraInfo in ROS.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraInfo {
     /// Columns and rows of an image.
@@ -26,7 +26,7 @@ pub struct CameraInfo {
     pub window: [u32; 4],
 }
 
-/// Why a camera's numbers give no lens; `of` says whose they are.
+/// Reason why a camera's numbers give no lens; `of` says whose they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraInfoError {
@@ -35,7 +35,7 @@ pub enum CameraInfoError {
         "{of}: the distortion model is `{model}` with the numbers {numbers:?}; only that of Brown and Conrady can be read: plumb_bob, with k1, k2, p1, p2 and k3. Calibrate with `stickslip calibrate`, or rectify the images and tell the lens of the rectified ones"
     )]
     Model {
-        /// Whose numbers.
+        /// Owner of the numbers.
         of: String,
         /// Name of the model.
         model: String,
@@ -47,7 +47,7 @@ pub enum CameraInfoError {
         "{of}: the camera matrix is {matrix:?}; it must be [fx, 0, cx, 0, fy, cy, 0, 0, 1] with focal lengths fx and fy above 0. Calibrate the camera"
     )]
     Matrix {
-        /// Whose numbers.
+        /// Owner of the numbers.
         of: String,
         /// The matrix, row by row.
         matrix: [f64; 9],
@@ -57,9 +57,9 @@ pub enum CameraInfoError {
         "{of}: the images are {what}, and the camera's numbers are those of the whole sensor at its full resolution. Record such images, or calibrate these with `stickslip calibrate`"
     )]
     Part {
-        /// Whose numbers.
+        /// Owner of the numbers.
         of: String,
-        /// What they are.
+        /// Description of the images.
         what: String,
     },
     /// Columns or rows that are none.
@@ -67,7 +67,7 @@ pub enum CameraInfoError {
         "{of}: an image has {columns} x {rows} pixels; both must be in 1 to 65535. Calibrate the camera"
     )]
     Size {
-        /// Whose numbers.
+        /// Owner of the numbers.
         of: String,
         /// Columns.
         columns: u32,
@@ -128,7 +128,7 @@ impl CameraInfo {
         }))
     }
 
-    /// Why the images are not those that the numbers are of.
+    /// Reason why the images are not those that the numbers are of.
     fn part(&self) -> Option<String> {
         let [bx, by] = self.binning;
         if bx > 1 || by > 1 {

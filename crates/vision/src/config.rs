@@ -2,7 +2,7 @@
 
 use serde::de::DeserializeOwned;
 
-/// Why a TOML file was refused, and where.
+/// Reason why a TOML file was refused, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {problem}")]
 pub struct ConfigError {
@@ -10,11 +10,11 @@ pub struct ConfigError {
     pub file: String,
     /// Line, from 1.
     pub line: usize,
-    /// What is wrong.
+    /// The problem.
     pub problem: ConfigProblem,
 }
 
-/// What is wrong with a TOML file.
+/// Problem of a TOML file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConfigProblem {
@@ -23,9 +23,9 @@ pub enum ConfigProblem {
     Form {
         /// The line as it stands.
         found: String,
-        /// What the reader says.
+        /// Message of the reader.
         message: String,
-        /// What to do.
+        /// Next step for the user.
         next: String,
     },
     /// A lens that is not that of the images.
@@ -33,7 +33,7 @@ pub enum ConfigProblem {
         "`lens` sees some direction {apart} px from where the images' own lens, that of CameraInfo, sees it; the table was found through one lens and the images are seen through the other. Find the table anew with `stickslip calibrate --lens`"
     )]
     OtherLens {
-        /// How far apart (px).
+        /// Distance between both directions (px).
         apart: String,
     },
     /// A value against its rule.
@@ -99,7 +99,7 @@ impl Document<'_> {
         self.error(line, ConfigProblem::OtherLens { apart })
     }
 
-    /// An error unless `kept`: the value of `key` is `found` and must be what `rule` says.
+    /// An error unless `kept`: the value of `key` is `found` and must follow `rule`.
     pub(crate) fn require(
         &self,
         kept: bool,

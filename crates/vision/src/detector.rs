@@ -1,8 +1,8 @@
-//! Where tags are in an image, roughly: [`Detector`], of the library's parts.
+//! Rough places of tags in an image: [`Detector`], of the library's parts.
 //!
 //! The library's own loop over them goes through a hash map and lets one candidate's grey levels
-//! into the next one's, so that its last digits differ from call to call; here every candidate is
-//! for itself.
+//! into the next one's, so that its last digits differ from call to call. Here every candidate is
+//! independent.
 
 use std::cmp::Ordering::Equal;
 use std::collections::HashMap;
@@ -165,7 +165,7 @@ fn plane<T: Clone>(size: ImageSize, pixels: Vec<T>) -> Plane<T> {
     Image::new(size, pixels, CpuAllocator).expect("as many pixels as the size says")
 }
 
-/// Whether two candidates are one tag: of one number, and nearer than half a diagonal.
+/// Returns true if two candidates are one tag: of one number, and nearer than half a diagonal.
 fn is_same(a: &Detection, b: &Detection) -> bool {
     let distance = |a: [f32; 2], b: [f32; 2]| libm::hypotf(a[0] - b[0], a[1] - b[1]);
     let corner = |tag: &Detection, k: usize| [tag.quad.corners[k].x, tag.quad.corners[k].y];

@@ -1,10 +1,15 @@
 //! A straight edge between dark and bright, fitted to pixels: [`Edge`].
 //!
-//! A pixel at distance d outside the edge and s along it has the level dark + (bright + fade s -
-//! dark) Φ(d / blur), Φ the normal distribution function: a step seen through lens, defocus, the
-//! pixel's own area and motion, in light that changes along it. Its six numbers (offset, turn,
-//! dark, bright, blur, fade) are fitted to all pixels in a band by least squares; pixels have
-//! independent noise, so that the residuals give the covariance.
+//! A pixel at distance d outside the edge and s along it has the level
+//!
+//! ```text
+//! dark + (bright + fade s - dark) Φ(d / blur)
+//! ```
+//!
+//! with Φ the normal distribution function. That is a step seen through lens, defocus, the pixel's
+//! own area and motion, in light that changes along it. Its six numbers (offset, turn, dark,
+//! bright, blur, fade) are fitted to all pixels in a band by least squares. Pixels have independent
+//! noise, so that the residuals give the covariance.
 
 use nalgebra::{Matrix2, RowVector2, SMatrix, SVector, Vector2};
 
@@ -35,7 +40,7 @@ const LEAST_BLUR: f64 = 0.2;
 /// A pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
-    /// Where (px).
+    /// Place (px).
     pub(crate) at: Vector2<f64>,
     /// Grey level.
     pub(crate) level: f64,
@@ -103,7 +108,8 @@ impl Edge {
         (normal, self.offset + normal.dot(&self.middle))
     }
 
-    /// How (offset, turn) move the right-hand side of [`row`](Self::row) at a point of the edge.
+    /// Change of the right-hand side of [`row`](Self::row) with (offset, turn) at a point of the
+    /// edge.
     pub(crate) fn shift_at(&self, point: Vector2<f64>) -> RowVector2<f64> {
         RowVector2::new(1.0, self.along.dot(&(point - self.middle)))
     }

@@ -7,10 +7,17 @@ pub(crate) const PARAMETERS: usize = 8;
 
 /// A pinhole with Brown–Conrady distortion, as OpenCV and ROS (`plumb_bob`) have it.
 ///
-/// A point with the direction (x, y, 1) in the camera's frame (x right, y down), r² = x² + y², is
-/// seen at x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²), y' = y (1 + k1 r² + k2
-/// r⁴ + k3 r⁶) + p1 (r² + 2 y²) + 2 p2 x y, and there at the pixel (fx x' + cx, fy y' + cy).
-/// Without distortion it would be at (fx x + cx, fy y + cy), its *ideal* pixel.
+/// The camera's frame has x right and y down. A point with the direction (x, y, 1) is seen at (x',
+/// y'):
+///
+/// ```text
+/// r² = x² + y²
+/// x' = x (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²)
+/// y' = y (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 y²) + 2 p2 x y
+/// ```
+///
+/// Its pixel is (fx x' + cx, fy y' + cy). Without distortion it would be at (fx x + cx, fy y + cy),
+/// its *ideal* pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Columns and rows of the image.
@@ -59,7 +66,8 @@ impl Lens {
         self.ideal(self.bend(self.direction(ideal.into())).0).into()
     }
 
-    /// The ideal pixel of what is seen at a pixel (px); `None` where the distortion has no inverse.
+    /// The ideal pixel of the direction that is seen at a pixel (px); `None` where the distortion
+    /// has no inverse.
     pub fn undistort(&self, pixel: [f64; 2]) -> Option<[f64; 2]> {
         /// Directions this near are one.
         const CLOSE: f64 = 1e-13;
@@ -80,10 +88,10 @@ impl Lens {
         None
     }
 
-    /// How far apart this lens and another one see the same directions, at most over the image
-    /// (px); infinite for another size.
+    /// Distance between the pixels at which this lens and another one see one direction, at most
+    /// over the image (px). It is infinite for another size.
     pub fn apart(&self, other: &Self) -> f64 {
-        /// Pixels that are looked at, along each side.
+        /// Number of pixels that are compared, along each side.
         const SAMPLES: u32 = 9;
         if self.size != other.size {
             return f64::INFINITY;
@@ -108,7 +116,7 @@ impl Lens {
         most
     }
 
-    /// Whether it bends anything.
+    /// Returns true if it has any distortion.
     pub fn is_distorted(&self) -> bool {
         self.radial != [0.0; 3] || self.tangential != [0.0; 2]
     }
@@ -141,7 +149,7 @@ impl Lens {
         [fx, fy, cx, cy, k1, k2, p1, p2]
     }
 
-    /// The same lens with its eight numbers (fx, fy, cx, cy, k1, k2, p1, p2) moved.
+    /// Adds to its eight numbers (fx, fy, cx, cy, k1, k2, p1, p2).
     pub(crate) fn moved(&self, by: &[f64]) -> Self {
         let add = |pair: [f64; 2], at: usize| [pair[0] + by[at], pair[1] + by[at + 1]];
         let [k1, k2, k3] = self.radial;

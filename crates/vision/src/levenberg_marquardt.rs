@@ -16,7 +16,7 @@ pub(crate) trait LeastSquares: Sized {
     fn step(&self, equations: &Self::Equations, damping: f64) -> Option<Step<Self>>;
 }
 
-/// Where a step leads.
+/// Result of a step.
 pub(crate) enum Step<P> {
     /// To these unknowns.
     To(P),
@@ -24,7 +24,7 @@ pub(crate) enum Step<P> {
     Negligible,
 }
 
-/// How the iteration begins and ends.
+/// Start and end of the iteration.
 pub(crate) struct Rules {
     /// Damping of the first step.
     pub(crate) damping: f64,
@@ -36,13 +36,13 @@ pub(crate) struct Rules {
     pub(crate) iterations: usize,
 }
 
-/// Where an iteration ended.
+/// End of an iteration.
 pub(crate) struct Minimum<P: LeastSquares> {
     /// The unknowns.
     pub(crate) at: P,
     /// The equations about them.
     pub(crate) equations: P::Equations,
-    /// Whether the minimum was found, not only approached.
+    /// True if the minimum was found, not only approached.
     pub(crate) converged: bool,
 }
 

@@ -6,9 +6,8 @@
 //! plane that the tag's print is known to lie in, never as the six-parameter pose of a single tag,
 //! which has two near-equal solutions (Collins & Bartoli 2014).
 //!
-//! Tags are found by `kornia-apriltag`; their borders are then fitted anew, to the pixels
-//! themselves (`edge`), since the library's corners are neither free of bias nor come with their
-//! noise.
+//! Tags are found by `kornia-apriltag`; their borders are then refitted to the pixels themselves
+//! (`edge`), since the library's corners are neither free of bias nor come with their noise.
 //!
 //! Lengths in m, world frame: x and y on the table, z up from it. Pixels: x right, y down, the
 //! centre of the first pixel at (0, 0).

@@ -1,5 +1,5 @@
 //! The border of a tag's black square in an image: [`Outline`], the pixels along it, and
-//! [`Square`], what is fitted to them.
+//! [`Square`], the shape fitted to them.
 
 use image::GrayImage;
 use nalgebra::{Matrix2, SMatrix, Vector2};

@@ -8,7 +8,7 @@ use image::{DynamicImage, GrayImage, ImageDecoder, ImageFormat, ImageReader};
 /// more.
 const MOST_PIXELS: u64 = 1 << 26;
 
-/// Why an image was refused.
+/// Reason why an image was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
@@ -27,9 +27,9 @@ pub enum PictureError {
     Broken {
         /// Display name of the file.
         file: String,
-        /// What kind of image it is.
+        /// Kind of the image.
         kind: String,
-        /// What the decoder says.
+        /// Message of the decoder.
         reason: String,
     },
     /// A compressed image of a bag whose bytes are no image of a known kind.
@@ -40,7 +40,7 @@ pub enum PictureError {
     Compressed {
         /// Display name of the message.
         file: String,
-        /// What its publisher says it is.
+        /// Format that its publisher states.
         format: String,
     },
     /// A compressed image of a bag that cannot be decoded.
@@ -50,9 +50,9 @@ pub enum PictureError {
     Undecodable {
         /// Display name of the message.
         file: String,
-        /// What its publisher says it is.
+        /// Format that its publisher states.
         format: String,
-        /// What the decoder says.
+        /// Message of the decoder.
         reason: String,
     },
 }

@@ -16,13 +16,13 @@ use stickslip_dynamics::Pose;
 use crate::camera::Camera;
 use crate::outline::Square;
 
-/// What a fitted corner is off by besides its noise: the blur is not exactly that of the model
-/// (px).
+/// Error of a fitted corner besides its noise: the blur is not exactly that of the model (px).
 const MODEL_STD: f64 = 0.005;
 /// Corners off by more than this, and by more than their noise explains, are not those of a square
 /// on the plane (px).
 const WORST_MISFIT: f64 = 0.2;
-/// The same in standard deviations of their noise.
+/// Ratio to the standard deviation of their noise above which corners are off by more than noise
+/// explains.
 const NOISE: f64 = 5.0;
 /// Degrees of freedom: coordinates of four corners less the numbers of a pose and a size.
 const FREEDOM: f64 = 4.0;
@@ -30,7 +30,7 @@ const FREEDOM: f64 = 4.0;
 const NEGLIGIBLE: f64 = 1e-12;
 const ITERATIONS: usize = 20;
 
-/// Where a tag's print is on its body.
+/// Place of a tag's print on its body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TagPlace {
     /// Edge of the black square (m).
@@ -56,7 +56,7 @@ pub struct Measurement {
     pub chi2: f64,
 }
 
-/// Corners against what a pose predicts.
+/// Corners compared with those that a pose predicts.
 struct Fit {
     residual: SVector<f64, 8>,
     /// By x, y, θ and size.
@@ -152,7 +152,7 @@ fn first_pose(square: &Square, place: &TagPlace, camera: &Camera) -> Option<Pose
     Some(Pose::new(middle.x - arm[0], middle.y - arm[1], theta))
 }
 
-/// The same pose with its angle in (-π, π].
+/// Wraps the pose's angle to (-π, π].
 fn wrapped(pose: Pose) -> Pose {
     use std::f64::consts::{PI, TAU};
     Pose {

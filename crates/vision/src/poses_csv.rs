@@ -1,4 +1,4 @@
-//! `poses.csv`, what every frame shows, with its noise: [`write_poses`].
+//! `poses.csv`, the poses in every frame, with their noise: [`write_poses`].
 
 use std::io::{Result, Write};
 
@@ -20,9 +20,10 @@ const NUMBERS: [&str; 11] = [
     "chi2",
 ];
 
-/// Writes one row for each frame: its time, whether it repeats the one before, and for object and
-/// pusher what is seen (measured, missing, distorted or twice), the pose in the world (m, rad), its
-/// covariance, the size of the tag as seen (m) and the misfit.
+/// Writes one row for each frame: its time, whether it repeats the one before, and the columns of
+/// object and pusher. For each these are: whether it is seen (measured, missing, distorted or
+/// twice), the pose in the world (m, rad), its covariance, the size of the tag as seen (m) and the
+/// misfit.
 ///
 /// # Errors
 /// Those of `writer`.

@@ -22,7 +22,7 @@ pub struct Paper {
     pub height: f64,
 }
 
-/// Why something cannot be printed.
+/// Reason why something cannot be printed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrintError {
@@ -157,7 +157,7 @@ fn tag(id: u16, [x, y]: [f64; 2], edge: f64) -> Result<Mark, PrintError> {
     })
 }
 
-/// The ruler at the paper's foot, as long as that allows, in tens of mm, and what it is for.
+/// The ruler at the paper's foot, as long as that allows, in tens of mm, and its purpose.
 fn ruler(paper: Paper) -> [Mark; 2] {
     let most = paper.width - 2.0 * MARGIN - 5.0;
     let length = LENGTH.min((most / 10.0).floor() * 10.0).max(10.0);

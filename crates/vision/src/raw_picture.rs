@@ -7,17 +7,17 @@ use image::{DynamicImage, GrayImage, ImageBuffer};
 pub struct RawPicture {
     /// Columns and rows.
     pub size: [u32; 2],
-    /// What the bytes of a pixel are, by the names that ROS has for them.
+    /// Encoding of the bytes of a pixel, by its name in ROS.
     pub encoding: String,
     /// Bytes from one row to the next.
     pub step: u32,
-    /// Whether numbers of two bytes begin with the higher one.
+    /// True if numbers of two bytes begin with the higher one.
     pub is_big_endian: bool,
     /// The rows.
     pub bytes: Vec<u8>,
 }
 
-/// Why an image of pixels was refused.
+/// Reason why an image of pixels was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RawPictureError {
@@ -76,7 +76,7 @@ pub enum RawPictureError {
     },
 }
 
-/// What a pixel's bytes are.
+/// Layout of a pixel's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pixels {
     /// One byte, its grey level or that of the one colour that it sees.

@@ -1,11 +1,10 @@
-//! What is drawn on a sheet of paper, and the sheet as SVG: [`Sheet`].
+//! Drawing on a sheet of paper, and the sheet as SVG: [`Sheet`].
 
 use std::fmt::Write as _;
 
 use crate::print::Paper;
 
-/// A sheet of paper with what is drawn on it, to scale; all in mm from its upper left corner, y
-/// down.
+/// A sheet of paper with the drawing on it, to scale; all in mm from its upper left corner, y down.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     pub(crate) paper: Paper,

@@ -1,4 +1,4 @@
-//! Where the table is before a camera whose lens is known: [`find_table`].
+//! Pose of the table relative to a camera whose lens is known: [`find_table`].
 
 use nalgebra::{SMatrix, Vector2};
 
@@ -12,7 +12,7 @@ use crate::homography::{Match, homography, plane_motion};
 use crate::lens::Lens;
 use crate::levenberg_marquardt::{LeastSquares, Minimum, Step, minimise};
 
-/// A camera whose table was found, and how well it is known for the lens that was told.
+/// A camera whose table was found, and the uncertainty of its pose for the given lens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableFit {
     /// The camera.
@@ -101,7 +101,7 @@ struct Placed<'l> {
     view: View,
 }
 
-/// Where the plane fits best.
+/// Best fit of the plane.
 struct Fit {
     view: View,
     rms: f64,

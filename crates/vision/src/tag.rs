@@ -1,4 +1,4 @@
-//! The tag family 36h11: what its tags look like, [`tag_cells`].
+//! The tag family 36h11: the cells of its tags, [`tag_cells`].
 
 use kornia_apriltag::family::TagFamily;
 

@@ -1,4 +1,4 @@
-//! Which tag is on which body, and where: [`Tags`], tags.toml.
+//! Tags of each body, and their places: [`Tags`], tags.toml.
 
 use serde::Deserialize;
 use stickslip_dynamics::Pose;
@@ -12,7 +12,7 @@ use crate::tag::TAG_COUNT;
 pub struct BodyTag {
     /// Number of the tag.
     pub id: u16,
-    /// Where it is on the body.
+    /// Its place on the body.
     pub place: TagPlace,
 }
 

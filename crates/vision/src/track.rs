@@ -13,7 +13,7 @@ use crate::tags::{BodyTag, Tags};
 /// Frames that share a detector.
 const CHUNK: usize = 32;
 
-/// What a frame shows of one body.
+/// One body as a frame shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sighting {
     /// Its pose.
@@ -27,7 +27,7 @@ pub enum Sighting {
     Twice,
 }
 
-/// What a frame shows.
+/// Both bodies as a frame shows them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSighting {
     /// True where the image is that of the frame before: its sightings are older than its time.
@@ -40,14 +40,14 @@ pub struct FrameSighting {
     pub tags: Vec<u16>,
 }
 
-/// What all frames show.
+/// Both bodies as all frames show them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     /// Frame by frame.
     pub frames: Vec<FrameSighting>,
 }
 
-/// Why the frames give no track.
+/// Reason why the frames give no track.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {
@@ -87,7 +87,7 @@ pub enum TrackError {
     },
 }
 
-/// What one image shows, with its hash.
+/// Result of one image, with its hash.
 struct ProcessedFrame {
     digest: u64,
     sighting: FrameSighting,
@@ -177,7 +177,7 @@ impl<'c> FrameTracker<'c> {
     }
 }
 
-/// What one image shows.
+/// Finds both bodies in one image.
 fn process(
     detector: &Detector,
     (name, image): (String, GrayImage),

@@ -1,4 +1,4 @@
-//! What several benchmarks measure: [`recorded_case`].
+//! Recorded case that several benchmarks measure: [`recorded_case`].
 
 use std::error::Error;
 

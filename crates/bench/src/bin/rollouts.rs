@@ -1,6 +1,8 @@
-//! `rollouts`: rollouts of the timing scene on one thread, beside which `bench/python/rollouts.py`
-//! sets Python's. Prints ns per trajectory and step, the best of several rounds: the time that the
-//! thread was on a processor, where Linux tells it.
+//! `rollouts`: rollouts of the timing scene on one thread, for comparison with Python's by
+//! `bench/python/rollouts.py`.
+//!
+//! Prints ns per trajectory and step, the best of several rounds. The time is that which the thread
+//! was on a processor, if Linux reports it.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -12,7 +14,7 @@ use stickslip_dynamics::{Dynamics, Pose, RolloutStart, Twist};
 const STATES: u32 = 10_000;
 const ROUNDS: u32 = 5;
 
-/// How long this thread has been on a processor (s).
+/// Time that this thread has been on a processor (s).
 fn seconds_on_processor() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;

@@ -2,12 +2,12 @@
 //! s), with dropouts, bursts, repeats, garbage, late rows and pauses. Further arguments are the
 //! program's.
 //!
-//! Prints how long answers took from the sending of a row to the reading of its answer, how many
-//! lines had none, the program's memory after the first tenth of the time and at the end, its time
-//! on processors per row, and how loaded the machine was before and after. With `--page` among the
-//! arguments, Chromium (`STICKSLIP_CHROMIUM`, default `chromium`) has the page open. The rows are
-//! those of a demonstration log, sent at 100 Hz where it was recorded at 30 Hz, over and over: each
-//! time round begins with a pause of the source.
+//! Prints the time from the sending of a row to the reading of its answer, and the number of lines
+//! without an answer. Also prints the program's memory after the first tenth of the time and at the
+//! end, its time on processors per row, and the load of the machine before and after. With `--page`
+//! among the arguments, Chromium (`STICKSLIP_CHROMIUM`, default `chromium`) has the page open. The
+//! rows are those of a demonstration log, sent over and over at 100 Hz where it was recorded at 30
+//! Hz. Each time round begins with a pause of the source.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -23,7 +23,7 @@ use stickslip::quantile;
 
 const DEMO: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/../cli/demo/slide-ell-disc-110"
+    "/../testkit/experiments/slide-ell-disc-110"
 );
 const PERIOD: Duration = Duration::from_millis(10);
 
@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Passes on what the program says, and the address of its page.
+/// Passes on the program's messages, and the address of its page.
 fn pass_on(told: impl BufRead, address: &Sender<String>) {
     for line in told.lines().map_while(Result::ok) {
         if let Some(at) = line.find("http://") {
@@ -215,16 +215,16 @@ fn open_page(address: &str) -> Result<Child, Box<dyn Error>> {
     Ok(browser)
 }
 
-/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux tells
+/// Mean number of processes that ran or waited in the last 1, 5 and 15 minutes, where Linux reports
 /// it.
 fn load() -> String {
     let told = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     told.split(' ').take(3).collect::<Vec<_>>().join(" ")
 }
 
-/// Time that all threads of a process were on a processor (s), where Linux tells it.
+/// Time that all threads of a process were on a processor (s), where Linux reports it.
 fn processor_seconds(process: u32) -> Option<f64> {
-    /// What the system counts in (1/s).
+    /// Unit of the system's times (1/s).
     const TICKS: f64 = 100.0;
     let stat =
         fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat")).ok()?;
@@ -234,7 +234,7 @@ fn processor_seconds(process: u32) -> Option<f64> {
     Some((user.parse::<f64>().ok()? + system.parse::<f64>().ok()?) / TICKS)
 }
 
-/// Memory of a process that is in use (MB), where Linux tells it.
+/// Memory of a process that is in use (MB), where Linux reports it.
 fn resident_megabytes(process: u32) -> Option<f64> {
     let status = fs::read_to_string(Path::new("/proc").join(process.to_string()).join("status"));
     let status = status.ok()?;

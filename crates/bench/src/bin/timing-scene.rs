@@ -1,6 +1,6 @@
-//! `timing-scene`: this project in the row of its peers. Prints what `bench/peers/compare.py`
-//! reads: `pose FRAME X Y THETA` of the first particle, `time FRAME NS` per particle, and `creep
-//! MM` over 5 s under half the friction limit.
+//! `timing-scene`: this project in the row of its peers. Prints the input of
+//! `bench/peers/compare.py`: `pose FRAME X Y THETA` of the first particle, `time FRAME NS` per
+//! particle, and `creep MM` over 5 s under half the friction limit.
 
 use std::error::Error;
 use std::io::Write;
@@ -54,7 +54,7 @@ fn with_level(dynamics: Dynamics, name: Option<&str>) -> Result<Dynamics, String
         .ok_or(format!("`{name}`: this machine has {}", known.join(", ")))
 }
 
-/// How far the object moves (m) under half of μ_s m g.
+/// Distance that the object moves (m) under half of μ_s m g.
 fn creep(scene: &Scene) -> f64 {
     let weight = scene.object.mass * scene.gravity;
     let applied = Wrench {

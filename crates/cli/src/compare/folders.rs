@@ -1,4 +1,4 @@
-//! Which folders hold experiments: [`expand`], and which scene is theirs: [`Scenes`].
+//! Folders that contain experiments: [`expand`], and their scenes: [`Scenes`].
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::failure::hinted;
 use crate::given::{is_scene, two_scenes};
 use crate::log_files::{is_bag, log_path};
 
-/// Which scene is that of an experiment.
+/// Choice of the scene of an experiment.
 #[derive(Clone, Copy, Debug)]
 pub enum Scenes<'a> {
     /// The file of this name in each folder.

@@ -8,10 +8,10 @@ use super::tables;
 use crate::origin::origin;
 use crate::output::counted;
 
-/// What the legend of the tables leaves out.
-const REST: &str = "WMSE is the paper's name for the weighted root mean square error of the pose, angles times the radius of gyration; \
-    moving: the same from the pusher's first contact to the object's last motion; final: errors at the last row. Unsolved: steps of \
-    particles that the solver left unsolved; collapses: rows that no particle explained; both summed.";
+/// Definitions that the legend of the tables leaves out.
+const REST: &str = "RMSE: root mean square error of the pose, angles times the radius of gyration; the paper calls it WMSE. \
+    Moving: from the pusher's first contact to the object's last motion. Unsolved: steps of particles without a certified solution. \
+    Collapses: rows that no particle explains. Both are sums.";
 
 /// The table over all folders on top, then those `played` back, then each folder's.
 pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
@@ -23,10 +23,11 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         overall,
         errors,
         touch_gain,
+        best_baseline,
     } = comparison;
     let text = format!(
-        "{}, every method on each: particle filters with {particles} particles, {}. \
-         Median WMSE over the experiments, on the rows where the camera was dark (on all rows where it never was):",
+        "{}, all variants on each: particle filters with {particles} particles, {}. \
+         Median pose RMSE over the experiments while the camera is off (on all rows if it never is):",
         counted(folders.len() as u64, "experiment"),
         match seeds {
             1 => "with one seed".to_owned(),
@@ -72,10 +73,14 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
     sections.splice(first..first, played);
     Report {
         title: "Methods compared".to_owned(),
-        summary: vec![
-            Block::Text(text),
-            Block::Fates(story(overall, folders.len())),
-        ],
+        summary: best_baseline
+            .iter()
+            .map(|best| Block::Text(best.to_string()))
+            .chain([
+                Block::Text(text),
+                Block::Fates(story(overall, folders.len())),
+            ])
+            .collect(),
         sections,
         origin: origin([
             ("particles", particles.to_string()),
@@ -84,10 +89,10 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
     }
 }
 
-/// How each variant fares over so many experiments.
+/// Outcome of each variant over so many experiments.
 fn story(overall: &[Overall], experiments: usize) -> Story {
     let outcome = |row: &Overall| Outcome {
-        // medians over other experiments than the rest are not to be set beside theirs
+        // medians over other experiments than the rest are not comparable with theirs
         name: match row.folders == experiments {
             true => row.variant.title().to_owned(),
             false => format!("{} on {} of them", row.variant.title(), row.folders),

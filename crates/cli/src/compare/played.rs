@@ -36,7 +36,7 @@ pub fn played(
         let folder = folders.iter().find(path).expect("a result has its folder");
         let section = section(folder, model, comparison.particles)?;
         let place = format!(
-            "number {} of {count} by the particle filter's WMSE, seed 0",
+            "number {} of {count} by the particle filter's pose RMSE, seed 0",
             rank + 1
         );
         Ok(Section {
@@ -47,7 +47,7 @@ pub fn played(
     chosen.map(section).collect()
 }
 
-/// The particle filter's score, with what the log has and the camera as the experiment has it.
+/// The particle filter's score, with the log's sensors and the camera as in the experiment.
 fn particle_score(result: &FolderResult) -> Option<f64> {
     let mut methods = result.methods.iter();
     let particle = methods.find(|scores| scores.variant == Variant::Particle)?;
@@ -68,7 +68,7 @@ fn section(folder: &Folder, model: FilterModel, particles: usize) -> Result<Sect
         occlusion: *occlusion,
         seed: 0,
     };
-    let variants: Vec<Variant> = Variant::drawn_on(&experiment.log, *occlusion).collect();
+    let variants: Vec<Variant> = Variant::compared_on(&experiment.log, *occlusion).collect();
     let runs = variants
         .into_par_iter()
         .map(|variant| reported_run(variant, experiment, &conditions))

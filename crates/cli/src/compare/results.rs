@@ -1,4 +1,4 @@
-//! What a comparison found: [`Comparison`], per folder and over folders.
+//! Results of a comparison: [`Comparison`], per folder and over folders.
 
 use std::path::Path;
 
@@ -8,6 +8,7 @@ use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
 use stickslip_evaluation::{ScoredRun, Variant, quantile};
 use stickslip_formats::Experiment;
 
+use super::best_baseline::BestBaseline;
 use crate::args::CompareArgs;
 use crate::failure::one_line;
 
@@ -16,20 +17,20 @@ use crate::failure::one_line;
 pub struct ShownScores {
     /// Weighted RMSE over the hidden rows, over all rows where none is hidden (mm).
     pub wmse_mm: Option<f64>,
-    /// The same while the object moves (mm).
+    /// Weighted RMSE while the object moves (mm).
     pub wmse_moving_mm: Option<f64>,
-    /// The same over the hidden rows up to 1 s after the last motion (mm).
+    /// Weighted RMSE over the hidden rows up to 1 s after the last motion (mm).
     pub wmse_until_rest_mm: Option<f64>,
     /// Final position error (mm).
     pub final_error_mm: Option<f64>,
     /// Final angle error (degrees).
     pub final_error_deg: Option<f64>,
-    /// Share of the 90 % intervals of x, y and θ that hold the reference, over the rows of
+    /// Share of the 90 % intervals of x, y and θ that cover the reference, over the rows of
     /// `wmse_mm`.
     pub covered_90: Option<f64>,
-    /// The same over the rows that were seen while the object moved.
+    /// Such a share over the rows that were seen while the object moved.
     pub covered_90_seen: Option<f64>,
-    /// The same at the last scored row.
+    /// Such a share at the last scored row.
     pub covered_90_final: Option<f64>,
     /// Continuous ranked probability score over the rows of `wmse_mm` (mm).
     pub crps_mm: Option<f64>,
@@ -49,11 +50,11 @@ pub struct Column {
     pub title: &'static str,
     /// The score.
     pub of: fn(&ShownScores) -> Option<f64>,
-    /// What is shown of it over folders.
+    /// Statistic of it that is shown over folders.
     pub over: Over,
 }
 
-/// What is shown of a score over folders.
+/// Statistic of a score that is shown over folders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
     /// Its median and its 90th percentile.
@@ -80,14 +81,14 @@ pub struct VariantScores {
 pub struct FolderResult {
     /// The folder.
     pub folder: String,
-    /// Force at which its pusher gives way (N); `None` is a rigid drive.
+    /// Force at which its pusher yields (N); `None` is a rigid drive.
     pub stall_force: Option<f64>,
-    /// Whether that force is not the scene's.
+    /// True if that force is not the scene's.
     pub stall_force_assumed: bool,
-    /// What was assumed of its scene, in a line.
+    /// Assumptions about its scene, in a line.
     #[serde(skip)]
     pub note: Option<String>,
-    /// What makes its scores doubtful.
+    /// Reasons to doubt its scores.
     pub warnings: Vec<String>,
     /// One entry per variant.
     pub methods: Vec<VariantScores>,
@@ -98,7 +99,7 @@ pub struct FolderResult {
 pub struct LostFolder {
     /// The folder.
     pub folder: String,
-    /// Why, in one line.
+    /// The reason, in one line.
     pub error: String,
 }
 
@@ -129,13 +130,15 @@ pub struct Comparison {
     pub particles: usize,
     /// Seeds.
     pub seeds: u64,
-    /// What a quantile is.
+    /// Definition of a quantile.
     pub quantile: &'static str,
     /// Per folder.
     pub folders: Vec<FolderResult>,
     /// Over folders.
     pub overall: Vec<Overall>,
-    /// What touch does to the belief; `None` where no two folders have sensors.
+    /// Best baseline against the particle filter; `None` if either has no score.
+    pub best_baseline: Option<BestBaseline>,
+    /// Gain by touch; `None` if fewer than two folders have sensors.
     pub touch_gain: Option<TouchGain>,
     /// Folders that gave no result.
     pub errors: Vec<LostFolder>,
@@ -155,7 +158,7 @@ pub struct TouchGain {
 /// The scores that are shown, in order.
 pub const COLUMNS: [Column; 6] = [
     Column {
-        title: "WMSE mm",
+        title: "RMSE mm",
         of: |scores| scores.wmse_mm,
         over: Over::Quantiles,
     },
@@ -186,9 +189,9 @@ pub const COLUMNS: [Column; 6] = [
     },
 ];
 
-/// What the columns of a table mean, in a line.
-pub const LEGEND: &str = "WMSE: over hidden rows, over all where none is hidden. covers: share of the 90 % intervals of x, y and theta that hold the \
-     reference there; CRPS: error of the whole belief; both means.";
+/// Meaning of the columns of a table.
+pub const LEGEND: &str = "RMSE: of the pose on occluded rows, on all rows if none is occluded. Moving: while the object moves. Final: at the last row. \
+     Covers: share of 90 % intervals of x, y and theta that cover the reference, mean. CRPS: error of the whole belief, mean.";
 
 impl ShownScores {
     /// The scores of one run.
@@ -237,7 +240,7 @@ impl ShownScores {
         Self::each(of, |values| (!values.is_empty()).then(|| mean(values)))
     }
 
-    /// What `summarise` makes of each score, and all unsolved steps and collapses.
+    /// Applies `summarise` to each score, and sums all unsolved steps and collapses.
     fn each(of: &[Self], summarise: impl Fn(&[f64]) -> Option<f64>) -> Self {
         let each = |score: fn(&Self) -> Option<f64>| {
             summarise(&of.iter().filter_map(score).collect::<Vec<_>>())
@@ -359,6 +362,7 @@ impl Comparison {
             particles: args.shared.particles,
             seeds: args.seeds,
             quantile,
+            best_baseline: BestBaseline::of(&folders),
             touch_gain: TouchGain::of(&folders),
             folders,
             overall,

@@ -25,11 +25,18 @@ pub fn text(comparison: &Comparison) -> String {
     });
     let overall = (!folders.is_empty()).then(|| {
         format!(
-            "median (90th percentile) over {}, each the median of {}\n{}\
+            "{}: median (90th percentile){}\n{}\n{}\
              {LEGEND} Quantiles: {quantile}.\n{}",
-            counted(folders.len() as u64, "folder"),
-            counted(*seeds, "seed"),
+            counted(folders.len() as u64, "experiment"),
+            match seeds {
+                1 => String::new(),
+                seeds => format!(", of the median over {seeds} seeds"),
+            },
             overall(&comparison.overall, Variant::name),
+            comparison
+                .best_baseline
+                .as_ref()
+                .map_or_else(String::new, |best| format!("{best}\n")),
             comparison
                 .touch_gain
                 .map_or_else(String::new, |gain| gain.to_string())

@@ -1,4 +1,4 @@
-//! How long answers took: [`Latencies`].
+//! Latencies of answers: [`Latencies`].
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ const MOST: usize = 10_000_000;
 
 /// Times from the arrival of a line until its answer was there.
 pub struct Latencies {
-    /// When an answer is due (s).
+    /// Deadline of an answer (s).
     deadline: Option<f64>,
     /// Times that answers took (ms).
     taken: Vec<f32>,

@@ -15,9 +15,9 @@ const WAITING: usize = 1024;
 pub struct Line {
     /// Its number, from 1.
     pub number: u64,
-    /// When it was there as a whole.
+    /// Time at which it was there as a whole.
     pub arrived: Instant,
-    /// What it says, or why that cannot be told.
+    /// Its text, or the reason why it has none.
     pub text: Result<String, String>,
 }
 

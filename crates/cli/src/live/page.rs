@@ -18,10 +18,10 @@ const PERIOD: Duration = Duration::from_millis(33);
 /// Most pages that are served at a time.
 const MOST_VIEWERS: usize = 8;
 
-/// How long a client may take to say or take something.
+/// Time that a client may take to say or take something.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// How often a page to which nothing is sent is looked after: it may be gone.
+/// Time between checks of a page to which nothing is sent: it may be gone.
 const LOOK: Duration = Duration::from_secs(1);
 
 /// Most messages that are taken from a page at a time; it has nothing to say.
@@ -40,10 +40,10 @@ pub struct PageServer {
     shown: Option<Instant>,
 }
 
-/// What the threads of the connections share.
+/// State that the threads of the connections share.
 struct Shared {
     page: String,
-    /// What the page's address must end in.
+    /// End of the page's address.
     token: String,
     port: u16,
     viewers: AtomicUsize,
@@ -91,8 +91,9 @@ impl PageServer {
         &self.address
     }
 
-    /// Whether a row should be shown now: the last one was some time ago. Without a page, too, so
-    /// that one that is opened while the source is silent has something to show.
+    /// Returns true if a row should be shown now: the last one was some time ago. It is shown
+    /// without a page, too, so that one that is opened while the source is silent has something to
+    /// show.
     pub fn wants(&self) -> bool {
         self.shown.is_none_or(|shown| shown.elapsed() >= PERIOD)
     }
@@ -152,8 +153,8 @@ impl Shared {
         }
     }
 
-    /// Whether a request names this server and its token; of a page elsewhere, neither the name of
-    /// the host nor the origin would be ours.
+    /// Returns true if a request names this server and its token. A page elsewhere would have
+    /// another host or origin.
     fn allows(&self, host: Option<&str>, query: Option<&str>) -> bool {
         let ours = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
         host.is_some_and(|host| ours.iter().any(|own| own == host))
@@ -230,7 +231,7 @@ impl Shared {
     }
 }
 
-/// Takes what a page has said, without waiting for more; false where it has gone.
+/// Takes a page's messages, without waiting for more; false where it has gone.
 fn is_open(socket: &mut WebSocket<TcpStream>) -> io::Result<bool> {
     socket.get_ref().set_nonblocking(true)?;
     let mut said = (0..MOST_MESSAGES).map(|_| socket.read());

@@ -1,4 +1,4 @@
-//! What is kept of a live session: [`Recording`].
+//! Record of a live session: [`Recording`].
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -12,7 +12,7 @@ use stickslip_formats::{CsvRecorder, McapRecorder};
 use crate::failure::hinted;
 use crate::files::ready_file;
 
-/// Time of rows that a chunk holds (s): what is lost where the program is killed.
+/// Time of rows in a chunk (s); a chunk is lost where the program is killed.
 const CHUNK: f64 = 1.0;
 
 /// Most times that are remembered to know repeats by.
@@ -123,7 +123,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Ends the recording; says what was written.
+    /// Ends the recording; returns a report of what was written.
     pub fn finish(self) -> Result<String> {
         if let Recorder::Mcap(mcap) = self.recorder {
             mcap.finish()?;

@@ -1,4 +1,4 @@
-//! A tracker that outlives what its source does: [`Session`].
+//! A tracker that survives pauses and errors of its source: [`Session`].
 
 use std::collections::VecDeque;
 use std::num::NonZero;
@@ -16,7 +16,7 @@ use super::shown_row::ShownRow;
 /// Most rows that are remembered to know repeats by.
 const REMEMBERED: usize = 10_000;
 
-/// What is said to one line.
+/// Answer to one line.
 pub struct Answer {
     /// One line of JSON; empty where nothing was asked.
     pub text: String,
@@ -24,7 +24,7 @@ pub struct Answer {
     pub row: Option<Row>,
 }
 
-/// A tracker with what happened to it.
+/// A tracker with counts of its events.
 pub struct Session<'a> {
     setup: &'a Setup,
     options: &'a TrackerOptions,
@@ -134,7 +134,7 @@ impl<'a> Session<'a> {
         self.latencies.add(arrived);
     }
 
-    /// What the live page is sent of an answer to a line that `arrived` then; nothing of a refusal.
+    /// Message to the live page for an answer to a line that `arrived` then; nothing for a refusal.
     pub fn shown(&self, answer: &Answer, arrived: Instant) -> Option<String> {
         let row = answer.row.as_ref()?;
         let estimate = serde_json::from_str(&answer.text).ok()?;
@@ -144,7 +144,7 @@ impl<'a> Session<'a> {
         serde_json::to_string(&shown).ok()
     }
 
-    /// What happened, in words.
+    /// Summary of the session, in words.
     pub fn summary(&self) -> Vec<String> {
         let collapses = self.collapses + u64::from(self.tracker.collapses());
         let rows = format!(
@@ -163,7 +163,7 @@ impl<'a> Session<'a> {
         lines.into_iter().flatten().collect()
     }
 
-    /// What the deadline did so far.
+    /// Effect of the deadline so far.
     fn pace(&self) -> Option<Pace> {
         self.pacing.as_ref().map(|_| Pace {
             particles: self.tracker.particles().map_or(0, |view| view.len()),
@@ -210,7 +210,8 @@ impl<'a> Session<'a> {
         Ok(row)
     }
 
-    /// Whether the row before came as long after the others, so that this is no single wrong time.
+    /// Returns true if the row before came as long after the others, so that this is no single
+    /// wrong time.
     fn follows_a_pause(&mut self, to: f64) -> bool {
         /// Longest time between the two (s).
         const NEAR: f64 = 1.0;
@@ -218,7 +219,7 @@ impl<'a> Session<'a> {
         before.is_some_and(|before| to >= before && to - before <= NEAR)
     }
 
-    /// Starts anew, as at the first row.
+    /// Starts over, as at the first row.
     fn restart(&mut self, row: &Row) -> Result<(), String> {
         let words = |error: &dyn std::error::Error| error.to_string();
         let mut tracker = Tracker::new(self.setup, self.options).map_err(|error| words(&error))?;

@@ -1,4 +1,4 @@
-//! What the live page is sent of a row: [`ShownRow`].
+//! Message to the live page for a row: [`ShownRow`].
 
 use serde::Serialize;
 use serde_json::value::RawValue;

@@ -75,7 +75,8 @@ impl<'a> CameraView<'a> {
         }
     }
 
-    /// Where a point of the object's upper face is seen, from the image's left and upper edge (px).
+    /// Pixel at which a point of the object's upper face is seen, from the image's left and upper
+    /// edge (px).
     fn pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         // pixels are numbered by their centres
         self.setup

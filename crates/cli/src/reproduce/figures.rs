@@ -99,7 +99,7 @@ impl<'a> Replicates<'a> {
             let errors = pose_errors(&run.estimate, &reference);
             errors.iter().map(|error| [error.time, of(error)]).collect()
         };
-        // the nominal simulation never looks, whether the camera is on or not
+        // the nominal simulation never uses the camera, whether it is on or not
         let always_on = |variant: &Variant| variant.camera_on() || *variant == Nominal;
         Panel {
             label: label.to_owned(),
@@ -112,7 +112,7 @@ impl<'a> Replicates<'a> {
         }
     }
 
-    /// What all figures against time share.
+    /// Figure against time, with the parts that all such figures share.
     fn time_figure(&self, panels: Vec<Panel>) -> TimeFigure {
         let experiment = &self.first().replicate.experiment;
         let (time, facts) = (&experiment.log.time, &experiment.facts);

@@ -10,14 +10,14 @@ use super::text::{about_occlusions, band, counts, median, occlusions, orders, to
 use crate::origin::origin;
 use crate::reported_run::reported_run;
 
-/// What the page begins with, before and after what the seeds are.
+/// Beginning of the page, before and after the description of the seeds.
 const SUMMARY: [&str; 2] = [
     "The evaluation of Zhang & Trinkle (ICRA 2012), repeated on a virtual testbed: the paper's six grasps and two more, 5 and 6, ",
     ". In each grasp a thumb pushes an object against fixed fingers (fixels); before the first one is touched the camera goes dark. \
      Below: the paper's tables with ours beside them, its figures, and three of the grasps to be played back.",
 ];
 
-/// How the orders are judged.
+/// Rule by which the orders are judged.
 const ORDERS: &str = "Two methods that the paper's table puts in an order, compared seed by seed: the median of the differences ± its standard \
     error. It holds, or is reversed, where it exceeds two of them; fewer than six seeds have none.";
 

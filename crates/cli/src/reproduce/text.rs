@@ -7,7 +7,7 @@ use stickslip_evaluation::paper::{
 use stickslip_evaluation::{Band, Variant};
 use stickslip_report::Table;
 
-/// What the table of [`occlusions`] shows.
+/// Description of the table of [`occlusions`].
 pub fn about_occlusions(results: &[OcclusionResult]) -> String {
     let differences = match too_few_seeds(results) {
         true => "median difference, of too few seeds for a standard error",
@@ -23,7 +23,7 @@ fn too_few_seeds(results: &[OcclusionResult]) -> bool {
     baselines.any(|against| against.standard_error_mm.is_infinite())
 }
 
-/// All tables, what holds of the paper's orders, and the particle filter under occlusion.
+/// All tables, the confirmed orders of the paper, and the particle filter under occlusion.
 pub fn text(results: &Results) -> String {
     let tables = results.tables.iter().map(|table| {
         let rows: Vec<String> = table.rows.iter().map(row).collect();
@@ -85,7 +85,7 @@ pub fn band(band: Band) -> String {
     format!("{:.2}-{:.2}", band.low, band.high)
 }
 
-/// Every order of the paper's tables, ours beside it, by every measure.
+/// Every order of the paper's tables, ours next to it, by every measure.
 pub fn orders(results: &Results) -> Table {
     let head = ["order in the paper", "paper"].map(str::to_owned);
     let measures = Measure::ALL.map(|measure| measure.name().to_owned());
@@ -124,7 +124,7 @@ fn found(difference: &Difference) -> String {
     }
 }
 
-/// How many of the orders hold, by every measure, in a sentence each.
+/// Number of the orders that are confirmed, by every measure, in a sentence each.
 pub fn counts(results: &Results) -> Vec<String> {
     let all = results.orders().count();
     let counted = |measure: Measure| {
@@ -153,7 +153,7 @@ pub fn counts(results: &Results) -> Vec<String> {
     Measure::ALL.map(counted).into()
 }
 
-/// The particle filter with tactile data after the blackout begins.
+/// The particle filter with tactile data after the occlusion begins.
 pub fn occlusions(results: &[OcclusionResult]) -> Table {
     let mut table = Table::new([
         "experiment",
@@ -184,7 +184,7 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
     table
 }
 
-/// In which experiments touch makes a difference, in a sentence.
+/// Experiments in which touch makes a difference, in a sentence.
 pub fn touch(results: &[OcclusionResult]) -> String {
     let no_touch = Variant::ParticleNoTouch.paper_key();
     let all = results.iter().filter_map(|result| {

@@ -1,7 +1,7 @@
-//! The live page in a real browser: what comes over its socket is drawn, and it fits a phone.
+//! The live page in a real browser: rows that come over its socket are drawn, and it fits a phone.
 //!
-//! `cargo test --workspace --test it -- --ignored browser::`; the browser is `chromium`, or what
-//! `STICKSLIP_CHROMIUM` names.
+//! `cargo test --workspace --test it -- --ignored browser::`; the browser is `chromium`, or the
+//! program that `STICKSLIP_CHROMIUM` names.
 
 #[path = "../../../report/tests/it/browser/chromium.rs"]
 mod chromium;
@@ -21,10 +21,11 @@ use chromium::chromium;
 use serde_json::{Value, json};
 use tab::Tab;
 
-/// Where the object lies (m, m, rad): 20 mm, -10 mm, a quarter of a turn.
+/// Pose of the object (m, m, rad): 20 mm, -10 mm, a quarter of a turn.
 const POSE: [f64; 3] = [0.02, -0.01, std::f64::consts::FRAC_PI_2];
 
-/// A session to which rows come, 25 a second: the object at rest, and, once it is dark, no object.
+/// A session to which rows come, 25 a second: the object at rest, and, once the camera is off, no
+/// object.
 struct Source {
     session: Session,
     address: String,
@@ -67,7 +68,7 @@ impl Source {
     }
 }
 
-/// What the page shows once it says `state`.
+/// State of the page once it says `state`.
 #[track_caller]
 fn shown(tab: &mut Tab, state: &str) -> Value {
     let shown = tab.evaluate(&include_str!("browser/shown.js").replace("STATE", state));
@@ -116,7 +117,8 @@ fn rows_are_drawn() {
         "{cells:?}"
     );
 
-    // the same page goes on: nobody pushes, so in the dark the object stays where it was
+    // the same page goes on: nothing pushes, so while the camera is off the object stays where it
+    // was
     source.dark.store(true, Relaxed);
     let unseen = shown(&mut tab, "camera dark");
     assert_at_the_object(&unseen["ghost"]);

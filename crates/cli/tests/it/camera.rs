@@ -1,5 +1,5 @@
-//! From an experiment to frames and back: `render`, `calibrate`, `track`, and what they say of bad
-//! input.
+//! From an experiment to frames and back: `render`, `calibrate`, `track`, and their messages about
+//! bad input.
 
 use std::fs;
 use std::path::{Path, PathBuf};

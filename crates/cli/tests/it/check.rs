@@ -1,4 +1,4 @@
-//! `stickslip check` names what was broken on purpose, and finds nothing in good data.
+//! `stickslip check` names faults that were made on purpose, and finds nothing in good data.
 
 use crate::common::{Experiment, SLIDE, STOP, stickslip};
 

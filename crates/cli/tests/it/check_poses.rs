@@ -31,7 +31,7 @@ fn findings(case: &Experiment, log: &str) -> Vec<String> {
         .collect()
 }
 
-/// What the change to the log is called.
+/// Checks that a finding for the changed log contains `words`.
 #[track_caller]
 fn assert_found(name: &str, test: &str, change: impl FnOnce(&mut Vec<Vec<f64>>), words: &str) {
     let case = Experiment::copy(name, &format!("check_poses/{test}"));

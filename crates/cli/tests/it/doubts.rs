@@ -5,7 +5,7 @@ use std::fs;
 use crate::common::{Experiment, SLIDE, STOP, json, stickslip};
 use serde_json::Value;
 
-/// Log and scene in millimetres: every camera pose is far from what the scene's noise allows.
+/// Log and scene in millimetres: every camera pose is farther off than the scene's noise allows.
 fn in_millimetres(test: &str) -> Experiment {
     let case = Experiment::copy(SLIDE, test);
     fs::remove_file(case.folder.join("truth.csv")).unwrap();
@@ -143,7 +143,7 @@ fn compare_hides_what_it_is_told_to_rather_than_what_the_truth_says() {
         let kalman = &result["folders"][0]["methods"][1];
         kalman["wmse_mm"].as_f64().unwrap()
     };
-    // a few dark rows are nothing to a Kalman filter, all that truth.json hides are
+    // a few occluded rows are nothing to a Kalman filter, all that truth.json hides are
     assert!(rows(&["--occlude", "300:303"]) < 2.0);
     assert!(rows(&[]) > 20.0);
 }

@@ -1,5 +1,5 @@
-//! What the particle filter owes on a recorded experiment with known truth: recovery after a
-//! blackout, the same bits on any number of threads, a certified solution of every step.
+//! Laws of the particle filter on a recorded experiment with known truth: recovery after an
+//! occlusion, the same bits on any number of threads, a certified solution of every step.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -18,17 +18,17 @@ struct Experiment {
 
 fn stop_experiment() -> Experiment {
     let setup = read_scene(
-        include_str!("../../demo/stop-square50-bar-000/scene.toml"),
+        include_str!("../../../testkit/experiments/stop-square50-bar-000/scene.toml"),
         "scene.toml",
     )
     .unwrap();
     let (log, _) = read_log(
-        include_str!("../../demo/stop-square50-bar-000/log.csv").as_bytes(),
+        include_str!("../../../testkit/experiments/stop-square50-bar-000/log.csv").as_bytes(),
         "log.csv",
     )
     .unwrap();
     let truth = read_truth_csv(
-        include_str!("../../demo/stop-square50-bar-000/truth.csv").as_bytes(),
+        include_str!("../../../testkit/experiments/stop-square50-bar-000/truth.csv").as_bytes(),
         "truth.csv",
     )
     .unwrap();
@@ -132,7 +132,7 @@ fn filter_same_seed_gives_the_same_bits_on_1_2_and_3_threads() {
     assert_eq!(one, on(3));
 }
 
-/// What is logged after row 170, in the jam, changes nothing of what a causal run says up to there.
+/// Rows after row 170, in the jam, change nothing of a causal run up to there.
 #[test]
 fn filter_causal_estimate_does_not_depend_on_later_rows_in_any_bit() {
     const PRESENT: usize = 170;

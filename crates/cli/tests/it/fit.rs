@@ -1,4 +1,4 @@
-//! `stickslip fit`: what it writes and what it refuses.
+//! `stickslip fit`: its output and its refusals.
 
 use std::fs;
 use std::path::{Path, PathBuf};

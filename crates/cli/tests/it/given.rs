@@ -1,5 +1,5 @@
-//! Every way of giving a log and a scene that a user would try is taken, or answered with what to
-//! type.
+//! Every way of giving a log and a scene that a user would try is taken, or answered with the words
+//! to type.
 
 use std::fs;
 use std::process::{Command, Output};
@@ -32,7 +32,7 @@ impl Case {
         self.command(words).output().unwrap()
     }
 
-    /// What is printed of a run that succeeds, without the first line: it names the log as given.
+    /// Printed table of a run that succeeds, without the first line: it names the log as given.
     fn table(&self, words: &str) -> String {
         let text = String::from_utf8(succeeds(&mut self.command(words)).stdout).unwrap();
         text.split_once('\n').unwrap().1.to_owned()
@@ -57,7 +57,7 @@ fn a_log_and_a_scene_come_in_any_order_and_either_finds_the_other() {
     ];
     let checked = case.run("check a");
     assert!(!checked.stdout.is_empty());
-    // the copy alone has no truth beside it, so its scores are others
+    // the copy alone has no truth next to it, so its scores are others
     let filtered = case.table("filter a --method nominal --truth a/truth.csv");
     for way in ways {
         let run = case.run(&format!("check {way}"));

@@ -1,10 +1,10 @@
-//! What the program says to files that are no logs of its own, and to times in other units.
+//! Messages of the program about files that are no logs of its own, and about times in other units.
 
 use std::fs;
 
 use crate::common::{Experiment, SLIDE, empty_folder, stickslip, succeeds};
 
-/// What `filter` says to a log under another name or with other content.
+/// Message of `filter` about a log under another name or with other content.
 fn refusal(case: &Experiment, log: &str) -> String {
     let run = stickslip()
         .args(["filter", log, "--scene", &case.scene()])

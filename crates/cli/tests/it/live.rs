@@ -64,7 +64,7 @@ impl Live {
         serde_json::from_str(&answer).unwrap_or_else(|error| panic!("{error}: {answer}"))
     }
 
-    /// Ends the source: exit code and what was said.
+    /// Ends the source: exit code and messages.
     fn end(mut self) -> (Option<i32>, String) {
         drop(self.input.take());
         let run = self.child.wait_with_output().unwrap();
@@ -170,7 +170,7 @@ fn garbage_repeats_and_late_rows_are_answered_and_the_session_goes_on() {
     let next = live.ask(rows[22].as_bytes());
     assert!(next["x"].is_f64() && next["time"].as_f64() > late["time"].as_f64());
 
-    // a source that comes back after a pause starts anew, from the second row on
+    // a source that comes back after a pause starts over, from the second row on
     let later = |time: f64| {
         format!("{{\"time\": {time}, \"object_x\": 0.01, \"object_y\": 0, \"object_theta\": 0}}")
     };

@@ -1,4 +1,4 @@
-//! `stickslip live --page`: who may see it, and what comes over the socket.
+//! `stickslip live --page`: access to it, and the messages over its socket.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -103,7 +103,7 @@ fn page_that_is_opened_while_the_source_is_silent_shows_what_came_before() {
     let mut session = Session::start(&case);
     let row = r#"{"time": 0, "object_x": 0.01, "object_y": 0, "object_theta": 0}"#;
     writeln!(session.input.as_mut().unwrap(), "{row}").unwrap();
-    // long enough for the row to be taken before somebody looks
+    // long enough for the row to be taken before the page is opened
     sleep(Duration::from_millis(500));
     let own = format!("http://{}", session.host);
     let shown = socket(&session, &own, &session.token).unwrap();

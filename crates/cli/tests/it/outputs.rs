@@ -1,5 +1,5 @@
-//! Where results go: files are written whole or not at all, and what cannot be written is said
-//! before the run.
+//! Outputs of results: files are written whole or not at all, and a file that cannot be written is
+//! reported before the run.
 
 use std::fs;
 use std::path::Path;

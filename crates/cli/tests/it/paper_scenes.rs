@@ -137,8 +137,8 @@ fn check(name: &str, seed: u64) {
     assert_eq!(truth.pose.len(), 301);
 }
 
-/// Whether the rig goes the way of most: in 5 the bar is caught, in 6 the corner is held or passes
-/// on the left, so that the object does not turn clockwise.
+/// Returns true if the rig goes the way of most: in 5 the bar is caught, in 6 the corner is held or
+/// passes on the left, so that the object does not turn clockwise.
 fn goes_the_common_way(name: &str, seed: u64) -> bool {
     let truth = Truth::of(name, seed);
     let end = truth.pose[truth.pose.len() - 1][2];

@@ -1,4 +1,4 @@
-//! The program as a user runs it: exit codes, what goes to which stream, JSON keys, files written.
+//! The program as a user runs it: exit codes, the stream of each output, JSON keys, files written.
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -269,7 +269,7 @@ fn broken_files_are_named_with_line_and_column() {
     );
 }
 
-/// What the command does where nobody reads its results; `Silent` also where nobody reads its
+/// Runs the command with the reader of its results gone; with `Unread`, also the reader of its
 /// errors.
 fn unread(command: &mut Command, errors: Errors) -> Output {
     let closed = || {
@@ -293,7 +293,7 @@ enum Errors {
     Unread,
 }
 
-/// A panic would exit with 101 and tell of itself on standard error.
+/// A panic would exit with 101 and leave a message on standard error.
 #[test]
 fn readers_that_leave_early_do_not_bring_a_command_down() {
     let good = Experiment::copy(STOP, "broken_pipe/good");

@@ -56,7 +56,7 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
         overall["median"]["wmse_mm"],
         report["folders"][0]["methods"][0]["wmse_mm"]
     );
-    // a simulation without a spread believes nothing; a share is one
+    // a simulation without a spread has no coverage; the particle filter's is a share
     assert!(overall["mean"]["covered_90"].is_null());
     let covered = report["folders"][0]["methods"][6]["covered_90"].as_f64();
     assert!(covered.is_some_and(|share| (0.0..=1.0).contains(&share)));
@@ -116,7 +116,7 @@ fn demo_prints_tables_and_writes_a_report_and_figures() {
         fs::read(folder.join("stickslip-demo").join(name))
             .unwrap_or_else(|error| panic!("{name}: {error}"))
     };
-    for experiment in ["stop-square50-bar-000", "slide-ell-disc-110"] {
+    for experiment in ["turn-square-disc", "slide-pent-bar-97012"] {
         for figure in [
             "errors",
             "poses",
@@ -129,11 +129,11 @@ fn demo_prints_tables_and_writes_a_report_and_figures() {
             assert!(file(&format!("{experiment}-{figure}.png")).starts_with(b"\x89PNG"));
         }
     }
-    let errors = String::from_utf8(file("stop-square50-bar-000-errors.svg")).unwrap();
+    let errors = String::from_utf8(file("turn-square-disc-errors.svg")).unwrap();
     assert!(
         errors.contains("position error (mm)")
             && errors.contains("fixel 1")
-            && errors.contains("camera dark")
+            && errors.contains("camera off")
     );
     let report = String::from_utf8(file("report.html")).unwrap();
     assert_eq!(
@@ -176,12 +176,12 @@ fn filter_writes_a_report_and_the_same_estimate() {
     let page = fs::read_to_string(page).unwrap();
     for text in [
         "class=\"player\"",
-        "At 5.1 s, 0.2 s before the object first touches a fixel",
+        "The camera turns off at 5.1 s, 0.2 s before the object touches a fixel, and stays off.",
         "<h1>filter_report: particle filter</h1>",
         "download=\"filter_report-estimate.csv\"",
         "--occlude 153",
         "<dt>seed</dt><dd>0</dd>",
-        "mu_f not observed (told 0.250)",
+        "Friction: not identifiable from this push; the scene's values were used.",
     ] {
         assert!(page.contains(text), "{text} is missing");
     }
@@ -207,7 +207,7 @@ fn compare_writes_a_report_of_all_folders() {
     );
     let page = fs::read_to_string(page).unwrap();
     for text in [
-        "1 experiment, every method on each: particle filters with",
+        "1 experiment, all variants on each: particle filters with",
         "with one seed",
         "All experiments",
         "class=\"player\"",

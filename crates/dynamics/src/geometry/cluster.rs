@@ -64,7 +64,7 @@ impl Cluster {
         self.members.start..self.members.end.min(count)
     }
 
-    /// Where some of its features may be less than `limit` (m) from a point.
+    /// Lanes in which some of its features may be less than `limit` (m) from a point.
     #[inline(always)]
     pub fn is_within<const W: usize>(&self, limit: Lanes<W>, point: Vec2<Lanes<W>>) -> Mask<W> {
         let d = sub(point, self.centre);

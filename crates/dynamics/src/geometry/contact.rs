@@ -30,8 +30,8 @@ impl Gap {
 /// A contact between two features, in the lanes that have it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact<const W: usize> {
-    /// Which features of the two bodies touch, below [`Contact::ID_COUNT`]: the same from one step
-    /// to the next.
+    /// Number of the pair of features that touch, below [`Contact::ID_COUNT`]; it stays from one
+    /// step to the next.
     pub id: u32,
     /// The lanes that have it.
     pub present: Mask<W>,
@@ -67,7 +67,7 @@ impl<const W: usize> Contact<W> {
         }
     }
 
-    /// Takes over what `from` has in the lanes of `mask`.
+    /// Copies the lanes of `mask` from `from`.
     #[inline(always)]
     pub fn assign(&mut self, mask: Mask<W>, from: &Self) {
         for k in 0..2 {

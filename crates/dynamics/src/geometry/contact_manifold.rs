@@ -111,8 +111,8 @@ impl<const W: usize> ContactManifold<W> {
             .fold(Mask::splat(false), |all, contact| all | deep(contact))
     }
 
-    /// Where `least` (m) is an overlap, drops the contacts of `lanes` that are deeper. Returns the
-    /// lanes in which a contact of that depth is left.
+    /// Drops the contacts of `lanes` that are deeper than `least` (m), if that is an overlap.
+    /// Returns the lanes in which a contact of that depth is left.
     #[inline(always)]
     pub fn limit_depth(&mut self, lanes: Mask<W>, least: Lanes<W>, slack: f64) -> Mask<W> {
         let lanes = lanes & least.lt(Lanes::ZERO);

@@ -56,8 +56,8 @@ impl ConvexPart {
         }
     }
 
-    /// How deep points lie inside (m; negative outside): exact for polygons and discs inside, in
-    /// sign for ellipses.
+    /// Depth of points inside (m; negative outside): exact for polygons and discs inside, in sign
+    /// for ellipses.
     #[inline(always)]
     pub fn depth<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Lanes<W> {
         match self {

@@ -12,8 +12,8 @@ pub(crate) struct Edge {
     pub along: Vec2,
     /// Length (m).
     pub length: f64,
-    /// How far the edge's line runs on inside the body before its start and after its end (m); 0 at
-    /// a convex corner.
+    /// Lengths by which the edge's line runs on inside the body before its start and after its end
+    /// (m); 0 at a convex corner.
     pub buried: [f64; 2],
     /// The edges that meet it in a reflex corner at its start and at its end.
     pub reflex: [Option<u32>; 2],
@@ -50,7 +50,7 @@ impl Edge {
         add(scale(s, self.along), self.start)
     }
 
-    /// Whether a projection at distance `s` from its start belongs to the edge.
+    /// Returns true if a projection at distance `s` from its start belongs to the edge.
     #[inline(always)]
     pub fn spans(&self, s: f64, slack: f64) -> bool {
         s >= -self.buried[0] - slack && s <= self.length + self.buried[1] + slack
@@ -71,13 +71,13 @@ pub(crate) struct Cover {
     pub tolerant: [f64; 2],
     /// Covered to the very surface.
     pub exact: [f64; 2],
-    /// Whether the edge lies on the part's surface with its body on the same side.
+    /// True if the edge lies on the part's surface with its body on the same side.
     pub flush: bool,
 }
 
 impl Cover {
-    /// What the cover leaves of a stretch: the tolerant ends decide whether there is a piece, the
-    /// exact ends where it is cut.
+    /// Pieces of a stretch that the cover leaves. The tolerant ends decide whether there is a
+    /// piece, the exact ends where it is cut.
     pub fn subtract_from(&self, [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
         let [from, to] = self.tolerant;
         let (mut before, mut after) = ([low, low], [high, high]);

@@ -33,11 +33,11 @@ pub(crate) struct EdgeSearch<'a, const W: usize> {
     pub slack: f64,
 }
 
-/// What a scan over some edges tells.
+/// Result of a scan over some edges.
 struct Scan<const W: usize> {
     /// Largest height over the line of one of them (m).
     highest: Lanes<W>,
-    /// Where the centre lies behind one of the edges found.
+    /// Lanes in which the centre lies behind one of the edges found.
     behind: Mask<W>,
 }
 
@@ -62,15 +62,15 @@ impl<const W: usize> EdgeSearch<'_, W> {
         }
     }
 
-    /// Whether some feature of a cluster may be nearer than the limit.
+    /// Returns true if some feature of a cluster may be nearer than the limit.
     #[inline(always)]
     pub fn may_touch(&self, cluster: &Cluster) -> bool {
         self.shape.outline().clusters.len() == 1
             || (self.active & cluster.is_within(self.limit.max(Lanes::ZERO), self.centre)).any()
     }
 
-    /// Where the centre lies below all edges scanned, and so perhaps inside: then the edge of least
-    /// penetration may belong to any cluster.
+    /// Lanes in which the centre lies below all edges scanned, and so perhaps inside. The edge of
+    /// least penetration may then belong to any cluster.
     #[inline(always)]
     fn may_be_inside(&self, scan: &Scan<W>) -> Mask<W> {
         let radius = self.shape.bounding_radius();
@@ -168,7 +168,7 @@ impl<const W: usize> EdgeSearch<'_, W> {
         }
     }
 
-    /// Where the centre is inside the shape, as the scanned edges or its parts tell.
+    /// Lanes in which the centre is inside the shape, by the scanned edges or by the shape's parts.
     #[inline(always)]
     fn is_inside(&self, scan: &Scan<W>) -> Mask<W> {
         if self.shape.parts().len() == 1 {

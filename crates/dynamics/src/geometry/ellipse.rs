@@ -15,7 +15,7 @@ pub(crate) struct Ellipse {
     pub axis: Vec2,
     /// Half lengths of the axes (m).
     pub semi_axes: [f64; 2],
-    /// Whether a sibling part hides some of it.
+    /// True if a sibling part hides some of it.
     pub covered: bool,
 }
 
@@ -85,7 +85,7 @@ impl Ellipse {
         [dot(d, self.axis) / a, dot(d, left(self.axis)) / b]
     }
 
-    /// How deep points lie inside (m; negative outside): exact for a disc inside, in sign for an
+    /// Depth of points inside (m; negative outside): exact for a disc inside, in sign for an
     /// ellipse.
     #[inline(always)]
     pub fn depth<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Lanes<W> {

@@ -46,7 +46,7 @@ impl EllipseContact {
     }
 }
 
-/// Whether a boundary point of one part of `shape` is not on the union's boundary.
+/// Returns true if a boundary point of one part of `shape` is not on the union's boundary.
 pub(crate) fn hides(shape: &Shape, point: Vec2) -> bool {
     shape.hides(splat::<1>(point)).lane(0)
 }
@@ -154,8 +154,8 @@ fn shallowest(ellipse: &Ellipse, polygon: &Polygon) -> Option<Gap> {
     })
 }
 
-/// Whether an ellipse and a polygon overlap: scaled so that the ellipse is the unit circle, by the
-/// distance from its centre.
+/// Returns true if an ellipse and a polygon overlap. Both are scaled so that the ellipse is the
+/// unit circle, and the polygon's distance from its centre decides.
 fn overlaps(ellipse: &Ellipse, polygon: &Polygon) -> bool {
     let scaled = |corner: Vec2| ellipse.normalise(sub(corner, ellipse.centre));
     let nearest = polygon
@@ -172,7 +172,7 @@ fn distance_to_segment(from: Vec2, to: Vec2) -> f64 {
     length(add(from, scale(share, along)))
 }
 
-/// With an edge, in closed form: the ellipse's lowest point, if it projects onto the edge.
+/// Contact with an edge, in closed form: the ellipse's lowest point, if it projects onto the edge.
 fn with_edge(ellipse: &Ellipse, edge: &Edge, slack: f64) -> Option<Gap> {
     let normal = edge.normal();
     let (_, height) = edge.coordinates(ellipse.centre);
@@ -181,7 +181,7 @@ fn with_edge(ellipse: &Ellipse, edge: &Edge, slack: f64) -> Option<Gap> {
     edge.spans(s, slack).then_some(contact)
 }
 
-/// With a corner or a disc: the largest separation within its cone.
+/// Contact with a corner or a disc: the largest separation within its cone.
 fn with_vertex(ellipse: &Ellipse, vertex: &RoundedVertex, slack: f64) -> Option<Gap> {
     let separation = Separation {
         d: sub(ellipse.centre, vertex.centre),

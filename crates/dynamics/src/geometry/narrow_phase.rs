@@ -10,7 +10,7 @@
 //! - A corner touches every edge that it projects onto and faces, its normal cone widened a little:
 //!   faces that meet give two points.
 //! - Two corners touch along the line of their centres where it lies in both cones. The borders of
-//!   a cone are those of the edges beside it, so that a corner that is passed always has a contact
+//!   a cone are those of the edges next to it, so that a corner that is passed always has a contact
 //!   with one of them.
 //! - A centre inside the other body touches only the edge of least penetration (and those in a
 //!   reflex corner with it); from outside, edges that are seen from behind do not count.

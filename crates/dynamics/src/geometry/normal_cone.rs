@@ -1,4 +1,4 @@
-//! Which normals a corner or a disc has: [`NormalCone`].
+//! Normals of a corner or a disc: [`NormalCone`].
 
 use stickslip_lanes::{Lanes, Mask};
 
@@ -65,8 +65,8 @@ impl NormalCone {
         self.along == [[0.0; 2]; 2]
     }
 
-    /// Whether a direction, of any length, lies in the cone; `slack` has its unit. The borders are
-    /// those of the edges beside it.
+    /// Returns true if a direction, of any length, lies in the cone; `slack` has its unit. The
+    /// borders are those of the edges next to it.
     pub fn contains(&self, direction: Vec2, slack: f64) -> bool {
         dot(self.along[0], direction) >= -slack && dot(self.along[1], direction) <= slack
     }
@@ -79,7 +79,7 @@ impl NormalCone {
             & !dot(direction, after).gt(Lanes::splat(slack))
     }
 
-    /// Where a unit vector lies in the widened cone.
+    /// Lanes in which a unit vector lies in the widened cone.
     #[inline(always)]
     pub fn nearly_contains_each<const W: usize>(&self, normal: Vec2<Lanes<W>>) -> Mask<W> {
         !dot(normal, self.middle).lt(Lanes::splat(self.cos_widened))

@@ -65,7 +65,7 @@ impl Outline {
     }
 }
 
-/// Whether a sibling may hide some of part `i`: their bounding discs overlap.
+/// Returns true if a sibling may hide some of part `i`: their bounding discs overlap.
 fn is_covered(i: usize, parts: &[ConvexPart], tolerance: f64) -> bool {
     let (p, r) = parts[i].bounding_disc();
     parts.iter().enumerate().any(|(j, sibling)| {
@@ -103,8 +103,8 @@ fn turn(before: &Edge, after: &Edge) -> f64 {
     cross(before.along, after.along)
 }
 
-/// How far (m, up to the edge's own length) its line runs on inside the body beyond its start (end
-/// 0) or its end (1).
+/// Length by which the edge's line runs on inside the body (m, up to the edge's own length): beyond
+/// its start (end 0) or its end (1).
 fn buried(edge: &Edge, end: usize, parts: &[ConvexPart], tolerance: f64) -> f64 {
     const STEPS: u32 = 32;
     let inside = |share: f64| {

@@ -13,7 +13,7 @@ const BORDER: f64 = 1e-12;
 pub(crate) struct Pair<'a, T = f64> {
     pub object: Placed<'a, T>,
     pub other: Placed<'a, T>,
-    /// Where each body is in the frame of the other one.
+    /// Place of each body in the frame of the other one.
     pub other_in_object: Transform<T>,
     pub object_in_other: Transform<T>,
     /// Gap below which a contact counts (m).

@@ -1,4 +1,5 @@
-//! Polygon edges without what siblings cover, chained along the boundary of the union: [`Piece`].
+//! Polygon edges without the stretches that siblings cover, chained along the boundary of the
+//! union: [`Piece`].
 
 use crate::geometry::convex_part::ConvexPart;
 use crate::geometry::edge::Edge;
@@ -48,7 +49,7 @@ impl Piece {
     }
 }
 
-/// All polygon edges without what other parts cover.
+/// All polygon edges without the stretches that other parts cover.
 fn uncovered(parts: &mut [ConvexPart], tolerance: f64) -> Vec<Piece> {
     let mut pieces = Vec::new();
     for i in 0..parts.len() {
@@ -76,8 +77,8 @@ fn uncovered(parts: &mut [ConvexPart], tolerance: f64) -> Vec<Piece> {
 }
 
 /// The stretches of an edge of part `i` that no other part covers. Where two parts share a stretch
-/// of boundary, the first one keeps it. What a sibling leaves of an edge is rounding where it is
-/// short; an edge that none of them covers is kept, however short it is.
+/// of boundary, the first one keeps it. A short stretch that a sibling leaves of an edge is
+/// rounding; an edge that none of them covers is kept, however short it is.
 fn open_stretches(edge: &Edge, i: usize, parts: &[ConvexPart], tolerance: f64) -> Vec<[f64; 2]> {
     let mut open = vec![[0.0, edge.length]];
     for (j, sibling) in parts.iter().enumerate().filter(|(j, _)| *j != i) {

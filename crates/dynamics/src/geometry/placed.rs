@@ -24,7 +24,7 @@ impl<'a> Placed<'a> {
         }
     }
 
-    /// The same in every lane.
+    /// Copies it into every lane.
     #[inline(always)]
     pub(crate) fn splat<const W: usize>(&self) -> Placed<'a, Lanes<W>> {
         Placed {
@@ -45,8 +45,8 @@ impl<'a, const W: usize> Placed<'a, Lanes<W>> {
     }
 }
 
-/// Where the bounding discs of two bodies at `origins` (m) are less than `distance` (m) apart:
-/// elsewhere no gap can be below it.
+/// Lanes in which the bounding discs of two bodies at `origins` (m) are less than `distance` (m)
+/// apart. Elsewhere no gap can be below it.
 #[inline(always)]
 pub(crate) fn may_touch<const W: usize>(
     [object, other]: [&Shape; 2],

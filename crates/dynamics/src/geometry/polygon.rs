@@ -22,9 +22,9 @@ pub(crate) struct Side {
     pub normal: Vec2,
     /// n·p on the line (m).
     pub offset: f64,
-    /// Whether some of it is boundary of the union, and not a seam.
+    /// True if some of it is boundary of the union, and not a seam.
     pub exposed: bool,
-    /// Whether some of it is a seam: covered by another part.
+    /// True if some of it is a seam: covered by another part.
     pub seam: bool,
 }
 
@@ -53,7 +53,7 @@ impl Polygon {
         segments(&self.vertices)
     }
 
-    /// How deep points lie inside (m; negative outside).
+    /// Depth of points inside (m; negative outside).
     #[inline(always)]
     pub fn depth<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Lanes<W> {
         let mut depth = Lanes::splat(f64::INFINITY);

@@ -15,12 +15,13 @@ pub(crate) struct RoundedVertex {
     /// Radius (m).
     pub radius: f64,
     pub cone: NormalCone,
-    /// Whether a sibling part hides some of it.
+    /// True if a sibling part hides some of it.
     pub covered: bool,
 }
 
 impl RoundedVertex {
-    /// Where it faces an edge of another body; `in_other` places its own body in the other's frame.
+    /// Lanes in which it faces an edge of another body; `in_other` places its own body in the
+    /// other's frame.
     #[inline(always)]
     pub fn faces<const W: usize>(&self, edge: &Edge, in_other: &Transform<Lanes<W>>) -> Mask<W> {
         if self.cone.is_full() {

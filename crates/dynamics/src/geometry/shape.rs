@@ -83,20 +83,20 @@ impl Shape {
         self.tolerance
     }
 
-    /// Where a boundary point of one part lies inside another one, and so not on the union's
-    /// boundary.
+    /// Lanes in which a boundary point of one part lies inside another one, and so not on the
+    /// union's boundary.
     #[inline(always)]
     pub(crate) fn hides<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Mask<W> {
         self.contains_deeper(points, HIDDEN * self.bounding_radius)
     }
 
-    /// Where a point lies inside the union, seams included.
+    /// Lanes in which a point lies inside the union, seams included.
     #[inline(always)]
     pub(crate) fn contains<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Mask<W> {
         self.contains_deeper(points, 0.0)
     }
 
-    /// Where a point lies deeper than `depth` (m) in some part.
+    /// Lanes in which a point lies deeper than `depth` (m) in some part.
     #[inline(always)]
     fn contains_deeper<const W: usize>(&self, points: Vec2<Lanes<W>>, depth: f64) -> Mask<W> {
         let mut inside = Mask::splat(false);

@@ -1,9 +1,9 @@
-//! Why parts do not make a shape: [`ShapeError`], and the checks.
+//! Reason why parts do not make a shape: [`ShapeError`], and the checks.
 
 use crate::geometry::part::{Part, TOLERANCE};
 use crate::geometry::vec2::{Vec2, cross, dot, length, sub};
 
-/// Why parts do not make a shape. Parts and vertices are counted from 1.
+/// Reason why parts do not make a shape. Parts and vertices are counted from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
@@ -17,7 +17,7 @@ pub enum ShapeError {
     NotFinite {
         /// The part.
         part: usize,
-        /// Which number.
+        /// Name of the number.
         what: String,
         /// The value found.
         value: f64,
@@ -29,7 +29,7 @@ pub enum ShapeError {
     Size {
         /// The part.
         part: usize,
-        /// Which number.
+        /// Name of the number.
         what: String,
         /// The value found (m).
         value: f64,
@@ -102,7 +102,7 @@ pub enum ShapeError {
     SelfIntersecting {
         /// The part.
         part: usize,
-        /// How often it winds about its inside.
+        /// Number of times that it winds about its inside.
         turns: i64,
     },
 }

@@ -92,7 +92,7 @@ impl<T: Number> Transform<T> {
 }
 
 impl Transform {
-    /// The same transform in every lane.
+    /// Copies the transform into every lane.
     #[inline(always)]
     pub fn splat<const W: usize>(&self) -> Transform<Lanes<W>> {
         Transform {

@@ -76,7 +76,7 @@ pub(crate) fn unit(v: Vec2) -> Vec2 {
     scale(1.0 / length(v), v)
 }
 
-/// The same vector in every lane.
+/// Copies the vector into every lane.
 #[inline(always)]
 pub(crate) fn splat<const W: usize>(v: Vec2) -> Vec2<Lanes<W>> {
     [Lanes::splat(v[0]), Lanes::splat(v[1])]

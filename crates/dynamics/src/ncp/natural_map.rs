@@ -31,8 +31,8 @@ pub struct NaturalMap<const W: usize> {
 pub struct ContactVelocity<const W: usize> {
     /// Gap velocity γ + κ p_n.
     pub gap: Lanes<W>,
-    /// What friction resists: slip velocity s, or s + c p_t where the contact creeps; 0 where it is
-    /// open and carries nothing in every lane.
+    /// Slip that friction resists: slip velocity s, or s + c p_t where the contact creeps; 0 where
+    /// it is open and carries nothing in every lane.
     pub slip: Lanes<W>,
 }
 
@@ -162,7 +162,7 @@ fn friction_violation<const W: usize>(
 }
 
 impl<const W: usize> Ncp<W> {
-    /// Where `z` with this residual counts as a solution: the certificate.
+    /// Certificate: lanes in which `z` with this residual counts as a solution.
     #[inline(always)]
     pub fn certifies(&self, z: &Unknowns<W>, residual: Lanes<W>) -> Mask<W> {
         !residual.gt(Lanes::splat(TOLERANCE)) & !z.fastest().gt(self.speed_limit())

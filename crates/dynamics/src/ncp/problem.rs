@@ -32,7 +32,7 @@ pub struct ContactPoint {
     pub creep: f64,
     /// Commanded velocity of the other body's surface at the contact point (m/s); zero for a fixel.
     pub surface_velocity: [f64; 2],
-    /// Whether the other body is the pusher, which may stall.
+    /// True if the other body is the pusher, which may stall.
     pub on_pusher: bool,
 }
 

@@ -1,17 +1,17 @@
-//! How one step ended, and what is known of its answer: [`Report`].
+//! Outcome of one step, and facts about its answer: [`Report`].
 
 /// Largest natural-map residual of a solved step (m/s).
 pub const TOLERANCE: f64 = 1e-9;
 
-/// How one step ended.
+/// Outcome of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Outcome {
     /// The residual is at most [`TOLERANCE`], and no speed is more than 30 times the fastest one
     /// that the problem asks for.
     Solved,
-    /// It is proven that there is no such solution with impulses that come to at most 1e6 m/s times
-    /// the mass; the velocity is that of the compliant problem.
+    /// It is proven that no such solution has impulses of at most 1e6 m/s times the mass; the
+    /// velocity is that of the compliant problem.
     Infeasible,
     /// Neither a solution nor a proof was found within the limit on work; the velocity is that of
     /// the compliant problem.
@@ -30,16 +30,16 @@ pub enum Route {
     ModeSearch,
 }
 
-/// What is known of one particle's step.
+/// Report of one particle's step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// How it ended.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Natural-map residual of the rigid problem (m/s).
     pub residual: f64,
     /// Linear systems solved for it.
     pub systems: u32,
-    /// Where the answer came from.
+    /// Solver that found the answer.
     pub route: Route,
 }
 

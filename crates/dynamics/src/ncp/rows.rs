@@ -1,9 +1,9 @@
 //! The mixed NCP of one step in mass-normalised units, `W` particles side by side: [`Ncp`] and its
 //! rows.
 //!
-//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ, so that
-//! every number is a speed (m/s) and the mass matrix is the identity: v = (vx, vy, ρ ω), W_n = (n,
-//! r × n / ρ), W_t = (t, r × t / ρ).
+//! Impulses are divided by the mass m and rotation is scaled by the radius of gyration ρ. So every
+//! number is a speed (m/s) and the mass matrix is the identity. The velocity is v = (vx, vy, ρ ω).
+//! The rows are W_n = (n, r × n / ρ), W_t = (t, r × t / ρ).
 
 use stickslip_lanes::Lanes;
 
@@ -11,7 +11,7 @@ use crate::ncp::problem::{ContactPoint, StepProblem};
 
 /// Largest speed of a solution, in terms of the fastest one that its problem asks for. A face that
 /// closes on an object at an angle of two degrees squeezes it out that much faster; of 18 million
-/// solved steps of random scenes three were faster by 32 and ten by eight. What is faster still are
+/// solved steps of random scenes three were faster by 32 and ten by eight. Faster still are only
 /// solutions of wedges that friction all but locks: impulses of 1e6 m/s throw an object out at some
 /// 100 m/s where all else moves at 0.1.
 const SPEED_LIMIT: f64 = 30.0;
@@ -127,7 +127,7 @@ impl<const W: usize> ContactRow<W> {
         creep: Lanes::ZERO,
     };
 
-    /// Whether a lane has this contact, rather than padding.
+    /// Returns true if a lane has this contact, rather than padding.
     #[inline(always)]
     pub fn is_present(&self, lane: usize) -> bool {
         self.n[0].0[lane] != 0.0 || self.n[1].0[lane] != 0.0
@@ -145,14 +145,14 @@ impl<const W: usize> ContactRow<W> {
         (dot(&self.t, v) + self.slip_offset).add_mul(self.td, pusher_yield)
     }
 
-    /// What friction resists at tangential impulse `p_t`: s + c p_t.
+    /// Slip that friction resists at tangential impulse `p_t`: s + c p_t.
     #[inline(always)]
     pub fn resisted_slip(&self, v: &Triple<W>, pusher_yield: Lanes<W>, p_t: Lanes<W>) -> Lanes<W> {
         self.slip_velocity(v, pusher_yield).add_mul(self.creep, p_t)
     }
 
-    /// Makes it a contact of a body that gives way along `direction`, and moves at `catch_up` (m/s)
-    /// beside its commanded velocity, which its gap knows already.
+    /// Makes it a contact of a body that yields along `direction`. The body moves at `catch_up`
+    /// (m/s) in addition to its commanded velocity, which its gap includes already.
     #[inline(always)]
     pub fn let_yield(&mut self, [dx, dy]: [Lanes<W>; 2], [x, y]: [Lanes<W>; 2]) {
         self.nd = self.n[0] * dx + self.n[1] * dy;

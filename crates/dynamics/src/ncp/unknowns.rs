@@ -80,7 +80,7 @@ impl<const W: usize> Unknowns<W> {
         self.normal.iter().zip(&self.tangential)
     }
 
-    /// Where no normal impulse exceeds `LARGEST`.
+    /// Lanes in which no normal impulse exceeds `LARGEST`.
     #[inline(always)]
     pub fn is_bounded(&self) -> Mask<W> {
         !self.largest_normal().gt(Lanes::splat(LARGEST))
@@ -184,7 +184,7 @@ impl<const W: usize> Unknowns<W> {
         }
     }
 
-    /// Copies what does not belong to a contact from one lane into lane `slot` of `to`.
+    /// Copies the numbers that do not belong to a contact from one lane into lane `slot` of `to`.
     #[inline(always)]
     fn copy_body_lane<const V: usize>(&self, lane: usize, to: &mut Unknowns<V>, slot: usize) {
         for k in 0..3 {

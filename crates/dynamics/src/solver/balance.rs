@@ -1,8 +1,8 @@
-//! Whether impulses within their bounds balance a load: [`balance`].
+//! Balance of a load by impulses within their bounds: [`balance`].
 //!
-//! What the contacts have to balance is a convex set, a [`Load`]. Contacts balance Σ α_i g_i, α ≥
-//! 0, a cone. Either set and cone meet, or a direction separates them; single directions that are
-//! chosen beforehand, as those of the dual basis are, need not.
+//! The load that the contacts have to balance is a convex set, a [`Load`]. Contacts balance Σ α_i
+//! g_i, α ≥ 0, a cone. Either set and cone meet, or a direction separates them. A direction that is
+//! chosen beforehand, as those of the dual basis are, need not separate them.
 
 use crate::solver::load::Load;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-13;
 /// Progress below which the search ends.
 const PROGRESS: f64 = 1e-15;
 
-/// How set and cone lie.
+/// Relation of set and cone.
 #[derive(Clone, Debug)]
 pub enum Balance {
     /// They meet: impulses α of the generators, and the feet's u.
@@ -37,12 +37,12 @@ pub enum Balance {
 }
 
 /// Looks for impulses of `generators` that balance `load`, but for a distance of `tolerance` (m/s)
-/// or what rounding leaves; also tells the linear systems that it took.
+/// or what rounding leaves. Also returns the number of linear systems that it took.
 ///
-/// The point of set less cone that is nearest to the origin, as least squares with weights that are
-/// not negative: the weights of the set's points sum to one as well as they can (Haskell and Hanson
-/// 1981), the columns are found as they are needed, and enter and leave as in Lawson and Hanson
-/// (1974).
+/// Finds the point of set less cone that is nearest to the origin, as least squares with weights
+/// that are not negative. The weights of the set's points sum to one as well as they can (Haskell
+/// and Hanson 1981). Columns are found as they are needed, and enter and leave as in Lawson and
+/// Hanson (1974).
 pub fn balance(generators: &[Vector<4>], load: &Load<'_>, tolerance: f64) -> (Balance, u32) {
     let size = load.size();
     if size == 0.0 {
@@ -241,7 +241,8 @@ mod tests {
         [x, y, foot.jx * x + foot.jy * y, 0.0]
     }
 
-    /// Impulses add up, and no corner of the set lies on the wrong side of what separates.
+    /// Impulses add up, and no corner of the set lies on the wrong side of the direction that
+    /// separates.
     #[track_caller]
     fn is_sound(found: &Balance, generators: &[Vector<4>], load: &Load<'_>) {
         match found {

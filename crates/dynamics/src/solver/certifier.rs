@@ -6,7 +6,7 @@ use crate::solver::vector::{Vector, add_scaled, norm};
 /// Distance up to which V is the same (m/s).
 const SAME: f64 = 1e-8;
 
-/// How a candidate is judged.
+/// Criterion by which a candidate is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// By its residual.
@@ -15,10 +15,10 @@ pub enum Effort {
     Refine,
 }
 
-/// What became of a candidate.
+/// Judgement of a candidate.
 #[derive(Clone, Copy, Debug)]
 pub struct Judged {
-    /// Whether it, or what it refines to, is a solution.
+    /// True if it, or the point to which it refines, is a solution.
     pub certified: bool,
     /// Linear systems that it took.
     pub systems: u32,
@@ -31,7 +31,7 @@ pub struct Judged {
 pub struct Certifier<'a> {
     judge: &'a mut dyn FnMut(&Candidate, Effort) -> Judged,
     left: u32,
-    /// Where candidates failed in this round, and how many.
+    /// Velocities V at which candidates failed in this round, and how many failed there.
     failed: Vec<(Vector<4>, u32)>,
     patience: u32,
 }
@@ -47,8 +47,8 @@ impl<'a> Certifier<'a> {
         }
     }
 
-    /// Whether the candidate refines to a certified solution; no more than so many are tried at the
-    /// same V.
+    /// Returns true if the candidate refines to a certified solution. Only a limited number is
+    /// tried at the same V.
     pub fn certifies(&mut self, candidate: &Candidate) -> bool {
         let here = |(v, _): &&mut (Vector<4>, u32)| norm(&add_scaled(v, -1.0, &candidate.v)) < SAME;
         let failures = self.failed.iter_mut().find(here);
@@ -64,7 +64,7 @@ impl<'a> Certifier<'a> {
         certified
     }
 
-    /// Whether the candidate is certified as it is.
+    /// Returns true if the candidate is certified as it is.
     pub fn accepts(&mut self, candidate: &Candidate) -> bool {
         let Judged { certified, systems } = (self.judge)(candidate, Effort::AsItIs);
         self.spend(systems);

@@ -1,9 +1,10 @@
 //! The chain of solvers behind one certificate: [`Solver::solve`].
 //!
-//! The semismooth Newton iteration answers almost always. What it leaves over of a whole block of
-//! particles goes along a path of smoothed solutions, from its warm start, then from its free
-//! motion, packed together, still side by side; then one by one to a search over contact modes.
-//! Whatever route an answer came by, it counts as solved only where [`Ncp::certifies`] says so.
+//! The semismooth Newton iteration answers almost always. The particles of a whole block that it
+//! leaves unsolved are packed together, and follow a path of smoothed solutions side by side: first
+//! from their warm start, then from their free motion. A search over contact modes then takes the
+//! rest one by one. Whatever route an answer came by, it counts as solved only where
+//! [`Ncp::certifies`] says so.
 
 use stickslip_lanes::{Lanes, Level, on_fused, on_widest};
 
@@ -223,8 +224,8 @@ impl<const W: usize> Solver<W> {
 
     /// The unsolved problems: along the path, then one by one.
     ///
-    /// Compiled apart from the Newton iteration: of more code in one piece the compiler calls what
-    /// it should inline.
+    /// Compiled apart from the Newton iteration: in one larger piece of code the compiler would
+    /// call functions that it should inline.
     #[inline(never)]
     fn solve_unsolved(
         &mut self,
@@ -248,8 +249,8 @@ impl<const W: usize> Solver<W> {
         }
     }
 
-    /// The unsolved problems, packed together, from their warm starts; then what is left from the
-    /// free motion, since the last step's impulses may have led astray.
+    /// The unsolved problems, packed together, from their warm starts; then those that are left
+    /// from the free motion, since the last step's impulses may have led them astray.
     #[inline(always)]
     fn follow_paths(
         &mut self,

@@ -124,8 +124,8 @@ impl CompliantNewton {
     }
 }
 
-/// Whether a residual is no more than the tolerance and what rounding leaves, at a speed that a
-/// solution may have.
+/// Returns true if a residual is no more than the tolerance and what rounding leaves, at a speed
+/// that a solution may have.
 fn is_solved(ncp: &Ncp<1>, residual: f64, z: &Unknowns<1>) -> bool {
     let largest = z.largest_normal().0[0];
     residual <= TOLERANCE + ROUNDING * largest && z.fastest().0[0] <= ncp.speed_limit().0[0]

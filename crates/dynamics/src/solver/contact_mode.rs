@@ -1,4 +1,4 @@
-//! What a contact does, [`ContactMode`], and its linear model in a given mode.
+//! Modes of a contact, [`ContactMode`], and its linear model in a given mode.
 
 use stickslip_lanes::{Lanes, Mask};
 

@@ -2,10 +2,11 @@
 //! pivoting; [`solve_dense`] of one system, with it.
 //!
 //! In lanes, the equations are the three momentum balances, then the stall pair, eliminated in that
-//! order. The balances' matrix is the identity plus what resists motion, so its pivots stay large
-//! however much stiffer some directions are than others; only a sliding contact may bring one near
-//! zero. A bad pivot gives a bad step, which the residual test rejects. Searching for better pivots
-//! costs every step a tenth and leaves as many problems of the recorded logs to the homotopy.
+//! order. The balances' matrix is the identity plus the resistance to motion, so its pivots stay
+//! large however much stiffer some directions are than others; only a sliding contact may bring one
+//! near zero. A bad pivot gives a bad step, which the residual test rejects. Searching for better
+//! pivots costs every step a tenth and leaves as many problems of the recorded logs to the
+//! homotopy.
 //!
 //! Written out, so that every number stays in a register.
 

@@ -1,4 +1,4 @@
-//! Where the velocity may be between two points of a curve: [`Enclosure`].
+//! Bounds on the velocity between two points of a curve: [`Enclosure`].
 
 use crate::solver::scalar_ncp::ScalarFoot;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
@@ -58,13 +58,13 @@ impl Between<'_> {
         self.enclosure(&[identity(); 2])
     }
 
-    /// An ellipsoid, by how fast the feet slip in another enclosure at most: what slips slowly
-    /// hardly turns. `None` where nothing slips slowly.
+    /// An ellipsoid, from the highest slip speeds of the feet in another enclosure: the direction
+    /// of a slow slip hardly turns. `None` where no foot slips slowly.
     ///
-    /// With f = −p, Δload·Δv is |Δv|² + Σ Δf_k·Δs_k, and no term of the sum is negative: it is b
-    /// (|s| + |s_a|)(1 − cos) where the foot slips at a, at least b (|s| + |s_a|)/(2 |s|²) times
-    /// the square of the part of s across s_a; where it stands there, at least (b − |p_a|)|s|. The
-    /// enclosure bounds |s|.
+    /// With f = −p, Δload·Δv is |Δv|² + Σ Δf_k·Δs_k, and no term of the sum is negative. Where the
+    /// foot slips at a, a term is b (|s| + |s_a|)(1 − cos). That is at least b (|s| + |s_a|)/(2
+    /// |s|²) times the square of the part of s across s_a. Where the foot stands at a, a term is at
+    /// least (b − |p_a|)|s|. The enclosure bounds |s|.
     pub fn narrower(&self, than: &Enclosure) -> Option<Enclosure> {
         let fastest = self.feet.each_ref().map(|foot| than.fastest(foot));
         let creeps = self
@@ -101,7 +101,7 @@ impl Between<'_> {
 }
 
 impl Enclosure {
-    /// By how much row·v may differ from its value at the centre.
+    /// Largest difference of row·v from its value at the centre.
     pub fn reach(&self, row: &Vector<3>) -> f64 {
         self.radius * norm(&forward(&self.factor, row)) + self.rounding * norm(row)
     }
@@ -115,7 +115,7 @@ impl Enclosure {
 }
 
 impl Slide<'_> {
-    /// What resists a change of v from here, where feet slip no faster than `fastest`.
+    /// Resistance to a change of v from here, where feet slip no faster than `fastest`.
     fn stiffness(&self, feet: &[ScalarFoot; 3], fastest: &[f64; 3]) -> [Vector<3>; 3] {
         let mut matrix = identity();
         let stands = STANDS * (1.0 + norm(&self.v));
@@ -138,7 +138,7 @@ impl Slide<'_> {
     }
 }
 
-/// Adds to a matrix what resists, by `size`, a slip of a foot along a direction.
+/// Adds a resistance of `size` against slip of a foot along a direction to a matrix.
 fn add_along(matrix: &mut [Vector<3>; 3], foot: &ScalarFoot, [x, y]: [f64; 2], size: f64) {
     let row = [x, y, foot.jx * x + foot.jy * y];
     for i in 0..3 {

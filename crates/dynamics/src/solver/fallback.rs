@@ -1,4 +1,4 @@
-//! What the solvers in lanes leave over, one particle at a time: [`Fallback`].
+//! Particles that the solvers in lanes leave unsolved, one at a time: [`Fallback`].
 
 use stickslip_lanes::{Lanes, Level};
 
@@ -122,7 +122,7 @@ impl Fallback {
         (smaller && residual <= TOLERANCE).then_some((&self.solution, residual))
     }
 
-    /// Leaves in `self.solution` what the search finds.
+    /// Leaves the search's result in `self.solution`.
     fn search_modes(&mut self, limit: u32, report: &mut Report) {
         let (ncp, refiner, guess) = (&self.ncp, &mut self.refiner, &mut self.guess);
         guess.clear(ncp.contacts.len());
@@ -143,8 +143,8 @@ impl Fallback {
         self.solution.copy_from(&self.refiner.z);
     }
 
-    /// What the search leaves open, from the free motion: the last step's impulses may have led the
-    /// first solvers astray. By the Newton iteration, else along the path.
+    /// Solves a problem that the search leaves open, from the free motion: the last step's impulses
+    /// may have led the first solvers astray. Tries the Newton iteration, then the path.
     fn start_afresh(&mut self, report: &mut Report) {
         self.guess.cold_start(&self.ncp);
         let (ncp, start, end) = (&self.ncp, &self.guess, &mut self.solution);

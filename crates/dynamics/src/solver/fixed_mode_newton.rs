@@ -104,7 +104,7 @@ impl<const W: usize> FixedModeNewton<W> {
     }
 }
 
-/// Where the last step changed the velocity by more than rounding.
+/// Lanes in which the last step changed the velocity by more than rounding.
 #[inline(always)]
 fn moved<const W: usize>(z: &Unknowns<W>, before: &(Triple<W>, Lanes<W>)) -> Mask<W> {
     let mut change = (z.pusher_yield - before.1).abs();

@@ -55,7 +55,7 @@ impl Interval {
         range
     }
 
-    /// Whether it has no number.
+    /// Returns true if it contains no number.
     pub fn is_empty(&self) -> bool {
         self.low > self.high
     }

@@ -12,7 +12,7 @@ use crate::solver::vector::{Vector, add_scaled, norm};
 /// Slip per unit of e up to which a foot stands.
 const STANDS: f64 = 1e-12;
 
-/// The boundary of what three feet can exert.
+/// The boundary of the set of loads that three feet can exert.
 pub struct LimitSurface {
     feet: [ScalarFoot; 3],
 }

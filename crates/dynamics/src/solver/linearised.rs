@@ -35,8 +35,8 @@ pub struct FootStep<const W: usize> {
 }
 
 impl<const W: usize> ContactStep<W> {
-    /// The same step where tt is −∂p_t/∂(s + c p_t), the slip that friction resists, and c is
-    /// `creep`: that slip itself grows by c dp_t.
+    /// Adds creep to a step whose tt is −∂p_t/∂(s + c p_t), by the slip that friction resists, with
+    /// c = `creep`: that slip itself grows by c dp_t.
     #[inline(always)]
     pub fn creeping(self, creep: Lanes<W>) -> Self {
         // a division only where some contact creeps
@@ -80,7 +80,7 @@ pub struct StallStep<const W: usize> {
 const UNDETERMINED: f64 = 1e-9;
 
 impl<const W: usize> StallStep<W> {
-    /// Where `yields`, the object resists with the stall force; elsewhere the pusher keeps its
+    /// In lanes of `yields` the object resists with the stall force; elsewhere the pusher keeps its
     /// commanded motion.
     #[inline(always)]
     pub fn in_mode(yields: Mask<W>, slack: Lanes<W>, pusher_yield: Lanes<W>) -> Self {
@@ -92,7 +92,7 @@ impl<const W: usize> StallStep<W> {
         }
     }
 
-    /// Whether y is 0 and stays so in every lane.
+    /// Returns true if y is 0 and stays so in every lane.
     #[inline(always)]
     fn keeps_zero(&self, pusher_yield: Lanes<W>) -> bool {
         !(self.slack.abs() + pusher_yield.abs() + self.rhs.abs())
@@ -106,7 +106,7 @@ impl<const W: usize> StallStep<W> {
 pub struct Linearised<const W: usize> {
     /// Velocity that follows from the point's impulses, less the point's own.
     pub imbalance: Triple<W>,
-    /// The contacts, by number, that carry an impulse or may come to; the others keep none.
+    /// The contacts, by number, that carry an impulse or may get one; the others keep none.
     pub contacts: Vec<(usize, ContactStep<W>)>,
     /// One per foot.
     pub feet: [FootStep<W>; 3],
@@ -261,8 +261,8 @@ impl<const W: usize> Momentum<W> {
     }
 }
 
-/// What y adds to the system: matrix·dv + column dy = momentum's rhs, and the impulse F with which
-/// the object resists the pusher changes by dF = rhs − row·dv − corner dy.
+/// Terms that y adds to the system: matrix·dv + column dy = momentum's rhs. The impulse F with
+/// which the object resists the pusher changes by dF = rhs − row·dv − corner dy.
 struct Border<const W: usize> {
     column: Triple<W>,
     row: Triple<W>,

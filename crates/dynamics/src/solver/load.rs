@@ -1,4 +1,4 @@
-//! What contacts have to balance: [`Load`].
+//! Load that contacts have to balance: [`Load`].
 
 use crate::solver::scalar_ncp::{ScalarFoot, ScalarNcp};
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
@@ -14,11 +14,11 @@ pub struct Load<'a> {
     pub corners: Vec<Vector<4>>,
     /// The feet.
     pub feet: &'a [ScalarFoot; 3],
-    /// How they slip.
+    /// Slip of each foot.
     pub slips: [Slips; 3],
 }
 
-/// How a foot may slip.
+/// Directions in which a foot may slip.
 #[derive(Clone, Copy, Debug)]
 pub enum Slips {
     /// As the corners have it.
@@ -159,8 +159,8 @@ mod tests {
         }
     }
 
-    /// T(V) of any V between the corners is in the set, by its definition with feet that slide; and
-    /// directions are told apart wherever all corners slip alike.
+    /// T(V) of any V between the corners is in the set, by its definition with feet that slide.
+    /// Directions are distinguished wherever all corners slip alike.
     #[test]
     fn load_over_a_hull_holds_the_load_of_each_of_its_velocities() {
         let (mut numbers, mut told) = (Numbers(3), 0);

@@ -1,4 +1,4 @@
-//! What a choice of generators demands of V = (v, y): [`ModeConditions`].
+//! Conditions that a choice of generators puts on V = (v, y): [`ModeConditions`].
 
 use crate::solver::balance::{Balance, balance};
 use crate::solver::certifier::Certifier;
@@ -38,7 +38,7 @@ pub struct ModeConditions {
     pub problem: ScalarNcp,
     /// Violations below this do not exclude a mode (m/s).
     pub slack: f64,
-    /// What holds at every solution: gaps are open, y ≥ 0, no speed exceeds the limit.
+    /// Conditions at every solution: gaps are open, y ≥ 0, no speed exceeds the limit.
     open: Vec<Inequality>,
 }
 
@@ -94,13 +94,14 @@ impl ModeConditions {
         })
     }
 
-    /// Whether impulses of these ranges may be those of a solution.
+    /// Returns true if impulses of these ranges may be those of a solution.
     pub fn allows(&self, impulses: &[Interval]) -> bool {
         let possible = |it: &Interval| it.high >= -self.slack && it.low <= LARGEST;
         impulses.iter().all(possible)
     }
 
-    /// What holds at a solution in this mode: the same, and slips oppose the friction.
+    /// Conditions at a solution in this mode: those of every solution, and slips oppose the
+    /// friction.
     pub fn inequalities<'a>(
         &'a self,
         chosen: &'a [Generator],
@@ -120,7 +121,7 @@ impl ModeConditions {
         })
     }
 
-    /// What the open gaps, y ≥ 0 and the limit on speed leave of the plane of two generators;
+    /// Part of the plane of two generators that the open gaps, y ≥ 0 and the limit on speed leave;
     /// `None` where their equations leave none.
     pub fn open_plane(&self, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
         let mut region = PlaneRegion::new(&self.equations(chosen))?;
@@ -130,15 +131,16 @@ impl ModeConditions {
         Some(region)
     }
 
-    /// Whether V violates a condition of this mode by more than the slack, and more than it can
-    /// gain over a distance of `margin`.
+    /// Returns true if V violates a condition of this mode by more than the slack, and more than it
+    /// can gain over a distance of `margin`.
     pub fn violates(&self, chosen: &[Generator], v: &Vector<4>, margin: f64) -> bool {
         self.inequalities(chosen).any(|Inequality { row, offset }| {
             dot(&row, v) + offset < -self.slack - margin * norm(&row)
         })
     }
 
-    /// Whether a generator may push at V: its contact is closed, and its friction opposes the slip.
+    /// Returns true if a generator may push at V: its contact is closed, and its friction opposes
+    /// the slip.
     pub fn holds(&self, generator: &Generator, v: &Vector<4>) -> bool {
         let [equation] = self.equations(&[*generator]);
         (dot(&equation.row, v) - equation.value).abs() <= self.slack
@@ -173,8 +175,8 @@ impl ModeConditions {
         candidate
     }
 
-    /// The same with impulses that balance the load where feet stand; `None` where none were found,
-    /// or no foot stands.
+    /// Candidate at V with impulses that balance the load where feet stand; `None` where none were
+    /// found, or no foot stands.
     pub fn standing_candidate(
         &self,
         chosen: &[Generator],
@@ -196,8 +198,8 @@ impl ModeConditions {
         Some(candidate)
     }
 
-    /// Whether V with the impulses `alpha` refines to a certified solution, or, where `stands` asks
-    /// for it, with those that balance the load.
+    /// Returns true if V with the impulses `alpha` refines to a certified solution. With `stands`,
+    /// also tries impulses that balance the load.
     pub fn solves(
         &self,
         chosen: &[Generator],
@@ -210,8 +212,8 @@ impl ModeConditions {
             || stands && self.stands(chosen, v, certifier)
     }
 
-    /// Whether V with impulses that balance the load where feet stand refines to a certified
-    /// solution.
+    /// Returns true if V with impulses that balance the load where feet stand refines to a
+    /// certified solution.
     pub fn stands(
         &self,
         chosen: &[Generator],
@@ -222,7 +224,8 @@ impl ModeConditions {
             .is_some_and(|candidate| certifier.certifies(&candidate))
     }
 
-    /// Whether no impulses of the generators balance the load for any V of the hull of some.
+    /// Returns true if no impulses of the generators balance the load for any V of the hull of
+    /// some.
     pub fn separates(
         &self,
         chosen: &[Generator],

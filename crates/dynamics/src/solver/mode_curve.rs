@@ -36,7 +36,7 @@ pub struct ModeCurve<'a> {
     constant: f64,
     tied_is_first: bool,
     gives_y: Equation,
-    /// What holds at a solution: row·v + offset ≥ 0.
+    /// Conditions at a solution: row·v + offset ≥ 0.
     limits: Vec<(Vector<3>, f64)>,
 }
 
@@ -119,7 +119,7 @@ impl<'a> ModeCurve<'a> {
         (self.gives_y.value - dot(&velocity(&self.gives_y.row), v)) / self.gives_y.row[3]
     }
 
-    /// Whether no v of an enclosure meets all conditions.
+    /// Returns true if no v of an enclosure meets all conditions.
     fn excludes_all(&self, enclosure: &Enclosure) -> bool {
         self.limits.iter().any(|(row, offset)| {
             let value = dot(row, &enclosure.centre) + offset + self.conditions.slack;

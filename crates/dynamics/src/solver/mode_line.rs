@@ -37,7 +37,7 @@ impl Line {
         add_scaled(&self.origin, x, &self.d)
     }
 
-    /// Removes from an interval of x what violates an inequality by more than `slack`.
+    /// Removes the part of an interval of x that violates an inequality by more than `slack`.
     pub fn clip(&self, interval: &mut Interval, inequality: &Inequality, slack: f64) {
         let Inequality { row, offset } = inequality;
         interval.clip(dot(row, &self.d), dot(row, &self.origin) + offset + slack);

@@ -1,16 +1,19 @@
 //! Exhaustive search over contact modes: [`search`] finds a solution or proves that there is none.
 //!
-//! With V = (v, y) and T(V) = (v − v_free − Σ J_kᵀ p_k(v), F_stall h / m), a solution is a V and
-//! impulses α ≥ 0 with Σ α g = T(V), where the *generators* g are the two edges n ± μ t of every
-//! closed contact's friction cone and the unit vector of the stall pair. By Carathéodory's theorem
-//! at most four linearly independent generators suffice. Each generator demands that its own row of
-//! V vanish (gap velocity, slip velocity where both edges of a contact are used, y for the stall
-//! pair), so a subset of four leaves a point, of three a line, of two a curve v(λ) = T⁻¹(…), of one
-//! again a point. Parallel walls, and points of one face, ask the same of V twice: four generators
-//! then leave a line, three a plane. Most subsets are discarded by V alone: the half-spaces of open
-//! gaps, opposed slips, y ≥ 0 and the limit on speed leave nothing of the plane, line or point. The
-//! others are searched by halving, with bounds that hold rigorously on every piece: pieces without
-//! a solution are discarded, what remains is refined. Where nothing remains, there is no solution.
+//! A solution is a V = (v, y) and impulses α ≥ 0 with Σ α g = T(V), where T(V) = (v − v_free − Σ
+//! J_kᵀ p_k(v), F_stall h / m). The *generators* g are the two edges n ± μ t of every closed
+//! contact's friction cone and the unit vector of the stall pair. By Carathéodory's theorem at most
+//! four linearly independent generators suffice.
+//!
+//! Each generator demands that its own row of V vanish: the gap velocity, the slip velocity where
+//! both edges of a contact are used, y for the stall pair. So a subset of four leaves a point, of
+//! three a line, of two a curve v(λ) = T⁻¹(…), of one again a point. Parallel walls, and points of
+//! one face, demand a row of V twice: four generators then leave a line, three a plane.
+//!
+//! Most subsets are discarded by V alone: the half-spaces of open gaps, opposed slips, y ≥ 0 and
+//! the limit on speed leave nothing of the plane, line or point. The others are searched by
+//! halving, with bounds that are rigorous on every piece: pieces without a solution are discarded,
+//! the rest is refined. If nothing remains, there is no solution.
 
 use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
@@ -28,7 +31,7 @@ use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares, null_vector}
 use crate::solver::support_friction::SupportFriction;
 use crate::solver::vector::{add_scaled, dot, velocity};
 
-/// How the search ended.
+/// Outcome of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// A candidate was certified.
@@ -43,8 +46,9 @@ pub enum Verdict {
 /// every piece of a curve a problem of its own.
 const CHEAPEST_FIRST: [usize; 4] = [4, 1, 3, 2];
 
-/// How thoroughly lines and curves are searched, in a first round and, where something was unclear,
-/// in later ones: most solutions show at a first glance, though seldom in the first subset.
+/// Thoroughness of the search of lines and curves: in a first round and, where something was
+/// unclear, in later ones. Most solutions show at a first glance, though seldom in the first
+/// subset.
 const ROUNDS: [Thoroughness; 3] = [
     Thoroughness {
         pieces: 128,
@@ -90,7 +94,7 @@ pub fn search(problem: &ScalarNcp, certifier: &mut Certifier<'_>) -> Verdict {
     Verdict::Unresolved
 }
 
-/// How a round ended.
+/// Outcome of a round.
 enum Round {
     /// A candidate was certified.
     Solved,
@@ -154,9 +158,9 @@ impl ModeSearch {
         }
     }
 
-    /// Whether the object can stand still, held by all contacts that are closed then, while the
-    /// pusher yields as far as it must: of a wedged object nearly all subsets hold it, and each
-    /// would be searched.
+    /// Returns true if the object can stand still, held by all contacts that are closed then, while
+    /// the pusher yields as far as it must. Nearly all subsets hold a wedged object, and each would
+    /// be searched.
     fn rests(&self, certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
         let contacts = conditions.problem.contacts.iter();
@@ -246,14 +250,14 @@ impl ModeSearch {
         all
     }
 
-    /// Whether some V meets the conditions of two generators.
+    /// Returns true if some V meets the conditions of two generators.
     fn plane_is_possible(&self, members: &[usize; 2]) -> bool {
         self.planes
             .of(&self.conditions, &members.map(|i| self.generators[i]))
             .is_none_or(|region| !region.is_empty())
     }
 
-    /// Whether some V meets the conditions of three generators.
+    /// Returns true if some V meets the conditions of three generators.
     fn line_is_possible(&self, members: &[usize; 3]) -> bool {
         let chosen = members.map(|i| self.generators[i]);
         Line::new(&self.conditions.equations(&chosen))
@@ -343,11 +347,11 @@ impl ModeSearch {
         Finding::of_candidate(solved)
     }
 
-    /// Rows that leave neither a line nor a plane: excluded where they contradict each other, else
-    /// unclear.
+    /// Searches rows that leave neither a line nor a plane: excluded where they contradict each
+    /// other, else unclear.
     ///
-    /// What the best V misses is a combination of the rows that vanishes. So it bounds from below
-    /// by how much every V misses one of the equations.
+    /// The residual of the best V is a combination of the rows that vanishes. So it bounds from
+    /// below by how much every V misses one of the equations.
     fn degenerate<const N: usize>(
         &self,
         chosen: &[Generator; N],
@@ -411,8 +415,8 @@ impl ModeSearch {
         }
     }
 
-    /// Whether at some V of a plane the friction of the feet can make up for what two generators do
-    /// not balance, with impulses α ≥ 0 of theirs.
+    /// Returns true if at some V of a plane the friction of the feet can balance the rest of the
+    /// load that two generators leave with their impulses α ≥ 0.
     fn plane_balances(&self, chosen: &[Generator; 2], certifier: &mut Certifier<'_>) -> bool {
         let conditions = &self.conditions;
         let Some(mut region) = self.planes.of(conditions, chosen) else {

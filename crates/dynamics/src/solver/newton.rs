@@ -1,14 +1,15 @@
 //! Semismooth Newton iteration on the natural map of the mixed NCP, `W` particles side by side:
 //! [`Newton`].
 //!
-//! As in Alart & Curnier (1991), the natural map of the iterate chooses every row's mode: either
-//! the row is *active*, and its velocity is driven to zero (the gap of a closed contact, the slip
-//! of a sticking one or of a sticking foot), or its impulse follows from the other rows. Slips have
+//! As in Alart & Curnier (1991), the natural map of the iterate chooses every row's mode. Either
+//! the row is *active*, and its velocity is driven to zero: the gap of a closed contact, the slip
+//! of a sticking one or of a sticking foot. Or its impulse follows from the other rows. Slips have
 //! weights of their own in that choice. An active row has a finite penalty stiffness k and keeps
 //! its impulse from one iteration to the next (a method of multipliers), so redundant contacts do
-//! no harm. Once the modes are right, the error shrinks by K/(K + k) an iteration, K the stiffness
-//! of what else resists. The start is the particle's last step. A stiff penalty converges sooner, a
-//! soft one copes better with modes that contradict each other: the iterations alternate.
+//! no harm. Once the modes are right, the error shrinks by K/(K + k) an iteration, where K is the
+//! stiffness of all other resistance. The start is the particle's last step. A stiff penalty
+//! converges sooner, a soft one copes better with modes that contradict each other: the iterations
+//! alternate.
 
 use stickslip_lanes::{Lanes, Mask};
 
@@ -30,7 +31,7 @@ const SOFT: f64 = 3.0e6;
 /// So many iterations are stiff, as many soft, and so on.
 const ALTERNATION: f64 = 8.0;
 
-/// When the iteration ends, and how it chooses the modes of feet.
+/// Limits of the iteration, and rule by which it chooses the modes of feet.
 #[derive(Clone, Copy, Debug)]
 pub struct NewtonSettings {
     /// Residual at which a lane has converged (m/s).
@@ -43,7 +44,7 @@ pub struct NewtonSettings {
     pub slip_weight: f64,
 }
 
-/// How long all lanes of a chunk iterate, whether running or not.
+/// Limits up to which all lanes of a chunk iterate, running or not.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchLimits {
     /// Most iterations.
@@ -63,7 +64,7 @@ impl BatchLimits {
     }
 }
 
-/// How far each lane is.
+/// Progress of each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<const W: usize> {
     /// Residual at the present point (m/s).

@@ -11,16 +11,17 @@ use crate::solver::newton::{BatchLimits, Newton, NewtonSettings, Progress};
 use crate::solver::newton_queue::{Ended, NewtonQueue, Underway};
 use crate::solver::source::Source;
 
-/// How long a chunk iterates as a whole, before its last lanes are queued with those of others.
+/// Limits up to which a chunk iterates as a whole, before its last lanes are queued with those of
+/// others.
 const BATCH: BatchLimits = BatchLimits {
     iterations: 4,
     lanes: 4,
 };
 
-/// How the iteration of one particle ended.
+/// Outcome of the iteration of one particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Iterated {
-    /// Which particle.
+    /// The particle.
     pub index: LaneIndex,
     /// Its residual (m/s).
     pub residual: f64,

@@ -11,9 +11,9 @@ use crate::solver::newton::{Newton, NewtonSettings, Progress};
 /// penalty.
 const FAR: f64 = 10.0;
 
-/// Iterations after which what is far off is given up, no fewer than a chunk takes as a whole.
-/// Where active rows contradict each other, as in an object wedged between pusher and fixels, modes
-/// return in a cycle, and impulses with them.
+/// Iterations after which lanes far from a solution are given up, no fewer than a chunk takes as a
+/// whole. Where active rows contradict each other, as in an object wedged between pusher and
+/// fixels, modes return in a cycle, and impulses with them.
 const PATIENCE: f64 = 8.0;
 
 /// Problems under way: [`Newton`] at the point of a [`LaneQueue`].
@@ -24,12 +24,12 @@ pub struct NewtonQueue<const W: usize> {
     progress: Progress<W>,
 }
 
-/// Where an iteration stands that goes on in a queue.
+/// State of an iteration that goes on in a queue.
 #[derive(Clone, Copy, Debug)]
 pub struct Underway<'a, const W: usize> {
     /// Its memory.
     pub newton: &'a Newton<W>,
-    /// How far it is.
+    /// Its progress.
     pub progress: &'a Progress<W>,
     /// The problems.
     pub ncp: &'a Ncp<W>,
@@ -40,11 +40,11 @@ pub struct Underway<'a, const W: usize> {
 /// A problem whose iteration has ended in a queue.
 #[derive(Clone, Copy, Debug)]
 pub struct Ended<'a, const W: usize> {
-    /// Which problem.
+    /// The problem.
     pub index: LaneIndex,
     /// Its lane of the queue.
     pub slot: usize,
-    /// How all lanes went.
+    /// Progress of all lanes.
     pub progress: &'a Progress<W>,
     /// The points of all lanes.
     pub z: &'a Unknowns<W>,

@@ -29,7 +29,7 @@ impl OpenPlanes {
         Self { planes, contacts }
     }
 
-    /// What a mode's inequalities leave of the plane of two generators; `None` where their
+    /// Part of the plane of two generators that a mode's inequalities leave; `None` where their
     /// equations leave none.
     pub fn of(&self, conditions: &ModeConditions, chosen: &[Generator; 2]) -> Option<PlaneRegion> {
         let [a, b] = chosen;

@@ -24,10 +24,10 @@ const ROOT: f64 = 1e-11;
 /// Most steps of the search for a root.
 const ROOT_STEPS: u32 = 40;
 
-/// Where lines, curves and planes end (m/s): no impulse or speed is so large.
+/// Ends of lines, curves and planes (m/s): no impulse or speed is so large.
 pub const FARTHEST: f64 = 1e6;
 
-/// How thoroughly a line or curve is searched.
+/// Thoroughness of the search of a line or curve.
 #[derive(Clone, Copy, Debug)]
 pub struct Thoroughness {
     /// Most pieces.
@@ -40,13 +40,13 @@ pub struct Thoroughness {
     /// Candidates of all lines and curves that are refined at the same V: where all gaps close
     /// together, most modes have the same.
     pub patience: u32,
-    /// Whether pieces are excluded by balances, too: some linear systems for each.
+    /// True if pieces are excluded by balances, too: some linear systems for each.
     pub separates: bool,
-    /// Whether candidates that fail are tried with other impulses, too, where feet stand.
+    /// True if candidates that fail are tried with other impulses, too, where feet stand.
     pub stands: bool,
 }
 
-/// What is known of a subset of generators.
+/// Result for a subset of generators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finding {
     /// It has no solution.
@@ -77,7 +77,7 @@ pub struct Sample {
     pub v: Vector<4>,
     /// Impulses of the feet.
     pub feet: [[f64; 2]; 3],
-    /// By how much it misses the last condition: zero at a solution.
+    /// Residual of the last condition: zero at a solution.
     pub miss: f64,
     /// Error of V (m/s).
     pub error: f64,
@@ -90,15 +90,15 @@ pub trait ModePath {
     /// The point at x.
     fn sample(&mut self, x: f64) -> Sample;
 
-    /// Whether there is no solution between two points.
+    /// Returns true if there is no solution between two points.
     fn excludes(&self, a: &Sample, b: &Sample) -> bool;
 
-    /// The mode's conditions and generators, where balances tell more of it.
+    /// The mode's conditions and generators, where balances say more of it.
     fn balanced(&self) -> Option<(&ModeConditions, &[Generator])> {
         None
     }
 
-    /// Whether there is no solution between two points, by balances.
+    /// Returns true if there is no solution between two points, by balances.
     fn separates(&self, a: &Sample, b: &Sample, certifier: &mut Certifier<'_>) -> bool {
         self.balanced().is_some_and(|(conditions, chosen)| {
             conditions.separates(chosen, &[a.v, b.v], certifier)
@@ -108,7 +108,7 @@ pub trait ModePath {
     /// A point with the impulses of the mode.
     fn candidate(&self, at: &Sample) -> Candidate;
 
-    /// The same with impulses that balance the load where feet stand, if others are known.
+    /// Candidate with impulses that balance the load where feet stand, if others are known.
     fn standing_candidate(&self, at: &Sample, certifier: &mut Certifier<'_>) -> Option<Candidate> {
         let (conditions, chosen) = self.balanced()?;
         conditions.standing_candidate(chosen, &at.v, certifier)
@@ -194,7 +194,7 @@ fn search_pieces(
     finding
 }
 
-/// Whether a point refines to a certified solution.
+/// Returns true if a point refines to a certified solution.
 fn solves(
     path: &impl ModePath,
     at: &Sample,
@@ -227,14 +227,15 @@ impl Attempts {
         }
     }
 
-    /// Whether to refine the root of a piece, and counts it: not where that is the one that failed.
+    /// Decides whether to refine the root of a piece, and counts it: not where that is the one that
+    /// failed.
     fn takes_root(&mut self, a: &Sample, b: &Sample, width: f64) -> bool {
         let (root, of_width) = self.failed_root;
         let known = width > NARROWER * of_width && (a.x..=b.x).contains(&root);
         !known && take(&mut self.roots)
     }
 
-    /// Whether to refine the middle of a piece, and counts it.
+    /// Decides whether to refine the middle of a piece, and counts it.
     fn takes_middle(&mut self, middle: &Sample, width: f64) -> bool {
         match WIDTHS.iter().rposition(|limit| width < *limit) {
             Some(k) => take(&mut self.middles[k]),

@@ -6,7 +6,7 @@ use crate::solver::piece_search::FARTHEST;
 use crate::solver::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
-/// What is left of a unit vector across another below which the two are parallel.
+/// Part of a unit vector across another below which the two are parallel.
 const PARALLEL: f64 = 1e-9;
 
 /// A convex polygon in the plane V = origin + a e₁ + b e₂; empty without corners.
@@ -64,7 +64,7 @@ impl PlaneRegion {
         self.corners = left;
     }
 
-    /// Whether no point is left.
+    /// Returns true if no point is left.
     pub fn is_empty(&self) -> bool {
         self.corners.is_empty()
     }
@@ -129,8 +129,8 @@ pub fn complement(a: &Vector<4>, b: &Vector<4>) -> Option<[Vector<4>; 2]> {
     Some([third, most_across(&[along, across, third])?])
 }
 
-/// The unit vector of what of `v` is orthogonal to an orthonormal basis; `None` where next to
-/// nothing is.
+/// The unit vector along the part of `v` that is orthogonal to an orthonormal basis; `None` where
+/// that part is next to nothing.
 fn direction_across(v: &Vector<4>, basis: &[Vector<4>]) -> Option<Vector<4>> {
     let size = norm(v);
     // twice, against rounding

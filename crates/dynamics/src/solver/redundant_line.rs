@@ -38,7 +38,7 @@ impl<'a> RedundantLine<'a> {
     }
 
     /// The part of the line where all equations and inequalities hold, and the friction of the feet
-    /// can make up for what the impulses do not balance.
+    /// can balance the rest that the impulses leave.
     pub fn interval(&self) -> Interval {
         let conditions = self.conditions;
         let mut interval = self.line.interval(conditions, self.chosen);

@@ -16,7 +16,7 @@ pub struct RedundantPlane<'a> {
     conditions: &'a ModeConditions,
     chosen: &'a [Generator; 3],
     region: PlaneRegion,
-    /// Of the generators and of what is orthogonal to them.
+    /// Dual basis of the generators and of the vector orthogonal to them.
     dual: [Vector<4>; 4],
 }
 
@@ -91,7 +91,7 @@ impl<'a> RedundantPlane<'a> {
         finding
     }
 
-    /// Whether no V of a part has impulses that are positive and balance the load.
+    /// Returns true if no V of a part has impulses that are positive and balance the load.
     fn excludes(
         &self,
         part: &PlaneRegion,
@@ -153,7 +153,7 @@ impl ModeConditions {
     }
 }
 
-/// The least interval that holds all of some.
+/// The least interval that contains all given ones.
 fn hull(intervals: impl Iterator<Item = Interval>) -> Interval {
     let none = Interval {
         low: f64::INFINITY,

@@ -11,14 +11,14 @@ use crate::solver::load::Load;
 use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::vector::{Vector, dot, norm};
 
-/// Speeds below this are zero, as the certificate has it (m/s).
+/// Speeds below this are zero, as in the certificate (m/s).
 const ZERO: f64 = 1e-9;
 
 /// Imbalance that is left to the certificate (m/s).
 const BALANCED: f64 = 1e-10;
 
-/// The same motion as a solution's, V = (v, y), with impulses that do not cancel each other; `None`
-/// where none were found.
+/// Candidate that moves like a solution, V = (v, y), with impulses that do not cancel each other;
+/// `None` where none were found.
 pub fn relieve(problem: &ScalarNcp, v: &Vector<4>) -> Option<Candidate> {
     let rigid = !problem.stall.is_finite();
     let generators: Vec<_> = Generator::all(problem)
@@ -55,7 +55,7 @@ pub fn relieve(problem: &ScalarNcp, v: &Vector<4>) -> Option<Candidate> {
     })
 }
 
-/// Whether a solution that moves with V may have an impulse along a generator.
+/// Returns true if a solution that moves with V may have an impulse along a generator.
 fn acts(problem: &ScalarNcp, generator: &Generator, v: &Vector<4>) -> bool {
     let Some(i) = generator.contact else {
         return problem.stall.is_finite() && v[3] <= ZERO;

@@ -1,5 +1,5 @@
-//! One particle's problem as plain numbers: [`ScalarNcp`], what the search over contact modes works
-//! on.
+//! One particle's problem as plain numbers: [`ScalarNcp`], the form on which the search over
+//! contact modes works.
 
 use stickslip_lanes::Lanes;
 
@@ -34,7 +34,7 @@ impl ScalarContact {
         }
     }
 
-    /// Whether the other contact is the same one, to rounding.
+    /// Returns true if the other contact is equal to this one, to rounding.
     pub fn repeats(&self, other: &Self) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-14 * (1.0 + a.abs());
         let all_near = |a: &Vector<4>, b: &Vector<4>| a.iter().zip(b).all(|(a, b)| near(*a, *b));

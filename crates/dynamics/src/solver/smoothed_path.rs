@@ -48,7 +48,7 @@ pub const CAREFUL: SmoothingSchedule = SmoothingSchedule {
     steps: 60.0,
 };
 
-/// How ε falls.
+/// Schedule by which ε falls.
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothingSchedule {
     /// First ε, as a share of the speed scale.
@@ -70,10 +70,10 @@ pub struct StartedBlock<'a, const W: usize> {
     pub start: &'a [Unknowns<W>],
 }
 
-/// How one problem ended.
+/// Outcome of one problem.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished<'a, const W: usize> {
-    /// Which particle.
+    /// The particle.
     pub index: LaneIndex,
     /// Residual of the last attempt with fixed modes (m/s); infinite without one.
     pub residual: f64,
@@ -98,7 +98,7 @@ pub struct SmoothedPath<const W: usize> {
     certificate: NaturalMap<W>,
 }
 
-/// How far each lane is.
+/// Progress of each lane.
 #[derive(Clone, Debug)]
 struct Progress<const W: usize> {
     epsilon: Lanes<W>,
@@ -126,9 +126,9 @@ impl<const W: usize> Default for Progress<W> {
 }
 
 impl<const W: usize> SmoothedPath<W> {
-    /// Follows `schedule` from the starts of the given particles; tells `finish` how each
-    /// ended, solved where its residual is at most `tolerance`. A particle's result does not depend
-    /// on the others.
+    /// Follows `schedule` from the starts of the given particles; reports to `finish` how each
+    /// ended. A particle is solved if its residual is at most `tolerance`. A particle's result does
+    /// not depend on the others.
     #[inline(always)]
     pub fn solve(
         &mut self,
@@ -265,7 +265,7 @@ impl<const W: usize> Progress<W> {
         self.due = busy & (self.due | fallen);
     }
 
-    /// Whether they are due in half of the lanes with a problem.
+    /// Returns true if they are due in half of the lanes with a problem.
     #[inline(always)]
     fn enough_due(&self, busy: Mask<W>) -> bool {
         let [due, busy] = [self.due.count(), busy.count()];

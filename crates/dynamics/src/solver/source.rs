@@ -1,11 +1,11 @@
-//! Where the problems of a block come from: [`Source`].
+//! Source of the problems of a block: [`Source`].
 
 use stickslip_lanes::Mask;
 
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 
-/// Where the problems of a block come from, chunk by chunk.
+/// Source of the problems of a block, chunk by chunk.
 pub trait Source<const W: usize> {
     /// Writes the problems of one chunk.
     fn load(&mut self, chunk: usize, ncp: &mut Ncp<W>);

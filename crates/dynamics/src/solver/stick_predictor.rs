@@ -36,7 +36,7 @@ impl<const W: usize> StickPredictor<W> {
         }
     }
 
-    /// Where it is outside the friction disc.
+    /// Lanes in which it is outside the friction disc.
     #[inline(always)]
     pub fn exceeds(&self, bound: Lanes<W>) -> Mask<W> {
         self.square.gt(bound * bound)

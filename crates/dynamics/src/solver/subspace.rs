@@ -23,7 +23,7 @@ pub fn null_vector(rows: &[Vector<4>; 3]) -> Option<Vector<4>> {
     (size > 1e-12 * scale(rows)).then(|| d.map(|x| x / size))
 }
 
-/// How far three vectors are from depending on each other: 0 where they do, 1 where they are
+/// Distance of three vectors from linear dependence: 0 where they are dependent, 1 where they are
 /// orthogonal.
 pub fn independence(rows: &[Vector<4>; 3]) -> f64 {
     norm(&cross(rows)) / scale(rows)

@@ -24,8 +24,8 @@ const REGULAR: f64 = 1e-13;
 /// The map from a load to the velocity it causes where only the feet resist: a search over curves
 /// evaluates it many times.
 ///
-/// A load within the friction body of the feet moves nothing; one outside moves the object by what
-/// separates it from the nearest point of the body, load = F(e) + ε e. Newton's method in the
+/// A load within the friction body of the feet moves nothing; one outside moves the object by its
+/// difference from the nearest point of the body, load = F(e) + ε e. Newton's method in the
 /// direction e of slip and the speed ε serves objects that creep as well as those that slide, since
 /// F does not depend on the speed. The problem is convex, and smooth but for rest and the pivots
 /// about a foot: those are tried first, and descent from the best of them meets none of them again.
@@ -52,7 +52,7 @@ struct Trial {
     moved: Moved,
 }
 
-/// What is known of the motion before the object slides.
+/// Knowledge of the motion before the object slides.
 enum Motion {
     /// It rests.
     Rests(SlipFriction),
@@ -62,14 +62,14 @@ enum Motion {
     Slips(Slip),
 }
 
-/// How the object moves on its feet.
+/// Motion of the object on its feet.
 #[derive(Clone, Copy, Debug)]
 pub struct Moved {
     /// Its velocity.
     pub v: Vector<3>,
     /// Impulse of each foot.
     pub feet: [[f64; 2]; 3],
-    /// What remains unbalanced, at least the error of v (m/s).
+    /// Remaining imbalance, at least the error of v (m/s).
     pub residual: f64,
     /// Linear systems solved.
     pub systems: u32,
@@ -127,7 +127,7 @@ impl SupportFriction {
         if let Some(friction) = self.surface.on_facet(pivot, impulse) {
             return Motion::Pivots(v, friction);
         }
-        // the foot gives way along the impulse
+        // the foot yields along the impulse
         let off = [impulse[0], impulse[1], 0.0];
         let cost = |v: &Vector<3>| cost(load, v, &self.surface.friction(v));
         Motion::Slips(Slip::of(&leave(cost, &v, &off)))
@@ -333,7 +333,7 @@ impl Slip {
 }
 
 impl Motion {
-    /// Where the friction in the direction of the load is `h` times the load: rest above 1.
+    /// Motion where the friction in the direction of the load is `h` times the load: rest above 1.
     fn at(h: f64, e: &Vector<3>, friction: SlipFriction) -> Self {
         if h >= 1.0 {
             Self::Rests(friction.scaled(1.0 / h))

@@ -48,7 +48,7 @@ fn assert_agree(problem: &StepProblem, solution: &StepSolution, ours: f64, what:
     );
 }
 
-/// How many unknowns a solution has.
+/// Number of unknowns of a solution.
 fn unknowns(solution: &StepSolution) -> usize {
     10 + 2 * solution.normal.len()
 }

@@ -52,9 +52,8 @@ fn a_block_along_a_wall_slips_at_c_p_t_or_loses_mu_p_n() {
     }
 }
 
-/// The residual written from the model alone finds no fault with what the solvers make of hard
-/// problems whose contacts creep. What only the search over modes answers, it answers without
-/// creep.
+/// The residual written from the model alone finds no fault with the solvers' answers to hard
+/// problems whose contacts creep. The search over modes answers without creep.
 #[test]
 fn hard_problems_with_creep_are_solved_to_the_tolerance() {
     let corpus = Corpus { seed: 47 };

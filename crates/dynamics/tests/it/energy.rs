@@ -1,4 +1,4 @@
-//! Kinetic energy while nobody pushes: it never rises, but for what overlap gives back.
+//! Kinetic energy without a pusher: it never rises, but for what overlap gives back.
 //!
 //! With v⁺ − v = M⁻¹ W p and friction that opposes slip, one step changes the energy by at most Σ
 //! v⁺·W_n p_n = −Σ p_n ψ/h.
@@ -30,7 +30,7 @@ fn any_shape(rng: &mut Rng, size: f64) -> Shape {
     }
 }
 
-/// An object in a ring of fixels, on a slippery support, a pusher at rest beside it.
+/// An object in a ring of fixels, on a slippery support, next to a pusher at rest.
 fn arena(rng: &mut Rng) -> Dynamics {
     let place = |k: u32, rng: &mut Rng| {
         let (sin, cos) = libm::sincos(f64::from(k) * 0.7 + rng.within(-0.1, 0.1));
@@ -76,7 +76,7 @@ fn thrown(rng: &mut Rng) -> Particle {
     }
 }
 
-/// What happened in all runs.
+/// Counts over all runs.
 #[derive(Debug, Default)]
 struct Count {
     touching: u32,

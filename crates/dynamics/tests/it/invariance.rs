@@ -1,4 +1,4 @@
-//! Where the scene lies, how it is turned and on which side of a mirror must not matter.
+//! The scene's position, its rotation and a mirror image do not change the results.
 
 use crate::common::{
     FRAME, FRICTION, bench_input, bench_scene, disc, fixel, polygon, pushing, square_scene, step,

@@ -1,4 +1,4 @@
-//! Where the pusher cannot go on: a drive with a force limit yields, a rigid one is reported as
+//! A pusher that cannot go on: a drive with a force limit yields, a rigid one is reported as
 //! infeasible and bounded.
 
 use crate::common::{FRICTION, at, disc, fixel, pushing, square_scene, step};
@@ -148,7 +148,7 @@ fn pusher_that_stalls_below_the_support_friction_does_not_move_the_object() {
     assert_eq!(particle.pose, Pose::default());
 }
 
-/// One step of a rigid pusher; checks what must hold of every infeasible step.
+/// One step of a rigid pusher; checks the properties of every infeasible step.
 fn infeasible_step(
     dynamics: &Dynamics,
     x: f64,

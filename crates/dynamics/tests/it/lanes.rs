@@ -65,7 +65,7 @@ where
     all
 }
 
-/// Steps all particles as one block, whose lanes the solver may pack anew.
+/// Steps all particles as one block, whose lanes the solver may pack again.
 fn run_as_block<const W: usize>(
     dynamics: &Dynamics,
     inputs: &[StepInput],

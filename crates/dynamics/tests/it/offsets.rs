@@ -1,4 +1,4 @@
-//! A pusher and fixels beside their poses are a pusher and fixels at other poses.
+//! A pusher and fixels with offsets from their poses act as a pusher and fixels at other poses.
 
 use stickslip_dynamics::{
     Body, Dynamics, Feet, Fixel, Friction, Lanes, Level, Object, Offsets, Part, Particle,
@@ -17,7 +17,7 @@ fn scene(shift: [[f64; 2]; 2]) -> Scene {
     scene_of_discs(shift, 0.005)
 }
 
-/// The same with discs of another radius (m).
+/// A scene like [`scene`] with discs of another radius (m).
 fn scene_of_discs(shift: [[f64; 2]; 2], radius: f64) -> Scene {
     let disc = |radius| {
         let centre = [0.0, 0.0];
@@ -132,7 +132,7 @@ fn lanes_step_as_alone(level: Level) {
     assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
 }
 
-/// What a step tells of a body, lane by lane.
+/// Impulse, gap and slip of a body in a step, lane by lane.
 fn told<const W: usize>(work: &StepWork<W>, body: Body) -> [[f64; W]; 3] {
     [
         work.normal_impulses(0, body).0,
@@ -141,7 +141,7 @@ fn told<const W: usize>(work: &StepWork<W>, body: Body) -> [[f64; W]; 3] {
     ]
 }
 
-/// A bar that is turned beside its pose is one with a turned pose.
+/// A bar that is turned from its pose acts as one with a turned pose.
 #[test]
 fn a_turned_pusher_is_one_whose_pose_is_turned() {
     const LANES: usize = 8;
@@ -203,8 +203,8 @@ fn feet_in_a_frame_of_their_own_stand_where_known_feet_do() {
     }
 }
 
-/// Beside the scene's tripod, or three known feet that stand as its tripod in the frame `about`:
-/// these turn about their own centre.
+/// Checks offsets from the scene's tripod (`None`), or from three known feet that stand as its
+/// tripod in the frame `about`: these turn about their own centre.
 fn feet_stand_as_known(level: Level, about: Option<Pose>) {
     const LANES: usize = 8;
     let frame = |i: usize| {

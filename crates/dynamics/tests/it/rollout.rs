@@ -78,7 +78,7 @@ fn pusher(i: usize) -> impl Iterator<Item = Pose> {
     })
 }
 
-/// The same trajectory, alone and step by step.
+/// Trajectory `i`, alone and step by step.
 fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, RolloutEnd) {
     let RolloutStart {
         pose,
@@ -137,8 +137,8 @@ fn trajectories_side_by_side_are_those_of_single_steps_bit_for_bit() {
     }
 }
 
-/// 36 mm of push, and the fixels stop the square after some 20: a drive that gives way stands 10 mm
-/// and more behind, one without end of force has steps without a solution.
+/// The pusher advances 36 mm, and the fixels stop the square after some 20 mm. A drive that yields
+/// ends 10 mm and more behind; one without a force limit has steps without a solution.
 #[test]
 fn pushers_that_the_object_stops_stay_behind() {
     let poses: Vec<Pose> = (0..=STEPS)

@@ -1,5 +1,5 @@
-//! A stalled pusher that is logged a little inside the object: it stands where it gave way to, and
-//! rubs nothing.
+//! A stalled pusher that is logged a little inside the object: it stays where it yielded to, and
+//! its friction drags nothing along.
 
 use crate::common;
 use crate::common::{FRAME, Rng, at, disc, fixel, pushing, square, square_scene, step};
@@ -83,8 +83,8 @@ fn squeezed_object_does_not_creep() {
     }
 }
 
-/// What presses on a pusher presses it back, wherever its last motion went: also where that was a
-/// recoil by micrometres, or along the object's face. A rigid pusher has no solution here.
+/// A force on the pusher pushes it back, wherever its last motion went: also after a recoil by
+/// micrometres, or a motion along the object's face. A rigid pusher has no solution here.
 #[test]
 fn pusher_gives_way_to_what_presses_on_it_whatever_its_last_direction() {
     for direction in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.6, -0.8]] {

@@ -1,5 +1,5 @@
-//! What the extended Kalman filter believes: [`Belief`], a normal distribution of the object's pose
-//! and twist, its friction and the force that disturbs it (docs/method.md (46)).
+//! Belief of the extended Kalman filter: [`Belief`], a normal distribution of the object's pose and
+//! twist, its friction and the force that disturbs it (docs/method.md (46)).
 
 use nalgebra::{SMatrix, SVector};
 use stickslip_dynamics::{Friction, Particle, Pose, Twist, Wrench};
@@ -12,11 +12,11 @@ use crate::setup::{Limits, Setup};
 /// four friction parameters, and w_app in units of its standard deviations.
 pub(super) const STATES: usize = 13;
 
-/// Where the twist begins.
+/// Index of the first number of the twist.
 pub(super) const TWIST: usize = 3;
-/// Where friction begins: what comes before, a step changes.
+/// Index of the first number of friction. A step changes only the numbers before it.
 pub(super) const FRICTION: usize = 6;
-/// Where the force begins.
+/// Index of the first number of the force.
 const FORCE: usize = 10;
 
 /// A state.
@@ -45,7 +45,7 @@ impl FrictionPrior {
         let nominal = setup.scene.nominal;
         let mut stds = setup.uncertainty.friction.fields().map(|std| *std);
         for (std, nominal) in stds.iter_mut().zip(nominal.fields()) {
-            // what is 0 stays so
+            // a parameter of 0 stays 0
             if *nominal <= 0.0 {
                 *std = 0.0;
             }
@@ -75,8 +75,8 @@ impl FrictionPrior {
 }
 
 impl Belief {
-    /// Before anything has moved: at rest at a measured `pose` with its covariance, friction by its
-    /// prior.
+    /// The belief before anything has moved: at rest at a measured `pose` with its covariance,
+    /// friction by its prior.
     pub fn at_rest(setup: &Setup, pose: Pose, covariance: &SMatrix<f64, 3, 3>) -> Self {
         let prior = FrictionPrior::new(setup);
         let mut normal = Gaussian {
@@ -91,8 +91,8 @@ impl Belief {
         belief
     }
 
-    /// The object at rest at a measured `pose` with its covariance, whatever was believed of it
-    /// before; friction stays.
+    /// Restarts with the object at rest at a measured `pose` with its covariance. Only friction is
+    /// kept.
     pub fn begin_anew(&mut self, pose: &SVector<f64, 3>, covariance: &SMatrix<f64, 3, 3>) {
         let Gaussian {
             mean,
@@ -107,7 +107,7 @@ impl Belief {
         all.fixed_view_mut::<3, 3>(0, 0).copy_from(covariance);
     }
 
-    /// A force of its own for what follows: independent of all before.
+    /// Renews the force for what follows: it is independent of all before.
     pub fn renew_force(&mut self) {
         let Gaussian { mean, covariance } = &mut self.normal;
         for k in FORCE..STATES {
@@ -118,8 +118,8 @@ impl Belief {
         }
     }
 
-    /// The random step of the friction parameters that `took_part`, over `steps` steps of 1/30 s:
-    /// it keeps their priors (docs/method.md (34)).
+    /// Makes a random step of the friction parameters that `took_part`, over `steps` steps of 1/30
+    /// s. It keeps their priors (docs/method.md (34)).
     pub fn drift(&mut self, took_part: &Friction<bool>, drift: f64, steps: f64) {
         let Gaussian { mean, covariance } = &mut self.normal;
         for (k, took_part) in took_part.fields().into_iter().enumerate() {
@@ -137,7 +137,7 @@ impl Belief {
         }
     }
 
-    /// Friction of the mean within the physical limits, as that of every state is.
+    /// Limits the friction of the mean to the physical limits, as that of every state is.
     pub fn limit_friction(&mut self) {
         let friction = self.prior.of(&self.normal.mean);
         let nominal = self.prior.nominal.fields();
@@ -148,8 +148,8 @@ impl Belief {
         }
     }
 
-    /// A state as Γ takes it, its force lasting as an impulse of `share` times μ_s (N s) on an
-    /// axis, times `rho` (m) about it; what is no part of the state is that of `like`.
+    /// Returns a state as Γ takes it. Its force lasts as an impulse of `share` times μ_s (N s) on
+    /// an axis, times `rho` (m) about it. All that is not part of the state is that of `like`.
     pub fn particle(
         &self,
         state: &State,
@@ -171,7 +171,7 @@ impl Belief {
         (particle, friction)
     }
 
-    /// Means and standard deviations; those of friction are a log-normal distribution's.
+    /// Returns means and standard deviations; those of friction are a log-normal distribution's.
     pub fn row(&self) -> EstimateRow {
         let Gaussian { mean, covariance } = &self.normal;
         let std = |k: usize| covariance[(k, k)].max(0.0).sqrt();

@@ -1,11 +1,12 @@
 //! The extended Kalman filter baseline: a normal distribution of pose, twist and friction that goes
 //! through Γ, as the particles do (docs/method.md (46) to (48)).
 //!
-//! It takes friction and the disturbing force for unknown as contact mode does, and moves by the
-//! same pusher track; its belief of them is normal and its transition linear, by differences.
-//! Tactile readings are not used: a reading is 0 or 1, and its derivative by the state, all that
-//! this filter could use of it, is 0 nearly everywhere. Offsets, outline, feet and what is unknown
-//! of the latency are left out, too.
+//! It takes friction and the disturbing force as unknown, like the robust model, and moves by the
+//! same pusher track. Its belief is normal, and its transition is linear, by differences.
+//!
+//! Tactile readings are not used. A reading is 0 or 1, and this filter could use only its
+//! derivative by the state, which is 0 nearly everywhere. Offsets, outline, feet and the unknown
+//! part of the latency are left out, too.
 
 use crate::baseline::belief::Belief;
 use crate::baseline::linearised_step::LinearisedStep;
@@ -16,8 +17,8 @@ use crate::particle::noise_clock::NOISE_STEP;
 use crate::prepared_log::PreparedLog;
 use crate::setup::{Camera, Setup};
 
-/// Filters the visible object poses of `prepared`; also how often the belief began anew, since
-/// several poses in a row were not to be expected.
+/// Filters the visible object poses of `prepared`. Also returns how often the belief restarted
+/// because several poses in a row were unexpected.
 pub(crate) fn track(
     setup: &Setup,
     camera: Camera,
@@ -56,7 +57,7 @@ pub(crate) fn track(
     (estimate, camera.restarts)
 }
 
-/// The steps that lead to a row, and the drift of friction on the way.
+/// Makes the steps that lead to a row, and the drift of friction on the way.
 fn predict(
     step: &mut LinearisedStep<'_>,
     belief: &mut Belief,
@@ -84,7 +85,7 @@ mod tests {
 
     const LATENCY: f64 = 0.02;
 
-    /// A disc of known friction on its tripod, and nothing beside it.
+    /// A disc of known friction on its tripod, without fixels.
     fn alone() -> Setup {
         let disc = |radius| {
             let centre = [0.0, 0.0];
@@ -124,8 +125,8 @@ mod tests {
         }
     }
 
-    /// Along its way, a disc that slides without turning is braked by the same force at any speed:
-    /// x and v_x are a linear system, and this its Kalman filter, written out.
+    /// A disc that slides without turning is braked by the same force at any speed along its way.
+    /// So x and v_x are a linear system, and this is its Kalman filter, written out.
     #[test]
     fn a_disc_that_slides_freely_has_the_exact_answer_along_its_way() {
         let (setup, h) = (alone(), 1.0 / 30.0);

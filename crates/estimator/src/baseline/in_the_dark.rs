@@ -1,5 +1,6 @@
-//! Two rules for the dark that need no model of contact; while the camera looks, both are the
-//! Kalman filter: [`stopping`] and [`with_pusher`]. Dark are the rows that an occlusion hides.
+//! Two rules for the time when the camera is off that need no model of contact: [`stopping`] and
+//! [`with_pusher`]. Both are the Kalman filter while the camera is on. The camera is off in the
+//! rows that an occlusion hides.
 
 use stickslip_dynamics::{Pose, Twist};
 
@@ -7,7 +8,7 @@ use crate::estimate::Estimate;
 use crate::options::TactileUse;
 use crate::prepared_log::PreparedLog;
 
-/// The Kalman filter, at rest from the first dark row on at which a sensor feels the object.
+/// The Kalman filter, at rest from the first occluded row on at which a sensor reads a touch.
 pub(crate) fn stopping(
     mut kalman: Estimate,
     prepared: &PreparedLog<'_>,
@@ -36,7 +37,7 @@ pub(crate) fn stopping(
     kalman
 }
 
-/// The Kalman filter, which in the dark moves with the pusher as one body.
+/// The Kalman filter; while the camera is off, the object moves with the pusher as one body.
 pub(crate) fn with_pusher(mut kalman: Estimate, prepared: &PreparedLog<'_>) -> Estimate {
     for row in prepared.first + 1..kalman.rows.len() {
         if !prepared.hidden[row] {
@@ -60,7 +61,7 @@ pub(crate) fn with_pusher(mut kalman: Estimate, prepared: &PreparedLog<'_>) -> E
     kalman
 }
 
-/// `object` after the rigid motion that takes a body from `before` to `now`.
+/// Returns `object` after the rigid motion that takes a body from `before` to `now`.
 fn carried(object: Pose, before: Pose, now: Pose) -> Pose {
     let turn = now.theta - before.theta;
     let (sin, cos) = (libm::sin(turn), libm::cos(turn));

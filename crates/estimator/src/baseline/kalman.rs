@@ -1,9 +1,9 @@
 //! The Kalman filter baseline: Newton's law with all contact forces as unknown disturbance, per
 //! axis (docs/method.md (30)).
 //!
-//! Each of x, y, θ follows a white-noise acceleration whose level is the one of greatest likelihood
-//! on the visible part of the log, so that it is a fair rival. While the camera is dark it goes on
-//! at its last velocity. Poses that say themselves how noisy they are count with their own
+//! Each of x, y, θ follows a white-noise acceleration. Its level is the one of greatest likelihood
+//! on the visible part of the log, so that the baseline is a fair rival. The filter goes on at its
+//! last velocity while the camera is off. Poses with a covariance of their own count with their own
 //! variances, axis by axis.
 
 use stickslip_dynamics::{Pose, Twist};
@@ -84,11 +84,11 @@ fn unwrapped_poses(prepared: &PreparedLog<'_>) -> Vec<Option<Pose>> {
 
 /// One of x, y, θ.
 struct Axis {
-    /// Of a pose.
+    /// Coordinate of a pose.
     pick: fn(&Pose) -> f64,
-    /// Its variance, of a pose that says itself how noisy it is.
+    /// Variance of the coordinate, by a pose's own covariance.
     variance: fn(&PoseCovariance) -> f64,
-    /// Its standard deviation of the others.
+    /// Standard deviation of the coordinate of all other poses.
     std: f64,
 }
 
@@ -106,7 +106,7 @@ fn track_axis(
     let measured: Vec<Option<f64>> = poses.iter().map(|pose| pose.as_ref().map(pick)).collect();
     let own = |row| prepared.covariance(row).map(|c| variance(&c).sqrt());
     let stds: Vec<Option<f64>> = (0..poses.len()).map(own).collect();
-    // Newton's first law from rest where too few poses tell a noise level
+    // with too few poses for a noise level, Newton's first law from rest
     let mut model = ConstantVelocity {
         process_noise: 1e-6,
         measurement_std: std,

@@ -12,38 +12,37 @@ use crate::particle::observer::{Observer, SolvedStep};
 use crate::particle::propagation::MOVING;
 use crate::setup::Setup;
 
-/// States side by side.
+/// Number of states side by side.
 const LANES: usize = 8;
 
-/// States of which a step is made: the mean, and one on either side of it along each column of the
-/// covariance's root.
+/// Number of states of which a step is made: the mean, and one on either side of it along each
+/// column of the covariance's root.
 const POINTS: usize = 1 + 2 * STATES;
 
-/// How far from the mean its neighbours are, in standard deviations: √3, by which the difference
-/// over an odd cubic has the mean slope that it has under a normal distribution.
+/// Distance of the neighbours from the mean, in standard deviations: √3. With it, the difference
+/// over an odd cubic equals the mean slope of the cubic under a normal distribution.
 const REACH: f64 = 1.732_050_807_568_877_2;
 
-/// What is left of a variance once the numbers before it are known is at least this share of it:
-/// less is rounding.
+/// Least share of a variance that is left once the numbers before it are known. Less is rounding.
 const LEAST_LEFT: f64 = 1e-12;
 
-/// Γ of one scene, with what it leaves from one step to the next.
+/// Γ of one scene, with its state from one step to the next.
 pub(super) struct LinearisedStep<'a> {
     setup: &'a Setup,
     dynamics: Dynamics,
     observer: Option<&'a dyn Observer>,
     work: StepWork<LANES>,
     points: [Particles<LANES>; POINTS.div_ceil(LANES)],
-    /// The mean's particle: its impulses, and how far its pusher gave way, begin every point's next
-    /// step.
+    /// Particle of the mean. Its impulses, and how far its pusher yielded, begin the next step of
+    /// every point.
     mean: Particle,
-    /// How long the force has lasted (s).
+    /// Time for which the force has lasted (s).
     lasted: f64,
-    /// What happened since the row before.
+    /// Events since the row before.
     pub since: Since,
 }
 
-/// What happened in the steps from a row to the next.
+/// Events in the steps from a row to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Since {
     /// Parameters that took part in the mean's steps (Φ, docs/method.md (21)).
@@ -99,7 +98,7 @@ impl<'a> LinearisedStep<'a> {
         belief.normal = self.gathered(&belief.normal.mean, root);
     }
 
-    /// Writes the mean and the states on either side of it; lanes that are left repeat the mean.
+    /// Writes the mean and the states on either side of it; the lanes left over repeat the mean.
     fn place_points(&mut self, belief: &Belief, root: &StateMatrix, h: f64) {
         let scene = &self.setup.scene;
         let sharing = f64::from(sharing(h));
@@ -118,8 +117,8 @@ impl<'a> LinearisedStep<'a> {
         }
     }
 
-    /// The belief after the step: Γ of the mean, and half of how far its neighbours end apart, in
-    /// units of [`REACH`], as the root of the covariance.
+    /// Returns the belief after the step. Its mean is Γ of the mean. A column of its covariance's
+    /// root is half of how far the neighbours end apart, in units of [`REACH`].
     fn gathered(&self, mean: &State, root: StateMatrix) -> Gaussian<STATES> {
         let after = |point: usize| -> [f64; FRICTION] {
             let Particle { pose, twist, .. } = self.points[point / LANES].get(point % LANES);
@@ -153,7 +152,7 @@ impl<'a> LinearisedStep<'a> {
         took_part.mu_p |= presses(Body::Pusher);
         took_part.mu_f |= fixels.any(|j| presses(Body::Fixel(j)));
         for point in 0..POINTS {
-            // a point that is none but the mean is not counted again
+            // a point that equals the mean is not counted again
             if column_of(point).is_some_and(|(column, _)| root[(column, column)] == 0.0) {
                 continue;
             }
@@ -176,7 +175,7 @@ impl<'a> LinearisedStep<'a> {
         }
     }
 
-    /// Whether the mean moves.
+    /// Returns true if the mean moves.
     fn moves(&self) -> bool {
         let Twist { vx, vy, omega } = self.mean.twist;
         let turn = omega * self.setup.scene.object.gyration_radius();
@@ -198,8 +197,8 @@ fn column_of(point: usize) -> Option<(usize, f64)> {
         .then(|| ((point - 1) / 2, side))
 }
 
-/// The lower triangular L with L Lᵀ = `covariance` (Cholesky); a column is 0 where what comes
-/// before it tells the number.
+/// Returns the lower triangular L with L Lᵀ = `covariance` (Cholesky). A column is 0 if the numbers
+/// before it determine its number.
 fn root(covariance: &StateMatrix) -> StateMatrix {
     let mut root = StateMatrix::zeros();
     for j in 0..STATES {

@@ -1,5 +1,5 @@
-//! What the particle filter is compared with: the nominal simulation, the Kalman filter, what a
-//! line of code makes of it in the dark, and an extended Kalman filter through Γ.
+//! Baselines of the particle filter: the nominal simulation, the Kalman filter, two rules for it
+//! while the camera is off, and an extended Kalman filter through Γ.
 
 mod belief;
 pub(crate) mod extended_kalman;

@@ -33,7 +33,7 @@ pub(crate) fn simulate(
     estimate
 }
 
-/// Runs the substeps from row `k` to the next; how the worst of them ended.
+/// Runs the substeps from row `k` to the next; returns how the worst of them ended.
 fn advance(
     dynamics: &Dynamics,
     prepared: &PreparedLog<'_>,
@@ -63,8 +63,8 @@ fn advance(
     worst
 }
 
-/// Whether the first particle touches pusher and fixels in the `last` substep to a row: 1 or 0
-/// each. A row that no step leads to touches what the row `before` did.
+/// Contacts of the first particle with the pusher and with each fixel in the `last` substep to a
+/// row: 1 or 0 each. A row that no step leads to touches what the row `before` did.
 pub(super) fn touch<const W: usize>(
     setup: &Setup,
     work: &StepWork<W>,
@@ -77,7 +77,8 @@ pub(super) fn touch<const W: usize>(
     }
 }
 
-/// Whether the first particle of a step of `h` seconds touches pusher and fixels: 1 or 0 each.
+/// Contacts of the first particle with the pusher and with each fixel after a step of `h` seconds:
+/// 1 or 0 each.
 fn touch_flags<const W: usize>(setup: &Setup, work: &StepWork<W>, h: f64) -> (f64, Vec<f64>) {
     let flag = |touches: bool| f64::from(u8::from(touches));
     let fixels = 0..setup.scene.fixels.len();

@@ -1,4 +1,4 @@
-//! What a camera pose tells the extended Kalman filter: [`PoseUpdate`] (docs/method.md (48)).
+//! Update of the extended Kalman filter by a camera pose: [`PoseUpdate`] (docs/method.md (48)).
 
 use nalgebra::{SMatrix, SVector};
 use stickslip_dynamics::Pose;
@@ -9,27 +9,27 @@ use crate::covariance::PoseCovariance;
 use crate::particle::camera_trust::BELIEVED_AFTER;
 use crate::setup::Camera;
 
-/// A squared innovation that one right pose in 10,000 exceeds, in units of what was expected of it:
-/// χ² of three degrees of freedom.
+/// Squared Mahalanobis distance of the innovation that one right pose in 10,000 exceeds: χ² of
+/// three degrees of freedom.
 const UNLIKELY: f64 = 21.108;
 
 /// Covariance of x, y and θ (m, m, rad).
 pub(super) type PoseNoise = SMatrix<f64, 3, 3>;
 
-/// Measures poses that show the object one latency ago.
+/// Update by poses that show the object one latency ago.
 #[derive(Clone, Debug)]
 pub(super) struct PoseUpdate {
     camera: Camera,
-    /// The latest pose: one that equals it is the same frame again.
+    /// The latest pose. A pose that equals it is the same frame again.
     shown: Pose,
-    /// Poses in a row that were not expected.
+    /// Number of unexpected poses in a row.
     unexpected: u32,
-    /// How often the belief has begun anew.
+    /// Number of times that the belief has restarted.
     pub restarts: u32,
 }
 
 impl PoseUpdate {
-    /// After a `first` pose.
+    /// An update after a `first` pose.
     pub fn new(camera: Camera, first: Pose) -> Self {
         Self {
             camera,
@@ -39,7 +39,7 @@ impl PoseUpdate {
         }
     }
 
-    /// The covariance of a measured pose: its `own`, or the camera's.
+    /// Returns the covariance of a measured pose: its `own`, or the camera's.
     pub fn noise(&self, own: Option<PoseCovariance>) -> PoseNoise {
         let square = |std: f64| std * std;
         let c = own.unwrap_or(PoseCovariance {
@@ -53,7 +53,7 @@ impl PoseUpdate {
         )
     }
 
-    /// Gives `belief` a pose; whether it was used.
+    /// Updates `belief` by a pose; returns true if the pose was used.
     pub fn see(&mut self, belief: &mut Belief, pose: Pose, noise: &PoseNoise) -> bool {
         if pose == self.shown {
             return false;

@@ -29,7 +29,7 @@ pub struct NominalPredictor {
     pub start: Pose,
 }
 
-/// Where the object goes from its first pose.
+/// Motion of the object from its first pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NominalPrediction {
     /// Pose at every row, from the first one with an object pose.
@@ -53,7 +53,7 @@ impl NominalPredictor {
         })
     }
 
-    /// The same log in another scene.
+    /// Returns the predictor of this log in another scene.
     #[must_use]
     pub fn with_scene(&self, scene: Scene) -> Self {
         Self {
@@ -63,13 +63,13 @@ impl NominalPredictor {
         }
     }
 
-    /// How the log's rows become steps.
+    /// Steps from row to row of the log.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
     /// Predicts the log once with each of `frictions`, as [`run`](crate::run) with the nominal
-    /// simulation does with that of the scene, bit for bit. One thread runs.
+    /// simulation does with that of the scene, bit for bit. It runs on one thread.
     pub fn predict(&self, frictions: &[Friction]) -> Vec<NominalPrediction> {
         let chunks = frictions.chunks(LANES).map(|chunk| match chunk {
             [one] => Vec::from(self.predict_lanes(&[*one])),

@@ -7,7 +7,7 @@ use stickslip_dynamics::Pose;
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
 
-/// Angles beyond this are degrees (rad): nobody turns an object twice around on a table.
+/// Angle beyond which the values are degrees (rad): no object is turned twice around on a table.
 const LARGEST: f64 = 2.0 * TAU;
 
 /// Noise of an angle at the object's radius, as a multiple of the position's, from which on it is
@@ -43,8 +43,8 @@ fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
         .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
-/// A jump by about a full turn from one row to the next, or by about half of one; after a gap an
-/// angle may start anew.
+/// Finds a jump by about a full turn from one row to the next, or by about half of one. An angle
+/// may start at any turn after a gap.
 fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
     let about = |turn: f64| {
         let jumps = |row: &usize| {
@@ -72,7 +72,7 @@ fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
     })
 }
 
-/// Small angles in degrees: only their noise gives them away.
+/// Finds small angles in degrees: only their noise gives them away.
 fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
     let noise = evidence.noise?;
     let ratio = noise.angle * evidence.size() / noise.position.max(1e-6);

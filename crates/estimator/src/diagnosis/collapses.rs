@@ -1,4 +1,4 @@
-//! Collapses: rows at which no belief of the filter explained the camera.
+//! Collapses: rows at which the filter's belief did not explain the camera.
 
 use super::finding::{Finding, Subject};
 
@@ -8,12 +8,12 @@ const MANY: f64 = 0.02;
 /// Share from which on nothing was explained.
 const MOST: f64 = 0.2;
 
-/// What `collapses` among `seen` rows with a camera pose mean; `None` where they are too few to
-/// mean anything.
+/// Returns what `collapses` among `seen` rows with a camera pose mean; `None` if they are too few
+/// to mean anything.
 ///
-/// At a collapse all particles are drawn anew around the camera's pose, or an extended Kalman
-/// filter begins anew at it: where there are many, an estimate is near the camera because it was
-/// put there.
+/// All particles are reinitialised around the camera's pose at a collapse, or an extended Kalman
+/// filter restarts at it. If there are many, an estimate is near the camera because it was put
+/// there.
 pub fn collapsed(collapses: u32, seen: usize) -> Option<Finding> {
     let share = f64::from(collapses) / seen.max(1) as f64;
     let found = format!(

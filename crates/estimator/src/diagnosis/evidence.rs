@@ -1,4 +1,4 @@
-//! What all checks share: [`Evidence`], gaps, motion and noise of a log.
+//! Measurements that all checks share: [`Evidence`], with gaps, motion and noise of a log.
 
 use stickslip_dynamics::{Placed, Pose, Shape};
 
@@ -15,20 +15,20 @@ pub(super) const HALF_WINDOW: f64 = 0.15;
 /// Standard deviations above which a displacement is motion.
 const MOTION: f64 = 5.0;
 
-/// A row lies within a motion if before and after it the object is at least so many times as fast
-/// as over both together.
+/// Least speed before a row and after it, as a share of the speed over both together, at which the
+/// row lies within a motion.
 const GOES_ON: f64 = 0.5;
 
-/// Least share of the time of a motion over which that is judged.
+/// Least share of the time of a motion over which that speed is judged.
 const LEAST_SHARE: f64 = 0.25;
 
-/// A scene and a log with what is measured on them once.
+/// A scene and a log, with what is measured on them once.
 pub(super) struct Evidence<'a> {
     pub setup: &'a Setup,
     pub log: &'a Log,
     /// Noise of one object pose, estimated; `None` with too few poses.
     pub noise: Option<PoseNoise>,
-    /// The same of the pusher.
+    /// Noise of one pusher pose, estimated; `None` with too few poses.
     pub pusher_noise: Option<PoseNoise>,
     /// Errors of the camera that last over several rows.
     pub lasting: Option<Lasting>,
@@ -124,8 +124,8 @@ impl<'a> Evidence<'a> {
         gap(&object, &Placed::new(other, at))
     }
 
-    /// The object's way about a row with its pose: from before it to after it, and from before it
-    /// to it.
+    /// Returns the object's way about a row with a pose: from before it to after it, and from
+    /// before it to the row.
     fn way(&self, row: usize) -> Option<(Way, Way)> {
         let time = self.log.time[row];
         let first_from = |from: f64| self.seen.partition_point(|row| self.log.time[*row] < from);
@@ -164,7 +164,8 @@ impl<'a> Evidence<'a> {
         (!poses.is_empty()).then(|| (mean(&|p| p.0), pose))
     }
 
-    /// Rows in which the object moves; in a short gap it does where it moves on both sides of it.
+    /// Returns true for rows in which the object moves. It moves in a short gap if it moves on both
+    /// sides of it.
     fn moving(&self) -> Vec<bool> {
         let mut moving = vec![false; self.log.len()];
         for &row in &self.seen {
@@ -178,8 +179,8 @@ impl<'a> Evidence<'a> {
         moving
     }
 
-    /// Whether the object's way about `row` is beyond noise, and `row` lies within it: an object
-    /// that is touched a little later, or stopped a little before, rests.
+    /// Returns true if the object's way about `row` is beyond noise, and `row` lies within it. An
+    /// object that is touched a little later, or stopped a little before, rests.
     fn moves_at(&self, row: usize) -> bool {
         let Some(std) = self.way_std() else {
             return false;
@@ -193,7 +194,8 @@ impl<'a> Evidence<'a> {
 
     /// Standard deviation of a way that noise alone makes (m).
     fn way_std(&self) -> Option<f64> {
-        // the difference of two means of three poses, which are no better than one where errors last
+        // the difference of two means of three poses, which are no better than one where errors
+        // last
         let (noise, poses) = match self.lasting {
             Some(Lasting { wander, .. }) => (wander.max(self.stated()), 1.0),
             None => (self.noise?, 3.0),
@@ -208,7 +210,7 @@ impl<'a> Evidence<'a> {
         self.noise.map_or(stated, |noise| noise.max(stated))
     }
 
-    /// The noise that the scene tells.
+    /// Noise that the scene states.
     fn stated(&self) -> PoseNoise {
         let camera = self.setup.camera.as_ref();
         PoseNoise {
@@ -218,10 +220,10 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// How far the object comes, and in which time.
+/// Way that the object covers, and its duration.
 struct Way {
     seconds: f64,
-    /// Along x and y, and the turn at the radius of gyration.
+    /// Displacement along x and y, and the turn at the radius of gyration (m).
     metres: [f64; 3],
 }
 
@@ -231,7 +233,7 @@ impl Way {
         pairs.map(|(a, b)| a * b).sum()
     }
 
-    /// Whether this first part of `whole` neither only begins it nor all but ends it.
+    /// Returns true if this first part of `whole` neither only begins it nor all but ends it.
     fn is_within(&self, whole: &Self) -> bool {
         let (time, length) = (
             self.seconds / whole.seconds,
@@ -242,13 +244,13 @@ impl Way {
     }
 }
 
-/// The median; NaN of nothing.
+/// Returns the median; NaN if there is no number.
 pub(super) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The `q`-quantile, linear between order statistics: position q (n - 1) from the smallest; NaN of
-/// nothing.
+/// Returns the `q`-quantile, linear between order statistics: position q (n - 1) from the smallest;
+/// NaN if there is no number.
 pub(super) fn quantile(values: impl IntoIterator<Item = f64>, q: f64) -> f64 {
     crate::quantile(&values.into_iter().collect::<Vec<_>>(), q).unwrap_or(f64::NAN)
 }

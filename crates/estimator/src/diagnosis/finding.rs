@@ -1,8 +1,8 @@
-//! One thing that was looked at: [`Finding`].
+//! Result of one check: [`Finding`].
 
 use std::fmt;
 
-/// How bad it is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// As it should be.
@@ -13,7 +13,7 @@ pub enum Severity {
     Problem,
 }
 
-/// What was looked at.
+/// Subject of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Subject {
@@ -49,21 +49,21 @@ pub enum Subject {
     Sensor(usize),
 }
 
-/// One thing that was looked at, what was found and what to do.
+/// Result of one check, with advice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// What was looked at.
+    /// Subject of the check.
     pub subject: Subject,
-    /// How bad it is.
+    /// Severity of the finding.
     pub severity: Severity,
-    /// What was found, with its number.
+    /// Description of what was found, with its number.
     pub found: String,
-    /// What to do; `None` where there is nothing to do.
+    /// Advice; `None` if there is nothing to do.
     pub advice: Option<String>,
 }
 
 impl Finding {
-    /// All is well.
+    /// A finding that all is well.
     pub(super) fn ok(subject: Subject, found: impl Into<String>) -> Self {
         Self {
             subject,
@@ -73,7 +73,7 @@ impl Finding {
         }
     }
 
-    /// Estimates may be worse than they could be.
+    /// A finding that estimates may be worse than they could be.
     pub(super) fn warning(
         subject: Subject,
         found: impl Into<String>,
@@ -87,7 +87,7 @@ impl Finding {
         }
     }
 
-    /// Estimates will be wrong.
+    /// A finding that estimates will be wrong.
     pub(super) fn problem(
         subject: Subject,
         found: impl Into<String>,
@@ -103,7 +103,7 @@ impl Finding {
 }
 
 impl fmt::Display for Finding {
-    /// What was found and what to do, in one line.
+    /// Writes what was found and the advice, in one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.found)?;
         match &self.advice {

@@ -1,8 +1,8 @@
-//! Frames: whether object and pusher are told in the same one.
+//! Check that object and pusher poses are in the same frame.
 //!
-//! What moves the object is the pusher, so while the object moves their gap is near zero. Where it
-//! is not, the same is tried with axes mirrored, swapped or turned; a variant that brings the gap
-//! to zero names the slip.
+//! The pusher moves the object, so their gap is near zero while the object moves. If it is not, the
+//! gap is computed again with axes mirrored, swapped or turned. A variant that brings it to zero
+//! names the slip.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,10 +12,10 @@ use super::evidence::{Evidence, median, mm, quantile};
 use super::finding::{Finding, Subject};
 use crate::log::Log;
 
-/// Gaps above this share of the object's radius are no contact.
+/// Gap above which there is no contact, as a share of the object's radius.
 const APART: f64 = 0.35;
 
-/// A variant must be this much better to be named.
+/// Factor by which a variant must be better to be named.
 const BETTER: f64 = 3.0;
 
 /// Fewest rows that tell.
@@ -23,7 +23,7 @@ const FEWEST: usize = 10;
 
 type Change = fn(Pose, Pose) -> (Pose, Pose);
 
-/// A slip and how it is undone: from the poses of object and pusher as they are in the log.
+/// Slips, each with its correction of the object's and the pusher's pose in the log.
 const SLIPS: [(&str, Change); 8] = [
     (
         "the object's y axis is mirrored (y and theta change sign)",
@@ -88,7 +88,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     vec![Finding::problem(Subject::Frames, found, advice)]
 }
 
-/// The slip that explains the gap best, if one does.
+/// Returns the slip that explains the gap best, if one does.
 fn slip(evidence: &Evidence<'_>, off: f64) -> Option<&'static str> {
     let tried = SLIPS
         .iter()
@@ -98,8 +98,8 @@ fn slip(evidence: &Evidence<'_>, off: f64) -> Option<&'static str> {
     (best * BETTER < off && best < APART * evidence.size()).then_some(name)
 }
 
-/// How far gaps are from zero if object and pusher are swapped; what moves is then another body,
-/// too (m).
+/// Distance of the gaps from zero if object and pusher are swapped (m). The body that moves is then
+/// the other one, too.
 fn swapped_distance(evidence: &Evidence<'_>) -> f64 {
     let log = Log {
         object: evidence.log.pusher.clone(),
@@ -112,7 +112,7 @@ fn swapped_distance(evidence: &Evidence<'_>) -> f64 {
     ))
 }
 
-/// How far gaps are from zero, for most rows (m).
+/// Distance of the gaps from zero, for most rows (m).
 fn distance(gaps: &[f64]) -> f64 {
     let far = quantile(gaps.iter().map(|gap| gap.abs()), 0.75);
     if far.is_nan() { f64::INFINITY } else { far }

@@ -6,26 +6,28 @@ use super::evidence::{Evidence, mm, quantile};
 use super::finding::{Finding, Subject};
 use crate::log::Log;
 
-/// A step from pose to pose that is longer than this share of the object's radius may be a jump.
+/// Share of the object's radius above which a step from pose to pose may be a jump.
 const FAR: f64 = 0.3;
 
-/// It is one where it is so many times longer than nine in ten others.
+/// Multiple of the 90 % quantile of all steps above which it is one.
 const RARE: f64 = 8.0;
 
-/// A shorter one is a jump where it is so many times faster than all steps about it that do not
-/// lead back, those of the pusher among them.
+/// Multiple of the speed of all steps near it above which a shorter step is a jump. Steps that lead
+/// back do not count; those of the pusher do.
 const SUDDEN: f64 = 4.0;
 
-/// And so many standard deviations of a position; from the greater number on it is a problem.
+/// Standard deviations of a position that a shorter step must exceed as well. Beyond the greater
+/// number it is a problem.
 const BEYOND_NOISE: [f64; 2] = [12.0, 40.0];
 
-/// Steps before and after one by which it is judged.
+/// Number of steps before and after one by which it is judged.
 const ABOUT: usize = 4;
 
-/// Longest time between two poses of which a jump is told (s); over a longer one a body can go far.
+/// Longest time between two poses for which a jump is reported (s). A body can go far over a longer
+/// one.
 const SOON: f64 = 0.15;
 
-/// The way of a body from one pose to the next that differs.
+/// Step of a body from one pose to the next that differs.
 struct Step {
     rows: [usize; 2],
     poses: [Pose; 2],
@@ -39,7 +41,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let Log { object, pusher, .. } = evidence.log;
     let (of_object, of_pusher) = (steps(evidence, object), steps(evidence, pusher));
     let found = [
-        // what moves an object is the pusher, so it may come to move as fast as that one
+        // the pusher moves the object, which may then move as fast as the pusher
         jumps(
             evidence,
             (Subject::ObjectPoses, "object"),
@@ -100,7 +102,7 @@ fn jumps(
     })
 }
 
-/// The first of `count` jumps, in words.
+/// Describes the first of `count` jumps.
 fn told(body: &str, first: &Step, count: usize, farthest: f64) -> String {
     let [before, row] = first.rows;
     let is_origin = |pose: Pose| [pose.x, pose.y, pose.theta] == [0.0; 3];
@@ -122,8 +124,8 @@ fn told(body: &str, first: &Step, count: usize, farthest: f64) -> String {
     )
 }
 
-/// The greatest speed of the few steps before and after `step` (m/s), those aside that lead back
-/// from where it led.
+/// Greatest speed of the few steps before and after `step` (m/s). Steps that lead back from where
+/// it led do not count.
 fn speed_about(steps: &[Step], step: &Step) -> f64 {
     let before = steps.partition_point(|other| other.rows[1] <= step.rows[0]);
     let after = steps.partition_point(|other| other.rows[0] < step.rows[1]);

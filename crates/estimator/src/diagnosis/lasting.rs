@@ -1,34 +1,36 @@
 //! Errors of the camera that last over several rows: [`Lasting`].
 //!
-//! While the pusher is still on its way the object waits, so what its poses do is the camera's
-//! error. White noise differs from row to row by as much as between rows that are far apart; an
-//! error that lasts hardly differs from row to row, and by more and more over longer times.
+//! The object waits while the pusher is still on its way, so its poses then show the camera's
+//! errors. White noise differs as much from row to row as between rows that are far apart. An error
+//! that lasts hardly differs from row to row, and by more and more over longer times.
 
 use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, median};
 use super::pose_noise::{OF_MEDIAN, PoseNoise};
 
-/// Fewest poses of a waiting object that tell.
+/// Fewest poses of a waiting object from which errors are judged.
 const FEWEST: usize = 24;
 
-/// Errors last where poses far apart differ by so many times what rows next to each other do.
+/// Ratio of the differences of poses far apart to those of neighbouring rows above which errors
+/// last.
 const WANDERS: f64 = 1.8;
 
-/// A wander beyond so many told standard deviations is a motion.
+/// Wander above which it is a motion, in nominal standard deviations.
 const MOTION: f64 = 3.0;
 
 /// Errors that last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lasting {
-    /// Standard deviations of one pose, with what lasts.
+    /// Standard deviations of one pose, including what lasts.
     pub wander: PoseNoise,
-    /// Rows over which an error lasts: so many poses say as much as one with an error of its own.
+    /// Number of rows over which an error lasts. So many poses say as much as one with an error of
+    /// its own.
     pub rows: f64,
 }
 
 impl Lasting {
-    /// The errors of `evidence`'s camera, where they last.
+    /// Returns the errors of `evidence`'s camera, if they last.
     pub fn of(evidence: &Evidence<'_>) -> Option<Self> {
         let noise = evidence.noise?;
         let camera = evidence.setup.camera.as_ref()?;
@@ -48,7 +50,7 @@ impl Lasting {
             && wander.angle < MOTION * camera.orientation_std;
         let share = noise.position / wander.position;
         let wander = PoseNoise {
-            // that few poses far apart differ by more than those of the positions do is chance
+            // a greater ratio of the angles than of the positions would be chance
             angle: wander.angle.min(noise.angle / share),
             ..wander
         };
@@ -69,7 +71,7 @@ fn waiting(evidence: &Evidence<'_>) -> Vec<Pose> {
     rows.filter_map(|row| evidence.log.object[row]).collect()
 }
 
-/// How far poses a quarter of `waiting` apart differ, each as an error of one pose.
+/// Differences of poses a quarter of `waiting` apart, each as an error of one pose.
 fn wander(waiting: &[Pose], pick: fn(&Pose) -> f64) -> Vec<f64> {
     let later = &waiting[waiting.len() / 4..];
     let pairs = waiting.iter().zip(later);
@@ -78,11 +80,11 @@ fn wander(waiting: &[Pose], pick: fn(&Pose) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// Rows over which an error lasts that scatters from row to row by `share` of what it wanders.
+/// Number of rows over which an error lasts that scatters from row to row by `share` of its wander.
 ///
-/// Errors that are forgotten by a factor ρ from row to row have second differences of variance 2 (1
-/// − ρ) (3 − ρ), where those of white noise have 6; and n poses of them have a mean as good as n (1
-/// − ρ) / (1 + ρ) poses of white noise.
+/// Such errors are forgotten by a factor ρ from row to row. Their second differences have the
+/// variance 2 (1 − ρ) (3 − ρ), those of white noise 6. A mean of n such poses is as good as one of
+/// n (1 − ρ) / (1 + ρ) poses of white noise.
 fn rows(share: f64) -> f64 {
     let kept = 2.0 - (1.0 + 3.0 * share * share).sqrt();
     (1.0 + kept) / (1.0 - kept)

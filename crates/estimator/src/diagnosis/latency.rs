@@ -1,11 +1,13 @@
-//! The delay of the camera behind the pusher, from the stops of the pusher.
+//! Delay of the camera behind the pusher, from the stops of the pusher.
 //!
-//! While the pusher pushes and then stands, it touches, so the gap stays what it is. An object pose
-//! that is late shows the object still coming when the pusher stands: the gap then bends. The delay
-//! of a stop is the one that keeps the gap most constant from a quarter of a second before it to
-//! half a second after; the log's delay is the median over its stops. Where the pusher is slow, or
-//! slides along the object, many delays do so about as well: a delay counts against the stated one
-//! only where noise does not explain the gaps that the stated one leaves.
+//! A pusher that pushes and then stands stays in touch, so the gap stays constant. A late object
+//! pose shows the object still coming when the pusher stands: the gap then bends. The delay of a
+//! stop is the one that keeps the gap most constant from a quarter of a second before it to half a
+//! second after. The log's delay is the median over its stops.
+//!
+//! Many delays do so about as well if the pusher is slow, or slides along the object. A delay
+//! counts against the stated one only if noise does not explain the gaps that the stated one
+//! leaves.
 
 use super::evidence::{Evidence, median, quantile};
 use super::finding::{Finding, Subject};
@@ -16,17 +18,18 @@ const RANGE: [f64; 2] = [-0.3, 0.5];
 /// Step between them (s).
 const STEP: f64 = 0.005;
 
-/// Time before and after a stop that is looked at (s).
+/// Time before and after a stop that is examined (s).
 const WINDOW: [f64; 2] = [0.25, 0.55];
 
-/// Error of a delay that is worth a warning, and that is a problem (s).
+/// Errors of a delay (s): the first is worth a warning, the second is a problem.
 const OFF: [f64; 2] = [0.035, 0.06];
 
-/// A delay matters where the pusher moves on by this many standard deviations of a position in it.
+/// Standard deviations of a position by which the pusher must move on within a delay for the delay
+/// to matter.
 const MATTERS: f64 = 1.5;
 
-/// Twice the log-likelihood by which a delay has to explain the gaps better than the stated one
-/// does: of the best of all that are tried, noise alone makes as much in one log of a thousand.
+/// Twice the log-likelihood by which a delay has to explain the gaps better than the stated one.
+/// The best of all that are tried reaches as much by noise alone in one log of a thousand.
 const CLEARLY: f64 = 14.0;
 
 /// The delay of a log.
@@ -34,7 +37,7 @@ const CLEARLY: f64 = 14.0;
 pub(super) struct Latency {
     /// Median over stops (s).
     pub delay: f64,
-    /// Number of stops that tell.
+    /// Number of stops that determine a delay.
     pub stops: usize,
     /// Speed of the pusher when it moves (m/s).
     pub speed: f64,
@@ -43,19 +46,19 @@ pub(super) struct Latency {
     pub better: f64,
 }
 
-/// What one stop tells.
+/// Evidence of one stop.
 struct Told {
     delay: f64,
     better: f64,
 }
 
 impl Latency {
-    /// Whether the stops tell against the stated delay.
+    /// Returns true if the stops contradict the stated delay.
     fn is_clear(&self) -> bool {
         self.better > CLEARLY
     }
 
-    /// The delay to go by: the measured one where it is clearly better than the stated one.
+    /// Returns the delay to use: the measured one if it is clearly better than the stated one.
     pub fn believed(&self, stated: f64) -> f64 {
         if self.is_clear() { self.delay } else { stated }
     }
@@ -100,7 +103,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     }]
 }
 
-/// The delay of the log, where its pusher stops while it pushes.
+/// Returns the delay of the log, if its pusher stops while it pushes.
 pub(super) fn estimate(evidence: &Evidence<'_>) -> Option<Latency> {
     let time = &evidence.log.time;
     let speeds: Vec<Option<f64>> = (0..time.len())
@@ -119,7 +122,7 @@ pub(super) fn estimate(evidence: &Evidence<'_>) -> Option<Latency> {
     })
 }
 
-/// Rows at which the pusher comes to rest after a steady motion at about the speed `fast`.
+/// Rows at which the pusher stops after a steady motion at about the speed `fast`.
 fn stops(time: &[f64], speeds: &[Option<f64>], fast: f64) -> Vec<usize> {
     let between = |from: f64, to: f64| {
         let rows = time.partition_point(|t| *t < from)..time.partition_point(|t| *t <= to);
@@ -153,7 +156,8 @@ fn pusher_speed(evidence: &Evidence<'_>, row: usize) -> Option<f64> {
     Some((after.x - before.x).hypot(after.y - before.y) / 0.134)
 }
 
-/// The delay that keeps the gap about a stop most constant; `None` where the stop does not tell.
+/// Returns the delay that keeps the gap about a stop most constant; `None` if the stop does not
+/// determine it.
 fn told_at(evidence: &Evidence<'_>, stop: usize) -> Option<Told> {
     let time = &evidence.log.time;
     let (from, to) = (time[stop] - WINDOW[0], time[stop] + WINDOW[1]);
@@ -187,10 +191,10 @@ fn told_at(evidence: &Evidence<'_>, stop: usize) -> Option<Told> {
     })
 }
 
-/// Twice the log-likelihood of a delay at which the gaps over `rows` scatter by `scatter`, less
+/// Twice the log-likelihood of a delay at which the gaps over `rows` scatter by `scatter`, minus
 /// that of the stated delay.
 fn better(evidence: &Evidence<'_>, rows: &[usize], scatter: f64) -> f64 {
-    // errors that last make fewer poses of many
+    // errors that last reduce the number of independent poses
     let poses = rows.len() as f64 / evidence.lasting.map_or(1.0, |errors| errors.rows);
     let stated = self::scatter(evidence, rows, evidence.latency()).unwrap_or(f64::INFINITY);
     // the best of many delays fits noise, too: gaps scatter by no less than poses do

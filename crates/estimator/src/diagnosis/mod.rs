@@ -1,9 +1,9 @@
-//! What is wrong with a scene and a log, told from the data alone: [`diagnose`].
+//! Problems of a scene and a log, found from the data alone: [`diagnose`].
 //!
-//! Each finding measures one thing (a gap, a delay, a share of rows), compares it with what the
-//! scene says or with what can be on a table top, and tells what to do. Nothing is repaired.
-//! Findings that need the geometry are left out where units or angles are wrong: they would only
-//! repeat it.
+//! Each finding measures one thing (a gap, a delay, a share of rows). It compares it with what the
+//! scene says or with what is possible on a table top, and gives advice. Nothing is repaired.
+//! Findings that need the geometry are left out if units or angles are wrong: they would only
+//! repeat that.
 
 mod angles;
 mod collapses;
@@ -37,7 +37,7 @@ use crate::setup::Setup;
 
 /// Checks a log against its scene.
 ///
-/// The findings come in a fixed order; at least one for every subject that the data can speak of.
+/// The findings come in a fixed order, at least one for every subject that the data can speak of.
 ///
 /// ```
 /// # use stickslip::diagnosis::{diagnose, Severity};
@@ -76,10 +76,13 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// The problems that show in a time that no filter notices: numbers in other units or by other
-/// clocks, bodies that overlap at the start. With them, an estimate and its scores mean nothing.
-/// And what a run does otherwise than the log and the scene say: pusher poses that it leaves out,
-/// and ones that scatter by more than told, which it tracks by the noise that they have.
+/// Finds the problems that are cheap enough to check before every run: numbers in other units or by
+/// other clocks, bodies that overlap at the start. An estimate and its scores mean nothing with
+/// them.
+///
+/// Also finds where a run departs from the log and the scene. It leaves out pusher poses that are
+/// impossible. It tracks pusher poses that scatter by more than the scene states by the noise that
+/// they have.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
     let mut findings = plain(&evidence);
@@ -94,7 +97,7 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// What needs no geometry.
+/// Returns the findings that need no geometry.
 fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
     let checks = [
         units::check,
@@ -111,7 +114,8 @@ fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
     checks.iter().flat_map(|check| check(evidence)).collect()
 }
 
-/// Units or angles are wrong: what needs the geometry would only repeat it.
+/// Returns true if units or angles are wrong. Findings that need the geometry would only repeat
+/// that.
 fn is_misread(finding: &Finding) -> bool {
     finding.severity == Severity::Problem
         && matches!(finding.subject, Subject::Units | Subject::Angles)

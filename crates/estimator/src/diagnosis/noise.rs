@@ -5,12 +5,12 @@ use super::finding::{Finding, Subject};
 use super::lasting::Lasting;
 use super::pose_noise::PoseNoise;
 
-/// Ratio of measured and stated noise that is worth a warning: of the object, which contact mode
-/// learns, and of the pusher.
+/// Ratios of measured to stated noise that are worth a warning: of the object, whose noise the
+/// robust model learns, and of the pusher.
 const FAR_OFF: f64 = 4.0;
 const PUSHER_OFF: f64 = 2.0;
 
-/// Errors that last are worth a warning where a belief is so many times surer than it may be.
+/// Factor of overconfidence from which on errors that last are worth a warning.
 const TOO_SURE: f64 = 1.5;
 
 /// Noise that needs no statement: that of encoders and rounding.
@@ -46,7 +46,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Pusher poses that scatter by more than told.
+/// Finds pusher poses that scatter by more than the scene states.
 pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     let camera = evidence.setup.camera.as_ref()?;
     let stated = PoseNoise {
@@ -78,7 +78,7 @@ fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
     }
 }
 
-/// Errors that last, where a belief that takes each pose for a new one would be too sure.
+/// Finds errors that last. A belief that takes each pose as independent would be overconfident.
 fn lasts(errors: &Lasting, stated: &PoseNoise) -> Option<Finding> {
     let Lasting { wander, rows } = errors;
     let worth = |std: f64| std * rows.sqrt();
@@ -98,7 +98,8 @@ fn lasts(errors: &Lasting, stated: &PoseNoise) -> Option<Finding> {
     Some(Finding::warning(Subject::Noise, found, advice))
 }
 
-/// Whether a noise is above `ratio` times the stated one, and above what needs no statement.
+/// Returns true if a noise is above `ratio` times the stated one, and above what needs no
+/// statement.
 fn is_above(measured: &PoseNoise, stated: &PoseNoise, ratio: f64, negligible: &PoseNoise) -> bool {
     let is = |pick: fn(&PoseNoise) -> f64| {
         pick(measured) > ratio * pick(stated) && pick(measured) > pick(negligible)

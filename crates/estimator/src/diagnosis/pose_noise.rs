@@ -1,32 +1,31 @@
-//! Noise of single poses, told from a log alone: [`PoseNoise`].
+//! Noise of single poses, estimated from a log alone: [`PoseNoise`].
 
 use stickslip_dynamics::Pose;
 
 use super::evidence::median;
 
-/// A median of deviations from zero, as a standard deviation.
+/// Factor from a median of deviations from zero to a standard deviation.
 pub(super) const OF_MEDIAN: f64 = 1.4826;
 
-/// Fewest bends that tell.
+/// Fewest bends from which noise is estimated.
 const FEWEST: usize = 10;
 
-/// Least share of the time between its neighbours by which a pose is apart from either: beside a
-/// gap nothing is steady.
+/// Least share of the time between its neighbours by which a pose is apart from either. Motion next
+/// to a gap is not steady.
 const APART: f64 = 0.2;
 
 /// Standard deviations of one pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PoseNoise {
-    /// Of x and y (m).
+    /// Standard deviation of x and of y (m).
     pub position: f64,
-    /// Of θ (rad).
+    /// Standard deviation of θ (rad).
     pub angle: f64,
 }
 
 impl PoseNoise {
-    /// The noise of poses at `time` (s), from how far each lies off the line through its
-    /// neighbours: a steady motion does not change that, and a median does not heed jumps and
-    /// stops.
+    /// Estimates the noise of poses at `time` (s) from how far each lies off the line through its
+    /// neighbours. A steady motion does not change that, and a median ignores jumps and stops.
     ///
     /// Rows without a pose are passed over: other sensors may bring many of them.
     pub fn of(time: &[f64], poses: &[Option<Pose>]) -> Option<Self> {
@@ -59,7 +58,7 @@ impl PoseNoise {
         })
     }
 
-    /// The greater one of each.
+    /// Returns the greater one of each.
     pub fn max(self, other: Self) -> Self {
         Self {
             position: self.position.max(other.position),

@@ -8,14 +8,14 @@ use super::finding::{Finding, Subject};
 /// Share of repeated rows while the object moves that is worth a warning.
 const MANY: f64 = 0.1;
 
-/// Poses that are the same, one after another, from which on the camera stands still.
+/// Number of equal poses in a row from which on the camera stands still.
 const FROZEN: usize = 10;
 
-/// Standard deviations and metres above which its way over that time is motion.
+/// Way of the pusher about a row above which it moves, in standard deviations and in metres.
 const MOTION: f64 = 10.0;
 const MOVES: f64 = 1e-3;
 
-/// Least share of that way before as after the row.
+/// Least share of that way before the row, and after it.
 const GOES_ON: f64 = 0.25;
 
 /// Fewest rows of a moving pusher that tell.
@@ -48,15 +48,16 @@ fn object(evidence: &Evidence<'_>) -> Finding {
     }
 }
 
-/// Poses of a moving pusher that are those of the row before: it is sampled more slowly than the
-/// log, and held.
+/// Finds poses of a moving pusher that are those of the row before: it is sampled more slowly than
+/// the log, and held.
 fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     let (time, poses) = (&evidence.log.time, &evidence.log.pusher);
     let seen: Vec<usize> = (0..poses.len())
         .filter(|&row| poses[row].is_some())
         .collect();
     let noise = evidence.pusher_noise.map_or(0.0, |noise| noise.position);
-    // it comes on both before and after the row: beside a start or a stop it rests, and repeats what is true
+    // it moves both before and after the row: near a start or a stop it rests, and repeats what is
+    // true
     let moves = |row: usize| {
         let way = |from: f64, to: f64| {
             let (a, b) = (evidence.pusher_at(from)?, evidence.pusher_at(to)?);
@@ -84,7 +85,7 @@ fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// Share of `pairs` of rows that have one and the same pose.
+/// Share of `pairs` of rows whose two poses are equal.
 fn share<'p>(poses: &[Option<Pose>], pairs: impl Iterator<Item = &'p [usize; 2]>) -> f64 {
     let (mut all, mut repeated) = (0_usize, 0_usize);
     for [before, row] in pairs {
@@ -94,8 +95,8 @@ fn share<'p>(poses: &[Option<Pose>], pairs: impl Iterator<Item = &'p [usize; 2]>
     repeated as f64 / all.max(1) as f64
 }
 
-/// Many equal poses on end and then one far from them, from a camera whose poses scatter: it stood
-/// still while the object went on.
+/// Finds many equal poses in a row and then one far from them, from a camera whose poses scatter.
+/// It stood still while the object went on.
 fn frozen(evidence: &Evidence<'_>) -> Option<Finding> {
     let (object, seen) = (&evidence.log.object, &evidence.seen);
     if evidence.noise.is_none_or(|noise| noise.position < 1e-6) {

@@ -1,4 +1,4 @@
-//! Each tactile sensor against the gap of its fixel: sensor k is the k-th fixel.
+//! Check of each tactile sensor against the gap of its fixel: sensor k is on the k-th fixel.
 
 use super::evidence::{Evidence, median, mm};
 use super::finding::{Finding, Subject};
@@ -89,8 +89,8 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     }
 }
 
-/// What a sensor seems to be that reads 1 where nothing is near, and what to do: one that hardly
-/// ever reads 0, or another.
+/// Describes a sensor that reads 1 where nothing is near, and what to do. `always` is true if it
+/// hardly ever reads 0.
 fn inverted(always: bool) -> (&'static str, &'static str) {
     match always {
         true => (
@@ -104,7 +104,7 @@ fn inverted(always: bool) -> (&'static str, &'static str) {
     }
 }
 
-/// A sensor that hardly ever reads 1.
+/// Judges a sensor that hardly ever reads 1.
 fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
     let subject = Subject::Sensor(sensor + 1);
     let gaps = || {
@@ -146,8 +146,8 @@ fn rows(evidence: &Evidence<'_>, sensor: usize, value: bool) -> Vec<usize> {
         .collect()
 }
 
-/// Rows in which no fixel is within `near` (m): in how many of them the sensor reads 1, and how
-/// many there are.
+/// Counts the rows in which no fixel is within `near` (m): first those in which the sensor reads 1,
+/// then all.
 fn free_rows(evidence: &Evidence<'_>, sensor: usize, near: f64) -> (usize, usize) {
     let fixels = evidence.setup.scene.fixels.len();
     let is_free = |row: &usize| {

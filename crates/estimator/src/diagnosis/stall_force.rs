@@ -4,10 +4,11 @@ use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
 use crate::setup::{ASSUMED_STALL, Setup};
 
-/// That the pusher's stall force is assumed, which one, and what to write instead; `None` where the
-/// scene gives it.
+/// Finds an assumed stall force of the pusher, with its value and what to write instead; `None` if
+/// the scene gives one.
 ///
-/// It is a warning where there are fixels. Without them nothing jams, and nothing is to be done.
+/// The finding is a warning if there are fixels. Without them nothing jams, and nothing is to be
+/// done.
 pub fn assumed_stall_force(setup: &Setup) -> Option<Finding> {
     let force = setup
         .scene

@@ -4,10 +4,10 @@ use super::evidence::{Evidence, median};
 use super::finding::{Finding, Subject};
 use crate::row::{LONGEST_PAUSE, unit_of_times};
 
-/// Slowest camera that follows a push (s).
+/// Longest typical step of a camera that follows a push (s).
 const SLOWEST: f64 = 0.2;
 
-/// A step this many times the median is a hole.
+/// Multiple of the median step above which a step is a hole.
 const HOLE: f64 = 4.5;
 
 /// Longest step in which a hole does no harm (s).

@@ -48,7 +48,7 @@ fn problem(found: String, advice: &str) -> Option<Finding> {
 fn size(evidence: &Evidence<'_>) -> Option<Finding> {
     let size = evidence.size();
     let spread = spread(evidence.log.object.iter().chain(&evidence.log.pusher));
-    // an outline in millimetres beside a log in metres is hundreds of times larger than all that
+    // an outline in millimetres with a log in metres is hundreds of times larger than all that
     // happens
     let dwarfs = spread > 0.0 && size > 50.0 * spread && size > 1.0;
     if size > SIZE[1] || dwarfs {

@@ -1,20 +1,19 @@
-//! Whether poses of an object that rests lie to one side of where it is believed: [`Aside`]
+//! Test whether the poses of an object at rest lie to one side of its estimated place: [`Aside`]
 //! (docs/method.md (54)).
 
-/// Number of the latest poses that tell.
+/// Number of the latest poses that are judged.
 const LATEST: f64 = 30.0;
 
-/// The squares of such means over their variances, added up, above which it is no chance; chance
-/// has them there in 0.02 % of poses (χ² of three degrees of freedom).
+/// Threshold of the sum of the squared means over their variances. Chance exceeds it in 0.02 % of
+/// poses (χ² of three degrees of freedom).
 const NO_CHANCE: f64 = 20.0;
 
-/// Mean of how far the latest poses lay off, axis by axis, in standard deviations of what was
-/// expected of each.
+/// Mean displacement of the latest poses, axis by axis, in standard deviations expected of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Aside([f64; 3]);
 
 impl Aside {
-    /// Takes how far one more pose lies off.
+    /// Takes the displacement of one more pose.
     pub fn take(&mut self, off: [f64; 3]) {
         for (mean, off) in self.0.iter_mut().zip(off) {
             *mean += (off - *mean) / LATEST;
@@ -26,7 +25,7 @@ impl Aside {
         self.0.map(|mean| mean * mean)
     }
 
-    /// Whether chance has poses so far to one side in hardly any case.
+    /// Returns true if chance hardly ever displaces poses so far to one side.
     pub fn is_no_chance(&self) -> bool {
         // a mean that forgets like this has 1/(2 n - 1) of the variance of one pose
         self.squares().iter().sum::<f64>() * (2.0 * LATEST - 1.0) > NO_CHANCE
@@ -50,7 +49,8 @@ mod tests {
             });
             beyond.count() as f64 / 1e5
         };
-        // χ² of three degrees of freedom is above 20 in 1.7 of 10,000; some tens of neighbours are there together
+        // χ² of three degrees of freedom is above 20 in 1.7 of 10,000; some tens of neighbours
+        // exceed it together
         assert!(share(0.0) < 1e-3, "{}", share(0.0));
         assert!(share(0.7) > 0.8, "{}", share(0.7));
     }

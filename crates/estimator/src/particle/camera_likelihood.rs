@@ -1,4 +1,4 @@
-//! What the camera's pose says of a particle: [`CameraLikelihood`].
+//! Likelihood of the camera's pose given a particle: [`CameraLikelihood`].
 
 use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::{Block, BlockMut};
@@ -13,28 +13,27 @@ use crate::setup::{Camera, Setup};
 use crate::uncertainty::Uncertainty;
 
 /// Likelihood of a camera pose: normal, with the row's own covariance or the camera's, the standard
-/// deviations widened by `likelihood_scale`; in contact mode with a noise that is learned, and a
-/// floor.
+/// deviations widened by `likelihood_scale`. In the robust model the noise is learned, and the
+/// likelihood has a floor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraLikelihood {
     /// 1 / (scaled standard deviation): per m of position, per rad of angle.
     per_metre: f64,
     per_radian: f64,
-    /// What both are widened by.
+    /// Factor by which both are widened.
     widened: f64,
     columns: Columns,
     latency: Latency,
-    /// What is unknown of the noise (contact mode).
+    /// Prior of the noise (robust model).
     noise: Option<NoisePrior>,
-    /// Likelihood of a pose that is wrong, of which there are some in contact mode; that of a
-    /// perfect one is 1.
+    /// Likelihood of a pose that is wrong (robust model); that of a perfect one is 1.
     wrong: Option<f64>,
 }
 
 /// Likelihood of a wrong pose, relative to that of a perfect one.
 pub(crate) const WRONG: f64 = 3e-7;
 
-/// Squared distances of a measured pose from what particles show, in units of the told standard
+/// Squared distances of a measured pose from what particles show, in units of the nominal standard
 /// deviations.
 #[derive(Clone, Copy, Debug)]
 struct Residual {
@@ -61,29 +60,30 @@ impl CameraLikelihood {
         }
     }
 
-    /// From now on no pose is taken to be wrong, or some are again (contact mode).
+    /// Trusts all poses from now on, or allows again that some are wrong (robust model).
     pub fn set_trust(&mut self, trusted: bool) {
         self.wrong = (self.columns.model() == FilterModel::Robust && !trusted).then_some(WRONG);
     }
 
-    /// Whether no pose is taken to be wrong, as always in paper mode.
+    /// Returns true if no pose is taken to be wrong, as always in the paper's model.
     pub fn trusts(&self) -> bool {
         self.wrong.is_none()
     }
 
-    /// Probability that a pose is not wrong, given ln of the mean of its likelihoods, (37).
+    /// Returns the probability that a pose is not wrong, given ln of the mean of its likelihoods,
+    /// (37).
     pub fn right(&self, log_evidence: f64) -> f64 {
         let wrong = self.wrong.unwrap_or(0.0);
         (1.0 - wrong / libm::exp(log_evidence)).max(0.0)
     }
 
-    /// From now on the particles have these columns.
+    /// Sets the columns that the particles have from now on.
     pub fn set_columns(&mut self, columns: Columns) {
         self.columns = columns;
     }
 
-    /// log-likelihood of the camera's pose given one chunk's particles, up to a constant; 0 where
-    /// there is none.
+    /// Returns the log-likelihood of the camera's pose given one chunk's particles, up to a
+    /// constant; 0 if there is none.
     #[inline(always)]
     pub fn log_likelihood(
         &self,
@@ -101,7 +101,7 @@ impl CameraLikelihood {
         }
     }
 
-    /// What the particles learn of the camera's noise from a pose that weighed them.
+    /// Lets the particles learn the camera's noise from a pose that weighed them.
     #[inline(always)]
     pub fn learn(&self, observation: &Observation, block: &mut BlockMut<'_>, chunk: usize) {
         let Some(residual) = self.residual(observation, &block.as_block(), chunk) else {
@@ -117,8 +117,8 @@ impl CameraLikelihood {
         noise.store(self.columns, block, chunk);
     }
 
-    /// The noise of [`errors`](Self::errors) that one chunk's particles believe in: standard
-    /// deviations in units of the told ones.
+    /// Returns the noise of [`errors`](Self::errors) that one chunk's particles have estimated:
+    /// standard deviations in units of the nominal ones.
     #[inline(always)]
     pub fn believed_noise(&self, block: &Block<'_>, chunk: usize) -> [Column; 3] {
         let Some(prior) = self.noise else {
@@ -129,8 +129,8 @@ impl CameraLikelihood {
         [position, position, angle]
     }
 
-    /// What one chunk's particles show less the measured pose, as independent numbers in units of
-    /// the told noise.
+    /// Returns the poses that one chunk's particles show minus the measured one, as independent
+    /// numbers in units of the nominal noise.
     #[inline(always)]
     pub fn errors(
         &self,
@@ -176,7 +176,7 @@ impl CameraLikelihood {
         })
     }
 
-    /// ln of the likelihood of a pose that is not wrong, relative to that of a perfect one.
+    /// Returns ln of the likelihood of a pose that is not wrong, relative to that of a perfect one.
     #[inline(always)]
     fn of_right_pose(&self, residual: &Residual, block: &Block<'_>, chunk: usize) -> Column {
         let &Residual { position, angle } = residual;
@@ -189,7 +189,7 @@ impl CameraLikelihood {
         }
     }
 
-    /// The poses of one chunk's particles that the camera shows: with latency, past ones.
+    /// Returns the poses of one chunk's particles that the camera shows: with latency, past ones.
     #[inline(always)]
     pub fn shown(
         &self,
@@ -213,8 +213,8 @@ impl CameraLikelihood {
         shown
     }
 
-    /// The same where every particle has a latency of its own: its way through the kept poses, up
-    /// to the time that the camera shows.
+    /// Returns the poses shown if every particle has a latency of its own. It interpolates the kept
+    /// poses at the time that the camera shows.
     #[inline(always)]
     fn shown_with_own_latency(
         &self,
@@ -228,7 +228,7 @@ impl CameraLikelihood {
         let Some((last, before)) = observation.past.split_last() else {
             return load_pose(block, Columns::POSE, chunk);
         };
-        // back from the latest pose: what lies before the time shown adds exactly nothing
+        // back from the latest pose: intervals before the time shown add exactly nothing
         let mut later = (last.0, at(last.1));
         let mut shown = later.1;
         for (earlier_time, slot) in before.iter().rev() {
@@ -249,17 +249,17 @@ impl CameraLikelihood {
     }
 }
 
-/// By how much the camera lags (contact mode).
+/// Lag of the camera (robust model).
 #[derive(Clone, Copy, Debug)]
 struct Latency {
-    /// What the scene says (s).
+    /// Nominal lag (s).
     told: f64,
-    /// The rest.
+    /// Uncertainty of the unknown rest.
     uncertainty: Uncertainty,
 }
 
 impl Latency {
-    /// That of one chunk's particles (s).
+    /// Returns the lag of one chunk's particles (s).
     #[inline(always)]
     fn of(&self, columns: Columns, block: &Block<'_>, chunk: usize) -> Column {
         let rest = load_chunk(block.column(columns.latency()), chunk, 0.0);

@@ -1,4 +1,5 @@
-//! How noisy the camera is, by what a particle has seen of it (contact mode): [`CameraNoise`].
+//! Noise of the camera, estimated from what a particle has seen of it (robust model):
+//! [`CameraNoise`].
 
 use stickslip_dynamics::Lanes;
 use stickslip_filter::{Block, BlockMut, Draw};
@@ -6,8 +7,8 @@ use stickslip_filter::{Block, BlockMut, Draw};
 use crate::particle::chunk::{Column, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 
-/// What is known of the camera's noise before the first pose: its variance, in units of the told
-/// one, is ν₀ over a χ² number of ν₀ degrees of freedom (docs/method.md (41)).
+/// Prior of the camera's noise. Its variance, in units of the nominal one, is ν₀ over a χ² number
+/// of ν₀ degrees of freedom (docs/method.md (41)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NoisePrior {
     /// ν₀.
@@ -15,14 +16,15 @@ pub(crate) struct NoisePrior {
 }
 
 impl NoisePrior {
-    /// With this standard deviation of the logarithm of the noise; `None` where it is as told.
+    /// The prior with this standard deviation of the logarithm of the noise; `None` if the nominal
+    /// noise is exact.
     pub fn new(camera_noise: f64) -> Option<Self> {
         let freedom = 1.0 + 0.5 / (camera_noise * camera_noise);
         freedom.is_finite().then_some(Self { freedom })
     }
 
-    /// The variance of one sensor's noise, in units of the told one, drawn from this prior by the
-    /// random numbers of `draw` (Marsaglia and Tsang 2000).
+    /// Draws the variance of one sensor's noise from this prior, in units of the nominal one, by
+    /// the random numbers of `draw` (Marsaglia and Tsang 2000).
     pub fn drawn(&self, draw: Draw, sensor: u32) -> f64 {
         let shape = 0.5 * self.freedom;
         let d = shape - 1.0 / 3.0;
@@ -38,8 +40,8 @@ impl NoisePrior {
         unreachable!("19 attempts out of 20 are accepted")
     }
 
-    /// Variances of position and angle, in units of the told ones, after so many poses with these
-    /// sums of squared residuals.
+    /// Returns the variances of position and angle, in units of the nominal ones, after so many
+    /// poses with these sums of squared residuals.
     pub fn variances(&self, poses: f64, position: f64, angle: f64) -> [f64; 2] {
         let [of_position, of_angle] = self.freedoms(poses);
         [
@@ -48,13 +50,13 @@ impl NoisePrior {
         ]
     }
 
-    /// Degrees of freedom by which they are known after so many poses.
+    /// Returns the degrees of freedom of these variances after so many poses.
     pub fn freedoms(&self, poses: f64) -> [f64; 2] {
         [self.freedom + 2.0 * poses, self.freedom + poses]
     }
 }
 
-/// Residuals of the poses that one chunk's particles have seen, in units of the told standard
+/// Residuals of the poses that one chunk's particles have seen, in units of the nominal standard
 /// deviations: their number and the sums of their squares.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CameraNoise {
@@ -63,11 +65,11 @@ pub(crate) struct CameraNoise {
     angle: Column,
 }
 
-/// Poses of which the newest one makes this one part: noise may change slowly.
+/// Memory in poses: the newest one makes up one part in so many, since the noise may change slowly.
 pub(crate) const MEMORY: f64 = 300.0;
 
 impl CameraNoise {
-    /// So many poses, with these sums of squares.
+    /// The noise of so many poses, with these sums of squares.
     #[inline(always)]
     pub fn of([poses, position, angle]: [Column; 3]) -> Self {
         Self {
@@ -77,7 +79,7 @@ impl CameraNoise {
         }
     }
 
-    /// That of one chunk.
+    /// Loads the noise of one chunk.
     #[inline(always)]
     pub fn load(columns: Columns, block: &Block<'_>, chunk: usize) -> Self {
         let first = columns.camera_noise();
@@ -88,7 +90,7 @@ impl CameraNoise {
         }
     }
 
-    /// Writes it back.
+    /// Writes the noise back.
     #[inline(always)]
     pub fn store(&self, columns: Columns, block: &mut BlockMut<'_>, chunk: usize) {
         let first = columns.camera_noise();
@@ -100,9 +102,9 @@ impl CameraNoise {
         }
     }
 
-    /// ln of the likelihood of residuals whose squares are `position` (of the two coordinates
-    /// together) and `angle`, relative to that of a perfect pose under the told noise: Student's t
-    /// distributions, in which the noise is marginalised.
+    /// Returns ln of the likelihood of residuals whose squares are `position` (of the two
+    /// coordinates together) and `angle`, relative to that of a perfect pose under the nominal
+    /// noise. Student's t distributions marginalise the noise.
     #[inline(always)]
     pub fn log_likelihood(&self, prior: NoisePrior, position: Column, angle: Column) -> Column {
         let one = Lanes::splat(1.0);
@@ -118,7 +120,8 @@ impl CameraNoise {
             - (of_angle + one) * 0.5 * (one + angle / turn).ln()
     }
 
-    /// Standard deviations of position and angle that are believed in, in units of the told ones.
+    /// Returns the estimated standard deviations of position and angle, in units of the nominal
+    /// ones.
     #[inline(always)]
     pub fn believed(&self, prior: NoisePrior) -> [Column; 2] {
         let freedom = Lanes::splat(prior.freedom);
@@ -162,7 +165,8 @@ mod tests {
     }
 
     /// Mean of the normal density over the posterior of the variance, by a sum over its logarithm.
-    /// `weight` are the poses seen, each of `dimensions` numbers, with this sum of squares.
+    /// `seen` is the number of poses seen, each of `dimensions` numbers, and `squares` their sum of
+    /// squares.
     fn integrated(freedom: f64, dimensions: f64, seen: f64, squares: f64, residual: f64) -> f64 {
         let (mut above, mut below) = (0.0, 0.0);
         for step in -4000..4000 {

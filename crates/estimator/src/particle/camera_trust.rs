@@ -1,40 +1,45 @@
-//! Whether camera poses that no particle explains are wrong, or the particles are (contact mode):
-//! [`CameraTrust`].
+//! Decision whether camera poses that no particle explains are wrong, or the particles are (robust
+//! model): [`CameraTrust`].
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::StepReport;
 
 use crate::particle::normal_pose::NormalPose;
 
-/// Camera poses in a row that nothing explains, after which they are believed.
+/// Number of unexplained camera poses in a row after which the next one is accepted.
 pub(crate) const BELIEVED_AFTER: u32 = 4;
 
 /// ln of the mean likelihood of a camera pose below which no particle explains it.
 const UNEXPLAINED: f64 = -10.0;
 
-/// ln of how much wider a belief is than a camera pose, all axes together, from which on few of its
-/// particles are near one: some seven times per axis.
+/// ln of the width of a belief relative to a camera pose, all axes together, from which on few of
+/// its particles are near one: some seven times per axis.
 const WIDE: f64 = 6.0;
 
-/// Half the squared distance, in its standard deviations, up to which such a belief expects a pose:
+/// Half the squared distance up to which such a belief expects a pose, in its standard deviations:
 /// four of them.
 const WITHIN: f64 = 8.0;
 
-/// Counts the camera poses in a row that no particle explains; after some, they are no outliers,
-/// until one is explained. Nor is one that a wide belief expects: that no particle is near it says
-/// nothing. After a time in which nobody saw object or pusher, the object has been moved more often
-/// than a pose is wrong.
+/// Gate that accepts camera poses which no particle explains.
+///
+/// It counts such poses in a row. After some, they are no outliers, until one is explained.
+///
+/// It also accepts a pose that a wide belief expects: its particles are too sparse for one to be
+/// near. It also accepts the first pose after a time in which neither object nor pusher was seen:
+/// the object is then more likely to have been moved than the pose to be wrong.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CameraTrust {
     unexplained: u32,
-    /// Whether the pose that comes next is believed.
+    /// True if the next pose is accepted.
     believed: bool,
 }
 
 impl CameraTrust {
-    /// Takes the pose that comes next, with its variances of x, y (m²) and θ (rad²), and the belief
-    /// before it, where that may be wide, and whether anything may have happened since the pose
-    /// before; says whether the pose is believed, where that changes.
+    /// Takes the next pose, with its variances of x, y (m²) and θ (rad²). `belief` is the belief
+    /// before it, if that may be wide. `was_unwatched` is true if neither object nor pusher was
+    /// seen since the pose before.
+    ///
+    /// Returns whether the pose is accepted, if that changes.
     pub fn expect(
         &mut self,
         (pose, noise): (&Pose, [f64; 3]),
@@ -50,7 +55,7 @@ impl CameraTrust {
         Some(believed).filter(|now| *now != before)
     }
 
-    /// Takes what a pose, on time or late, did to the particles.
+    /// Takes the effect that a pose, on time or late, had on the particles.
     pub fn judge(&mut self, report: &StepReport) {
         let Some(log_evidence) = report.resetting_log_evidence else {
             return;

@@ -5,13 +5,13 @@ use stickslip_filter::{Block, BlockMut};
 
 use crate::particle::columns::{Columns, Flag};
 
-/// Particles of a chunk.
+/// Number of particles of a chunk.
 pub(crate) const LANES: usize = 8;
 
 /// One number of each particle of a chunk.
 pub(crate) type Column = Lanes<LANES>;
 
-/// Chunk `chunk` of a column; `past` beyond its end.
+/// Loads chunk `chunk` of a column; lanes beyond its end are `past`.
 #[inline(always)]
 pub(crate) fn load_chunk(column: &[f64], chunk: usize, past: f64) -> Column {
     let rest = &column[chunk * LANES..];
@@ -31,7 +31,7 @@ pub(crate) fn store_chunk(column: &mut [f64], chunk: usize, from: &Column) {
     }
 }
 
-/// Chunk `chunk` of three neighbouring columns, a pose.
+/// Loads chunk `chunk` of three neighbouring columns, a pose.
 #[inline(always)]
 pub(crate) fn load_pose(block: &Block<'_>, first_column: usize, chunk: usize) -> Pose<Column> {
     // field by field: an array made by a closure is made by baseline code, and copied
@@ -42,25 +42,25 @@ pub(crate) fn load_pose(block: &Block<'_>, first_column: usize, chunk: usize) ->
     }
 }
 
-/// Sum over the lanes.
+/// Returns the sum over the lanes.
 #[inline(always)]
 pub(crate) fn total(lanes: Column) -> f64 {
     lanes.0.iter().sum()
 }
 
-/// Where a flag is set in chunk `chunk`.
+/// Returns the lanes of chunk `chunk` in which a flag is set.
 #[inline(always)]
 pub(crate) fn flag(block: &Block<'_>, which: Flag, chunk: usize) -> Mask<LANES> {
     set_in(&load_chunk(block.column(which.column), chunk, 0.0), which)
 }
 
-/// Whether a flag of one particle is set.
+/// Returns true if a flag of one particle is set.
 #[inline(always)]
 pub(crate) fn is_set(block: &Block<'_>, Flag { column, bit }: Flag, i: usize) -> bool {
     block.column(column)[i].to_bits() >> bit & 1 == 1
 }
 
-/// Where a flag is set in the numbers of its column.
+/// Returns the lanes in which a flag is set in the numbers of its column.
 #[inline(always)]
 fn set_in(bits: &Column, Flag { bit, .. }: Flag) -> Mask<LANES> {
     Mask::from_fn(
@@ -73,13 +73,13 @@ fn set_in(bits: &Column, Flag { bit, .. }: Flag) -> Mask<LANES> {
 pub(crate) struct FlagsMut<'a, 'b> {
     block: &'a mut BlockMut<'b>,
     chunk: usize,
-    /// The column at hand, and its numbers.
+    /// The current column, and its numbers.
     column: usize,
     bits: Column,
 }
 
 impl<'a, 'b> FlagsMut<'a, 'b> {
-    /// Those of chunk `chunk`.
+    /// The flags of chunk `chunk`.
     #[inline(always)]
     pub fn new(block: &'a mut BlockMut<'b>, chunk: usize) -> Self {
         let column = Columns::UNSOLVED.column;
@@ -92,7 +92,7 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
         }
     }
 
-    /// Where a flag is set.
+    /// Returns the lanes in which a flag is set.
     #[inline(always)]
     pub fn get(&mut self, flag: Flag) -> Mask<LANES> {
         self.go_to(flag.column);
@@ -119,7 +119,7 @@ impl<'a, 'b> FlagsMut<'a, 'b> {
         }
     }
 
-    /// Writes the column at hand: the last thing to be done.
+    /// Writes the current column. Call it last.
     #[inline(always)]
     pub fn write(&mut self) {
         store_chunk(self.block.column_mut(self.column), self.chunk, &self.bits);

@@ -1,4 +1,4 @@
-//! Which column of the particle set holds what: [`Columns`].
+//! Layout of the particle set: [`Columns`].
 
 use crate::filter_model::FilterModel;
 use crate::particle::touch_channel::BELIEF_LEN;
@@ -15,13 +15,13 @@ const SINGLE: usize = 11;
 /// Flags of each fixel.
 const FLAGS_PER_FIXEL: usize = 5;
 
-/// Columns of contact mode that do not belong to a fixel.
+/// Columns of the robust model that do not belong to a fixel.
 const UNKNOWNS: usize = 20;
 
-/// Columns of contact mode for each fixel.
+/// Columns of the robust model for each fixel.
 const PER_FIXEL: usize = BELIEF_LEN + 2;
 
-/// A condition of every particle: one bit of a column that holds nothing but such bits.
+/// A condition of every particle: one bit of a column that holds only such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Flag {
     /// The column.
@@ -30,18 +30,18 @@ pub struct Flag {
     pub bit: u32,
 }
 
-/// How a particle's object slips on a body that it touches: to the right where neither is set.
-/// Where it does not touch, they mean nothing.
+/// Slip of a particle's object on a body that it touches: to the right where neither flag is set.
+/// The flags mean nothing where it does not touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlipFlags {
-    /// Whether it sticks.
+    /// True if it sticks.
     pub stick: Flag,
-    /// Whether it slides to the left.
+    /// True if it slides to the left.
     pub left: Flag,
 }
 
-/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, in contact
-/// mode what else is unknown, past poses.
+/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, the other
+/// unknowns of the robust model, past poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
     model: FilterModel,
@@ -56,32 +56,32 @@ impl Columns {
     pub const TWIST: usize = 3;
     /// μ_s, μ_p, μ_f, d_tri.
     pub const FRICTION: usize = 6;
-    /// Way from where the pusher stands to its pose: x, y (m).
+    /// Vector from where the pusher stands to its pose: x, y (m).
     pub const PUSHER_LAG: usize = 10;
     /// First column of the warm start.
     pub const WARM_START: usize = 12;
     /// First column of the flags.
     const FLAGS: usize = Self::WARM_START + WARM;
-    /// Whether the pusher touches.
+    /// True if the pusher touches.
     pub const CONTACT_PUSHER: Flag = Self::flag(0);
-    /// Whether the last step of a particle had no certified solution.
+    /// True if the last step of a particle had no certified solution.
     pub const UNSOLVED: Flag = Self::flag(1);
-    /// Whether it had neither a solution nor a proof that there is none.
+    /// True if that step had neither a solution nor a proof that there is none.
     pub const FAILED: Flag = Self::flag(3);
-    /// Whether nothing drove the particle in its last step: the pusher stood, or the particle
+    /// True if nothing drove the particle in its last step: the pusher stood, or the particle
     /// rested out of its way.
     pub const IDLE: Flag = Self::flag(2);
 
-    /// Whether the pusher ever was so near that contacts with it were sought (contact mode).
+    /// True if the pusher ever was so near that contacts with it were sought (robust model).
     pub const PUSHER_WAS_NEAR: Flag = Self::flag(8);
 
-    /// Whether the object sticks to the pusher, and whether it slides to the left on it.
+    /// Slip of the object on the pusher.
     pub const SLIP_PUSHER: SlipFlags = SlipFlags {
         stick: Self::flag(9),
         left: Self::flag(10),
     };
 
-    /// For `fixels` fixels and `history` past poses.
+    /// The layout for `fixels` fixels and `history` past poses.
     pub fn new(model: FilterModel, fixels: usize, history: usize) -> Self {
         Self {
             model,
@@ -90,12 +90,12 @@ impl Columns {
         }
     }
 
-    /// The same with `history` past poses.
+    /// The layout with `history` past poses.
     pub fn with_history(self, history: usize) -> Self {
         Self { history, ..self }
     }
 
-    /// Rules of the filter.
+    /// Configuration of the filter.
     pub fn model(&self) -> FilterModel {
         self.model
     }
@@ -112,12 +112,12 @@ impl Columns {
         }
     }
 
-    /// Whether friction parameter `k` (in the order of its columns) ever took part (contact mode).
+    /// True if friction parameter `k` (in the order of its columns) ever took part (robust model).
     pub fn felt(k: usize) -> Flag {
         Self::flag(4 + k)
     }
 
-    /// c_j: whether fixel j touches.
+    /// c_j: true if fixel j touches.
     pub fn contact_fixel(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + fixel)
     }
@@ -127,7 +127,7 @@ impl Columns {
         Self::flag(SINGLE + self.fixels + fixel)
     }
 
-    /// The same on fixel j.
+    /// Slip of the object on fixel j.
     pub fn slip_fixel(&self, fixel: usize) -> SlipFlags {
         let first = SINGLE + 3 * self.fixels + 2 * fixel;
         SlipFlags {
@@ -136,7 +136,7 @@ impl Columns {
         }
     }
 
-    /// Whether fixel j ever was so near that contacts with it were sought (contact mode).
+    /// True if fixel j ever was so near that contacts with it were sought (robust model).
     pub fn fixel_was_near(&self, fixel: usize) -> Flag {
         Self::flag(SINGLE + 2 * self.fixels + fixel)
     }
@@ -146,74 +146,72 @@ impl Columns {
         Self::FLAGS + (SINGLE + FLAGS_PER_FIXEL * self.fixels).div_ceil(BITS)
     }
 
-    /// Logarithms by which the four friction parameters differ at this place (contact mode).
+    /// Logarithms by which the four friction parameters differ at this place (robust model).
     pub fn variation(&self) -> usize {
         self.unknowns()
     }
 
-    /// Logarithm by which the rig is rougher than told: a factor of all offsets (contact mode).
+    /// ln of the rig's roughness, a factor of all offsets (robust model).
     pub fn roughness(&self) -> usize {
         self.unknowns() + 8
     }
 
-    /// Offset of the pusher's logged poses, in standard deviations: x, y (contact mode).
+    /// Offset of the pusher's logged poses, in standard deviations: x, y (robust model).
     pub fn pusher_offset(&self) -> usize {
         self.unknowns() + 4
     }
 
-    /// By how much the pusher is turned beside its logged poses, in standard deviations (contact
-    /// mode).
+    /// Turn of the pusher relative to its logged poses, in standard deviations (robust model).
     pub fn pusher_turn(&self) -> usize {
         self.unknowns() + 16
     }
 
-    /// Time by which the camera lags more than told (s) (contact mode).
+    /// Time by which the camera lags more than its nominal latency (s) (robust model).
     pub fn latency(&self) -> usize {
         self.unknowns() + 9
     }
 
-    /// By how much the object's outline lies outside its shape, in standard deviations (contact
-    /// mode).
+    /// Distance by which the object's outline lies outside its shape, in standard deviations
+    /// (robust model).
     pub fn growth(&self) -> usize {
         self.unknowns() + 6
     }
 
-    /// What [`CameraNoise`](crate::particle::camera_noise::CameraNoise) keeps: 3 columns (contact
-    /// mode).
+    /// Three columns of [`CameraNoise`](crate::particle::camera_noise::CameraNoise) (robust model).
     pub fn camera_noise(&self) -> usize {
         self.unknowns() + 10
     }
 
-    /// Logarithm by which the random force is larger than told (contact mode).
+    /// Logarithm by which the random force is larger than its nominal value (robust model).
     pub fn force(&self) -> usize {
         self.unknowns() + 13
     }
 
-    /// Logarithms, in spreads, by which contacts creep more than told: with the pusher, with fixels
-    /// (contact mode).
+    /// Logarithms, in spreads, by which contacts creep more than their nominal value: with the
+    /// pusher, with fixels (robust model).
     pub fn creep(&self) -> usize {
         self.unknowns() + 14
     }
 
-    /// By how far the feet stand beside the scene's and are turned, in standard deviations: x, y,
-    /// angle (contact mode).
+    /// Displacement and turn of the feet relative to the scene's, in standard deviations: x, y,
+    /// angle (robust model).
     pub fn support(&self) -> usize {
         self.unknowns() + 17
     }
 
-    /// log-likelihood of what is known of the latest row without the camera: the pusher's place and
-    /// tactile readings (contact mode).
+    /// log-likelihood of the pusher's place and the tactile readings of the latest row, without the
+    /// camera (robust model).
     pub fn felt_log_likelihood(&self) -> usize {
         self.unknowns() + 7
     }
 
-    /// What is believed of sensor `fixel`, the numbers of a
-    /// [`SensorBelief`](super::touch_channel::SensorBelief) (contact mode).
+    /// Belief about sensor `fixel`, the numbers of a
+    /// [`SensorBelief`](super::touch_channel::SensorBelief) (robust model).
     pub fn sensor(&self, fixel: usize) -> usize {
         self.unknowns() + UNKNOWNS + PER_FIXEL * fixel
     }
 
-    /// Offset of fixel `fixel` from its pose, in standard deviations: x, y (contact mode).
+    /// Offset of fixel `fixel` from its pose, in standard deviations: x, y (robust model).
     pub fn fixel_offset(&self, fixel: usize) -> usize {
         self.sensor(fixel) + BELIEF_LEN
     }

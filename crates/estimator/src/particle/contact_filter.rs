@@ -30,32 +30,32 @@ use crate::particle::sums::Reference;
 use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
 
-/// What a row brings to the particles.
+/// Measurements of a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measured<'a> {
     /// Time (s).
     pub time: f64,
     /// Pose of the object, where the camera saw it.
     pub object: Option<Pose>,
-    /// How noisy that pose is, where it says so itself.
+    /// Covariance of that pose, if it has one of its own.
     pub covariance: Option<PoseCovariance>,
     /// Tactile readings that count, one per sensor.
     pub tactile: &'a [Option<bool>],
 }
 
-/// How the pusher drives the step to a row.
+/// Drive of the step to a row by the pusher.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'a> {
     /// Substeps; their lengths sum to the step's.
     pub substeps: &'a [StepInput],
-    /// Whether the pusher moves.
+    /// True if the pusher moves.
     pub moves: bool,
-    /// Whether nobody sees the pusher.
+    /// True if the pusher is not seen.
     pub unseen: bool,
 }
 
 impl<'a> Drive<'a> {
-    /// By these substeps of a pusher that is seen where they have it.
+    /// The drive of these substeps; the pusher is seen if the last substep has it.
     pub fn new(substeps: &'a [StepInput], moves: bool) -> Self {
         Self {
             substeps,
@@ -75,29 +75,29 @@ pub(crate) struct ContactFilter<'o> {
     plan: StepPlan,
     observation: Observation,
     latest: EstimateRow,
-    /// What the next row's sums are about: the means of the latest one.
+    /// Values about which the next row's sums are taken: the means of the latest one.
     reference: Reference,
     modes: ModeFinder,
     collapses: u32,
-    /// Whether the latest row drew the particles anew.
+    /// True if the latest row reinitialised the particles.
     collapsed: bool,
-    /// ln of what the particles gave to the rows so far.
+    /// ln of the likelihood that the particles gave to the rows so far.
     log_evidence: f64,
     trust: CameraTrust,
     replay: Replay,
     steadiness: Steadiness,
     pusher: HiddenPusher,
     resting: RestingPose,
-    /// What brings particles to where weighing would leave few.
+    /// Ways to move particles to where weighing would leave few.
     moves: Moves,
 }
 
-/// Where an object waits that nothing has touched.
+/// Place where an object waits that nothing has touched.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Waiting {
     /// Its pose.
     pub at: PoseAt,
-    /// All that the camera has shown of it.
+    /// Belief from all that the camera has shown of it.
     resting: RestingPose,
 }
 
@@ -144,7 +144,7 @@ impl<'o> ContactFilter<'o> {
             resting: RestingPose::new(time, (pose, start.covariance), &camera, setup),
             moves: options.moves,
         };
-        // a first pose that says how noisy it is is drawn as it says
+        // a first pose with a covariance of its own is drawn by it
         let told = start.covariance.is_some();
         this.plan.resting = this.where_it_rests().filter(|_| !told);
         this.filter.recompute_sums(&this.plan);
@@ -153,7 +153,7 @@ impl<'o> ContactFilter<'o> {
         Ok(this)
     }
 
-    /// One row: the step that leads to it, then what was measured there.
+    /// Takes one row: the step that leads to it, then its measurements.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
         let was_dark = self.plan.is_dark();
         let was_unwatched = was_dark && self.pusher.is_hidden();
@@ -195,7 +195,7 @@ impl<'o> ContactFilter<'o> {
         &self.latest
     }
 
-    /// Goes on with another number of particles; where it is the same, nothing changes.
+    /// Goes on with another number of particles; nothing changes if it is the same.
     pub fn resize(&mut self, particles: NonZero<u32>) {
         if particles == self.count() {
             return;
@@ -205,7 +205,7 @@ impl<'o> ContactFilter<'o> {
         resized.expect("a u32 from 1 up is a number of particles");
     }
 
-    /// Rules of the filter.
+    /// Configuration of the filter.
     pub fn model(&self) -> FilterModel {
         self.filter.model().columns().model()
     }
@@ -217,14 +217,14 @@ impl<'o> ContactFilter<'o> {
         count.expect("a particle set is numbered in u32 and never empty")
     }
 
-    /// Whether camera poses may move particles: the object no longer waits where it was first seen,
-    /// or never did.
+    /// Returns true if camera poses may move particles: the object no longer waits where it was
+    /// first seen, or never did.
     fn camera_moves(&self) -> bool {
         self.model() == FilterModel::Robust && self.moves.camera && self.resting.waits_no_longer()
     }
 
-    /// Before a pose of the camera: whether it is believed also where no particle explains it, as
-    /// the first one after a dark may be, and is where nobody saw the pusher, either.
+    /// Decides before a camera pose whether it is accepted even if no particle explains it. It may
+    /// be if it is the first one after an occlusion. It is if the pusher was not seen, either.
     fn expect_pose(&mut self, was_dark: bool, was_unwatched: bool) {
         let Some(pose) = self.observation.pose else {
             return;
@@ -243,7 +243,8 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
-    /// Keeps what weighed the particles last for them to learn of, in contact mode.
+    /// Keeps the observation that weighed the particles last, for them to learn from (robust
+    /// model).
     fn remember_observation(&mut self) {
         std::mem::swap(&mut self.plan.seen, &mut self.observation);
         let contact = self.model() == FilterModel::Robust;
@@ -252,8 +253,8 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
-    /// Takes the camera's latest pose for one of an object that has not moved yet; where the
-    /// particles were drawn anew around it, it is the first one.
+    /// Takes the camera's latest pose as one of an object that has not moved yet. If the particles
+    /// were reinitialised around it, it counts as the first one.
     fn learn_where_it_rests(&mut self) {
         self.plan.resting = None;
         let Some(pose) = self.observation.pose else {
@@ -267,13 +268,14 @@ impl<'o> ContactFilter<'o> {
         self.plan.resting = self.where_it_rests();
     }
 
-    /// What particles that nothing has moved yet are drawn anew from, in contact mode.
+    /// Returns the belief from which the poses of particles are drawn that nothing has moved yet
+    /// (robust model).
     fn where_it_rests(&self) -> Option<RestingPose> {
         let contact = self.model() == FilterModel::Robust;
         (contact && self.moves.waiting).then_some(self.resting)
     }
 
-    /// Where each particle finds its past poses.
+    /// Notes where each particle finds its past poses.
     fn look_back(&mut self, time: f64) {
         self.observation.time = time;
         self.observation.past.clear();
@@ -282,7 +284,7 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
-    /// Takes what a row's pose, on time or late, did to the particles.
+    /// Takes the effect that a row's pose, on time or late, had on the particles.
     fn take(&mut self, report: &StepReport) {
         self.collapsed = report.collapsed();
         self.collapses += u32::from(self.collapsed);
@@ -328,8 +330,8 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
-    /// Weighs the particles by a pose that arrives late, against their own poses at its time, from
-    /// which the latency has not been taken yet.
+    /// Weighs the particles by a pose that arrives late, against their own poses at its time. The
+    /// latency has not been subtracted from that time.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         let PoseAt { time, pose, .. } = late;
         self.observation.pose = Some(pose);
@@ -350,7 +352,7 @@ impl<'o> ContactFilter<'o> {
         &self.latest
     }
 
-    /// Makes of the latest row one that no step leads to, with a pose or without.
+    /// Turns the latest row into one that no step leads to, with a pose or without.
     pub fn make_no_step(&mut self, visual: bool) {
         let row = &mut self.latest;
         row.visual = visual;
@@ -361,7 +363,7 @@ impl<'o> ContactFilter<'o> {
         row.collapsed = row.collapsed.map(|collapsed| collapsed && visual);
     }
 
-    /// Writes what the particles amount to.
+    /// Writes the estimate of the particles.
     fn summarise(&mut self) {
         let row = &mut self.latest;
         summarise(&self.filter, &self.plan.reference, row);
@@ -377,7 +379,7 @@ impl<'o> ContactFilter<'o> {
         row.ancestors = Some(lineage.ancestors() as u32);
     }
 
-    /// Where the object waits at the latest row, whose time this is (s).
+    /// Returns where the object waits at the latest row, whose time this is (s).
     pub fn waiting_at(&self, time: f64) -> Waiting {
         Waiting {
             at: PoseAt {
@@ -389,14 +391,13 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
-    /// Takes the object for one that has waited like that, as another filter has seen it.
+    /// Takes over how another filter has seen the object wait.
     pub fn go_on_waiting(&mut self, waiting: &Waiting) {
         self.resting = waiting.resting;
         self.plan.resting = self.where_it_rests();
     }
 
-    /// Writes what another filter knows of friction into the latest row, in place of what the
-    /// particles have.
+    /// Writes another filter's friction into the latest row, in place of that of the particles.
     pub fn tell_friction(&mut self, mean: Friction, std: Friction) {
         self.latest.friction = Some(mean);
         if let Some(spread) = &mut self.latest.spread {
@@ -425,18 +426,19 @@ impl<'o> ContactFilter<'o> {
         ParticleView::new(weighed, self.filter.model(), &self.observation)
     }
 
-    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    /// Number of rows at which no particle explained the camera pose, so that all were
+    /// reinitialised around it.
     pub fn collapses(&self) -> u32 {
         self.collapses
     }
 
-    /// How often the steps since a blackout were made again.
+    /// Number of re-simulations of the steps since an occlusion began.
     pub fn second_tries(&self) -> u32 {
         self.replay.tries()
     }
 
-    /// ln of the evidence of the rows so far: what the particles expected of them, up to a constant
-    /// of the sensors. Rows at which they collapsed are left out.
+    /// ln of the evidence of the rows so far: the likelihood that the particles gave them, up to a
+    /// constant of the sensors. Rows at which they collapsed are left out.
     pub fn log_evidence(&self) -> f64 {
         self.log_evidence
     }

@@ -1,4 +1,4 @@
-//! What a step leaves of its contacts in the flags of the particles: who touches, and how it slips.
+//! Contact flags of the particles after a step: who touches, and how it slips.
 
 use stickslip_dynamics::{Body, Lanes, Mask};
 
@@ -8,7 +8,7 @@ use crate::particle::columns::{Columns, SlipFlags};
 use crate::particle::propagation::{Propagation, Transition, moving};
 use crate::particle::step_plan::StepPlan;
 
-/// Slip velocity (m/s) above which a contact slides: by less a pusher that stands seems to creep,
+/// Slip velocity (m/s) above which a contact slides. A standing pusher seems to creep by less,
 /// since its track is smoothed from noisy poses.
 const SLIDING: f64 = 1e-4;
 
@@ -27,7 +27,7 @@ impl Propagation {
         let rho = setup.scene.object.gyration_radius();
         let moves = moving(&self.particles[chunk].twist, rho);
 
-        // what touches while nothing moves goes on touching: the pusher's track is noisy
+        // bodies that touch while nothing moves go on touching: the pusher's track is noisy
         let pusher_was_near = flags.get(Columns::PUSHER_WAS_NEAR);
         let rests = match columns.model() {
             FilterModel::Robust => pusher_was_near & !(moves | Mask::splat(plan.driven)),
@@ -38,7 +38,7 @@ impl Propagation {
         let pusher = presses(Body::Pusher).gt(Lanes::ZERO);
         let near = self.near(chunk, Body::Pusher);
         let goes_on = rests & near & flags.get(Columns::CONTACT_PUSHER);
-        // also by one that is hidden and carries the object along
+        // a hidden pusher that carries the object along touches it, too
         let carried = moving(&self.carried[chunk], rho);
         let touches = pusher | self.close(transition, chunk, Body::Pusher) | goes_on | carried;
         flags.set(Columns::CONTACT_PUSHER, touches);
@@ -66,7 +66,8 @@ impl Propagation {
         }
     }
 
-    /// How the object slips on a body in the lanes that touch it; flags of the others mean nothing.
+    /// Stores how the object slips on a body in the lanes that touch it. Flags of the other lanes
+    /// mean nothing.
     #[inline(always)]
     fn store_slip(
         &self,

@@ -1,5 +1,5 @@
-//! What contact mode adds to a step (docs/method.md, "Contact mode"): every particle has its own
-//! friction, offsets, feet and latency, and its own view of the tactile sensors.
+//! Additions of the robust model to a step (docs/method.md, "Contact mode"): every particle has its
+//! own friction, offsets, feet and latency, and its own view of the tactile sensors.
 
 use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
@@ -13,14 +13,14 @@ use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
 use crate::setup::Limits;
 
-/// Numbers for what is unknown: behind those of all substeps.
+/// Numbers of the draws of unknowns: they follow those of all substeps.
 const VARIATION_PAIR: u32 = 1 << 20;
 const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
 const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
 const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
 const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
 const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
-/// Behind those of all fixels.
+/// Number behind those of all fixels.
 const CREEP_PAIR: u32 = 1 << 21;
 pub(super) const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
 const SHAKEN_PAIR: u32 = UNSEEN_PAIR + 2;
@@ -31,7 +31,7 @@ const SUPPORT_PAIR: u32 = TURN_PAIR + 2;
 const TOUCHING: f64 = 1e-4;
 
 impl Propagation {
-    /// Draws what is unknown for one step.
+    /// Draws the unknowns for one step.
     pub(super) fn draw_unknowns(
         &mut self,
         transition: &Transition<'_>,
@@ -65,7 +65,8 @@ impl Propagation {
             #[inline(always)]
             || self.vary_friction(transition, plan, block),
         );
-        // drawn anew in every row of a fast pusher, its offset would be the largest of many when it comes near
+        // drawn in every row of a fast pusher, its offset would be the largest of many when it
+        // comes near
         if plan.noise_age == 0 {
             self.draw_rig(transition, plan, draw, block);
             if plan.shows_rest() {
@@ -86,7 +87,7 @@ impl Propagation {
         }
     }
 
-    /// Draws what is unknown of the rig.
+    /// Draws the unknowns of the rig.
     fn draw_rig(
         &mut self,
         transition: &Transition<'_>,
@@ -154,7 +155,8 @@ impl Propagation {
         );
     }
 
-    /// Which particles nothing has come near yet: their objects rest where they were first seen.
+    /// Notes the particles that nothing has come near yet: their objects rest where they were first
+    /// seen.
     #[inline(always)]
     fn note_untouched(
         &mut self,
@@ -173,8 +175,8 @@ impl Propagation {
         }
     }
 
-    /// The object's friction: what nothing was felt of is drawn anew from its prior; what was felt
-    /// takes a random step that keeps the prior.
+    /// Draws the object's friction. A parameter that never took part is resampled from its prior.
+    /// One that took part takes a random step that keeps the prior.
     #[inline(always)]
     fn draw_friction(
         &mut self,
@@ -203,7 +205,7 @@ impl Propagation {
                 let wandered = before * (1.0 - step * step).sqrt() + fresh * step;
                 let drawn = felt.select(wandered, fresh).exp() * nominal;
                 let drawn = within(drawn, limits[k]);
-                // where nothing wanders, what was felt stays, to the bit
+                // without a random step, a parameter that took part keeps its bits
                 let stays = felt & Mask::splat(step == 0.0);
                 *value = stays.select(*value, drawn);
             }
@@ -211,8 +213,8 @@ impl Propagation {
         }
     }
 
-    /// Friction at this place: it differs from the object's by a logarithm that forgets itself
-    /// along the way.
+    /// Applies the friction of this place. It differs from the object's by a logarithm that loses
+    /// its memory along the way.
     #[inline(always)]
     fn vary_friction(
         &mut self,
@@ -262,7 +264,8 @@ impl Propagation {
         dynamics.step_block_offset(input, offsets, particles, &mut self.work);
     }
 
-    /// Where bodies are so close that they count as touching; nowhere in paper mode.
+    /// Returns the lanes in which a body is so close that it counts as touching; none in the
+    /// paper's model.
     #[inline(always)]
     pub(super) fn close(
         &self,
@@ -276,15 +279,15 @@ impl Propagation {
         }
     }
 
-    /// Where contacts with a body were sought and found, touching or not.
+    /// Returns the lanes in which contacts with a body were sought and found, touching or not.
     #[inline(always)]
     pub(super) fn near(&self, chunk: usize, body: Body) -> Mask<LANES> {
         let far = Lanes::splat(f64::INFINITY);
         self.work.gaps(chunk, body).lt(far)
     }
 
-    /// Weighs what is known without the camera at the end of the step: where the pusher is, and
-    /// what the sensors read.
+    /// Weighs what is known without the camera at the end of the step: the pusher's place and the
+    /// readings of the sensors.
     pub(super) fn feel(
         &mut self,
         transition: &Transition<'_>,
@@ -299,9 +302,9 @@ impl Propagation {
         );
     }
 
-    /// Weighs how far behind its logged pose the pusher gave way in this step: a particle that jams
-    /// a pusher which goes on is contradicted by the log. Not by one that has just come back into
-    /// view: where the object went meanwhile, nobody knows.
+    /// Weighs how far the pusher yielded behind its logged pose in this step. A particle that jams
+    /// a pusher which goes on contradicts the log. A pusher that has just come back into view does
+    /// not count: where the object went meanwhile is unknown.
     fn read_pusher(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -337,7 +340,7 @@ impl Propagation {
         let threshold = Lanes::splat(setup.tactile.touch_force * last_h);
         let touch_gap = Lanes::splat(setup.uncertainty.touch_gap);
         for j in 0..columns.fixels() {
-            // a row that tells of no sensor is silent on all
+            // a row without readings of a sensor is silent on it
             let reading = plan.tactile.get(j).copied().flatten();
             for chunk in 0..block.len().div_ceil(LANES) {
                 let mut belief = channel.start();
@@ -361,7 +364,7 @@ impl Propagation {
     }
 }
 
-/// A parameter within its limits.
+/// Clamps a parameter to its limits.
 #[inline(always)]
 fn within(value: Column, limits: &Limits) -> Column {
     value
@@ -373,8 +376,8 @@ fn squared([x, y]: [Column; 2]) -> Column {
     x * x + y * y
 }
 
-/// Notes in a chunk's flags which parameters took part, and keeps besides them those that never
-/// did: they are drawn anew.
+/// Notes in a chunk's flags which parameters took part. Adds to `phi` those that never did: they
+/// are resampled from the prior.
 #[inline(always)]
 pub(super) fn note_felt(phi: &mut Friction<Mask<LANES>>, block: &mut BlockMut<'_>, chunk: usize) {
     let mut flags = FlagsMut::new(block, chunk);

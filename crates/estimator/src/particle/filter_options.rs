@@ -1,4 +1,4 @@
-//! What a contact filter is made with: [`FilterOptions`].
+//! Options of a contact filter: [`FilterOptions`].
 
 use stickslip_filter::{Resampling, Settings};
 
@@ -7,22 +7,22 @@ use crate::moves::Moves;
 use crate::particle::observer::Observer;
 use crate::setup::Setup;
 
-/// What a contact filter is made with.
+/// Options of a contact filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterOptions<'o> {
-    /// Rules of the filter.
+    /// Configuration of the filter.
     pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// How far before the latest row late poses may show the object (s).
+    /// Longest time before the latest row at which late poses may show the object (s).
     pub late: f64,
-    /// What brings particles to where weighing would leave few (contact mode).
+    /// Ways to move particles to where weighing would leave few (robust model).
     pub moves: Moves,
-    /// Share of a camera pose that moves particles at least, where it may move them (contact mode).
+    /// Least share of a camera pose that moves particles, if it may move them (robust model).
     pub least_moved: f64,
-    /// Is shown every time step.
+    /// Observer of every time step.
     pub observer: Option<&'o dyn Observer>,
 }
 

@@ -1,5 +1,5 @@
-//! Whether an object moves that nothing is known to be near, as one that a hand moves, or a pusher
-//! that nobody sees: [`FreeMotion`] (contact mode; docs/method.md (54)).
+//! Motion of an object without known contacts, moved by a hand or an unseen pusher: [`FreeMotion`]
+//! (robust model; docs/method.md (54)).
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::{ConstantVelocity, Gaussian};
@@ -8,23 +8,24 @@ use crate::angle::difference;
 use crate::particle::camera_likelihood::WRONG;
 use crate::particle::normal_pose::NormalPose;
 
-/// Probability that an object which rests is moved from one pose of the camera to the next, and of
-/// one that has just been moved a little.
+/// Probability that an object at rest is moved from one camera pose to the next, and that of an
+/// object which has just been moved a little.
 const STARTS: f64 = 1e-8;
 const STARTS_AGAIN: f64 = 1e-2;
 
-/// How long it then goes on, in the mean (s).
+/// Mean duration of the motion (s).
 const LASTS: f64 = 0.3;
 
-/// Standard deviation of its speed (m/s), and for how long it keeps it (s).
+/// Standard deviation of its speed (m/s), and time for which it keeps it (s).
 const SPEED: f64 = 0.05;
 const SPEED_LASTS: f64 = 1.0;
 
-/// The belief that the object moves at nearly constant velocity, beside the one that it rests: two
-/// models that interact (Blom & Bar-Shalom 1988), of which the likelier one is told.
+/// Belief that the object moves at nearly constant velocity. It competes with the belief that the
+/// object rests: two models that interact (Blom & Bar-Shalom 1988), of which the likelier one is
+/// reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeMotion {
-    /// Position and velocity of x, y and θ, whose windings are those of `rest`.
+    /// Position and velocity of x, y and θ; θ is unwrapped like that of `rest`.
     axes: [Gaussian<2>; 3],
     /// ln of the odds that it moves.
     log_odds: f64,
@@ -42,17 +43,17 @@ impl FreeMotion {
         }
     }
 
-    /// The same object, at rest at `start`.
+    /// The belief about the same object, at rest at `start`.
     pub fn at_rest(self, start: &NormalPose) -> Self {
         Self::new(start, self.radius)
     }
 
-    /// Whether it moves, more likely than not.
+    /// Returns true if it moves, more likely than not.
     pub fn moves(&self) -> bool {
         self.log_odds > 0.0
     }
 
-    /// Where it is after a time `h` (s) in which it goes on.
+    /// Returns where it is after a time `h` (s) in which it goes on.
     pub fn after(&self, h: f64) -> NormalPose {
         let mut pose = NormalPose {
             mean: Pose::default(),
@@ -66,12 +67,12 @@ impl FreeMotion {
         pose
     }
 
-    /// Where it rests, if it may have come to rest after `h` (s): the mixture of `rest`, where it
-    /// was if it did not move, and of where it moved.
+    /// Returns where it rests, if it may have stopped after `h` (s): the mixture of `rest`, where
+    /// it was if it did not move, and of where it moved.
     pub fn stopped(&self, rest: &NormalPose, h: f64) -> NormalPose {
         let moves = self.probability();
         let (from_rest, from_motion) = (1.0 - moves, moves * (1.0 - libm::exp(-h / LASTS)));
-        // at the time of the pose before nothing has stopped
+        // nothing has stopped at the time of the pose before
         let share = from_motion / (from_rest + from_motion).max(f64::MIN_POSITIVE);
         let mut stopped = *rest;
         let axes = stopped
@@ -85,9 +86,9 @@ impl FreeMotion {
         stopped
     }
 
-    /// Bayes' rule with a pose of the camera, `h` (s) after the one before: `noise` are its
-    /// variances, `rest` where the object is if it rests, and whether it has just been moved a
-    /// little.
+    /// Applies Bayes' rule with a camera pose, `h` (s) after the one before. `noise` are its
+    /// variances. `rest` is where the object is if it rests, and `was_moved` is true if it has just
+    /// been moved a little.
     pub fn see(
         &mut self,
         h: f64,
@@ -106,13 +107,13 @@ impl FreeMotion {
         let now = self.with(rest, starts / now_moves);
         self.axes = std::array::from_fn(|k| model(k, self.radius, 1.0).predict(&now[k], h));
 
-        // by which of the two the pose is likelier
+        // the odds, by which of the two the pose is likelier
         let moving = self.after(0.0);
         let likely = |by: &NormalPose| WRONG + libm::exp(by.log_density(pose, noise));
         let (if_moves, if_rests) = (likely(&moving), likely(rest));
         self.log_odds = libm::log(now_moves * if_moves) - libm::log(now_rests * if_rests);
 
-        // where it is if it moves; by as much as the pose may be wrong, it counts less
+        // where it is if it moves; the pose counts less, the likelier it is wrong
         let right = (1.0 - WRONG / if_moves).max(WRONG);
         let away = difference(pose, &moving.mean);
         for (k, away) in away.fields().into_iter().enumerate() {
@@ -122,8 +123,8 @@ impl FreeMotion {
         }
     }
 
-    /// The mixture of where it moves and, with this share, of one that starts from `rest`, axis by
-    /// axis.
+    /// Returns the mixture of where it moves and, with this share, of one that starts from `rest`,
+    /// axis by axis.
     fn with(&self, rest: &NormalPose, share: f64) -> [Gaussian<2>; 3] {
         let starts = starting_from(rest, self.radius);
         std::array::from_fn(|k| {
@@ -131,19 +132,19 @@ impl FreeMotion {
         })
     }
 
-    /// That it moves.
+    /// Returns the probability that it moves.
     fn probability(&self) -> f64 {
         1.0 / (1.0 + libm::exp(-self.log_odds))
     }
 }
 
-/// Axes of an object at rest that is moved from now on.
+/// Returns the axes of an object at rest that is moved from now on.
 fn starting_from(rest: &NormalPose, radius: f64) -> [Gaussian<2>; 3] {
     let means = rest.mean.fields();
     std::array::from_fn(|k| model(k, radius, rest.variance[k].sqrt()).start(*means[k]))
 }
 
-/// How axis `k` moves, measured with this standard deviation.
+/// Model of the motion of axis `k`, measured with this standard deviation.
 fn model(k: usize, radius: f64, measurement_std: f64) -> ConstantVelocity {
     let speed = if k < 2 { SPEED } else { SPEED / radius };
     ConstantVelocity {
@@ -170,7 +171,8 @@ mod tests {
     fn poses_that_move_on_are_taken_for_motion_within_three_and_two_at_rest_for_rest() {
         let (mut free, mut rest) = (FreeMotion::new(&at(0.0), 0.02), at(0.0));
         let mut moved = Vec::new();
-        // 60 mm/s at 30 Hz, from the third pose to the ninth, with half a turn of the circle in between
+        // 60 mm/s at 30 Hz, from the third pose to the ninth, with half a turn of the circle in
+        // between
         for k in 0..20 {
             let x = 2e-3 * (f64::from(k) - 2.0).clamp(0.0, 7.0);
             let turned = std::f64::consts::TAU * f64::from(k % 2);

@@ -1,4 +1,4 @@
-//! The pose that is nearest to the particles, in the mean: [`way_to_median`], docs/method.md (51).
+//! Geometric median of the particles' poses: [`way_to_median`], docs/method.md (51).
 
 use stickslip_dynamics::{Lanes, Level, Pose, on_widest};
 use stickslip_filter::{Block, ParticleFilter};
@@ -12,13 +12,14 @@ use crate::particle::model::ContactModel;
 /// Distance below which a particle pulls less (m): one on the median itself would hold it.
 const SOFTENED: f64 = 1e-5;
 
-/// Step that ends the iteration (m).
+/// Step length that ends the iteration (m).
 const LEAST_STEP: f64 = 1e-7;
 
-/// Steps at most; sets that part in halves take most.
+/// Largest number of steps; sets that part in halves take most.
 const MOST_STEPS: usize = 64;
 
-/// The way from `mean`, a pose near the particles, to that of the least mean distance to them.
+/// Returns the way from `mean`, a pose near the particles, to the pose of the least mean distance
+/// to them.
 pub(crate) fn way_to_median(filter: &ParticleFilter<ContactModel<'_>>, mean: Pose) -> Pose {
     let rho = filter.model().gyration_radius();
     let weights = filter.weights().weights();
@@ -36,7 +37,7 @@ pub(crate) fn way_to_median(filter: &ParticleFilter<ContactModel<'_>>, mean: Pos
     Pose::new(x, y, turn / rho)
 }
 
-/// How particles pull at a point: each with its weight, however far it is.
+/// Pull of particles at a point: each with its weight, however far it is.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pull {
     /// Σ w d/|d|, d the way to the particle.
@@ -46,7 +47,7 @@ struct Pull {
 }
 
 impl Pull {
-    /// Of a block, at a pose of an object of radius of gyration `rho`.
+    /// The pull of a block, at a pose of an object of radius of gyration `rho`.
     fn of(block: &Block<'_>, weights: &[f64], at: &Pose, rho: f64) -> Self {
         let (mut force, mut stiffness) = ([Column::ZERO; 3], Column::ZERO);
         on_widest(
@@ -83,8 +84,8 @@ impl Pull {
     }
 }
 
-/// The point of the least mean distance, from the origin, given how the particles pull at a point
-/// (Weiszfeld 1937).
+/// Returns the point of the least mean distance, relative to the origin, given the pull of the
+/// particles at a point (Weiszfeld 1937).
 fn nearest_point(pull_at: impl Fn(Point) -> Pull) -> Point {
     let mut point = [0.0; 3];
     for _ in 0..MOST_STEPS {
@@ -123,7 +124,8 @@ mod tests {
         assert!(off < 1e-5, "{found:?}, not {expected:?}");
     }
 
-    /// Of four corners of a convex quadrilateral it is where the diagonals cross (Fagnano).
+    /// The geometric median of the corners of a convex quadrilateral is where the diagonals cross
+    /// (Fagnano).
     #[test]
     fn of_four_corners_it_is_where_the_diagonals_cross() {
         let (crossing, tilt) = ([0.004, -0.002, 0.003], [0.6, 0.0, 0.8]);
@@ -133,7 +135,7 @@ mod tests {
         assert_near(median(&corners.map(|corner| (0.25, corner))), crossing);
     }
 
-    /// Where one place has more than half of the weight, it is that place, however far the others
+    /// A place with more than half of the weight is the geometric median, however far the others
     /// are.
     #[test]
     fn it_stays_with_the_greater_part() {
@@ -144,7 +146,7 @@ mod tests {
         }
     }
 
-    /// On a line it is the median, which a far particle does not move.
+    /// The geometric median on a line is the median, which a far particle does not move.
     #[test]
     fn on_a_line_it_is_the_median() {
         let places = [

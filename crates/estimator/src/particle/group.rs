@@ -17,7 +17,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Of weights and points.
+    /// The moments of weights and points.
     pub fn of(members: impl Iterator<Item = (f64, Point)> + Clone) -> Self {
         let (mut weight, mut first) = (0.0, [0.0; 3]);
         for (w, point) in members.clone() {
@@ -44,7 +44,7 @@ impl Moments {
         }
     }
 
-    /// The axis of greatest variance, by power iteration; `None` where all is one point.
+    /// Returns the axis of greatest variance, by power iteration; `None` if all is one point.
     pub fn longest_axis(&self) -> Option<Point> {
         let c = &self.covariance;
         let widest = (0..3).max_by(|i, j| c[*i][*i].total_cmp(&c[*j][*j]))?;

@@ -1,30 +1,31 @@
-//! Where a pusher may be that nobody sees: [`HiddenPusher`] (contact mode; docs/method.md (53)).
+//! Possible place of a pusher that is not seen: [`HiddenPusher`] (robust model; docs/method.md
+//! (53)).
 
 use stickslip_dynamics::{Placed, Pose, Scene, StepInput, Twist};
 
 use crate::gap::gap;
 use crate::particle::step_plan::UnseenPusher;
 
-/// Gap of object and a pusher that nobody sees, up to which it counts as having reached the object
-/// (m).
+/// Gap of the object and an unseen pusher up to which the pusher counts as having reached the
+/// object (m).
 const REACHED: f64 = 1e-3;
 
-/// The pusher as it was when it was last seen, and what has become of it since.
+/// State of the pusher when it was last seen, and its motion since.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HiddenPusher {
-    /// Its last twist, and where it is if it goes on like that, once it was seen.
+    /// Its last twist, and where it is if it goes on like that; `None` before it was seen.
     last: Option<(Twist, Pose)>,
-    /// Whether it moved then, as far as its track can tell.
+    /// True if it moved then, as far as its track can tell.
     moved: bool,
-    /// Whether it would have reached the object by now.
+    /// True if it would have reached the object by now.
     reached: bool,
-    /// For how long it has been seen again (s); 0 while nobody sees it, infinite where it was never
+    /// Time for which it has been seen again (s): 0 while it is not seen, infinite if it was never
     /// hidden.
     back_for: f64,
 }
 
-/// How long a pusher that is seen again counts as just back: bodies that have come to overlap
-/// meanwhile part (s).
+/// Time for which a pusher that is seen again counts as just back (s): bodies that have come to
+/// overlap meanwhile part.
 const JUST_BACK: f64 = 0.2;
 
 impl Default for HiddenPusher {
@@ -39,13 +40,13 @@ impl Default for HiddenPusher {
 }
 
 impl HiddenPusher {
-    /// Whether nobody saw it at the latest row.
+    /// Returns true if it was not seen at the latest row.
     pub fn is_hidden(&self) -> bool {
         self.back_for == 0.0
     }
 
-    /// A row at which somebody sees it, `h` (s) after the one before, that ends with this substep,
-    /// and whether it moves; says whether it is just back.
+    /// Takes a row at which it is seen, `h` (s) after the one before, that ends with the substep
+    /// `last`. `moves` is true if it moves. Returns true if it is just back.
     pub fn seen(&mut self, h: f64, last: &StepInput, moves: bool) -> bool {
         let Some(motion) = last.pusher else {
             return false;
@@ -61,9 +62,11 @@ impl HiddenPusher {
         just_back
     }
 
-    /// A row at which nobody sees it, `h` (s) after the one before; `hidden_object` is where the
-    /// object is thought to be, where nobody sees that, either. What the pusher may do to it: in
-    /// the dark nothing if it stood when it was last seen, since it has been lifted then.
+    /// Takes a row at which it is not seen, `h` (s) after the one before. `hidden_object` is the
+    /// estimated place of the object if that is not seen, either.
+    ///
+    /// Returns what the pusher may do to the object. It does nothing to a hidden object if it stood
+    /// when it was last seen, since it has been lifted then.
     pub fn unseen(
         &mut self,
         scene: &Scene,

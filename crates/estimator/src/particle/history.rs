@@ -1,18 +1,18 @@
-//! Which past poses the particles keep, so that a camera pose that shows the past can be weighed:
+//! Past poses that the particles keep, so that a camera pose that shows the past can be weighed:
 //! [`PoseHistory`].
 
 use std::collections::VecDeque;
 
 use crate::particle::observation::LatencyCompensation;
 
-/// Slots by which a history grows.
+/// Number of slots by which a history grows.
 const GROWTH: usize = 8;
 
-/// Times of the past poses that every particle keeps, with the slot (columns of the particle set)
-/// of each.
+/// Times of the past poses that every particle keeps, each with its slot (columns of the particle
+/// set).
 #[derive(Clone, Debug)]
 pub(crate) struct PoseHistory {
-    /// How far back poses are needed (s); 0: the particles keep none.
+    /// Time back to which poses are needed (s); 0: the particles keep none.
     depth: f64,
     /// (time, slot) in order of time, the first row of the estimate first.
     kept: VecDeque<(f64, usize)>,
@@ -37,8 +37,8 @@ impl PoseHistory {
         self.slots
     }
 
-    /// A slot for the pose at `time`, the latest; it may be one that nobody needs any more. Grows
-    /// where none is left. 0 where no history is kept.
+    /// Returns a slot for the pose at `time`, the latest; it may be one that is no longer needed.
+    /// The history grows if none is left. Returns 0 if no history is kept.
     pub fn push(&mut self, time: f64) -> usize {
         if self.slots == 0 {
             return 0;
@@ -57,13 +57,13 @@ impl PoseHistory {
         slot
     }
 
-    /// Times (s) and slots of the poses that are kept, in order of time.
+    /// Returns times (s) and slots of the poses that are kept, in order of time.
     pub fn kept(&self) -> impl Iterator<Item = (f64, usize)> {
         self.kept.iter().copied()
     }
 
-    /// Between which poses `time` lies; before the first one, the first one counts. `None` where no
-    /// history is kept.
+    /// Returns the poses between which `time` lies; before the first one, the first one counts.
+    /// `None` if no history is kept.
     pub fn at(&self, time: f64) -> Option<LatencyCompensation> {
         let shown = time.max(self.kept.front()?.0);
         let later = self.kept.iter().position(|(t, _)| *t >= shown);
@@ -87,7 +87,7 @@ impl PoseHistory {
 mod tests {
     use super::*;
 
-    /// What a particle would hold in each slot: the time at which it was written.
+    /// Returns what a particle would hold in each slot: the time at which it was written.
     fn replay(depth: f64, times: &[f64], lookback: f64) -> Vec<f64> {
         let mut history = PoseHistory::new(depth, times[0]);
         let mut slots = vec![f64::NAN; 1000];

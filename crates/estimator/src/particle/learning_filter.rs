@@ -1,5 +1,5 @@
-//! The particles that say where the object is, and beside them, in contact mode, those that learn
-//! its friction: [`LearningFilter`], docs/method.md (52).
+//! The particles that estimate the pose and, in the robust model, those that learn friction:
+//! [`LearningFilter`], docs/method.md (52).
 
 use std::num::NonZero;
 
@@ -15,22 +15,22 @@ use crate::particle::observation::PoseAt;
 use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
 
-/// Share of a camera pose that moves particles that learn, at least (52).
+/// Least share of a camera pose that moves particles that learn (52).
 const LEAST_MOVED: f64 = 0.97;
 
-/// Seeds of the particles that learn lie apart from those of the others.
+/// Distance of the seeds of the particles that learn from those of the others.
 const LEARNING_SEEDS: u64 = 1 << 48;
 
-/// The filter that says where the object is, with the friction that another one learns.
+/// The filter of the pose, with the friction that another filter learns.
 ///
-/// What serves the pose is not what serves the friction. Pushes that are smoother than the model's
-/// teach a wrong friction, unless particles know that pushes may be smooth and contacts may creep;
-/// where the object goes is then told too surely. So there are two sets of particles, each with its
-/// own model.
+/// A model that serves the pose does not serve the friction. Particles learn a wrong friction from
+/// pushes that are smoother than their model's, unless they allow for smooth pushes and creeping
+/// contacts. But with this allowance they are overconfident about where the object goes. So there
+/// are two sets of particles, each with its own model.
 pub(crate) struct LearningFilter<'o> {
     poses: ContactFilter<'o>,
     learning: Learning<'o>,
-    /// What was known of friction when the particles that learn it last looked.
+    /// Friction when the particles that learn it last saw the object.
     known: Option<KnownFriction>,
     /// The latest camera pose.
     shown: Pose,
@@ -40,15 +40,15 @@ pub(crate) struct LearningFilter<'o> {
 
 /// The particles that learn friction.
 enum Learning<'o> {
-    /// There are none, or no more: friction is told, or the camera will show no more.
+    /// There are none, or no more: friction is known, or no camera pose will follow.
     None,
-    /// There is nothing to learn before a particle has touched anything.
+    /// They begin at the first contact: before it there is nothing to learn.
     AtContact(Box<LearnerOptions<'o>>),
     /// They learn.
     Underway(Box<ContactFilter<'o>>),
 }
 
-/// Means and standard deviations.
+/// Means and standard deviations of friction.
 #[derive(Clone, Copy, Debug)]
 struct KnownFriction {
     mean: Friction,
@@ -89,7 +89,7 @@ impl<'o> LearningFilter<'o> {
         })
     }
 
-    /// One row: the step that leads to it, then what was measured there.
+    /// Takes one row: the step that leads to it, then its measurements.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
         let measured = Measured {
             object: measured.object.filter(|pose| self.is_new(*pose)),
@@ -114,7 +114,7 @@ impl<'o> LearningFilter<'o> {
                     self.poses.count_steps_of(row);
                 }
             }
-            // particles that have felt nothing have the prior
+            // particles without contact have the prior
             Learning::AtContact(_) if self.poses.latest().visual => {
                 self.known = KnownFriction::of(self.poses.latest());
             }
@@ -124,8 +124,8 @@ impl<'o> LearningFilter<'o> {
         self.latest()
     }
 
-    /// A row that comes so soon after the latest step that none leads to it: its pose is weighed as
-    /// one of the past.
+    /// Takes a row that comes so soon after the latest step that no step leads to it. Its pose is
+    /// weighed as one of the past.
     pub fn look(&mut self, measured: Measured<'_>) -> &EstimateRow {
         let seen = measured.object.is_some_and(|pose| {
             self.weigh(PoseAt {
@@ -138,14 +138,14 @@ impl<'o> LearningFilter<'o> {
         self.latest()
     }
 
-    /// Weighs the particles by a pose that arrives late; those that learn, where the object has not
-    /// come to rest since.
+    /// Weighs the particles by a pose that arrives late. Those that learn are weighed only if the
+    /// object has not come to rest since.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
         self.weigh(late);
         self.latest()
     }
 
-    /// The same; whether the pose is a new one, and counted.
+    /// Weighs the particles by a pose; returns true if it is a new one.
     fn weigh(&mut self, late: PoseAt) -> bool {
         if !self.is_new(late.pose) {
             return false;
@@ -160,26 +160,26 @@ impl<'o> LearningFilter<'o> {
         true
     }
 
-    /// Whether a camera pose is a new measurement: in contact mode, one that equals the one before
-    /// is that frame again.
+    /// Returns true if a camera pose is a new measurement. In the robust model, a pose that equals
+    /// the one before is that frame again.
     fn is_new(&mut self, pose: Pose) -> bool {
         let before = std::mem::replace(&mut self.shown, pose);
         pose != before || self.poses.model() == FilterModel::Paper
     }
 
-    /// The camera will show no more: what is known of friction stays as it is.
+    /// Stops learning friction, because no camera pose will follow: it stays as it is known.
     pub fn learn_no_more(&mut self) {
         self.learning = Learning::None;
     }
 
-    /// Writes what is known of friction into the latest row.
+    /// Writes the known friction into the latest row.
     fn tell_friction(&mut self) {
         if let Some(KnownFriction { mean, std }) = self.known {
             self.poses.tell_friction(mean, std);
         }
     }
 
-    /// Goes on with another number of particles; where it is the same, nothing changes.
+    /// Goes on with another number of particles; nothing changes if it is the same.
     pub fn resize(&mut self, particles: NonZero<u32>) {
         self.poses.resize(particles);
         if let Learning::Underway(learner) = &mut self.learning {
@@ -187,7 +187,7 @@ impl<'o> LearningFilter<'o> {
         }
     }
 
-    /// The number of particles that say where the object is; as many learn.
+    /// Number of particles of the pose; as many learn friction.
     pub fn count(&self) -> NonZero<u32> {
         self.poses.count()
     }
@@ -197,13 +197,13 @@ impl<'o> LearningFilter<'o> {
         self.poses.latest()
     }
 
-    /// The particles that say where the object is, after the latest row.
+    /// The particles of the pose, after the latest row.
     pub fn particles(&self) -> ParticleView<'_> {
         self.poses.particles()
     }
 
-    /// Those that have its friction, where the latest row taught any: the ones that learn it, and
-    /// before contact the same.
+    /// The particles with the friction of the estimate, if the latest row taught any: those that
+    /// learn it, and before contact those of the pose.
     pub fn friction_particles(&self) -> Option<ParticleView<'_>> {
         let taught = match &self.learning {
             Learning::Underway(learner) => &**learner,
@@ -213,12 +213,13 @@ impl<'o> LearningFilter<'o> {
         taught.latest().visual.then(|| taught.particles())
     }
 
-    /// Rows at which no particle explained the camera and all were drawn anew around its pose.
+    /// Number of rows at which no particle explained the camera pose, so that all were
+    /// reinitialised around it.
     pub fn collapses(&self) -> u32 {
         self.poses.collapses()
     }
 
-    /// How often the steps since a blackout were made again.
+    /// Number of re-simulations of the steps since an occlusion began.
     pub fn second_tries(&self) -> u32 {
         self.poses.second_tries()
     }
@@ -229,8 +230,8 @@ impl<'o> LearningFilter<'o> {
     }
 }
 
-/// What the particles that learn friction are made with: a setup that leaves more open, and seeds
-/// of their own.
+/// Options of the particles that learn friction: a setup that leaves more open, and seeds of their
+/// own.
 struct LearnerOptions<'o> {
     setup: Setup,
     camera: Camera,
@@ -247,7 +248,7 @@ impl<'o> LearnerOptions<'o> {
             camera,
             options: FilterOptions {
                 seed: options.seed.wrapping_add(LEARNING_SEEDS),
-                // nothing is learned in the dark
+                // nothing is learned while the camera is off
                 moves: Moves {
                     second_tries: false,
                     ..options.moves
@@ -259,7 +260,7 @@ impl<'o> LearnerOptions<'o> {
         }
     }
 
-    /// The particles, of an object that has waited so far.
+    /// Creates the particles, of an object that has waited so far.
     fn start(&self, waited: Waiting, particles: NonZero<u32>) -> ContactFilter<'o> {
         let options = FilterOptions {
             particles: particles.get() as usize,

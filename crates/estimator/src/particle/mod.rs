@@ -1,4 +1,4 @@
-//! The particle filter over contact dynamics: the model, its columns, and what they amount to.
+//! The particle filter over contact dynamics: the model, its columns, and its estimate.
 
 mod aside;
 mod camera_likelihood;

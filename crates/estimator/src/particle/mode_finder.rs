@@ -1,4 +1,4 @@
-//! Where a particle set falls into groups: [`ModeFinder`], docs/method.md (49).
+//! Modes of a particle set: [`ModeFinder`], docs/method.md (49).
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;
@@ -9,17 +9,17 @@ use crate::particle::columns::Columns;
 use crate::particle::group::{Moments, Point, dot, minus, squared};
 use crate::particle::model::ContactModel;
 
-/// Groups at most.
+/// Largest number of groups.
 const MOST_MODES: u8 = 8;
 
-/// Least share of the belief of a mode.
+/// Least weight of a mode, as a share of the belief.
 const LEAST_WEIGHT: f64 = 0.02;
 
 /// Least distance of two modes, in root mean square standard deviations of the two (Ashman, Bird &
 /// Zepf 1994: D). A normal distribution cut in two has 2.6, a uniform one 3.5.
 const LEAST_DISTANCE: f64 = 4.0;
 
-/// Bins along an axis in which a cut is sought.
+/// Number of bins along an axis in which a cut is sought.
 const BINS: usize = 64;
 
 /// Finds the modes of a belief; memory is kept from row to row.
@@ -34,7 +34,8 @@ pub(crate) struct ModeFinder {
 }
 
 impl ModeFinder {
-    /// For an object of radius of gyration `rho` (m), whose modes are at least `least` (m) apart.
+    /// A finder for an object of radius of gyration `rho` (m), whose modes are at least `least` (m)
+    /// apart.
     pub fn new(rho: f64, least: f64) -> Self {
         Self {
             rho,
@@ -44,7 +45,7 @@ impl ModeFinder {
         }
     }
 
-    /// Writes the modes of the particles, the heaviest first, one at least; `centre` and `std` are
+    /// Writes the modes of the particles, the heaviest first, one at least. `centre` and `std` are
     /// pose and spread of the row.
     pub fn find(
         &mut self,
@@ -72,7 +73,7 @@ impl ModeFinder {
         modes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     }
 
-    /// Pose of the particle nearest to `centre`.
+    /// Returns the pose of the particle nearest to `centre`.
     fn nearest(&self, filter: &ParticleFilter<ContactModel<'_>>, centre: Pose) -> Pose {
         let weights = filter.weights().weights();
         let (_, particle) = filter.particles().reduce(
@@ -96,7 +97,7 @@ impl ModeFinder {
         [pose.x - about.x, pose.y - about.y, self.rho * turn]
     }
 
-    /// Takes all particles for one group.
+    /// Takes all particles as one group.
     fn read(&mut self, filter: &ParticleFilter<ContactModel<'_>>, centre: Pose) {
         self.points.clear();
         for block in filter.particles().blocks() {
@@ -130,7 +131,7 @@ impl ModeFinder {
         count
     }
 
-    /// Where a group falls in two along the axis on which it is longest (Otsu 1979), if it does.
+    /// Returns the cut of a group in two along its longest axis (Otsu 1979), if it falls apart.
     fn cut(&self, weights: &[f64], mode: u8) -> Option<Cut> {
         let moments = Moments::of(self.members(weights, mode));
         let axis = moments.longest_axis()?;
@@ -148,7 +149,7 @@ impl ModeFinder {
             bins[(((t - low) / width) as usize).min(BINS - 1)].add(weight, t);
         }
 
-        // the cut whose parts lie farthest apart beside their weights
+        // the cut whose parts lie farthest apart, with their weights
         let whole = bins
             .iter()
             .fold(Part::default(), |sum, bin| sum.plus(bin, 1.0));
@@ -178,7 +179,7 @@ impl ModeFinder {
         })
     }
 
-    /// Weights and points of a group; particles without weight belong to none.
+    /// Returns weights and points of a group; particles without weight belong to none.
     fn members<'a>(
         &'a self,
         weights: &'a [f64],
@@ -280,8 +281,8 @@ mod tests {
     use super::*;
     use stickslip_filter::{Purpose, Streams};
 
-    /// Clouds of normal numbers about these x (m), so many particles each, of standard deviation 1
-    /// mm.
+    /// Returns the sizes of the groups found in clouds of normal numbers about these x (m), so many
+    /// particles each, of standard deviation 1 mm.
     fn groups_of(clouds: &[(usize, f64)], least: f64) -> Vec<usize> {
         let draw = Streams::new(7).of(Purpose::Initialise).at(0);
         let mut finder = ModeFinder::new(0.02, least);
@@ -308,7 +309,7 @@ mod tests {
         three.sort_unstable();
         assert_eq!(three, [300, 300, 400]);
 
-        // too near each other beside their spread, too near for anybody to care, too light
+        // too near each other for their spread, nearer than the least distance, too light
         assert_eq!(groups_of(&[(500, 0.0), (500, 0.003)], 3e-4), [1000]);
         assert_eq!(groups_of(&[(500, 0.0), (500, 0.01)], 0.02), [1000]);
         assert_eq!(groups_of(&[(990, 0.0), (10, 0.02)], 3e-4), [1000]);

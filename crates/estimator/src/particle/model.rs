@@ -19,24 +19,24 @@ use crate::particle::tactile_likelihood::TactileLikelihood;
 use crate::particle::touch_channel::TouchChannel;
 use crate::setup::{Camera, Setup};
 
-/// Best log-likelihood below which no particle explains the observation: the particles are
+/// Best log-likelihood below which no particle explains the observation. The particles are then
 /// reinitialised around it (docs/method.md (27)).
 const COLLAPSED: f64 = -6.0;
 
-/// Number of a particle's first draw for how contacts creep: behind those for all fixels.
+/// Number of a particle's first draw of the creep of contacts: behind those for all fixels.
 const CREEP_NUMBER: u32 = 1 << 20;
 
-/// Number of a particle's first draw for how the pusher is turned.
+/// Number of a particle's first draw of the turn of the pusher.
 const TURN_NUMBER: u32 = CREEP_NUMBER + 2;
 
-/// Number of a particle's first draw for where its feet stand.
+/// Number of a particle's first draw of where its feet stand.
 const SUPPORT_NUMBER: u32 = TURN_NUMBER + 2;
 
 /// The model of one setup, started at one pose.
 ///
 /// A new sensor is one more field of [`Observation`] and one more term of
-/// [`log_likelihood`](Model::log_likelihood), in a file beside [`CameraLikelihood`] and
-/// [`TactileLikelihood`]; docs/method.md, "From the paper to the code", lists the whole way.
+/// [`log_likelihood`](Model::log_likelihood), in a file next to [`CameraLikelihood`] and
+/// [`TactileLikelihood`]. The whole way is in docs/method.md, "From the paper to the code".
 #[derive(Clone, Debug)]
 pub struct ContactModel<'o> {
     transition: Transition<'o>,
@@ -44,7 +44,7 @@ pub struct ContactModel<'o> {
     start: PoseAt,
     camera_likelihood: CameraLikelihood,
     tactile_likelihood: TactileLikelihood,
-    /// Share of a camera pose that moves particles at least.
+    /// Least share of a camera pose that moves particles.
     least_moved: f64,
 }
 
@@ -73,26 +73,26 @@ impl<'o> ContactModel<'o> {
         }
     }
 
-    /// The same, with an `observer` that is shown every step solved.
+    /// The model with an `observer` that is shown every step solved.
     #[must_use]
     pub fn observed(mut self, observer: Option<&'o dyn Observer>) -> Self {
         self.transition.observer = observer;
         self
     }
 
-    /// The same, of particles that a camera pose moves by this share at least.
+    /// The model of particles that a camera pose moves by this share at least.
     #[must_use]
     pub fn moved_by(mut self, least: f64) -> Self {
         self.least_moved = least;
         self
     }
 
-    /// Which column holds what.
+    /// Layout of the columns.
     pub fn columns(&self) -> Columns {
         self.transition.columns
     }
 
-    /// From now on each particle keeps `poses` past poses, at least as many as before.
+    /// Makes each particle keep `poses` past poses from now on, at least as many as before.
     pub fn keep_history(&mut self, poses: usize) {
         let columns = self.columns().with_history(poses);
         let setup = &self.transition.setup;
@@ -111,18 +111,19 @@ impl<'o> ContactModel<'o> {
         self.transition.setup.scene.object.gyration_radius()
     }
 
-    /// From now on, poses that no particle explains draw them all anew, or count as wrong (contact
-    /// mode).
+    /// Sets whether poses that no particle explains reinitialise them all, or count as wrong
+    /// (robust model).
     pub fn trust_camera(&mut self, trusted: bool) {
         self.camera_likelihood.set_trust(trusted);
     }
 
-    /// What the camera's poses say of particles.
+    /// Likelihood of the camera's poses.
     pub(crate) fn camera_likelihood(&self) -> &CameraLikelihood {
         &self.camera_likelihood
     }
 
-    /// A camera pose's worth of noise around `pose`, by its own covariance where it has one.
+    /// Draws a pose around `pose` with the noise of a camera pose, by its own covariance if it has
+    /// one.
     fn drawn_around(
         &self,
         (pose, covariance): (&Pose, Option<PoseCovariance>),
@@ -144,8 +145,8 @@ impl<'o> ContactModel<'o> {
         }
     }
 
-    /// Lets the particles learn of the camera's noise from the pose that weighed them last (contact
-    /// mode).
+    /// Lets the particles learn the camera's noise from the pose that weighed them last (robust
+    /// model).
     fn learn_of_camera(&self, seen: &Observation, block: &mut BlockMut<'_>) {
         on_widest(
             Level::new(),
@@ -158,7 +159,7 @@ impl<'o> ContactModel<'o> {
         );
     }
 
-    /// What contact mode does not know, drawn from its priors.
+    /// Draws the unknowns of the robust model from their priors.
     fn draw_unknowns(&self, draw: Draw, particle: u32, block: &mut BlockMut<'_>, i: usize) {
         let Transition { setup, columns, .. } = &self.transition;
         let prior = &setup.uncertainty;
@@ -208,7 +209,7 @@ impl Model for ContactModel<'_> {
         Propagation::default()
     }
 
-    /// Poses as noisy as the camera's first one, at rest, all with the nominal friction.
+    /// Draws poses as noisy as the camera's first one, at rest, all with the nominal friction.
     fn initialise(&self, draw: Draw, block: &mut BlockMut<'_>) {
         let start = (&self.start.pose, self.start.covariance);
         for (i, particle) in block.particles() {
@@ -272,7 +273,7 @@ impl Model for ContactModel<'_> {
         );
     }
 
-    /// The camera's alone: reinitialising the pose makes no touch likelier.
+    /// Returns that of the camera alone: reinitialising the pose makes no touch likelier.
     fn resetting_log_likelihood(
         &self,
         observation: &Observation,
@@ -332,7 +333,7 @@ impl Model for ContactModel<'_> {
         moved::write(self.columns(), from, block);
     }
 
-    /// Not where the solver found neither a solution nor a proof that there is none.
+    /// Returns false if the solver found neither a solution nor a proof that there is none.
     fn may_be_copied(&self, block: &Block<'_>, i: usize) -> bool {
         !is_set(block, Columns::FAILED, i)
     }
@@ -341,8 +342,8 @@ impl Model for ContactModel<'_> {
         self.camera_likelihood.trusts() && best_log_likelihood < COLLAPSED
     }
 
-    /// Moves every particle, its past included, so that what the camera sees is drawn around the
-    /// measured pose.
+    /// Moves every particle, its past included, so that the pose which the camera sees is drawn
+    /// around the measured one.
     fn reinitialise(&self, observation: &Observation, draw: Draw, block: &mut BlockMut<'_>) {
         let Some(measured) = observation.pose else {
             return;
@@ -355,7 +356,7 @@ impl Model for ContactModel<'_> {
                 (&measured, observation.covariance),
                 draw.normals::<3>(particle, 0),
             );
-            // not the shorter way: all are to end on one winding
+            // not the shorter way: all are to end with the same winding
             let shift = Pose {
                 x: drawn.x - shown.x,
                 y: drawn.y - shown.y,

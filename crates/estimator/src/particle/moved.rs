@@ -1,28 +1,28 @@
-//! What of a particle the camera's pose may move (contact mode; docs/method.md (45)): all that is
-//! continuous and not drawn anew.
+//! Quantities of a particle that a camera pose may move (robust model; docs/method.md (45)): all
+//! that is continuous and not resampled from its prior.
 
 use stickslip_filter::{BLOCK, Block, BlockMut};
 
 use crate::particle::columns::Columns;
 
-/// The scale on which a column's numbers are about normal.
+/// Scale on which a column's numbers are about normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scale {
     Linear,
-    /// Of a positive number.
+    /// For a positive number.
     Logarithm,
-    /// Of an exponential number: its fourth root is about normal, Weibull's distribution of shape 4
-    /// (whose skewness is −0.09; that of the root is 0.63).
+    /// For an exponential number. Its fourth root is about normal: Weibull's distribution of shape
+    /// 4 has the skewness −0.09. Its square root has 0.63.
     FourthRoot,
 }
 
-/// Least friction whose logarithm is taken: where the feet are known, there is no d_tri.
+/// Least friction whose logarithm is taken: without a tripod there is no d_tri.
 const LEAST: f64 = 1e-12;
 
 /// Largest friction that a particle is moved to; the next step brings it within its limits.
 const MOST: f64 = 10.0;
 
-/// The columns, each with its scale.
+/// Returns the columns, each with its scale.
 fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let past = (0..columns.history()).map(move |slot| columns.past_pose(slot));
     let poses = std::iter::once(Columns::POSE).chain(past);
@@ -50,12 +50,12 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
         .chain([(columns.latency(), Scale::FourthRoot)])
 }
 
-/// How many they are.
+/// Number of these columns.
 pub(super) fn count(columns: Columns) -> usize {
     moved(columns).count()
 }
 
-/// Reads them, a column of [`BLOCK`] numbers each.
+/// Reads these columns, [`BLOCK`] numbers of each.
 pub(super) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
     for ((column, scale), to) in moved(columns).zip(to.chunks_mut(BLOCK)) {
         for (to, value) in to.iter_mut().zip(block.column(column)) {
@@ -68,7 +68,7 @@ pub(super) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
     }
 }
 
-/// Takes them back.
+/// Writes these columns back.
 pub(super) fn write(columns: Columns, from: &[f64], block: &mut BlockMut<'_>) {
     for ((column, scale), from) in moved(columns).zip(from.chunks(BLOCK)) {
         for (value, from) in block.column_mut(column).iter_mut().zip(from) {
@@ -101,9 +101,9 @@ mod tests {
         particles
     }
 
-    /// A normal number has skewness 0 and excess kurtosis 0; what moves the latency as if it were
-    /// one comes near (Weibull's distribution of shape 4: −0.087 and −0.252; its root has 0.631 and
-    /// 0.245).
+    /// A normal number has skewness 0 and excess kurtosis 0. The scale on which the latency is
+    /// moved comes near (Weibull's distribution of shape 4: −0.087 and −0.252; the square root has
+    /// 0.631 and 0.245).
     #[test]
     fn latencies_as_likely_as_the_prior_says_are_moved_as_about_normal_numbers() {
         let columns = Columns::new(FilterModel::Robust, 0, 0);

@@ -1,33 +1,34 @@
-//! For how long noise lasts: [`NoiseClock`], docs/method.md (19).
+//! Duration of the noise: [`NoiseClock`], docs/method.md (19).
 
-/// Time step to which the noise settings refer (s): so long a random force stays the same.
+/// Time step to which the noise settings refer (s). A random force stays constant for as long.
 pub(crate) const NOISE_STEP: f64 = 1.0 / 30.0;
 
-/// By how much a step's length may be off for its times being rounded.
+/// Relative error of a step's length by rounding of its times.
 pub(crate) const ROUNDED: f64 = 1e-4;
 
-/// Steps of `h` seconds that share one draw of the noise: those that fit into [`NOISE_STEP`], or
-/// one.
+/// Returns the number of steps of `h` seconds that share one draw of the noise: those that fit into
+/// [`NOISE_STEP`], at least one.
 pub(crate) fn sharing(h: f64) -> u32 {
     let fitting = NOISE_STEP / h * (1.0 + ROUNDED);
     // a cast saturates
     (fitting as u32).max(1)
 }
 
-/// Which rows share their noise with the one before.
+/// Clock of the rows that share their noise with the one before.
 ///
-/// What disturbs an object lasts for about a frame of the camera. Noise drawn anew for every row
-/// would be other physics where rows are shorter, as those of a faster pusher: friction holds an
-/// object against a small force, and no longer against one that is larger for being short.
+/// A disturbance of the object lasts for about a frame of the camera. Noise drawn in every row
+/// would be other physics for shorter rows, as those of a faster pusher. Friction holds an object
+/// against a small force, but not against one that is larger because it is shorter.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct NoiseClock {
-    /// How long the noise has lasted (s), and for how many rows.
+    /// Time for which the noise has lasted (s), and number of its rows.
     lasted: f64,
     rows: u64,
 }
 
 impl NoiseClock {
-    /// A row `h` seconds after the one before: rows since the one that drew its noise.
+    /// Takes a row `h` seconds after the one before; returns the number of rows since the one that
+    /// drew its noise.
     pub fn age(&mut self, h: f64) -> u64 {
         let lasted = self.lasted + h;
         let shares = self.rows > 0 && sharing(h) > 1 && lasted <= NOISE_STEP * (1.0 + ROUNDED);
@@ -43,7 +44,7 @@ impl NoiseClock {
 mod tests {
     use super::*;
 
-    /// Ages of rows at `times` (s).
+    /// Returns the ages of rows at `times` (s).
     fn ages(times: impl Iterator<Item = f64>) -> Vec<u64> {
         let mut clock = NoiseClock::default();
         let times: Vec<f64> = times.collect();

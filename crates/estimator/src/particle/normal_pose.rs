@@ -13,8 +13,8 @@ pub struct NormalPose {
 }
 
 impl NormalPose {
-    /// ln of how likely a measured pose with these variances of its noise is, relative to a perfect
-    /// one.
+    /// Returns ln of the likelihood of a measured pose with these variances of its noise, relative
+    /// to a perfect one.
     pub fn log_density(&self, pose: &Pose, noise: [f64; 3]) -> f64 {
         let away = difference(pose, &self.mean);
         let axes = away.fields().into_iter().enumerate();

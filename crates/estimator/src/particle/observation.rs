@@ -1,4 +1,4 @@
-//! What the sensors read at one row: [`Observation`].
+//! Readings of the sensors at one row: [`Observation`].
 
 use stickslip_dynamics::Pose;
 
@@ -7,16 +7,16 @@ use crate::covariance::PoseCovariance;
 /// A pose of the object at its time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PoseAt {
-    /// When it was measured (s).
+    /// Time of the measurement (s).
     pub time: f64,
     /// The pose.
     pub pose: Pose,
-    /// How noisy it is, where it says so itself.
+    /// Covariance of the pose, if it has one of its own.
     pub covariance: Option<PoseCovariance>,
 }
 
-/// Where in a particle's past the camera looks: between two slots of its history (docs/method.md
-/// (29)).
+/// Place in a particle's past that the camera shows: between two slots of its history
+/// (docs/method.md (29)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LatencyCompensation {
     /// Slot of the earlier pose.
@@ -27,26 +27,26 @@ pub struct LatencyCompensation {
     pub fraction: f64,
 }
 
-/// What the sensors read at one row.
+/// Readings of the sensors at one row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Observation {
     /// Camera pose.
     pub pose: Option<Pose>,
-    /// How noisy it is, where it says so itself.
+    /// Covariance of the pose, if it has one of its own.
     pub covariance: Option<PoseCovariance>,
     /// Time of the row (s).
     pub time: f64,
-    /// Times (s) and slots of the past poses that every particle keeps, in order of time (contact
-    /// mode).
+    /// Times (s) and slots of the past poses that every particle keeps, in order of time (robust
+    /// model).
     pub past: Vec<(f64, usize)>,
-    /// Which past pose of each particle the camera shows; `None` is the present one.
+    /// Past pose of each particle that the camera shows; `None` is the present one.
     pub latency: Option<LatencyCompensation>,
     /// Tactile readings, one per sensor.
     pub tactile: Vec<Option<bool>>,
-    /// Whether what the step itself says of pusher and sensors counts (contact mode).
+    /// True if the step's own likelihood of pusher and sensors counts (robust model).
     pub felt: bool,
-    /// Whether the camera's pose may move particles: the object no longer waits where it was first
-    /// seen (contact mode).
+    /// True if the camera's pose may move particles: the object no longer waits where it was first
+    /// seen (robust model).
     pub moves: bool,
 }
 
@@ -70,7 +70,7 @@ impl Observation {
         (self.felt, self.moves) = (*felt, *moves);
     }
 
-    /// True where nothing was read.
+    /// Returns true if nothing was read.
     pub fn is_empty(&self) -> bool {
         self.pose.is_none() && !self.felt && self.tactile.iter().all(Option::is_none)
     }

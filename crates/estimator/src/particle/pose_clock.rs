@@ -1,35 +1,35 @@
-//! When a body is out of sight: [`PoseClock`], which knows how often its poses come.
+//! Times when a body is out of sight: [`PoseClock`], which knows how often its poses come.
 
-/// Past intervals from pose to pose that are remembered.
+/// Number of past intervals from pose to pose that are remembered.
 const REMEMBERED: usize = 15;
 
-/// Intervals that tell how often there are poses.
+/// Number of intervals from which a typical one is known.
 pub(crate) const TELLING: usize = 5;
 
-/// Typical intervals after which a camera that is silent is dark.
+/// Number of typical intervals without a pose after which the camera is off.
 const DARK_AFTER: f64 = 2.5;
 
-/// How often there is a pose of object or pusher, from the rows so far.
+/// Rate of the poses of object or pusher, from the rows so far.
 ///
-/// Where every row has a pose, a row without one is dark. Where other sensors bring rows between
-/// the camera's, as a pusher does that is tracked faster, or the camera's poses come after their
-/// rows, a row without a pose is none until one is clearly overdue.
+/// If every row has a pose, a row without one is occluded. Other sensors may bring rows between the
+/// camera's, as a pusher does that is tracked faster, or the camera's poses may come after their
+/// rows. Then a row without a pose is not occluded until a pose is clearly overdue.
 #[derive(Clone, Debug)]
 pub(crate) struct PoseClock {
     /// Time of the latest row (s).
     now: f64,
-    /// When the latest pose came (s), and whether it came after its row.
+    /// Time at which the latest pose came (s), and whether it came after its row.
     latest: f64,
     late: bool,
     /// Rows since then.
     rows: u32,
-    /// From pose to pose: time (s) and rows, a ring of which `known` are written.
+    /// Time (s) and rows from pose to pose, a ring of which `known` are written.
     intervals: [(f64, u32); REMEMBERED],
     known: usize,
 }
 
 impl PoseClock {
-    /// The first pose comes at `time` (s).
+    /// A clock whose first pose comes at `time` (s).
     pub fn new(time: f64) -> Self {
         Self {
             now: time,
@@ -41,13 +41,14 @@ impl PoseClock {
         }
     }
 
-    /// Typical time from pose to pose (s), once enough of them have come to tell.
+    /// Returns the typical time from pose to pose (s), once enough of them have come.
     pub fn interval(&self) -> Option<f64> {
         let typical = self.typical().filter(|_| self.known >= TELLING);
         typical.map(|(interval, _)| interval)
     }
 
-    /// A row at `time` (s), with a pose or without; whether the body is out of sight there.
+    /// Takes a row at `time` (s), with a pose or without; returns true if the body is out of sight
+    /// there.
     pub fn is_dark(&mut self, time: f64, has_pose: bool) -> bool {
         self.now = time;
         self.rows += 1;
@@ -63,7 +64,7 @@ impl PoseClock {
         }
     }
 
-    /// After the latest row, a pose of an earlier time comes.
+    /// Takes a pose of an earlier time that comes after the latest row.
     pub fn late_pose(&mut self) {
         if self.now > self.latest {
             self.pose_came(true);
@@ -76,7 +77,7 @@ impl PoseClock {
         (self.latest, self.late, self.rows) = (self.now, late, 0);
     }
 
-    /// Medians of the past intervals and of their rows.
+    /// Returns the medians of the past intervals and of their rows.
     fn typical(&self) -> Option<(f64, u32)> {
         let mut intervals = self.intervals;
         let intervals = &mut intervals[..self.known.min(REMEMBERED)];
@@ -92,7 +93,7 @@ impl PoseClock {
 mod tests {
     use super::*;
 
-    /// Rows that are dark among rows at 1 kHz; those with a pose are told by `has_pose`.
+    /// Returns the occluded rows among rows at 1 kHz, of which those with `has_pose` have a pose.
     fn dark(rows: usize, has_pose: impl Fn(usize) -> bool) -> Vec<usize> {
         let mut clock = PoseClock::new(0.0);
         let mut dark = |row: &usize| clock.is_dark(1e-3 * *row as f64, has_pose(*row));

@@ -1,30 +1,29 @@
-//! How far the camera's poses of an object at rest scatter: [`PoseScatter`] (docs/method.md (41),
-//! (44)).
+//! Scatter of the camera's poses of an object at rest: [`PoseScatter`] (docs/method.md (41), (44)).
 
 use stickslip_dynamics::Pose;
 
 use crate::angle::difference;
 use crate::particle::camera_noise::MEMORY;
 
-/// Which of position and angle an axis belongs to.
+/// Group of each axis: position or angle.
 pub const GROUP: [usize; 3] = [0, 0, 1];
 
-/// Sums over the poses seen, of which the old ones are forgotten.
+/// Sums over the poses seen; old poses are forgotten.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseScatter {
-    /// Their number, each by how likely it is not wrong.
+    /// Number of poses, each by how likely it is not wrong.
     poses: f64,
-    /// Sums of their precisions as told, axis by axis.
+    /// Sums of their nominal precisions, axis by axis.
     precision: [f64; 3],
-    /// Their mean, each by its precision.
+    /// Mean of the poses, each by its precision.
     centre: Pose,
-    /// Sums of the squares of their distances from it, in told standard deviations: of the
+    /// Sums of the squares of their distances from the mean, in nominal standard deviations: of the
     /// position, of the angle.
     squares: [f64; 2],
 }
 
 impl PoseScatter {
-    /// Of a first pose, with its variances of x, y (m²) and θ (rad²) as told.
+    /// The scatter of a first pose, with its nominal variances of x, y (m²) and θ (rad²).
     pub fn of(pose: Pose, told: [f64; 3]) -> Self {
         Self {
             poses: 1.0,
@@ -34,7 +33,8 @@ impl PoseScatter {
         }
     }
 
-    /// Takes one more pose with its told variances, by as much as it is `right`.
+    /// Takes one more pose with its nominal variances; `right` is the probability that it is not
+    /// wrong.
     pub fn see(&mut self, pose: &Pose, told: [f64; 3], right: f64) {
         let kept = 1.0 - 1.0 / MEMORY;
         self.poses = kept * self.poses + right;
@@ -51,8 +51,8 @@ impl PoseScatter {
         }
     }
 
-    /// The number of the poses, and the sums of the squares of their distances from `pose`, of
-    /// position and angle.
+    /// Returns the number of the poses, and the sums of the squares of their distances from `pose`,
+    /// of position and angle.
     pub fn about(&self, pose: &Pose) -> [f64; 3] {
         let away = difference(&self.centre, pose);
         let [mut position, mut angle] = self.squares;

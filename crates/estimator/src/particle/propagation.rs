@@ -1,5 +1,5 @@
 //! Γ' for a block of particles (docs/method.md (19) to (22); paper eq. 6): noise, the step, and Φ,
-//! which keeps of the parameters what took part.
+//! which keeps only the parameters that took part.
 
 use stickslip_dynamics::{
     Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, Pose, StepWork, Twist,
@@ -23,8 +23,8 @@ const CHUNKS: usize = BLOCK / LANES;
 /// paper Table I).
 pub(crate) const MOVING: f64 = 1e-9;
 
-/// Pairs of normal numbers: two for the parameters, then two for each force, of which three numbers
-/// are used.
+/// Pairs of normal numbers: two for the parameters, then two for each force, which uses three of
+/// the numbers.
 const FORCE_PAIR: u32 = 2;
 
 /// Γ' of one setup: what moves the particles.
@@ -34,9 +34,9 @@ pub(crate) struct Transition<'o> {
     pub dynamics: Dynamics,
     /// Noise, limits and sensors.
     pub setup: Setup,
-    /// Which column holds what.
+    /// Layout of the columns.
     pub columns: Columns,
-    /// Is shown every step solved.
+    /// Observer of every step solved.
     pub observer: Option<&'o dyn Observer>,
 }
 
@@ -45,32 +45,31 @@ pub(crate) struct Transition<'o> {
 pub struct Propagation {
     pub(super) work: StepWork<LANES>,
     pub(super) particles: [Particles<LANES>; CHUNKS],
-    /// Friction of the object as a whole: that of this place differs from it in contact mode.
+    /// Friction of the object as a whole. That of this place differs from it in the robust model.
     pub(super) proposed: [Friction<Column>; CHUNKS],
-    /// Where each particle's pusher and fixels stand beside their poses (contact mode).
+    /// Offsets of each particle's pusher and fixels from their poses (robust model).
     pub(super) pusher_offsets: Vec<[Column; 2]>,
-    /// By how much it is turned; empty where that is known (contact mode).
+    /// Turn of the pusher; empty if it is known (robust model).
     pub(super) pusher_turn: Vec<Column>,
     pub(super) fixel_offsets: Vec<[Column; 2]>,
-    /// How much larger than its shape each particle's object is (contact mode).
+    /// Distance by which each particle's object is larger than its shape (robust model).
     pub(super) growth: Vec<Column>,
-    /// How contacts with pusher and fixels creep; empty where none does (contact mode).
+    /// Creep of contacts with pusher and fixels; empty if none creeps (robust model).
     pub(super) creep: Vec<[Column; 2]>,
-    /// By how far each particle's feet stand beside the scene's; empty where these are known
-    /// (contact mode).
+    /// Offsets of each particle's feet from the scene's; empty if they are known (robust model).
     pub(super) foot_offsets: Vec<Pose<Column>>,
-    /// Square of the pusher's lag before the step (m²) (contact mode).
+    /// Square of the pusher's lag before the step (m²) (robust model).
     pub(super) lag_before: [Column; CHUNKS],
-    /// Velocities at which an unseen pusher carries objects along (contact mode).
+    /// Velocities at which an unseen pusher carries objects along (robust model).
     pub(super) carried: [Twist<Column>; CHUNKS],
-    /// Particles that nothing has come near yet: no force disturbs them (contact mode).
+    /// Particles that nothing has come near yet: no force disturbs them (robust model).
     pub(super) untouched: [Mask<LANES>; CHUNKS],
     involved: [Involved; CHUNKS],
     pub(super) normals: [[f64; BLOCK]; 4],
     pub(super) level: Level,
 }
 
-/// What took part in a step (Φ) and how it ended, by lane of a chunk.
+/// Parts of a step that were involved (Φ) and its outcome, by lane of a chunk.
 #[derive(Clone, Copy, Debug)]
 struct Involved {
     pusher: Mask<LANES>,
@@ -183,7 +182,7 @@ impl Propagation {
         }
     }
 
-    /// Draws β̂ = β + w_β τ(β) within the physical limits, β where the parameters are frozen
+    /// Draws β̂ = β + w_β τ(β) within the physical limits; β̂ = β if the parameters are frozen
     /// (docs/method.md (20)).
     #[inline(always)]
     fn load(
@@ -219,8 +218,8 @@ impl Propagation {
                 chunk,
                 particles.pusher_lag.each_mut(),
             );
-            // a pusher that stands goes on through no jam: what it yielded may be the bodies' give; in view the camera
-            // tells
+            // a standing pusher goes on through no jam: what it yielded may be the bodies'
+            // compliance; in view the camera tells
             if paper || plan.driven || !plan.is_dark() {
                 particles.limit_pusher_lag(most_lag);
             }
@@ -266,8 +265,8 @@ impl Propagation {
         draw.normal_columns(first, pair, &mut a[..len], &mut b[..len]);
     }
 
-    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis, the
-    /// variance of what it adds up to proportional to the time that it lasts (docs/method.md (19)).
+    /// Draws w_app for one substep: a share of μ_s m g per [`NOISE_STEP`] on each axis. The
+    /// variance of its sum is proportional to the time that it lasts (docs/method.md (19)).
     #[inline(always)]
     fn apply_force(
         &mut self,
@@ -408,14 +407,14 @@ impl Propagation {
     }
 }
 
-/// Where ‖v‖, mass-normalised, is above [`MOVING`].
+/// Returns the lanes in which ‖v‖, mass-normalised, is above [`MOVING`].
 #[inline(always)]
 pub(super) fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
     let turn = *omega * rho;
     (*vx * *vx + *vy * *vy + turn * turn).gt(Lanes::splat(MOVING * MOVING))
 }
 
-/// β + β w within the limits (docs/method.md (20)).
+/// Returns β + β w within the limits (docs/method.md (20)).
 #[inline(always)]
 fn disturbed(value: Column, w: Column, limits: &Limits) -> Column {
     (value + value * w)

@@ -1,4 +1,4 @@
-//! Steps in the dark that can be made again: [`Replay`] (contact mode).
+//! Re-simulation of the steps while the camera is off: [`Replay`] (robust model).
 
 use stickslip_filter::{Attempt, Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
@@ -8,68 +8,70 @@ use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::step_plan::StepPlan;
 
-/// What happened since the camera last saw the object, so that it can be tried again.
+/// Steps since the camera last saw the object, which can be re-simulated.
 ///
-/// In the dark particles go different ways at a bifurcation, and nothing brings them back: where
-/// none went the way of the object, pusher and touch sensors go on contradicting all of them. Then
-/// the steps since the blackout are made again with other random numbers, and all sets share the
-/// particles by their evidence. Where that does not help, every other time they are made without
-/// resampling: at a fork that one way explains better at first and the other in the end, resampling
-/// leaves particles on the first.
+/// Particles go different ways at a bifurcation while the camera is off, and nothing brings them
+/// back. If none went the way of the object, pusher and touch sensors go on contradicting all of
+/// them. Then the steps since the occlusion began are re-simulated with other random numbers, and
+/// all sets share the particles by their evidence.
+///
+/// If that does not help, every other re-simulation runs without resampling. One way of a
+/// bifurcation may explain the rows better at first and the other in the end: resampling leaves
+/// particles only on the first.
 #[derive(Debug, Default)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
-    /// Whether the object is hidden, and `checkpoint` is where that began.
+    /// True if the object is hidden, and `checkpoint` is where that began.
     dark: bool,
-    /// The steps since, of which the first `made` count.
+    /// Steps since then, of which the first `made` count.
     steps: Vec<(StepPlan, Observation)>,
     made: usize,
-    /// The sets of particles that made them, and the evidence of these steps.
+    /// Sets of particles that made these steps, and the evidence of the steps.
     pool: Pool,
-    /// Evidence below which they are made again.
+    /// ln of the evidence below which the steps are re-simulated.
     limit: f64,
-    /// How often that was done since the blackout, and ever.
+    /// Number of re-simulations since the occlusion began, and in all.
     attempts: u32,
     tries: u32,
-    /// Ancestors below which a set that takes over has too few, and at how many more rows others
-    /// are looked for.
+    /// Number of ancestors below which a set that takes over has too few, and number of further
+    /// rows at which others are looked for.
     few: usize,
     more: u32,
 }
 
-/// Steps that are made again at most: what a row can cost.
+/// Largest number of steps that are re-simulated: it bounds the cost of a row.
 const LONGEST: usize = 120;
 
-/// Times that the steps of a blackout are made again at most.
+/// Largest number of re-simulations in one occlusion.
 const ATTEMPTS: u32 = 48;
 
-/// Fall of ln of the evidence at which they are, the first [`EARLY`] times: 1 in 3000.
+/// Fall of ln of the evidence that causes a re-simulation, the first [`EARLY`] times: 1 in 3000.
 const WORSE: f64 = 8.0;
 
-/// The first times: what can be found is mostly found by them.
+/// Number of the first times, which find most of what can be found.
 const EARLY: u32 = 16;
 
-/// And the other times. What a scene tells wrong, no try explains, and the evidence falls a little
-/// at every touch; at a fork that all particles took the wrong way it falls at every row, by
-/// hundreds in the end.
+/// Fall that causes the other ones. No re-simulation explains what the scene states wrongly: the
+/// evidence then falls a little at every touch. At a bifurcation that all particles took the wrong
+/// way it falls at every row, by hundreds in the end.
 const MUCH_WORSE: f64 = 32.0;
 
-/// Attempt from which on every other one does not resample. It leaves few particles, too few where
-/// the evidence fell by chance.
+/// Attempt from which on every other one does not resample. Such an attempt leaves few particles,
+/// too few if the evidence fell by chance.
 const DECEIVED: u32 = 6;
 
-/// Share of the particles from which on a set takes over that was made without resampling.
+/// Share of the particles from which on a set made without resampling takes over.
 const TAKES_OVER: f64 = 0.9;
 
-/// Ancestors below which its particles are too few, where the checkpoint has as many.
+/// Number of ancestors below which its particles are too few, if the checkpoint has as many.
 const FEW: usize = 8;
 
-/// At how many rows steps are made again then, to find others that go its way.
+/// Number of rows at which steps are then re-simulated, to find others that go its way.
 const MORE: u32 = 8;
 
 impl Replay {
-    /// Before a step, in the dark or not: remembers the particles where it is the first one in the
-    /// dark, or where the memory is full.
+    /// Prepares a step. If the camera is off, it saves the particles at the first such step, and
+    /// again when the memory is full.
     pub fn before(&mut self, filter: &mut ParticleFilter<ContactModel<'_>>, dark: bool) {
         if !dark || filter.model().columns().model() == FilterModel::Paper {
             self.dark = false;
@@ -96,8 +98,8 @@ impl Replay {
         self.limit = -self.fall();
     }
 
-    /// After it. Where the particles explain what was measured in the dark too badly, makes all its
-    /// steps again; returns by how much ln of the evidence has changed then.
+    /// Completes a step. If the particles explain the measurements of the occlusion too badly, it
+    /// re-simulates all its steps. It then returns the change of ln of the evidence.
     pub fn after(
         &mut self,
         filter: &mut ParticleFilter<ContactModel<'_>>,
@@ -111,7 +113,8 @@ impl Replay {
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.pool.log_evidence += log_evidence;
         }
-        // it may be the bodies' give, which weighs no particle; or all of them went another way
+        // the pusher's lag may be the bodies' compliance, which weighs no particle; or all
+        // particles went another way
         if !plan.driven {
             self.limit -= log_share_beside(filter);
         }
@@ -143,7 +146,7 @@ impl Replay {
         Some(self.pool.log_evidence - before.log_evidence)
     }
 
-    /// By how much ln of the evidence has to fall for the next attempt.
+    /// Returns the fall of ln of the evidence that causes the next attempt.
     fn fall(&self) -> f64 {
         if self.attempts < EARLY {
             WORSE
@@ -152,13 +155,13 @@ impl Replay {
         }
     }
 
-    /// Steps made so far are not made again: something else was learnt since, or there are other
-    /// particles.
+    /// Excludes the steps so far from re-simulation: something else was learned since, or there are
+    /// other particles.
     pub fn forget(&mut self) {
         self.made = LONGEST;
     }
 
-    /// How often steps were made again.
+    /// Number of re-simulations.
     pub fn tries(&self) -> u32 {
         self.tries
     }
@@ -176,8 +179,8 @@ impl Replay {
     }
 }
 
-/// ln of the share of particles whose pusher stands within the bound of (13), each by how far it is
-/// beyond that, (40).
+/// ln of the share of particles whose pusher stands within the bound of (13). A pusher beyond the
+/// bound counts less, by its distance, (40).
 fn log_share_beside(filter: &ParticleFilter<ContactModel<'_>>) -> f64 {
     let setup = filter.model().setup();
     let (bound, std) = (setup.most_pusher_lag(), setup.uncertainty.pusher_lag);

@@ -1,5 +1,5 @@
-//! Objects that rest: where one waits that nothing has come near (docs/method.md (44)), and how
-//! little one stays in place that the camera sees rest, (36).
+//! Objects that rest: the place of one that nothing has come near (docs/method.md (44)), and small
+//! displacements of one that the camera sees rest, (36).
 
 use stickslip_filter::BlockMut;
 
@@ -15,8 +15,8 @@ use crate::particle::step_plan::StepPlan;
 const SHAKE: f64 = 3e-6;
 
 impl Propagation {
-    /// Draws anew where an object rests that nothing has come near, or is after `h` (s) if it moves
-    /// all the same.
+    /// Redraws the pose of objects that nothing has come near: where they rest, or where they are
+    /// after `h` (s) if they move all the same.
     pub(super) fn draw_resting_pose(
         &mut self,
         Transition { columns, .. }: &Transition<'_>,
@@ -43,9 +43,9 @@ impl Propagation {
         }
     }
 
-    /// Displaces objects that the camera sees rest. What a camera pose moves into a body that
-    /// touches, the next step takes out again, and what it moves away stays; and no rig is still to
-    /// the last micrometre.
+    /// Displaces objects that the camera sees rest. The ensemble update is one-sided at a contact:
+    /// the next step undoes shifts into a touching body, and keeps shifts away from it. Also, no
+    /// rig is still to the last micrometre.
     pub(super) fn shake(
         &mut self,
         transition: &Transition<'_>,
@@ -53,7 +53,7 @@ impl Propagation {
         block: &BlockMut<'_>,
     ) {
         let rho = transition.setup.scene.object.gyration_radius();
-        // of the noise, one draw serves rows that come faster
+        // rows that come faster share one draw of the noise
         let size = SHAKE * (plan.duration().max(NOISE_STEP) / NOISE_STEP).sqrt();
         for chunk in 0..block.len().div_ceil(LANES) {
             let touched = !self.untouched[chunk];

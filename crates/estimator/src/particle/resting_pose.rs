@@ -1,5 +1,5 @@
-//! Where an object rests that nothing has moved yet, by all that the camera has shown of it:
-//! [`RestingPose`] (contact mode; docs/method.md (44)).
+//! Place of an object that nothing has moved yet, from all that the camera has shown of it:
+//! [`RestingPose`] (robust model; docs/method.md (44)).
 
 use stickslip_dynamics::{Lanes, Pose};
 
@@ -14,37 +14,36 @@ use crate::particle::pose_scatter::{GROUP, PoseScatter};
 use crate::particle::student_pose::StudentPose;
 use crate::setup::{Camera, Setup};
 
-/// The belief about the pose of an object at rest, axis by axis: the camera's poses are all that is
-/// known of it, and no particle filter is needed to say what they add up to. The first of them is
-/// as noisy as the others, and how noisy they are is learned from all, so that the belief is
-/// Student's t.
+/// Belief about the pose of an object at rest, axis by axis. The camera's poses are all that is
+/// known of it, so they can be combined without a particle filter. The first of them is as noisy as
+/// the others. Their noise is learned from all of them, so the belief is Student's t.
 ///
-/// Particles that nothing has come near draw their pose anew from it, so that resampling cannot
-/// thin them out while the object waits for the pusher. Where the poses say that it moves all the
-/// same, as one that is set down by hand, they draw it from its [`FreeMotion`]; where poses on end
-/// lie to one side, it has been moved a little.
+/// Particles that nothing has come near redraw their pose from it, so resampling cannot deplete
+/// them while the object waits for the pusher. If the poses show that the object moves all the
+/// same, as one that is set down by hand, they draw it from its [`FreeMotion`]. If many poses in a
+/// row lie to one side, the object has been moved a little.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestingPose {
     mean: Pose,
-    /// What the variances of x, y (m²) and θ (rad²) would be, were the camera as noisy as told.
+    /// Variances of x, y (m²) and θ (rad²) under the camera's nominal noise.
     variance: [f64; 3],
-    /// How far the poses seen scatter.
+    /// Scatter of the poses seen.
     scatter: PoseScatter,
     camera: Camera,
-    /// What the camera's standard deviations are widened by.
+    /// Factor that widens the camera's standard deviations.
     widened: f64,
-    /// What is unknown of its noise.
+    /// Prior of its noise.
     noise: Option<NoisePrior>,
-    /// Where it is if it moves; `None` once something has touched it.
+    /// Belief that it moves; `None` once something has touched it.
     free: Option<FreeMotion>,
     /// Time of the latest pose (s).
     time: f64,
-    /// How far to one side the latest poses lay.
+    /// Displacement of the latest poses to one side.
     aside: Aside,
 }
 
 impl RestingPose {
-    /// Around a pose seen at a `time` (s), as well as that tells.
+    /// A belief around a pose seen at a `time` (s), as precise as that pose.
     pub fn new(
         time: f64,
         start: (Pose, Option<PoseCovariance>),
@@ -69,7 +68,7 @@ impl RestingPose {
         unset.started_at(start)
     }
 
-    /// The same before anything but `start` is seen.
+    /// The belief before anything but `start` is seen.
     pub fn started_at(self, (start, covariance): (Pose, Option<PoseCovariance>)) -> Self {
         let told = self.told(covariance);
         let pose = NormalPose {
@@ -82,7 +81,7 @@ impl RestingPose {
         }
     }
 
-    /// The same at another place, of which poses as noisy as `told` tell.
+    /// The belief about another place, from poses with the variances `told`.
     fn resting_at(self, pose: &NormalPose, told: [f64; 3]) -> Self {
         Self {
             mean: pose.mean,
@@ -93,13 +92,14 @@ impl RestingPose {
         }
     }
 
-    /// Something touches the object: whether it moves, the particles tell from now on.
+    /// Notes that something touches the object: from now on the particles estimate whether it
+    /// moves.
     pub fn touch(&mut self) {
         self.free = None;
     }
 
-    /// Bayes' rule with one more pose of the camera, at a `time` (s). By as much as the pose may be
-    /// wrong, it counts less.
+    /// Applies Bayes' rule with one more camera pose, at a `time` (s). The pose counts less, the
+    /// likelier it is wrong.
     pub fn see(&mut self, time: f64, (pose, covariance): (Pose, Option<PoseCovariance>)) {
         let told = self.told(covariance);
         let measured = self.noise_of(covariance);
@@ -136,7 +136,7 @@ impl RestingPose {
             let evidence = self.variance[k] * right + measured[k];
             *mean += self.variance[k] * right / evidence * away;
             let after = self.variance[k] * measured[k] / evidence;
-            // of what was long ago, as much is forgotten as of the camera's noise
+            // old poses are forgotten as fast as those of the camera's noise
             let least = self.variance[k].min(measured[k] / MEMORY);
             self.variance[k] = after.max(least);
         }
@@ -144,8 +144,8 @@ impl RestingPose {
         self.scatter.see(&pose, told, right);
     }
 
-    /// Where the latest poses lie to one side by more than chance has them, the object has been
-    /// moved: it is not known better than that.
+    /// Widens the belief if the latest poses lie to one side by more than chance: the object has
+    /// been moved, so its place is not known better than that.
     fn widen_where_moved(
         &mut self,
         (away, right): (&Pose, f64),
@@ -165,12 +165,13 @@ impl RestingPose {
         }
     }
 
-    /// Whether the object waits no longer: something has touched it, or poses say that it moves.
+    /// Returns true if the object waits no longer: something has touched it, or poses show that it
+    /// moves.
     pub fn waits_no_longer(&self) -> bool {
         self.free.as_ref().is_none_or(FreeMotion::moves)
     }
 
-    /// What all poses seen say together of where the object is after `h` (s).
+    /// Returns the combined belief of all poses seen about where the object is after `h` (s).
     pub fn belief(&self, h: f64) -> StudentPose {
         if let Some(free) = self.free.filter(FreeMotion::moves) {
             let NormalPose { mean, variance } = free.after(h);
@@ -188,19 +189,19 @@ impl RestingPose {
         }
     }
 
-    /// What a particle that has rested at `pose` all the time knows of the camera's noise: the
-    /// number of the poses seen, and the sums of the squares of their distances from it.
+    /// Returns the knowledge of the camera's noise of a particle that has rested at `pose` all the
+    /// time: the number of the poses seen, and the sums of the squares of their distances from it.
     pub fn noise_seen_at(&self, pose: &Pose) -> [f64; 3] {
         self.scatter.about(pose)
     }
 
-    /// Variances by which a pose counts, of x, y (m²) and θ (rad²).
+    /// Returns the variances by which a pose counts, of x, y (m²) and θ (rad²).
     pub fn noise_of(&self, covariance: Option<PoseCovariance>) -> [f64; 3] {
         let wide = self.widened * self.widened;
         self.told(covariance).map(|variance| variance * wide)
     }
 
-    /// Variances of x, y and θ of a pose, by itself or as the camera's are told.
+    /// Returns the variances of x, y and θ of a pose, its own or the camera's nominal ones.
     fn told(&self, covariance: Option<PoseCovariance>) -> [f64; 3] {
         match covariance {
             Some(of) => [of.x, of.y, of.theta],
@@ -215,9 +216,8 @@ impl RestingPose {
         }
     }
 
-    /// Variances of the camera's noise, in units of the told ones, of positions and of angles, and
-    /// the degrees of freedom by which they are known. One pose was needed to know where the object
-    /// is.
+    /// Returns the variances of the camera's noise, in units of the nominal ones, of positions and
+    /// of angles, and their degrees of freedom. One pose was needed to know where the object is.
     fn noise_levels(&self) -> ([f64; 2], [f64; 2]) {
         let Some(prior) = self.noise else {
             return ([1.0; 2], [f64::INFINITY; 2]);
@@ -230,14 +230,14 @@ impl RestingPose {
         )
     }
 
-    /// Probability that a pose is not wrong, by its distance from the mean; `measured` are its
-    /// variances.
+    /// Returns the probability that a pose is not wrong, by its distance from the mean; `measured`
+    /// are its variances.
     fn is_right(&self, pose: &Pose, told: [f64; 3], measured: [f64; 3]) -> f64 {
         let away = difference(pose, &self.mean);
         let wide = self.widened * self.widened;
         let mut squares = [0.0; 2];
         for (k, away) in away.fields().into_iter().enumerate() {
-            // as far as the mean is unknown, the pose may be away
+            // the pose may be away by as much as the mean is unknown
             let unknown = 1.0 + self.variance[k] / measured[k];
             squares[GROUP[k]] += away * away / (told[k] * wide * unknown);
         }
@@ -271,7 +271,7 @@ mod tests {
         pusher_orientation_std: 0.0,
     };
 
-    /// Before the first pose is seen; the camera's noise is as told.
+    /// A belief before the first pose is seen; the camera has its nominal noise.
     fn told_noise(start: Pose, widened: f64) -> RestingPose {
         let unset = RestingPose {
             mean: start,
@@ -323,7 +323,7 @@ mod tests {
         assert!((resting.variance[0] / variance - 1.0).abs() < 1e-3);
     }
 
-    /// An object that was nudged by a few standard deviations, none of which makes a pose wrong.
+    /// An object is nudged by a few standard deviations, none of which makes a pose wrong.
     #[test]
     fn where_it_was_long_ago_is_forgotten() {
         let mut resting = told_noise(Pose::default(), 1.0);
@@ -356,7 +356,7 @@ mod tests {
         assert!((resting.mean.theta - 3.1).abs() < 1e-9);
     }
 
-    /// The sums that a particle at any pose would have kept of the poses, one by one.
+    /// Sums that a particle at any pose would have kept of the poses, one by one.
     #[test]
     fn what_a_particle_knows_of_the_noise_is_what_it_would_have_seen() {
         let at = Pose::new(0.02, 0.01, -0.3);
@@ -381,7 +381,8 @@ mod tests {
         }
     }
 
-    /// Poses of objects under cameras whose noise is drawn from the prior, the first one, too.
+    /// Poses of objects under cameras whose noise is drawn from the prior, that of the first one,
+    /// too.
     #[test]
     fn under_unknown_noise_intervals_hold_what_they_say() {
         let noise = NoisePrior::new(0.4);
@@ -412,7 +413,7 @@ mod tests {
         }
     }
 
-    /// A pose with standard deviations of its own counts by these.
+    /// A pose counts by its own standard deviations if it has some.
     #[test]
     fn poses_count_by_their_own_covariance() {
         let covariance = PoseCovariance {

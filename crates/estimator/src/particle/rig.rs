@@ -1,5 +1,5 @@
-//! What the particles do not know of the rig (contact mode): where pusher and fixels stand, how
-//! large the object is, how late the camera (docs/method.md (36), (43)).
+//! Unknowns of the rig (robust model): where pusher and fixels stand, how large the object is, how
+//! late the camera (docs/method.md (36), (43)).
 
 use stickslip_dynamics::{Lanes, Mask, Particles};
 use stickslip_filter::{Block, BlockMut};
@@ -11,8 +11,8 @@ use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
 use crate::uncertainty::Uncertainty;
 
-/// Share of their spread by which offsets wander from one draw of the noise to the next where the
-/// rig is as told: copies of a particle are to differ.
+/// Share of their spread by which offsets wander from one draw of the noise to the next on a rig of
+/// nominal roughness: copies of a particle must differ.
 const OFFSET_STEP: f64 = 0.1;
 
 /// Share of its spread by which the logarithm of a rig's roughness wanders at rest.
@@ -21,21 +21,21 @@ const ROUGHNESS_STEP: f64 = 0.05;
 /// Share of its spread by which creep wanders.
 const CREEP_STEP: f64 = 0.1;
 
-/// Standard deviation of the logarithm by which contacts creep more than told.
+/// Standard deviation of the logarithm of the contacts' creep over its nominal value.
 const CREEP_SPREAD: f64 = 1.2;
 
-/// Spreads within which that logarithm lies: what moves it knows no bounds.
+/// Clamp on that logarithm, in standard deviations; ensemble updates are unbounded.
 const MOST_CREEP: f64 = 3.0;
 
-/// Spreads of its logarithm within which the factor of the random force lies: what moves it knows
-/// no bounds.
+/// Clamp on ln of the factor of the random force, in standard deviations; ensemble updates are
+/// unbounded.
 const MOST_SPREADS: f64 = 3.0;
 
 /// Share of its mean by which the camera's latency wanders.
 const LATENCY_STEP: f64 = 0.02;
 
 impl Propagation {
-    /// Where fixel j stands: drawn anew until the object comes near.
+    /// Draws the offset of fixel j. It is resampled from the prior until the object comes near.
     #[inline(always)]
     pub(super) fn draw_fixel_offset(
         &self,
@@ -56,10 +56,12 @@ impl Propagation {
         }
     }
 
-    /// Where the pusher stands, how large the object is, how rough the rig: drawn anew until the
-    /// pusher comes near. After that the rig stays as rough as it is while the object moves, since
-    /// a particle whose offsets wander less would be favoured for that. Where the camera sees it
-    /// rest, it may turn out to be another.
+    /// Draws the offset of the pusher, the size of the object and the roughness of the rig. They
+    /// are resampled from the prior until the pusher comes near.
+    ///
+    /// After that the roughness stays while the object moves. Otherwise particles would be favoured
+    /// because their offsets wander less. If the camera sees the object rest, the roughness takes
+    /// random steps.
     #[inline(always)]
     pub(super) fn draw_offsets(
         &self,
@@ -90,7 +92,7 @@ impl Propagation {
         }
     }
 
-    /// By how much the pusher is turned: drawn anew until it comes near.
+    /// Draws the turn of the pusher. It is resampled from the prior until the pusher comes near.
     pub(super) fn draw_pusher_turn(
         &self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -106,9 +108,9 @@ impl Propagation {
         }
     }
 
-    /// A chunk of an unknown, by the column `number` of normal numbers: drawn anew until what tells
-    /// of it has been `near`; then a random `step` that keeps its prior, the standard normal
-    /// distribution, where unknowns wander.
+    /// Draws a chunk of an unknown, by the column `number` of normal numbers. It is resampled from
+    /// its prior, the standard normal distribution, until what reveals it has been `near`. Then it
+    /// takes a random `step` that keeps the prior, where unknowns wander.
     #[inline(always)]
     pub(super) fn wander(
         &self,
@@ -127,8 +129,8 @@ impl Propagation {
         store_chunk(unknown, chunk, &near.select(known, fresh));
     }
 
-    /// How smooth the push is, by the number that the latency leaves: drawn anew until the pusher
-    /// comes near.
+    /// Draws the smoothness of the push, by the normal number that the latency does not use. It is
+    /// resampled from the prior until the pusher comes near.
     #[inline(always)]
     pub(super) fn draw_force_factor(
         &self,
@@ -145,9 +147,12 @@ impl Propagation {
         }
     }
 
-    /// Factor of each particle's random force: that of its push, and in the dark that of its rig.
-    /// While the camera looks, what the force does not allow for would pass for friction; where a
-    /// step is made again, the rig may not be what it looked like.
+    /// Returns the factor of each particle's random force: that of its push and, while the camera
+    /// is off, that of its rig.
+    ///
+    /// While the camera is on, the rig does not count: what the force does not allow for would pass
+    /// for friction. Nor does it count in a re-simulated step, since the rig may not be what it
+    /// seemed.
     #[inline(always)]
     pub(super) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -169,7 +174,8 @@ impl Propagation {
         factor
     }
 
-    /// How contacts creep, with the pusher and with fixels: drawn anew until these come near.
+    /// Draws the creep of contacts with the pusher and with fixels. It is resampled from the prior
+    /// until these come near.
     #[inline(always)]
     pub(super) fn draw_creep(
         &self,
@@ -192,8 +198,8 @@ impl Propagation {
         }
     }
 
-    /// How late the camera is: drawn anew until the pusher comes near; then a random walk that
-    /// keeps the prior (Metropolis).
+    /// Draws the latency of the camera. It is resampled from the prior until the pusher comes near.
+    /// Then it takes a random walk that keeps the prior (Metropolis).
     #[inline(always)]
     pub(super) fn draw_latency(
         &self,
@@ -218,9 +224,9 @@ impl Propagation {
         }
     }
 
-    /// Exchanges latency for pusher offset: a pusher that is ahead by v τ under a steady push is
-    /// one that is early by τ, and so is all that touches nothing else; seen later by τ it shows
-    /// the camera the same. Metropolis' rule decides by the priors alone.
+    /// Exchanges latency for pusher offset under a steady push. A pusher that is ahead by v τ is
+    /// one that is early by τ, and so is an object that touches nothing else. Seen later by τ, it
+    /// shows the camera the same poses. Metropolis' rule decides by the priors alone.
     pub(super) fn exchange_latency(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -261,8 +267,8 @@ impl Propagation {
         }
     }
 
-    /// Moves particle `i` to where it is `early` seconds later, its past included. Velocities in
-    /// the past are those over as long as noise lasts: between rows a millisecond apart they would
+    /// Moves particle `i` to where it is `early` seconds later, its past included. Past velocities
+    /// are means over the time for which noise lasts. Between rows a millisecond apart they would
     /// be mostly noise, which every move would multiply.
     fn advance_trajectory(
         &mut self,
@@ -295,8 +301,8 @@ impl Propagation {
         }
     }
 
-    /// Where each particle's pusher and fixels stand beside their poses, and how contacts creep, in
-    /// all substeps.
+    /// Loads the offsets of each particle's pusher and fixels from their poses, and the creep of
+    /// contacts, for all substeps.
     #[inline(always)]
     pub(super) fn load_offsets(
         &mut self,
@@ -349,33 +355,33 @@ impl Propagation {
     }
 }
 
-/// Whether the pusher, and nothing else, pushes particle `i`.
+/// Returns true if the pusher, and nothing else, pushes particle `i`.
 fn is_pushed_alone(columns: &Columns, block: &Block<'_>, i: usize) -> bool {
     let fixel = (0..columns.fixels()).any(|j| is_set(block, columns.fixel_was_near(j), i));
     !fixel && is_set(block, Columns::CONTACT_PUSHER, i) && !is_set(block, Columns::IDLE, i)
 }
 
-/// Factor of fixels' offsets, outline and latency on a rig so rough.
+/// Returns the factor of fixels' offsets, outline and latency on a rig so rough.
 #[inline(always)]
 fn measured<const W: usize>(unsure: &Uncertainty, roughness: Lanes<W>) -> Lanes<W> {
     roughness.exp() * unsure.well_measured_at(roughness)
 }
 
-/// Factor of the pusher's offset on a rig so rough.
+/// Returns the factor of the pusher's offset on a rig so rough.
 #[inline(always)]
 fn registered<const W: usize>(unsure: &Uncertainty, roughness: Lanes<W>) -> Lanes<W> {
     roughness.exp() * unsure.well_registered_at(roughness)
 }
 
-/// Share of their spread by which offsets wander at a time that are `scale` times as large as told:
-/// by the same way (m), however large they are.
+/// Returns the share of their spread by which offsets wander at a time if they are `scale` times
+/// their nominal size. The step has the same length (m), however large they are.
 #[inline(always)]
 fn offset_step(scale: Column) -> Column {
     (Lanes::splat(OFFSET_STEP) / scale).min(Lanes::splat(1.0))
 }
 
-/// One step of a random walk in a normal distribution that it keeps: `fresh` is drawn from that
-/// distribution, `step` is the share of it.
+/// Makes one step of a random walk that keeps a normal distribution: `fresh` is drawn from that
+/// distribution, `step` is its share.
 #[inline(always)]
 fn wandered(before: Column, step: Column, fresh: Column) -> Column {
     (Lanes::splat(1.0) - step * step).sqrt() * before + step * fresh

@@ -1,13 +1,13 @@
-//! Whether the pusher moves evenly: [`Steadiness`].
+//! Test whether the pusher moves evenly: [`Steadiness`].
 
 use stickslip_dynamics::StepInput;
 
-/// For how long the pusher's velocity has been the same, as far as that matters.
+/// Time for which the pusher's velocity has been the same, as far as that matters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steadiness {
-    /// For how long it has to be (s).
+    /// Time for which it has to be the same (s).
     window: f64,
-    /// The velocity (m/s) that it has had, about, since a time (s).
+    /// The approximate velocity (m/s), and the time (s) since when it has been so.
     since: Option<([f64; 2], f64)>,
 }
 
@@ -15,7 +15,7 @@ pub(crate) struct Steadiness {
 const EVEN: f64 = 0.15;
 
 impl Steadiness {
-    /// Over `window` seconds.
+    /// A test over `window` seconds.
     pub fn new(window: f64) -> Self {
         Self {
             window,
@@ -23,7 +23,7 @@ impl Steadiness {
         }
     }
 
-    /// The pusher's velocity at `time` (s), where it has been about that for the whole window.
+    /// Returns the pusher's velocity at `time` (s) if it has been about that for the whole window.
     pub fn velocity(&mut self, time: f64, substeps: &[StepInput]) -> Option<[f64; 2]> {
         let Some(motion) = substeps.last().and_then(|step| step.pusher) else {
             self.since = None;

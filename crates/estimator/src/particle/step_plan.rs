@@ -1,4 +1,4 @@
-//! The step to one row, as the model gets it: [`StepPlan`].
+//! Plan of the step to one row, as the model gets it: [`StepPlan`].
 
 use stickslip_dynamics::{StepInput, Twist};
 
@@ -6,7 +6,7 @@ use crate::particle::observation::Observation;
 use crate::particle::resting_pose::RestingPose;
 use crate::particle::sums::Reference;
 
-/// Whether the friction parameters take a random step.
+/// Random step of the friction parameters, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterNoise {
     /// β̂ = β + w_β τ(β).
@@ -15,50 +15,48 @@ pub enum ParameterNoise {
     Frozen,
 }
 
-/// A pusher that nobody sees, and that may move the object (contact mode).
+/// A pusher that is not seen and may move the object (robust model).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnseenPusher {
     /// Its last twist.
     pub twist: Twist,
-    /// Whether it would have reached an object that is hidden, too, had it gone on like that.
+    /// True if it would have reached a hidden object, had it gone on like that.
     pub reached: bool,
-    /// Whether it does so in this step.
+    /// True if it does so in this step.
     pub reaches: bool,
 }
 
-/// The step to one row.
+/// Plan of the step to one row.
 #[derive(Clone, Debug)]
 pub struct StepPlan {
     /// Substeps; their lengths sum to the step's.
     pub substeps: Vec<StepInput>,
-    /// Whether the pusher moves.
+    /// True if the pusher moves.
     pub driven: bool,
-    /// Whether the parameters take a random step.
+    /// Random step of the parameters, or none.
     pub parameter_noise: ParameterNoise,
-    /// Steps since the one that drew the noise which this step shares with it; 0 where it draws its
-    /// own.
+    /// Number of steps since the one that drew the noise of this step; 0 if it draws its own.
     pub noise_age: u64,
-    /// The pusher's velocity (m/s), where it has been the same for as long as the camera may lag
-    /// (contact mode).
+    /// The pusher's velocity (m/s), if it has been the same for as long as the camera may lag
+    /// (robust model).
     pub steady: Option<[f64; 2]>,
-    /// The pusher, where nobody knows where it is, and it may carry the object along (contact
-    /// mode).
+    /// The pusher, if its place is not known and it may carry the object along (robust model).
     pub unseen_pusher: Option<UnseenPusher>,
-    /// Whether it has just come back into view (contact mode).
+    /// True if the pusher has just come back into view (robust model).
     pub pusher_is_back: bool,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
-    /// What weighed the particles at the row before, of which they learn how noisy the camera is;
-    /// without a pose in paper mode.
+    /// Observation that weighed the particles at the row before, from which they learn the camera's
+    /// noise; without a pose in the paper's model.
     pub seen: Observation,
-    /// Where the object is if nothing has moved it yet, where the row before told more of that
-    /// (contact mode).
+    /// Place of the object if nothing has moved it yet, if the row before gave more evidence of it
+    /// (robust model).
     pub resting: Option<RestingPose>,
     /// Tactile readings at the end of the step, one per sensor.
     pub tactile: Vec<Option<bool>>,
     /// Values near the estimate, about which sums are taken.
     pub reference: Reference,
-    /// Whether the step is made again, (42).
+    /// True if the step is re-simulated, (42).
     pub second_try: bool,
 }
 
@@ -96,26 +94,26 @@ impl StepPlan {
         self.substeps.iter().map(|step| step.h).sum()
     }
 
-    /// Whether the camera shows nothing.
+    /// Returns true if the camera shows nothing.
     #[inline(always)]
     pub(crate) fn is_dark(&self) -> bool {
         self.parameter_noise == ParameterNoise::Frozen
     }
 
-    /// Whether what a particle takes as known changes a little, so that copies differ: while the
-    /// camera looks, and in the dark while the pusher moves (contact mode). At rest nothing would
-    /// tell them apart.
+    /// Returns true if the unknowns of a particle take small random steps, so that copies differ.
+    /// They do while the camera is on, and while the camera is off if the pusher moves (robust
+    /// model). Nothing would tell the copies apart at rest.
     pub(crate) fn unknowns_wander(&self) -> bool {
         self.driven || !self.is_dark()
     }
 
-    /// Whether the camera sees where the object rests: what keeps it from the poses that are seen
-    /// is the rig.
+    /// Returns true if the camera sees where the object rests. Only errors of the rig then keep it
+    /// from the poses that are seen.
     pub(crate) fn shows_rest(&self) -> bool {
         !self.driven && self.unseen_pusher.is_none() && !self.is_dark()
     }
 
-    /// No step at all.
+    /// A plan of no step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {
             substeps: Vec::new(),

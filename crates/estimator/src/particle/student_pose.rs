@@ -1,4 +1,4 @@
-//! A belief about a pose whose error is known as well as the noise of a camera is: [`StudentPose`].
+//! Belief about a pose whose error is known as well as the noise of a camera is: [`StudentPose`].
 
 use stickslip_dynamics::Pose;
 
@@ -6,15 +6,15 @@ use stickslip_dynamics::Pose;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StudentPose {
     pub mean: Pose,
-    /// The scale of each.
+    /// Scale of each.
     pub scale: [f64; 3],
-    /// The degrees of freedom of each; infinite where it is normal.
+    /// Degrees of freedom of each; infinite for a normal distribution.
     pub freedom: [f64; 3],
 }
 
 impl StudentPose {
-    /// The pose that stands in these distributions where three numbers stand in the normal one;
-    /// drawn from them where the numbers are random.
+    /// Maps three numbers of the normal distribution to a pose at the same quantiles of these
+    /// distributions. The pose is drawn from them if the numbers are random.
     pub fn at(&self, normals: [f64; 3]) -> Pose {
         let mut pose = self.mean;
         for (k, x) in pose.fields_mut().into_iter().enumerate() {
@@ -24,7 +24,7 @@ impl StudentPose {
     }
 }
 
-/// The number of Student's t distribution that stands where `z` stands in the normal one, to first
+/// Maps `z` of the normal distribution to the same quantile of Student's t distribution, to first
 /// order in 1 / `freedom` (Fisher and Cornish 1960).
 fn student(z: f64, freedom: f64) -> f64 {
     z + (z * z * z + z) / (4.0 * freedom)

@@ -1,4 +1,4 @@
-//! What a particle set amounts to: weighted means and standard deviations of its columns, about the
+//! Estimate of a particle set: weighted means and standard deviations of its columns, about the
 //! pose that is published: [`summarise`].
 
 use std::f64::consts::FRAC_PI_2;
@@ -12,9 +12,9 @@ use crate::particle::geometric_median::way_to_median;
 use crate::particle::model::ContactModel;
 use crate::particle::sums::{ANGLE, Reference};
 
-/// Writes weighted means and standard deviations, from sums about `reference`, to `row`; θ is the
-/// angle nearest to that of the reference. In contact mode the pose is the one at the least mean
-/// distance from the particles, and its spread is about that.
+/// Writes weighted means and standard deviations, from sums about `reference`, to `row`. θ is the
+/// angle nearest to that of the reference. The robust model publishes the pose at the least mean
+/// distance from the particles, with its spread about that pose.
 pub(crate) fn summarise(
     filter: &ParticleFilter<ContactModel<'_>>,
     reference: &Reference,
@@ -36,7 +36,7 @@ pub(crate) fn summarise(
         filter.weighted_circular_std_about(theta, ANGLE)
     };
 
-    // how the errors go together: about the means of x and y, so that θ's own drops out
+    // covariances of the errors: about the means of x and y, so that the mean of θ drops out
     let [x, y] = sums.first.position;
     let [x_y, x_theta, y_theta] = sums.cross;
     let cross = CrossCovariance {

@@ -9,10 +9,10 @@ use crate::estimate::EstimateRow;
 use crate::particle::chunk::{Column, LANES, flag, load_chunk, total};
 use crate::particle::columns::{Columns, Flag, SlipFlags};
 
-/// θ.
+/// Column of θ.
 pub(crate) const ANGLE: usize = Columns::POSE + 2;
 
-/// What is averaged on the line, not on the circle: one thing for each of these columns.
+/// Quantities that are averaged on the line, not on the circle: one `T` for each of these columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Linear<T> {
     /// x and y of the object.
@@ -22,7 +22,7 @@ pub struct Linear<T> {
 }
 
 impl<T> Linear<T> {
-    /// In the order of [`Linear::COLUMNS`].
+    /// Returns them in the order of [`Linear::COLUMNS`].
     #[inline(always)]
     fn fields(&self) -> [&T; 6] {
         let ([x, y], [mu_s, mu_p, mu_f, d_tri]) = (&self.position, self.friction.fields());
@@ -44,7 +44,7 @@ impl<T> Linear<T> {
 }
 
 impl Linear<f64> {
-    /// The columns that hold them.
+    /// Columns that hold them.
     const COLUMNS: [usize; 6] = {
         let friction = Columns::FRICTION;
         let (x, y) = (Columns::POSE, Columns::POSE + 1);
@@ -138,7 +138,7 @@ pub struct Sums {
     pub second: Linear<f64>,
     /// Σ w v.
     pub twist: Twist,
-    /// Those over θ.
+    /// Sums over θ.
     pub angle: AngleSums<f64>,
     /// Σ w d d of x and y, of x and θ, of y and θ.
     pub cross: [f64; 3],
@@ -146,13 +146,13 @@ pub struct Sums {
     pub widest: f64,
     /// Number of particles whose last step was not solved.
     pub unsolved: f64,
-    /// Of those, the ones whose solver gave up.
+    /// Number of these whose solver gave up.
     pub failed: f64,
     /// Σ w c_p.
     pub contact_pusher: f64,
     /// Σ w c_j of every fixel.
     pub contact_fixels: Vec<f64>,
-    /// How the object slips, Σ w of the particles that do so: on the pusher, then on every fixel.
+    /// Slip of the object, Σ w of the particles that do so: on the pusher, then on every fixel.
     pub slips: Vec<ContactSlip>,
 }
 
@@ -241,7 +241,7 @@ impl Sums {
     }
 }
 
-/// Weight of the particles whose flag is set.
+/// Returns the weight of the particles whose flag is set.
 #[inline(always)]
 fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
     let mut sum = Column::ZERO;
@@ -251,8 +251,8 @@ fn share(block: &Block<'_>, weights: &[f64], which: Flag) -> f64 {
     total(sum)
 }
 
-/// Weight of the particles that stick and slide on a body, which particles of weight `touch` touch:
-/// in most blocks none.
+/// Returns the weight of the particles that stick and slide on a body, which particles of weight
+/// `touch` touch: in most blocks none.
 #[inline(always)]
 fn slips(
     block: &Block<'_>,

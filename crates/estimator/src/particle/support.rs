@@ -1,5 +1,5 @@
-//! What the particles do not know of how the object stands (contact mode; docs/method.md (55)):
-//! where its centre of friction lies, and in which directions its three feet.
+//! Unknowns of how the object stands (robust model; docs/method.md (55)): where its centre of
+//! friction lies, and in which directions its three feet.
 
 use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::BlockMut;
@@ -9,14 +9,15 @@ use crate::particle::columns::Columns;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
 
-/// Share of their spread by which centre and angle wander: copies of a particle are to differ.
+/// Share of their spread by which centre and angle wander: copies of a particle must differ.
 const SUPPORT_STEP: f64 = 0.1;
 
-/// μ_s, the parameter that takes part where the object moves: so do the feet.
+/// Index of μ_s, the parameter that takes part where the object moves: so do the feet.
 const MOVED: usize = 0;
 
 impl Propagation {
-    /// Where the feet stand in the object's frame: drawn anew until the object moves.
+    /// Draws where the feet stand in the object's frame. It is resampled from the prior until the
+    /// object moves.
     #[inline(always)]
     pub(super) fn draw_support(
         &self,
@@ -34,7 +35,7 @@ impl Propagation {
         }
     }
 
-    /// By how far the feet stand beside the scene's and are turned, in all substeps.
+    /// Loads the displacement and the turn of the feet relative to the scene's, for all substeps.
     #[inline(always)]
     pub(super) fn load_support(
         &mut self,

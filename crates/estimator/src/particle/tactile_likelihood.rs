@@ -1,4 +1,4 @@
-//! What the tactile sensors say of a particle: [`TactileLikelihood`].
+//! Likelihood of the tactile readings given a particle: [`TactileLikelihood`].
 
 use stickslip_dynamics::{Lanes, Mask};
 use stickslip_filter::Block;
@@ -12,7 +12,7 @@ use crate::setup::Tactile;
 pub(crate) struct TactileLikelihood {
     /// log-probability of reading 0 and 1 where the particle does not touch.
     free: [f64; 2],
-    /// The same where it touches.
+    /// log-probability of reading 0 and 1 where it touches.
     touching: [f64; 2],
     columns: Columns,
 }
@@ -27,13 +27,13 @@ impl TactileLikelihood {
         }
     }
 
-    /// log-probability of the readings given one chunk's contacts.
+    /// Returns the log-probability of the readings given one chunk's contacts.
     ///
-    /// The impulses of a driven particle tell which fixels it touches. An idle particle does not:
-    /// the support's friction holds it, so it stays where it is whether the pusher behind it
-    /// presses or not. Both are certified solutions of its step, and the warm start and the
-    /// tracking noise decide which of them the solver returns. So the one that explains the
-    /// readings better counts.
+    /// The impulses of a driven particle show which fixels it touches. Those of an idle particle do
+    /// not: the support's friction holds it, so it stays where it is whether the pusher behind it
+    /// presses or not. Both are certified solutions of its step. The warm start and the tracking
+    /// noise decide which of them the solver returns. So the one that explains the readings better
+    /// counts.
     #[inline(always)]
     pub fn log_likelihood(
         &self,
@@ -63,7 +63,8 @@ impl TactileLikelihood {
         idle.select(pressed.max(untouched), driven)
     }
 
-    /// log-probability of the readings where `touches(j)` says which particles touch fixel j.
+    /// Returns the log-probability of the readings if `touches(j)` are the particles that touch
+    /// fixel j.
     #[inline(always)]
     fn given(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> Mask<LANES>) -> Column {
         let mut sum = Column::ZERO;

@@ -1,19 +1,20 @@
-//! What a binary tactile sensor says over time (contact mode): [`TouchChannel`].
+//! Model of a binary tactile sensor over time (robust model): [`TouchChannel`].
 
 use stickslip_dynamics::{Lanes, Mask};
 
 use crate::setup::Tactile;
 
-/// Numbers of a [`SensorBelief`], each a column.
+/// Number of numbers of a [`SensorBelief`], each a column.
 pub(crate) const BELIEF_LEN: usize = 2 + QUARTERS;
 
-/// What W particles believe of a sensor.
+/// Belief of W particles about a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SensorBelief<const W: usize> {
     /// Probabilities that it is stuck at 0 and at 1.
     stuck: [Lanes<W>; 2],
-    /// If it works, in which quarter the probability of a touch lies from which on it feels it.
-    /// Within a quarter that counts as drawn anew in every row.
+    /// Probabilities of the quarters in which the threshold of a working sensor may lie: it reads a
+    /// touch whose probability exceeds the threshold. Within its quarter the threshold counts as
+    /// drawn again in every row.
     felt_from: [Lanes<W>; QUARTERS],
 }
 
@@ -31,19 +32,19 @@ impl<const W: usize> SensorBelief<W> {
     }
 }
 
-/// A sensor that works, or is stuck at one reading for a while; which, is not known, but inferred
-/// from its readings, particle by particle (docs/method.md, "Contact mode").
+/// A sensor that works, or is stuck at one reading for a while. Its state is inferred from its
+/// readings, particle by particle (docs/method.md, "Contact mode").
 ///
-/// Readings of a sensor that misses a touch now will miss it in the next frame, too: they count
-/// once, not frame by frame. So does what is not known of a contact, its gap or whether it presses:
-/// it is felt where its probability of being so exceeds a number between 0 and 1, that stays.
+/// A sensor that misses a touch now will miss it in the next frame, too: such readings count once,
+/// not frame by frame. So does what is not known of a contact, its gap or whether it presses. The
+/// contact is felt if its probability of being so exceeds a number between 0 and 1 that stays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchChannel {
-    /// Of a sensor that works: probability of reading 1 without touch, and with it.
+    /// Probability that a working sensor reads 1 without touch, and with it.
     reads_one: [f64; 2],
     /// Share of time for which a sensor is stuck at 0 and at 1.
     share: [f64; 2],
-    /// Rate at which what is stuck gets free, and `felt_from` changes (1/s).
+    /// Rate at which a stuck sensor gets free, and `felt_from` changes (1/s).
     recovery: f64,
 }
 
@@ -56,7 +57,7 @@ impl TouchChannel {
         }
     }
 
-    /// Before the first reading.
+    /// Returns the belief before the first reading.
     pub fn start<const W: usize>(&self) -> SensorBelief<W> {
         SensorBelief {
             stuck: self.share.map(Lanes::splat),
@@ -64,12 +65,13 @@ impl TouchChannel {
         }
     }
 
-    /// Probability that within `h` seconds what is stuck gets free: the same for all particles.
+    /// Returns the probability that a stuck sensor gets free within `h` seconds. It is equal for
+    /// all particles.
     pub fn freed(&self, h: f64) -> f64 {
         1.0 - libm::exp(-self.recovery * h)
     }
 
-    /// What is believed of a sensor after some time, in which what is stuck is
+    /// Returns the belief about a sensor after some time, in which a stuck one is
     /// [`freed`](Self::freed).
     #[inline(always)]
     pub fn later<const W: usize>(
@@ -83,7 +85,7 @@ impl TouchChannel {
         let [at_zero, at_one] = stuck;
         let stuck = [later(at_zero, self.share[0]), later(at_one, self.share[1])];
         let works = one - stuck[0] - stuck[1];
-        // a sensor that was stuck has told nothing of the contact
+        // a sensor that was stuck has said nothing of the contact
         let known = (one - repaired / works) * (1.0 - freed);
         let quarter = Lanes::splat(QUARTER);
         let known_of = |share| quarter + known * (share - quarter);
@@ -94,8 +96,8 @@ impl TouchChannel {
         }
     }
 
-    /// A reading of a sensor that is touched with probability `touch`: what is believed then, and
-    /// the log-likelihood of the reading.
+    /// Takes a reading of a sensor that is touched with probability `touch`. Returns the belief
+    /// after it, and the log-likelihood of the reading.
     #[inline(always)]
     pub fn read<const W: usize>(
         &self,
@@ -126,8 +128,8 @@ impl TouchChannel {
         (after, likelihood.ln())
     }
 
-    /// A reading by the same rules, `h` seconds after the state given, with a touch of this
-    /// probability, drawn with three uniform numbers; with the state then.
+    /// Draws a reading by these rules, `h` seconds after the state `before`, with a touch of this
+    /// probability and three uniform numbers. Also returns the new state.
     pub fn drawn(
         &self,
         before: DrawnSensor,
@@ -154,13 +156,13 @@ impl TouchChannel {
         (DrawnSensor { state, felt_from }, reading)
     }
 
-    /// A reading of a sensor that works, drawn with two uniform numbers, of which the first is the
-    /// probability from which on it feels a touch.
+    /// Draws a reading of a working sensor with two uniform numbers. The first is the probability
+    /// from which on it feels a touch.
     pub fn drawn_working(&self, touch: f64, [felt_from, read]: [f64; 2]) -> bool {
         read < self.reads_one[usize::from(felt_from < touch)]
     }
 
-    /// The state of a sensor of which nothing is known, by a uniform number.
+    /// Returns the state of a sensor of which nothing is known, by a uniform number.
     pub fn state_at(&self, uniform: f64) -> SensorState {
         let [zero, one] = self.share;
         match uniform {
@@ -171,15 +173,15 @@ impl TouchChannel {
     }
 }
 
-/// A sensor of which all is known.
+/// A sensor whose state is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DrawnSensor {
     pub state: SensorState,
-    /// Probability of a touch from which on it feels it.
+    /// Probability of a touch from which on the sensor feels it.
     pub felt_from: f64,
 }
 
-/// Whether a sensor works.
+/// State of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SensorState {
     Works,
@@ -187,9 +189,9 @@ pub(crate) enum SensorState {
     StuckAt(bool),
 }
 
-/// Probability that a sensor feels a contact, from its impulse in units of the sensor's threshold,
-/// and its gap in units of what is not known of it. A contact that rests without pressing may or
-/// may not be felt, and the threshold is not known exactly.
+/// Returns the probability that a sensor feels a contact, from its impulse in units of the sensor's
+/// threshold, and its gap in units of the gap's uncertainty. A contact that rests without pressing
+/// may or may not be felt, and the threshold is not known exactly.
 #[inline(always)]
 pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W> {
     let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
@@ -199,8 +201,8 @@ pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W>
     impulse.gt(Lanes::ZERO).select(pressed, near)
 }
 
-/// The same of a contact that may be idle: no step tells whether one that is near presses
-/// (docs/method.md (38)).
+/// Returns that probability for a contact that may be idle: no step tells whether one that is near
+/// presses (docs/method.md (38)).
 #[inline(always)]
 pub(crate) fn felt_or_idle<const W: usize>(
     impulse: Lanes<W>,
@@ -211,13 +213,13 @@ pub(crate) fn felt_or_idle<const W: usize>(
     may_press.select(Lanes::splat(PRESSES), felt(impulse, gap))
 }
 
-/// Gap, in units of what is not known of it, within which an idle contact may press or not.
+/// Gap, in units of its uncertainty, within which an idle contact may press or not.
 const NEAR: f64 = 2.0;
 
 /// Probability that an idle contact which is near presses.
 const PRESSES: f64 = 0.5;
 
-/// Parts from 0 to 1, and the size of each.
+/// Number of parts from 0 to 1, and the size of each.
 const QUARTERS: usize = 4;
 const QUARTER: f64 = 1.0 / QUARTERS as f64;
 
@@ -235,7 +237,7 @@ mod tests {
         TouchChannel::new(&Tactile::default())
     }
 
-    /// What is believed after `h` seconds and a reading, and the log-likelihood of that.
+    /// Returns the belief after `h` seconds and a reading, and the log-likelihood of the reading.
     fn read_after(
         h: f64,
         belief: SensorBelief<1>,
@@ -298,13 +300,14 @@ mod tests {
             let idle = evidence_of(readings.iter().copied(), PRESSES);
             idle - evidence_of(readings.into_iter(), 0.0)
         };
-        // zeros tell little against an idle contact, ones tell for it what a sensor stuck at 1 does not
+        // zeros are little evidence against an idle contact; ones are evidence for it that a sensor
+        // stuck at 1 is not
         let zeros = against(vec![false; 300]);
         assert!((-4.0..0.0).contains(&zeros), "{zeros}");
         let ones = against(vec![true; 10]);
         assert!(ones > 1.5, "{ones}");
 
-        // false alarms among zeros tell nothing for it, however many they are
+        // false alarms among zeros are no evidence for it, however many they are
         let alarms = |every: usize| (0..300).map(|row| row % every == every - 1).collect();
         for every in [30, 60, 100] {
             let told = against(alarms(every));
@@ -359,7 +362,7 @@ mod tests {
 
     #[test]
     fn readings_drawn_come_as_often_as_their_likelihood_says() {
-        // where touches divide no quarter
+        // probabilities that divide no quarter
         for touches in [[0.0, 1.0, 1.0, 0.0], [0.75, 0.5, 0.5, 0.25]] {
             for (read, (share, expected)) in drawn_and_expected(touches).into_iter().enumerate() {
                 let error = (share - expected) / (expected / 200_000.0).sqrt();

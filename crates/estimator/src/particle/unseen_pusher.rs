@@ -1,4 +1,4 @@
-//! A pusher that nobody sees and that may move the object on (docs/method.md (53)).
+//! Motion of the object by a pusher that is not seen (docs/method.md (53)).
 
 use stickslip_dynamics::{Particles, Twist};
 use stickslip_filter::{BlockMut, Draw};
@@ -9,28 +9,30 @@ use crate::particle::contact_mode::UNSEEN_PAIR;
 use crate::particle::propagation::{Propagation, Transition};
 use crate::particle::step_plan::{StepPlan, UnseenPusher};
 
-/// Speed that an unseen pusher may have at least (m/s).
+/// Least speed of an unseen pusher (m/s).
 const UNSEEN_SPEED: f64 = 0.01;
 
-/// For how long an object that an unseen pusher carries goes on as it does, or rests (s).
+/// Time for which an object that an unseen pusher carries goes on as it does, or rests (s).
 const UNSEEN_LASTS: f64 = 0.15;
 
-/// The same where the object is not seen, either (s).
+/// Time for which it does so if the object is not seen, either (s).
 const UNSEEN_LASTS_IN_THE_DARK: f64 = 1.0;
 
 /// Probability that a pusher which would have reached the object has not, having stopped or been
 /// lifted.
 const MISSES: f64 = 0.25;
 
-/// Spread of the velocity at which one that has reached it carries it on, beside its own, and of
-/// the turn, by the pusher's last speed.
+/// Spread of the velocity at which a pusher that has reached the object carries it on, about its
+/// own, and of the turn, as a share of the pusher's last speed.
 const AROUND: f64 = 0.5;
 
 impl Propagation {
-    /// A pusher that nobody sees may carry the object along, or not: at a velocity of its own in
-    /// each particle, which is drawn anew now and then. In the dark it is one that touched the
-    /// object when it was last seen, or would have reached it since, and that goes on as it did for
-    /// longer, since no pose of the camera corrects a guess.
+    /// Lets an unseen pusher carry the object along, or not. The velocity differs between
+    /// particles, and is redrawn now and then.
+    ///
+    /// While the camera is off, the pusher must have touched the object when it was last seen, or
+    /// would have reached it since. Its velocity then lasts longer, since no camera pose corrects a
+    /// guess.
     pub(super) fn carry(
         &mut self,
         transition: &Transition<'_>,
@@ -84,8 +86,8 @@ impl Propagation {
         }
     }
 
-    /// A pusher that comes back into view inside an object pushes it out within a step. That is no
-    /// speed of the object: it has the pusher's at most.
+    /// Limits the speed of an object to the pusher's when that comes back into view. A pusher
+    /// inside the object pushes it out within a step, which is no speed of the object.
     #[inline(always)]
     pub(super) fn slow_down(
         &self,

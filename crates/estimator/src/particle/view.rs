@@ -8,7 +8,7 @@ use crate::particle::columns::Columns;
 use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 
-/// Particles with their weights; it can be looked at, not changed.
+/// Particles with their weights, read-only.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleView<'a> {
     particles: &'a ParticleSet,
@@ -71,7 +71,7 @@ impl<'a> ParticleView<'a> {
     }
 
     /// The pose that the camera shows at this row according to one particle: where the object was
-    /// before, by as much as the camera lags.
+    /// one lag of the camera earlier.
     ///
     /// # Panics
     /// If there is no such particle.
@@ -83,8 +83,8 @@ impl<'a> ParticleView<'a> {
         shown.map(|column| column.0[i % LANES])
     }
 
-    /// Whether nothing drives the object according to one particle: the pusher rests, or neither
-    /// moves the object nor presses on it.
+    /// Returns true if nothing drives the object according to one particle: the pusher rests, or
+    /// neither moves the object nor presses on it.
     ///
     /// # Panics
     /// If there is no such particle.

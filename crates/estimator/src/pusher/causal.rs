@@ -1,9 +1,10 @@
 //! The pusher's track from the rows so far, as live: [`CausalTrack`].
 //!
-//! Per axis an interacting multiple model filter runs from lively to nearly unaccelerated models,
-//! since the level of the process noise cannot be fitted before the series is known. While the
-//! pusher is not seen its last pose is held; how long the gap will be, nobody knows: after 0.2 s
-//! the pusher counts as lifted, and its track starts anew where it comes back.
+//! An interacting multiple model filter runs on each axis, with models from lively to nearly
+//! unaccelerated: the level of the process noise cannot be fitted before the series is known.
+//!
+//! The last pose is held while the pusher is not seen. After 0.2 s, or 2.5 typical intervals if
+//! these are longer, the pusher counts as lifted. Its track starts again where it comes back.
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMultipleModel};
@@ -18,7 +19,7 @@ use crate::setup::Camera;
 /// measurement, q = std²/T³.
 const LIVELINESS: [f64; 3] = [10.0, 0.5, 0.05];
 
-/// Mean time for which one of these models holds (s).
+/// Mean time for which one of these models applies (s).
 const MEAN_SOJOURN_TIME: f64 = 30.0;
 
 /// Tracks the pusher row by row.
@@ -28,7 +29,7 @@ pub(crate) struct CausalTrack {
     filters: [Option<AxisFilter>; 3],
     /// The pusher on the plane; `None` while it is lifted.
     seen: Option<Seen>,
-    /// How often there is a pose; `None` before the first one.
+    /// Clock of the pusher's poses; `None` before the first one.
     clock: Option<PoseClock>,
     gate: JumpGate,
 }
@@ -49,7 +50,7 @@ struct Seen {
 /// One axis at the latest row.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
-    /// Of the filter; `None` where poses are exact.
+    /// State of the filter; `None` where poses are exact.
     state: Option<ImmState<{ LIVELINESS.len() }>>,
     estimate: AxisEstimate,
 }
@@ -101,7 +102,7 @@ impl CausalTrack {
         })
     }
 
-    /// How many poses counted as missing, since the pusher could not have come there.
+    /// Number of poses that counted as missing, since the pusher could not have come there.
     pub fn left_out(&self) -> u32 {
         self.gate.left_out()
     }

@@ -16,19 +16,19 @@ const LEAST: f64 = 2e-3;
 /// Standard deviations by which no pose errs.
 const SIGMAS: f64 = 20.0;
 
-/// Tells poses that the pusher cannot have come to since the two before: wrong detections of its
-/// tag. Where they go on, the time to come there grows, and they are believed.
+/// Rejects poses that the pusher cannot have reached since the two before: wrong detections of its
+/// tag. If such poses go on, the time to get there grows, until one is accepted.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpGate {
     position_std: f64,
     orientation_std: f64,
-    /// The latest two poses that were believed, the last one first, each with its time (s).
+    /// The latest two accepted poses, the last one first, each with its time (s).
     latest: [Option<(f64, Pose)>; 2],
-    /// How many were not believed.
+    /// Number of rejected poses.
     left_out: u32,
 }
 
-/// The pusher's poses in `log` that count, row by row; without a `camera` they are exact.
+/// Returns the accepted pusher poses of `log`, row by row. Without a `camera` poses count as exact.
 pub(crate) fn believed(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
     let mut gate = JumpGate::new(camera);
     let rows = log.time.iter().zip(&log.pusher);
@@ -36,7 +36,7 @@ pub(crate) fn believed(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> 
 }
 
 impl JumpGate {
-    /// Before the first pose; without a `camera` poses count as exact.
+    /// A gate before the first pose; without a `camera` poses count as exact.
     pub fn new(camera: Option<&Camera>) -> Self {
         let (position_std, orientation_std) = camera.map_or((0.0, 0.0), |camera| {
             (camera.pusher_position_std, camera.pusher_orientation_std)
@@ -49,7 +49,7 @@ impl JumpGate {
         }
     }
 
-    /// The pose measured at `time` (s), which rises; `None` where the pusher cannot be there.
+    /// Returns the pose measured at `time` (s), which rises; `None` if the pusher cannot be there.
     pub fn pass(&mut self, time: f64, pose: Option<Pose>) -> Option<Pose> {
         let pose = pose?;
         if let [Some(last), Some(before)] = self.latest
@@ -62,7 +62,7 @@ impl JumpGate {
         Some(pose)
     }
 
-    /// How many poses the pusher could not have come to.
+    /// Number of poses that the pusher could not have reached.
     pub fn left_out(&self) -> u32 {
         self.left_out
     }
@@ -78,7 +78,7 @@ impl JumpGate {
         let off = |now: f64, last: f64, before: f64| now - last - ratio * (last - before);
         let turn = wrapped(pose.theta - last.theta) - ratio * wrapped(last.theta - before.theta);
         let away = off(pose.x, last.x, before.x).hypot(off(pose.y, last.y, before.y));
-        // in steps as uneven as these, noise passes for speed
+        // uneven steps multiply the noise of the extrapolated pose
         let noise = SIGMAS * (1.0 + ratio);
         let way = LEAST + 0.5 * ACCELERATION * h * h;
         away > way + noise * self.position_std
@@ -90,7 +90,7 @@ impl JumpGate {
 mod tests {
     use super::*;
 
-    /// Which of these x (m) at 60 Hz pass.
+    /// Returns which of these x (m) at 60 Hz pass.
     fn passed(poses: &[f64]) -> Vec<bool> {
         let mut gate = JumpGate::new(None);
         let rows = poses.iter().enumerate();

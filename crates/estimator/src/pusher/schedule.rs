@@ -1,14 +1,14 @@
-//! How a log's rows become steps: [`Schedule`], the substeps that lead from each row to the next.
+//! Steps of a log: [`Schedule`], the substeps that lead from each row to the next.
 
 use stickslip_dynamics::{PusherMotion, StepInput};
 
 use crate::pusher::track::PusherTrack;
 
-/// A step is split where it is longer than this (s).
+/// Length above which a step is split (s).
 const LONGEST_STEP: f64 = 0.055;
 
-/// No step is shorter than this (s): in less, what overlaps a little would be thrown apart, since a
-/// step takes the bodies out of each other within its time.
+/// Length of the shortest step (s). A step moves overlapping bodies apart within its time: in a
+/// shorter one, a small overlap would throw them apart.
 pub(crate) const SHORTEST_STEP: f64 = 5e-4;
 
 /// Length that the parts of a split step do not exceed (s).
@@ -23,7 +23,7 @@ pub struct Schedule {
 
 impl Schedule {
     /// Steps from row to row of `time`, driven by `track`; `substeps` forces a number of parts. A
-    /// row that comes less than half a millisecond after the last step has none: the next one
+    /// row that comes less than half a millisecond after the last step has none: the next step
     /// begins where the last one ended.
     pub fn new(time: &[f64], track: &PusherTrack, substeps: Option<u32>) -> Self {
         let mut direction = track.first_direction(time);
@@ -54,8 +54,8 @@ impl Schedule {
         &self.steps[row]
     }
 
-    /// Whether the pusher moves on the way from `row` to the next; what is left of a standing
-    /// pusher's motion is tracking noise.
+    /// Returns true if the pusher moves on the way from `row` to the next. The remaining motion of
+    /// a standing pusher is tracking noise.
     pub fn driven(&self, row: usize) -> bool {
         self.driven[row]
     }
@@ -69,7 +69,7 @@ fn parts_of(h: f64) -> u32 {
     }
 }
 
-/// The substeps of a step of `h` seconds: `parts` of equal length, or as many as the length asks
+/// Splits a step of `h` seconds into `parts` of equal length, or into as many as the length asks
 /// for.
 pub(crate) fn split(
     h: f64,

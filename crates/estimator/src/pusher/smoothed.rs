@@ -14,11 +14,10 @@ use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
 
-/// By how much larger noise has to raise ln of a series' likelihood to be believed in place of the
-/// told one.
+/// Gain in ln of a series' likelihood from which on a larger noise replaces the nominal one.
 const CLEARLY: f64 = 12.0;
 
-/// The larger noises that are tried, in told ones.
+/// Larger noises that are tried, as multiples of the nominal one.
 const LARGER: [f64; 7] = [2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0];
 
 /// Tracks the pusher of `log`, one pose per row; without a `camera` its poses count as exact.
@@ -38,8 +37,7 @@ pub(crate) fn smoothed_track(
 }
 
 /// Row ranges in which the pusher is on the plane: from a first pose to the last before a gap that
-/// is too long.
-/// A gap that runs to the end of the log is bridged like any other.
+/// is too long. A gap that runs to the end of the log is bridged like any other.
 fn spans(time: &[f64], poses: &[Option<Pose>]) -> Vec<Range<usize>> {
     let seen: Vec<usize> = (0..poses.len())
         .filter(|&row| poses[row].is_some())
@@ -107,8 +105,8 @@ fn track_axis(
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// The model of greatest likelihood: with the told noise `std`, or with a larger one where the
-/// series says clearly that the poses scatter by more.
+/// Returns the model of greatest likelihood: with the nominal noise `std`, or with a larger one if
+/// the poses clearly scatter by more.
 fn fitted(time: &[f64], measured: &[Option<f64>], std: f64) -> Result<ConstantVelocity, RunError> {
     let fit = |measurement_std: f64| -> Result<(ConstantVelocity, f64), RunError> {
         let model = ConstantVelocity {

@@ -1,12 +1,12 @@
 //! The pusher's own motion from its measured poses: [`PusherTrack`] (docs/method.md (30), (31)).
 //!
-//! Off-line it is the fixed-interval smoother of a constant-velocity Kalman filter, as in the
-//! paper, per axis; the level of its white-noise acceleration is the one of greatest likelihood
-//! over the whole series. Causally that level cannot be known: there an
-//! interacting multiple model filter weighs models from lively to nearly unaccelerated by how well
-//! each has predicted so far. A
-//! contact can only push, so a noisy position source ratchets the object forward by two or three of
-//! its standard deviations: the track is a first-order error.
+//! Off-line it is the fixed-interval smoother of a constant-velocity Kalman filter per axis, as in
+//! the paper. The level of its white-noise acceleration is the one of greatest likelihood over the
+//! whole series. That level is not known causally: an interacting multiple model filter weighs
+//! models from lively to nearly unaccelerated by how well each has predicted so far.
+//!
+//! A contact can only push, so a noisy position source ratchets the object forward by two or three
+//! of its standard deviations. The track therefore has a first-order effect on the estimate.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ use crate::pusher::smoothed::smoothed_track;
 use crate::pusher::tracked_pose::{TrackedPose, motion, step_length};
 use crate::setup::Camera;
 
-/// How much of the log the track may use.
+/// Part of the log that the track may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Tracking {
     /// All of it, before and after each row.
@@ -58,7 +58,7 @@ impl PusherTrack {
         self.rows[row].map(|tracked| tracked.pose)
     }
 
-    /// The direction that counts before the pusher has moved: off-line that of its first motion,
+    /// Direction that counts before the pusher has moved: off-line that of its first motion,
     /// causally a guess.
     pub fn first_direction(&self, time: &[f64]) -> [f64; 2] {
         const GUESS: [f64; 2] = [1.0, 0.0];
@@ -91,7 +91,8 @@ impl PusherTrack {
         step_length(self.rows.get(row).copied().flatten(), h)
     }
 
-    /// Whether the pusher moves at the end of the step from `row`, as far as its track can tell.
+    /// Returns true if the pusher moves at the end of the step from `row`, as far as its track can
+    /// tell.
     pub fn moves_after(&self, row: usize) -> bool {
         self.rows
             .get(row + 1)

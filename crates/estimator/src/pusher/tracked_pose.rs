@@ -3,11 +3,11 @@
 use stickslip_dynamics::{Pose, PusherMotion};
 use stickslip_filter::AxisEstimate;
 
-/// Longest gap in the pusher's poses that its tracker bridges (s), where they come often; in a
-/// longer one the pusher is off the plane.
+/// Longest gap in frequent pusher poses that the tracker bridges (s). In a longer one the pusher is
+/// off the plane.
 pub const LONGEST_BRIDGE: f64 = 0.2;
 
-/// Typical intervals between the pusher's poses that are bridged, where these are seldom.
+/// Number of typical intervals between infrequent pusher poses that the tracker bridges.
 const BRIDGED_INTERVALS: f64 = 2.5;
 
 /// Standard deviation of a velocity about 0 at the first measurement (m/s, rad/s).
@@ -29,13 +29,13 @@ pub struct TrackedPose {
     pub velocity: [f64; 2],
     /// Standard deviation of the tracked speed (m/s); 0 where poses are exact.
     pub speed_std: f64,
-    /// For how long before this row the pusher was held where it was last seen (s), in which it
-    /// came here; 0 where it was seen in the row before.
+    /// Time before this row for which the pusher was held where it was last seen (s). It came here
+    /// within that time. 0 if it was seen in the row before.
     pub held: f64,
 }
 
 impl TrackedPose {
-    /// Of the tracked x, y and θ.
+    /// The pusher at the tracked x, y and θ.
     pub(crate) fn of([x, y, theta]: [AxisEstimate; 3]) -> Self {
         Self {
             pose: Pose::new(x.position, y.position, theta.position),
@@ -45,16 +45,16 @@ impl TrackedPose {
         }
     }
 
-    /// Whether the tracked speed is more than what noise makes of a pusher that stands.
+    /// Returns true if the tracked speed exceeds what noise makes of a standing pusher.
     pub fn moves(&self) -> bool {
         let speed = self.velocity[0].hypot(self.velocity[1]);
         speed > TELLING * self.speed_std && speed > STANDSTILL
     }
 }
 
-/// Length (s) of the step to a row `h` seconds after the last one. One that catches up with a
-/// pusher that was held lasts as long as the pusher took: within a row of it the object would be
-/// thrown ahead.
+/// Returns the length (s) of the step to a row `h` seconds after the last one. A step that catches
+/// up with a held pusher lasts as long as the pusher took: within one row it would throw the object
+/// ahead.
 pub(crate) fn step_length(next: Option<TrackedPose>, h: f64) -> f64 {
     next.map_or(h, |next| h.max(next.held))
 }
@@ -68,7 +68,7 @@ pub(crate) fn motion(
     last: [f64; 2],
 ) -> Option<PusherMotion> {
     let (now, next) = (now?, next?);
-    // not that of the step, which holds the corrections of a causal track: they may point
+    // the direction of the step would contain the corrections of a causal track, which may point
     // backwards
     let [vx, vy] = next.velocity;
     let direction = if next.moves() {
@@ -83,7 +83,7 @@ pub(crate) fn motion(
     })
 }
 
-/// Whether a gap from `from` to `to` (s) without a pusher pose is bridged, where poses come at an
+/// Returns true if a gap from `from` to `to` (s) without a pusher pose is bridged. Poses come at an
 /// `interval` (s).
 pub(crate) fn bridged(from: f64, to: f64, interval: Option<f64>) -> bool {
     let intervals = interval.map_or(0.0, |interval| BRIDGED_INTERVALS * interval);

@@ -1,5 +1,4 @@
-//! What a row says of the shape of the belief: modes, how contacts slip, and who descends from
-//! whom.
+//! Shape of the belief in a row: modes, slip of contacts, and descent of the particles.
 
 use crate::common::{know_feet, log, setup};
 use stickslip::dynamics::{Part, Pose, Shape};
@@ -11,19 +10,19 @@ const SPEED: f64 = 0.02;
 const OBJECT: f64 = 0.03;
 const FINGER: f64 = 0.005;
 
-/// A slippery disc that is pushed straight at a fixel, hidden from 0.5 s on: it leaves to the one
-/// side or to the other, alike.
+/// A slippery disc that is pushed straight at a fixel, hidden from 0.5 s on. It leaves to either
+/// side, both equally likely.
 fn head_on(model: FilterModel) -> (Setup, Estimate) {
     head_on_with(model, 0)
 }
 
-/// The same with another seed.
+/// That experiment with another seed.
 fn head_on_with(model: FilterModel, seed: u64) -> (Setup, Estimate) {
     let mut setup = setup(&[[0.06, 0.0]]);
     let nominal = &mut setup.scene.nominal;
     (nominal.mu_p, nominal.mu_f) = (0.05, 0.05);
-    // on a rig that is measured well hardly anything would bring the disc off its balance; feet beside its middle would
-    // tell every particle from the start on which side it leaves
+    // on a rig that is measured well hardly anything would bring the disc off its balance; feet
+    // next to its middle would tell every particle from the start on which side it leaves
     setup.uncertainty.well_measured = 1.0;
     know_feet(&mut setup);
     let stopped = |time: f64| time.min(3.5);
@@ -34,7 +33,7 @@ fn head_on_with(model: FilterModel, seed: u64) -> (Setup, Estimate) {
     (setup, estimate)
 }
 
-/// The object where it waits, in frames that differ, so that each is a measurement.
+/// Pose of the waiting object, in frames that differ, so that each is a measurement.
 fn frame(time: f64) -> Option<Pose> {
     Some(Pose::new(1e-9 * time, 0.0, 0.0))
 }
@@ -65,7 +64,7 @@ fn a_belief_that_falls_apart_has_a_mode_on_each_side() {
     for model in [FilterModel::Paper, FilterModel::Robust] {
         let (_, estimate) = head_on(model);
 
-        // before the fork there is one, which holds all of the belief
+        // before the bifurcation there is one, which has all of the belief
         let before = &estimate.rows[30].modes;
         assert_eq!(before.len(), 1, "{before:?}");
         assert!((before[0].weight - 1.0).abs() < 1e-12);
@@ -75,7 +74,8 @@ fn a_belief_that_falls_apart_has_a_mode_on_each_side() {
         let weight = weight_to_the_left(&estimate);
         assert!((weight - 0.5).abs() < 0.1, "{model:?}: {weight}");
 
-        // in contact mode they descend from some fifty when they do, so that single seeds say less
+        // in the robust model they descend from some fifty at the bifurcation, so that single seeds
+        // say less
         let weights = (0..SEEDS).map(|seed| weight_to_the_left(&head_on_with(model, seed).1));
         let mean = weights.sum::<f64>() / SEEDS as f64;
         assert!((mean - 0.5).abs() < 0.1, "{model:?}: {mean}");
@@ -95,8 +95,8 @@ fn weight_to_the_left(estimate: &Estimate) -> f64 {
     if a.pose.y > 0.0 { a.weight } else { b.weight }
 }
 
-/// The mean lies between the modes; the pose of the least mean distance at the heavier one, where
-/// it is by a half.
+/// The mean lies between the modes. The geometric median lies at the heavier mode, if that is
+/// heavier than half.
 #[test]
 fn in_contact_mode_the_pose_is_at_the_heavier_mode() {
     let mut clear = 0;
@@ -120,7 +120,7 @@ fn in_contact_mode_the_pose_is_at_the_heavier_mode() {
 
 #[test]
 fn a_modes_pose_overlaps_nothing_where_the_mean_does() {
-    // in paper mode bodies are where they are told
+    // in the paper's model bodies are at their nominal places
     let (setup, estimate) = head_on(FilterModel::Paper);
     let fixel = setup.scene.fixels[0].pose;
     let gap = |pose: Pose| (pose.x - fixel.x).hypot(pose.y - fixel.y) - OBJECT - FINGER;
@@ -134,8 +134,8 @@ fn a_modes_pose_overlaps_nothing_where_the_mean_does() {
     }
 }
 
-/// Stick, left and right on the pusher where a slippery disc is touched from its left by a pusher
-/// that moves on at `sideways` (m/s).
+/// Stick, left and right on the pusher. It touches a slippery disc from the left and moves on at
+/// `sideways` (m/s).
 fn slip_beside(sideways: f64) -> [f64; 3] {
     let mut setup = setup(&[]);
     setup.scene.nominal.mu_p = 0.02;
@@ -181,8 +181,7 @@ fn slips_and_contact_agree() {
     assert!(slip.left + slip.right < 0.02, "{slip:?}");
 }
 
-/// A pusher that a noisy tracker sees brings a disc to a fixel, stands there and, at last, goes
-/// back.
+/// A pusher with a noisy track brings a disc to a fixel, stands there and, at last, goes back.
 #[test]
 fn what_touches_while_nothing_moves_goes_on_touching() {
     let setup = setup(&[[0.06, 0.0]]);
@@ -221,8 +220,8 @@ fn ancestors_are_lost_in_the_dark_and_counted_anew_in_the_light() {
     assert!(dark.last() < dark.first(), "{dark:?}");
 }
 
-/// Standard deviation of the angle of a square that a bar pushes flush, in the dark, where the
-/// bar's angle is known so well (rad).
+/// Standard deviation (rad) of the angle of a square that a bar pushes flush while the camera is
+/// off. The angle of the bar is known to `orientation_std`.
 fn spread_of_a_flush_square(orientation_std: f64) -> f64 {
     let mut setup = setup(&[]);
     know_feet(&mut setup);
@@ -248,6 +247,6 @@ fn a_face_that_lies_on_the_pusher_is_known_as_well_as_its_angle() {
         spread_of_a_flush_square(3e-3),
     );
     assert!(known < 1e-4, "{known}");
-    // on a rig as rough as told; some are smoother
+    // on a rig of nominal roughness; some are smoother
     assert!((1.5e-3..8e-3).contains(&noisy), "{noisy}");
 }

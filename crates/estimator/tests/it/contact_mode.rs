@@ -1,5 +1,5 @@
-//! What contact mode does that paper mode does not, on experiments whose truth is known by
-//! construction.
+//! Behaviour of the robust model that the paper's model lacks, on experiments whose truth is known
+//! by construction.
 
 use crate::common::{RATE, log, setup, slippery, sticky};
 use stickslip::dynamics::Pose;
@@ -7,7 +7,7 @@ use stickslip::{
     Estimate, FilterModel, Log, Method, Moves, Occlusion, Run, RunOptions, Setup, Tracking, run,
 };
 
-/// Speed of the pusher (m/s), and where it meets the disc (s).
+/// Speed of the pusher (m/s), and time at which it meets the disc (s).
 const SPEED: f64 = 0.02;
 const MEETS: f64 = 1.0;
 
@@ -20,7 +20,7 @@ fn pusher(time: f64) -> Option<Pose> {
     ))
 }
 
-/// Where the disc then is.
+/// Pose of the disc under that push.
 fn truth(time: f64) -> Pose {
     Pose::new(SPEED * (time.clamp(MEETS, 3.0) - MEETS), 0.0, 0.0)
 }
@@ -149,7 +149,7 @@ fn a_camera_that_moves_for_good_is_followed() {
 }
 
 /// Bodies that are pressed give a little: a disc that jams rests deeper in the fixel than the rig
-/// says, and no particle may have believed so of a rig that seemed well measured while the disc
+/// allows. No particle may have expected that on a rig that seemed well measured while the disc
 /// moved.
 #[test]
 fn a_jam_that_gives_way_ends_where_the_camera_shows_it() {
@@ -184,7 +184,7 @@ fn a_jam_that_gives_way_ends_where_the_camera_shows_it() {
     assert!(error.abs() < 4e-5, "{error} m");
 }
 
-/// A run in the dark.
+/// Runs with the camera off from row 5 on.
 fn blind(setup: &Setup, log: &Log) -> Run {
     let options = RunOptions {
         particles: 400,
@@ -201,7 +201,7 @@ fn blind_with(setup: &Setup, log: &Log, options: RunOptions) -> Run {
     run(setup, log, &options, &mut |_| ()).expect("a run")
 }
 
-/// How far from the log's last pose a run ends, in m.
+/// Distance (m) of the end of a run from the log's last pose.
 fn final_error(run: &Run, log: &Log) -> f64 {
     let believed = run.estimate.rows[109].pose.expect("a pose");
     let last = log.object[109].expect("a pose");
@@ -263,8 +263,8 @@ fn the_evidence_is_for_the_friction_that_was() {
     assert_eq!(kalman.log_evidence, None);
 }
 
-/// Mean error (m) along the push, and mean spread, of what is believed of an object pushed steadily
-/// for 1.8 s under a camera that lags by `latency` (s).
+/// Mean error (m) along the push, and mean spread, of an object that is pushed steadily for 1.8 s
+/// under a camera that lags by `latency` (s).
 fn pushed_steadily(setup: &Setup, latency: f64) -> [f64; 2] {
     const SEEDS: u64 = 12;
     let log = pushed(latency);
@@ -283,9 +283,9 @@ fn pushed_steadily(setup: &Setup, latency: f64) -> [f64; 2] {
     [error, spread].map(|sum| sum / SEEDS as f64)
 }
 
-/// Under a steady push, what the camera shows fixes o − v L, the pusher's offset less the way in
-/// the latency. On that line the priors N(0, σ²) of o and exponential of L leave a normal
-/// distribution of mean −σ²/(v L̄), cut off where L = 0, for where the object is.
+/// The camera determines o − v L under a steady push: the pusher's offset minus the way in the
+/// latency. The priors are N(0, σ²) of o and exponential of L. On that line they leave a normal
+/// distribution for where the object is, of mean −σ²/(v L̄), cut off where L = 0.
 #[test]
 fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
     let mut setup = setup(&[]);
@@ -298,8 +298,8 @@ fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
     assert!((error - expected).abs() < 0.4 * std, "{error}, {expected}");
 }
 
-/// Where rigs differ, the same line leaves a mixture: that of all roughnesses η, each by how likely
-/// it makes what the camera shows. The sums are over η and over the latency.
+/// If rigs differ, the line leaves a mixture: that of all roughnesses η, each by how likely it
+/// makes what the camera shows. The sums are over η and over the latency.
 #[test]
 fn a_steady_push_tells_rigs_that_are_measured_well_from_others() {
     let mut setup = setup(&[]);

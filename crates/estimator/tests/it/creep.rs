@@ -1,4 +1,5 @@
-//! Contacts that creep in contact mode, as particles meet them before anything is learned of it.
+//! Contacts that creep in the robust model, as particles meet them before anything is learned of
+//! the creep.
 
 use std::sync::Mutex;
 
@@ -21,8 +22,8 @@ impl Observer for Steps {
     }
 }
 
-/// κ of (50), from what a particle's step states and how its step before ended; `None` where it did
-/// not press with one contact in both, or slower than 1 mm/s.
+/// Returns κ of (50), from what a particle's step states and how its step before ended. `None` if
+/// it did not press with one contact in both, or was slower than 1 mm/s.
 fn share(
     rho: f64,
     (_, before): &(StepProblem, StepSolution),
@@ -38,7 +39,7 @@ fn share(
     (*pressed > 0.1 * feet && speed > 1e-3).then(|| slip / speed * (pressed / feet).max(1.0))
 }
 
-/// ln κ of particles that a pusher moves in the dark, over many seeds.
+/// ln κ of particles that a pusher moves while the camera is off, over many seeds.
 fn logarithms(creep: f64) -> Vec<f64> {
     let mut setup = setup(&[]);
     setup.uncertainty.creep = creep;
@@ -48,7 +49,7 @@ fn logarithms(creep: f64) -> Vec<f64> {
         let steps = Steps::default();
         run_into_the_dark(&setup, seed, &steps);
         let steps = steps.0.into_inner().expect("no test panicked here");
-        // one step of each particle: the first that tells
+        // one step of each particle: the first that reveals κ
         let rows: Vec<_> = steps.chunks(PARTICLES).collect();
         let told = |i: usize| {
             rows.windows(2)

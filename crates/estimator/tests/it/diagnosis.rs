@@ -1,5 +1,5 @@
-//! What `diagnose` says of logs whose faults are known: a disc that a pusher comes to push along x,
-//! and stops.
+//! Findings of `diagnose` on logs whose faults are known: a disc is pushed along x by a pusher that
+//! starts away from it, and stops.
 
 use stickslip::diagnosis::{Finding, Severity, Subject, diagnose, misread};
 use stickslip::dynamics::{Part, Pose, Shape};
@@ -100,7 +100,7 @@ impl Push {
         self.log_at(self.times())
     }
 
-    /// What is worse than ok in a log.
+    /// Returns the findings of a log that are worse than ok.
     fn faults(&self, log: &Log) -> Vec<Finding> {
         let mut findings = diagnose(&self.setup(), log);
         findings.retain(|finding| finding.severity > Severity::Ok);
@@ -114,7 +114,7 @@ fn moved(pose: &mut Option<Pose>, x: f64) {
     }
 }
 
-/// The only fault is of this subject and severity, and has these words.
+/// Checks that the only fault has this subject and severity, and these words.
 #[track_caller]
 fn assert_only(faults: &[Finding], severity: Severity, subject: Subject, words: &str) {
     let [fault] = faults else {
@@ -151,8 +151,8 @@ fn a_pusher_hidden_while_the_object_moves_is_told_where_both_are_hidden() {
     assert_only(&faults, Severity::Warning, Subject::PusherPoses, words);
 }
 
-/// At 13 mm/s the pusher comes half a millimetre in 40 ms, and a pose is off by 0.3 mm, its turn by
-/// as much again where the pusher pushes a box beside its middle.
+/// A pusher at 13 mm/s moves half a millimetre in 40 ms. A pose is off by 0.3 mm, and its turn has
+/// as much effect where the pusher pushes a box off its middle.
 #[test]
 fn the_stop_of_a_slow_pusher_tells_no_latency_by_noise_alone() {
     let side = 0.08;
@@ -201,7 +201,7 @@ fn uneven_steps_of_a_moving_pusher_are_no_noise() {
     assert_eq!(push.faults(&push.log_at(times)), Vec::new());
 }
 
-/// Errors of the size that is told, which are forgotten within 0.15 s.
+/// The errors have the nominal size, and are forgotten within 0.15 s.
 #[test]
 fn errors_that_last_are_named_and_taken_for_no_motion() {
     let push = Push {

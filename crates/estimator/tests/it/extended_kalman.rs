@@ -82,7 +82,8 @@ fn poses_of_an_object_at_rest_add_up_by_their_covariances() {
     }
 }
 
-/// What nothing has touched tells nothing of friction: it keeps its log-normal prior, on every row.
+/// An object that nothing has touched reveals nothing of friction: it keeps its log-normal prior,
+/// on every row.
 #[test]
 fn friction_that_took_no_part_keeps_its_prior() {
     let setup = setup(&[[0.2, 0.0]]);
@@ -148,8 +149,9 @@ fn wrong_poses_are_left_out_and_four_in_a_row_believed() {
     assert!((moved - 0.02).abs() < 3e-4, "{moved}");
 }
 
-/// Head-on into a fixel, then against it for seconds, the pusher a rigid one or not, the camera
-/// dark from before the touch: every number is finite, and rigid jams are counted.
+/// The disc goes head-on into a fixel, then is pressed against it for seconds, with a rigid pusher
+/// or not. The camera is off from before the touch. Every number is finite, and rigid jams are
+/// counted.
 #[test]
 fn a_jam_leaves_finite_numbers_and_counts_what_has_no_solution() {
     let unsolved = |stall_force| {
@@ -206,7 +208,7 @@ const ROWS: usize = 36;
 const SEEN: usize = 24;
 
 /// A disc that is pushed a little off its middle, with noise so small that Γ is nearly linear in
-/// it, seen by a camera that errs, then dark.
+/// it. A camera that errs sees it, then the camera is off.
 fn pushed() -> (Setup, Log) {
     let mut setup = setup(&[]);
     let camera = setup.camera.as_mut().expect("a camera");
@@ -253,7 +255,7 @@ fn pushed() -> (Setup, Log) {
 /// A cloud's mean and standard deviations of x, y, θ.
 type Moments = [f64; 6];
 
-/// Particles beside each other in a step.
+/// Number of particles that are computed together in a step.
 const LANES: usize = 8;
 
 /// A particle with its ln β/β_nominal.
@@ -263,8 +265,8 @@ struct Weighed {
     ratios: [f64; 4],
 }
 
-/// A bootstrap particle filter, written out: moments after the last row seen and after the last
-/// row.
+/// A bootstrap particle filter, written out. Returns moments after the last row seen and after the
+/// last row.
 fn bootstrap(setup: &Setup, log: &Log, seed: u64, count: usize) -> [Moments; 2] {
     let camera = setup.camera.expect("a camera");
     let track = PusherTrack::new(log, Some(&camera), Tracking::Smoothed).expect("a track");
@@ -318,7 +320,7 @@ fn bootstrap(setup: &Setup, log: &Log, seed: u64, count: usize) -> [Moments; 2] 
     moments
 }
 
-/// Γ' with the noise of contact mode: (19), (21) and (34).
+/// Γ' with the noise of the robust model: (19), (21) and (34).
 fn propagate(
     setup: &Setup,
     dynamics: &Dynamics,
@@ -394,8 +396,8 @@ fn moments_of(cloud: &[Weighed]) -> Moments {
     moments
 }
 
-/// Where Γ is smooth and noise small, the filter is what particles find that know of no derivative:
-/// within four standard errors of the mean over independent clouds.
+/// The filter equals particles, which use no derivative, if Γ is smooth and the noise small. It
+/// lies within four standard errors of the mean over independent clouds.
 #[test]
 fn a_smooth_push_has_the_moments_of_a_cloud_through_the_same_steps() {
     const CLOUDS: u64 = 12;

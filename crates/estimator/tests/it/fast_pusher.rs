@@ -1,5 +1,5 @@
-//! A pusher that is tracked faster than the camera brings rows between frames. What is believed of
-//! the object does not depend on how many: rows at other rates tell of the same experiment.
+//! A pusher that is tracked faster than the camera brings rows between frames. The belief about the
+//! object does not depend on their number: rows at other rates show the same experiment.
 
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, FilterModel, Log, RunOptions, run};
@@ -10,7 +10,7 @@ use crate::common::{RATE, setup};
 const DARK: f64 = 2.0;
 const END: f64 = 5.0;
 
-/// Where a disc is that a pusher drives through its middle from 1 s to 3 s.
+/// Pose of a disc that a pusher drives through its middle from 1 s to 3 s.
 fn truth(time: f64) -> Pose {
     Pose::new(0.02 * (time.clamp(1.0, 3.0) - 1.0), 0.0, 0.0)
 }

@@ -1,5 +1,5 @@
-//! Which friction parameters take a random step in a row, and within which limits: Table I of the
-//! paper, τ, and the blackout. Each test fails where two parameters are swapped.
+//! Random steps of the friction parameters in a row, and their limits: Table I of the paper, τ, and
+//! the occlusion. Each test fails if two parameters are swapped.
 
 use std::sync::Mutex;
 
@@ -78,7 +78,7 @@ const NONE: Friction<bool> = Friction {
     d_tri: false,
 };
 
-/// The object at the origin as far as the camera goes.
+/// Pose at the origin, as the camera shows it.
 fn at_origin(_: f64) -> Option<Pose> {
     Some(Pose::default())
 }
@@ -150,7 +150,7 @@ fn a_jam_changes_only_the_frictions_of_the_contacts() {
     assert_eq!((share.mu_s, share.d_tri), (0.0, 0.0));
 }
 
-/// With wide noise every parameter soon lies at both ends of its own interval, and never outside.
+/// Noise is wide: every parameter soon lies at both ends of its own interval, and never outside.
 #[test]
 fn each_parameter_stays_within_its_own_limits_and_reaches_them() {
     let limits = |min, max| Limits { min, max };
@@ -197,7 +197,8 @@ fn no_parameter_changes_while_the_camera_is_dark() {
     assert!(moved(&rows, 9).mu_p && moved(&rows, 20).mu_p);
 }
 
-/// The pusher's rows come ten times as often as the camera's: between two frames nothing is dark.
+/// The pusher's rows come ten times as often as the camera's: no row between two frames is
+/// occluded.
 #[test]
 fn parameters_change_between_frames_of_a_camera_that_is_slower_than_the_rows() {
     let last = 150;

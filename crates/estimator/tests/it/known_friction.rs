@@ -1,4 +1,4 @@
-//! What an estimate knows of friction, which particles of their own learn (docs/method.md (52)).
+//! Friction of an estimate, which particles of their own learn (docs/method.md (52)).
 
 use crate::common::{log, setup};
 use stickslip::dynamics::{Friction, Pose};
@@ -69,7 +69,7 @@ fn the_last_blackout_changes_nothing_that_was_known_before() {
 
 #[test]
 fn nothing_is_learned_while_the_object_rests() {
-    // the pusher stops at 3 s, and the camera looks on
+    // the pusher stops at 3 s, and the camera stays on
     let at = |time: f64| 0.02 * (time.min(3.0) - 1.0);
     let log = log(
         200,

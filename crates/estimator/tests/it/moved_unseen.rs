@@ -1,5 +1,5 @@
-//! An object that the camera sees move though nothing is known to touch it: one that is moved by
-//! hand before the push, or by a pusher that nobody sees come.
+//! An object that the camera sees move although nothing is known to touch it: it is moved by hand
+//! before the push, or by a pusher that is not seen.
 
 use crate::common::setup;
 use stickslip::dynamics::Pose;
@@ -41,7 +41,7 @@ fn tracked(log: &Log, place: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
     .collect()
 }
 
-/// Root mean square of the errors (m) over some rows, and how many of these are off by more than
+/// Root mean square of the errors (m) over some rows, and number of rows that are off by more than
 /// four standard deviations.
 fn score(rows: &[[f64; 2]]) -> (f64, usize) {
     let squares: f64 = rows.iter().map(|[error, _]| error * error).sum();

@@ -1,5 +1,5 @@
-//! What an observer sees of the particles: all of them, with the weights that the estimate is made
-//! with; and it changes no bit of a run.
+//! Particles that an observer sees: all of them, with the weights of the estimate. The observer
+//! changes no bit of a run.
 
 use std::sync::Mutex;
 
@@ -12,8 +12,8 @@ use stickslip::{
 const ROWS: usize = 40;
 const FIRST: usize = 2;
 
-/// What the particles after one row come to, each weighted: sum of weights, means and standard
-/// deviations of x, y, θ and μ_s, covariances of x and y, x and θ, y and θ.
+/// Weighted sums over the particles after one row: sum of weights, means and standard deviations of
+/// x, y, θ and μ_s, covariances of x and y, x and θ, y and θ.
 #[derive(Debug)]
 struct Moments {
     row: usize,

@@ -1,5 +1,5 @@
-//! Poses that say themselves how noisy they are, against the posterior of normal distributions in
-//! closed form.
+//! Poses with a covariance of their own, against the posterior of normal distributions in closed
+//! form.
 
 use std::sync::Mutex;
 
@@ -10,7 +10,7 @@ use stickslip::{
     SolvedStep, run, run_observed,
 };
 
-/// Two poses of an object at rest, and how noisy they are.
+/// Two poses of an object at rest, and their covariances.
 const POSES: [Pose; 2] = [
     Pose {
         x: 1e-3,
@@ -124,8 +124,8 @@ impl Observer for Moments {
 fn two_noisy_poses_have_the_posterior_of_normal_distributions() {
     const PARTICLES: usize = 40_000;
     let (expected, covariance) = posterior();
-    // the second pose is nearer the first in y than in x, and both noises lean, so that a filter which
-    // took the axes for independent would be off by many of the standard errors below
+    // the second pose is nearer the first in y than in x, and both noises lean, so that a filter
+    // which took the axes for independent would be off by many of the standard errors below
     for model in [FilterModel::Paper, FilterModel::Robust] {
         let options = RunOptions {
             model,
@@ -154,8 +154,8 @@ fn two_noisy_poses_have_the_posterior_of_normal_distributions() {
     }
 }
 
-/// Without process noise and with a velocity that is known to be 0, the Kalman filter's axes are
-/// means weighted by the inverse variances.
+/// The Kalman filter's axes are means weighted by the inverse variances, without process noise and
+/// with a velocity that is known to be 0.
 #[test]
 fn the_kalman_filter_weighs_poses_by_their_variances() {
     let options = RunOptions {

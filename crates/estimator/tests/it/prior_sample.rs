@@ -1,5 +1,5 @@
-//! Experiments drawn from the filter's own model: what is drawn has the priors' distributions, and
-//! the filter's beliefs of such experiments hold as much as they say (simulation-based
+//! Experiments drawn from the filter's own model. What is drawn has the priors' distributions. The
+//! filter's beliefs about such experiments cover as much as they say (simulation-based
 //! calibration).
 
 use std::sync::Mutex;
@@ -110,7 +110,8 @@ fn a_truth_is_drawn_around_the_first_pose_which_stays() {
             .iter()
             .all(|sample| sample.log.object[0] == Some(first))
     );
-    // squares of distances from the truth: of the first pose, and the sum of the next ones, which rest there, too
+    // squares of distances from the truth: of the first pose, and the sum of the next ones, which
+    // rest there, too
     let squares = samples.iter().map(|sample| {
         let at = sample.truth[0].pose;
         let square = |pose: &Pose| (pose.x - at.x).powi(2) + (pose.y - at.y).powi(2);
@@ -119,17 +120,17 @@ fn a_truth_is_drawn_around_the_first_pose_which_stays() {
     });
     let squares: Vec<[f64; 2]> = squares.collect();
     let mean = |of: &dyn Fn(&[f64; 2]) -> f64| squares.iter().map(of).sum::<f64>() / 400.0;
-    // as noisy as all poses of its camera: the ratio is F-distributed with 2 and 38 degrees of freedom, of
-    // mean 38/36 and standard deviation 1.13
+    // as noisy as all poses of its camera: the ratio is F-distributed with 2 and 38 degrees of
+    // freedom, of mean 38/36 and standard deviation 1.13
     let ratio = mean(&|[first, later]| first / 2.0 / (later / 38.0));
     assert!((ratio - 38.0 / 36.0).abs() < 4.0 * 0.057, "{ratio}");
-    // a camera that is noisier is so in both: their logarithms, of variances 2.0 and 0.4, have the covariance
-    // 0.36, whose standard error is 0.05
+    // a camera that is noisier is so in both: their logarithms, of variances 2.0 and 0.4, have the
+    // covariance 0.36, whose standard error is 0.05
     let [a, b] = [0, 1].map(|k| mean(&|squares| libm::log(squares[k])));
     let covariance = mean(&|[first, later]| (libm::log(*first) - a) * (libm::log(*later) - b));
     assert!((covariance - 0.36).abs() < 0.2, "{covariance}");
-    // and that noise is unknown: variances of the position in told ones have mean ν/(ν − 2), with a standard
-    // error of 0.12
+    // and that noise is unknown: variances of the position in nominal ones have mean ν/(ν − 2),
+    // with a standard error of 0.12
     let told = 2.0 * camera.position_std * camera.position_std;
     let mean = mean(&|[first, _]| first / told);
     let expected = freedom / (freedom - 2.0);

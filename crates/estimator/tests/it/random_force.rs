@@ -1,4 +1,4 @@
-//! The random force of contact mode, as particles meet it before anything is learned of it.
+//! Random force of the robust model, as particles meet it before anything is learned of it.
 
 use std::sync::Mutex;
 
@@ -9,8 +9,8 @@ use stickslip::{Observer, SolvedStep, Uncertainty};
 /// `force_std` of all runs here.
 const TOLD: f64 = 0.25;
 
-/// Of the first step in which a force acts on a particle: the impulse along x, as a share of its
-/// μ_s m g h.
+/// Impulse along x in the first step in which a force acts on a particle, as a share of its μ_s m g
+/// h.
 #[derive(Debug)]
 struct FirstForce(Mutex<[f64; PARTICLES]>);
 
@@ -31,7 +31,7 @@ impl Observer for FirstForce {
     }
 }
 
-/// Mean square of what acts on particles that a pusher comes near, over many seeds, with the camera
+/// Mean square of the force on particles that a pusher comes near, over many seeds, with the camera
 /// `seeing` them or not.
 fn mean_square(uncertainty: Uncertainty, seeing: bool) -> f64 {
     let mut setup = setup(&[]);
@@ -50,7 +50,7 @@ fn mean_square(uncertainty: Uncertainty, seeing: bool) -> f64 {
     squares.iter().sum::<f64>() / squares.len() as f64
 }
 
-/// All rigs are alike.
+/// Uncertainty with equal rigs.
 fn alike() -> Uncertainty {
     Uncertainty {
         well_measured: 1.0,

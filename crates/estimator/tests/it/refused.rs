@@ -1,5 +1,5 @@
-//! A setup, a log or options that cannot be are refused in words, whoever made them; and what is at
-//! the edge of what can be is run without a panic.
+//! Impossible setups, logs or options are refused in words, whoever made them. Those at the edge of
+//! what is possible run without a panic.
 
 use crate::common::{log, setup};
 use stickslip::dynamics::Pose;
@@ -28,7 +28,7 @@ fn options(tracking: Tracking) -> RunOptions {
     }
 }
 
-/// What both ways of tracking say to a log.
+/// Returns the refusal of a log, which both ways of tracking give.
 #[track_caller]
 fn refusal(setup: &Setup, log: &Log, options: &RunOptions) -> String {
     let refusal = |tracking| {
@@ -182,7 +182,7 @@ fn run_and_tracker_refuse_options_that_cannot_be() {
     }
 }
 
-/// What is just within what can be: estimates may be bad, but they come.
+/// Setups and logs just within what is possible: estimates may be bad, but they come.
 #[test]
 fn run_takes_what_is_at_the_edge() {
     let setups: [Change<Setup>; 9] = [

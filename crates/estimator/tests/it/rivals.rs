@@ -1,11 +1,12 @@
-//! Two rivals of the particle filter: the Kalman filter that stops at touch, and what is glued to
-//! the pusher.
+//! Two baselines of the particle filter: the Kalman filter that stops at touch, and the object
+//! glued to the pusher.
 
 use crate::common::{log, setup};
 use stickslip::dynamics::{Pose, Twist};
 use stickslip::{Estimate, Method, Occlusion, RunOptions, TactileUse, run};
 
-/// A disc that slides at 20 mm/s beside a pusher that turns; dark from row 60, touched from row 70.
+/// A disc that slides at 20 mm/s next to a pusher that turns. The camera is off from row 60, the
+/// disc is touched from row 70.
 fn estimate(method: Method, tactile: TactileUse) -> Estimate {
     let object = |time: f64| Some(Pose::new(0.02 * time, 0.0, 0.0));
     let pusher = |time: f64| Some(Pose::new(0.02 * time - 0.05, 0.0, 0.3 * time));

@@ -1,5 +1,5 @@
-//! What a row brings is used once, for what it tells, and what its estimate says of the particles
-//! is true of them.
+//! Rows of a tracker: each measurement is used once, for what it reveals, and the estimate is true
+//! of the particles.
 
 use std::num::NonZero;
 
@@ -7,7 +7,7 @@ use crate::common::{log, setup, slippery, sticky};
 use stickslip::dynamics::Pose;
 use stickslip::*;
 
-/// Where the pusher is far away.
+/// Pose of a pusher that is far away.
 const AWAY: Option<Pose> = Some(Pose {
     x: -0.1,
     y: 0.0,
@@ -65,7 +65,7 @@ fn copies_made_for_another_number_of_particles_are_no_distinct_ones() {
     assert_eq!(estimate.resampled, Some(true));
 }
 
-/// Spread of x after a first pose and `again`, how often it is shown in the rows after it.
+/// Spread of x after a first pose; `again` shows that pose in the rows after it, or not.
 fn spread_after(mut again: impl FnMut(&mut Tracker<'_>, Row)) -> f64 {
     let mut setup = setup(&[]);
     setup.uncertainty.camera_noise = 0.0;
@@ -146,7 +146,8 @@ fn a_camera_whose_every_pose_comes_late_is_believed_as_one_that_is_on_time() {
 fn poses_that_come_late_or_beside_a_step_move_particles_as_those_on_time_do() {
     let setup = setup(&[]);
     let log = two_clocks(1e-4);
-    // the pusher's rows, with the pose of each 10 ms late, or beside it in a row that makes no step
+    // the pusher's rows, with the pose of each 10 ms late, or next to it in a row that makes no
+    // step
     for late in [Some(0.01), None] {
         let mut tracker = tracker(&setup, 500);
         let mut few = 500.0_f64;
@@ -224,8 +225,9 @@ fn a_row_says_the_same_of_the_learning_particles_whether_more_poses_come_or_not(
     assert!(whole.unsolved > 0);
 }
 
-/// ln of the likelihood of a 1 far from all, after a second of them and ten seconds of so many
-/// rows, which are `silent`: without a reading of the sensor, or without readings.
+/// ln of the likelihood of a reading of 1 far from all fixels, after a second of such readings and
+/// ten seconds of so many rows. These are `silent`: without a reading of the sensor, or without
+/// readings.
 fn false_alarm(rows_between: usize, silent: &[Option<bool>]) -> f64 {
     let setup = setup(&[[0.2, 0.0]]);
     let mut tracker = tracker(&setup, 50);
@@ -279,8 +281,8 @@ fn second_tries_of_a_blackout_end_also_where_the_number_of_particles_changes() {
     assert!((17..=48).contains(&tries), "{tries}");
 }
 
-/// Where it stands, what a jam gives weighs no particle; but a pusher that stands far beyond all
-/// jams says that all of them went another way than the object.
+/// A standing pusher weighs no particle by what a jam gives. But if it stands far beyond all jams,
+/// all particles went another way than the object.
 #[test]
 fn a_pusher_that_stands_beyond_all_jams_has_the_steps_made_again() {
     let (setup, log) = sticky_and_slippery();
@@ -300,8 +302,8 @@ fn a_pusher_that_stands_beyond_all_jams_has_the_steps_made_again() {
     assert!(last > at_rest + 5, "{at_rest}, {last}");
 }
 
-/// Rows of a camera, and beside each one of a faster tracker that has the pusher alone, so much
-/// later (s).
+/// Rows of a camera, each followed `later` (s) by a row of a faster tracker that has the pusher
+/// alone.
 fn two_clocks(later: f64) -> Log {
     let place = |time: f64| 0.02 * (time - 0.4_f64).max(0.0);
     let noise = |k: usize| 3e-4 * libm::sin(7.0 * (k * k) as f64);
@@ -370,7 +372,8 @@ fn an_object_turned_round_by_hand_is_where_the_camera_shows_it_at_once() {
     for k in 0..120 {
         let time = k as f64 / 30.0;
         let place = 0.02 * (time.min(1.5) - 0.4).max(0.0);
-        // for half a second nobody looks; then the object has been turned by half a turn, as near as a hand can
+        // the camera is off for half a second; then the object has been turned by half a turn, as
+        // near as a hand can
         let turn = if time < 2.5 {
             0.0
         } else {

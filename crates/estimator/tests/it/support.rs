@@ -1,12 +1,12 @@
-//! Feet of each particle in contact mode (docs/method.md (55)): drawn anew while the object rests,
-//! kept once it moves.
+//! Feet of each particle in the robust model (docs/method.md (55)): resampled from the prior while
+//! the object rests, kept once it moves.
 
 use std::sync::Mutex;
 
 use crate::common::{PARTICLES, run_into_the_dark, setup};
 use stickslip::{Observer, SolvedStep};
 
-/// Steps in which nothing touches the object yet, and such in which it moves in all particles.
+/// Steps in which nothing touches the object yet, and steps in which it moves in all particles.
 const AT_REST: std::ops::Range<usize> = 0..18;
 const MOVING: std::ops::Range<usize> = 45..55;
 
@@ -28,10 +28,10 @@ impl Observer for Arms {
 /// direction from there.
 type Stand = ([f64; 2], f64);
 
-/// How the particles stand in each step of a run.
+/// Stands of the particles in each step of a run.
 type Steps = Vec<Vec<Stand>>;
 
-/// How they stand in all runs.
+/// Stands of the particles in all runs.
 fn feet() -> Vec<Steps> {
     let setup = setup(&[]);
     let told = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
@@ -90,8 +90,8 @@ fn feet_are_drawn_anew_until_the_object_moves_and_kept_after_that() {
     );
     assert!((cosine - told).abs() < 0.02, "{cosine}, {told}");
 
-    // 1280 particles, some of which were copied, that wander by a tenth: correlated by √0.99 from step to step, as the
-    // object turns a little
+    // 1280 particles, some of which were copied, that wander by a tenth: correlated by √0.99 from
+    // step to step, as the object turns a little
     let [square, product] = square_and_product(&runs, MOVING);
     assert!((square - 1.0).abs() < 0.1, "variance {square}");
     let kept = product / square;

@@ -1,4 +1,4 @@
-//! What touch sensors tell: when contact begins, and nothing while object and pusher stand.
+//! Evidence of touch sensors: when contact begins, and nothing while object and pusher stand.
 
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{
@@ -9,7 +9,7 @@ use stickslip::{
 /// First row without the camera, just before the block meets the fixel.
 const HIDDEN_FROM: usize = 38;
 
-/// Row from which the pusher stands, as its track tells it too.
+/// Row from which the pusher stands, by its track, too.
 const STANDS_FROM: usize = 90;
 
 fn shape(part: Part) -> Shape {

@@ -13,7 +13,7 @@ const CAMERA: Camera = Camera {
     pusher_orientation_std: 2e-3,
 };
 
-/// Rests for 2 s, moves at 30 mm/s for 2 s, stops for 4 s.
+/// Pose of a pusher that rests for 2 s, moves at 30 mm/s for 2 s, stops for 4 s.
 fn moved(time: f64) -> Pose {
     Pose::new(0.03 * (time.clamp(2.0, 4.0) - 2.0), 0.01, 0.0)
 }
@@ -43,7 +43,7 @@ fn log(seed: u64) -> Log {
     }
 }
 
-/// With a row missing now and then, a gap that is bridged and one that is not.
+/// That log with a row missing now and then, a gap that is bridged and one that is not.
 fn holey(seed: u64) -> Log {
     let mut log = log(seed);
     for row in [20, 21, 70]
@@ -61,8 +61,8 @@ fn causal(log: &Log, camera: Option<&Camera>) -> PusherTrack {
     PusherTrack::new(log, camera, Tracking::Causal).expect("a track")
 }
 
-/// Everything after row `k` in other ways: elsewhere, never seen again, seen without a break, in
-/// slow motion, not there at all.
+/// The log with everything after row `k` changed: elsewhere, never seen again, seen without a
+/// break, in slow motion, not there at all.
 fn other_futures(log: &Log, k: usize) -> [Log; 5] {
     let change = |change: &dyn Fn(&mut Log, usize)| {
         let mut other = log.clone();
@@ -121,7 +121,7 @@ fn causal_track_up_to_a_row_does_not_depend_on_later_rows_in_any_bit() {
     }
 }
 
-/// The same comparison finds a track that looks ahead.
+/// A track that looks ahead fails the comparison.
 #[test]
 fn smoothed_track_depends_on_later_rows() {
     let log = log(1);
@@ -131,7 +131,7 @@ fn smoothed_track_depends_on_later_rows() {
     assert_ne!(smoothed(&log).pose(50), smoothed(&elsewhere).pose(50));
 }
 
-/// Tag poses of 0.5 mm under a camera that is told 0.1 mm, as of an encoder.
+/// Tag poses scatter by 0.5 mm, while the nominal noise is 0.1 mm, as of an encoder.
 #[test]
 fn recorded_poses_noisier_than_told_are_tracked_as_if_it_were_told() {
     let told = Camera {
@@ -155,7 +155,7 @@ fn recorded_poses_noisier_than_told_are_tracked_as_if_it_were_told() {
             "seed {seed}: {all}, {step}, {known}, {known_step}"
         );
         assert!(step < 1e-4, "seed {seed}: {step}");
-        // poses as noisy as told are tracked by what is told
+        // poses of the nominal noise are tracked by the nominal noise
         let right = PusherTrack::new(&noisy, Some(&told), Tracking::Smoothed).expect("a track");
         let less = Camera {
             pusher_position_std: 1.1 * told.pusher_position_std,

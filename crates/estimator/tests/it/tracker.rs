@@ -116,7 +116,7 @@ fn after_warm_up_a_row_allocates_nothing_on_one_thread() {
 /// late.
 fn at_rest(late: &[f64]) -> Tracker<'static> {
     let mut setup = setup(&[]);
-    // a camera as noisy as told, so that all is normal
+    // a camera of nominal noise, so that all is normal
     setup.uncertainty.camera_noise = 0.0;
     let mut tracker = Tracker::new(&setup, &TrackerOptions::default()).expect("a tracker");
     let away = Some(Pose::new(-0.1, 0.0, 0.0));
@@ -166,7 +166,7 @@ fn late_poses_are_weighed_as_if_the_object_had_been_seen_then() {
     assert_eq!(none.time(), late.time());
 }
 
-/// While the object moves, a late pose is compared with where a particle was, not with where it is.
+/// A late pose is compared with where a particle was, not with where it is, while the object moves.
 #[test]
 fn a_late_pose_of_a_moving_object_does_not_pull_it_back() {
     let (setup, log) = push();

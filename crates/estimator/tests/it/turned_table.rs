@@ -1,6 +1,6 @@
-//! What a belief is does not depend on how the world's axes lie: noise is drawn along them, but
-//! with the same deviation on both, so that the belief of a turned scene is the turned belief. The
-//! random numbers fall otherwise, so that scores differ as those of two seeds do.
+//! Independence of the belief from the world's axes. Noise is drawn along them, but with equal
+//! deviations on both, so the belief of a turned scene is the turned belief. The random numbers
+//! differ, so scores differ as those of two seeds do.
 
 use crate::common::{RATE, log, setup};
 use stickslip::dynamics::Pose;
@@ -12,12 +12,12 @@ const ROWS: usize = 50;
 /// The rows that the camera sees.
 const SEEN: usize = 30;
 
-/// By a right angle, counter-clockwise, which takes x to y and y to -x.
+/// Turns a pose by a right angle, counter-clockwise, which takes x to y and y to -x.
 fn turned(pose: Pose) -> Pose {
     Pose::new(-pose.y, pose.x, pose.theta + std::f64::consts::FRAC_PI_2)
 }
 
-/// A disc that is pushed past a fixel, the camera dark in the end.
+/// A disc that is pushed past a fixel; the camera is off in the end.
 fn pushed() -> (Setup, Log) {
     let seen = |t: f64| t < (SEEN as f64 - 0.5) / RATE;
     let object = |t: f64| seen(t).then(|| Pose::new((0.02 * t - 0.004).max(0.0), 0.0, 0.0));
@@ -69,7 +69,7 @@ fn the_belief_turns_with_the_scene(model: FilterModel) {
     let (setup, log) = on_a_turned_table(&setup, &log);
     let other = beliefs(&setup, &log, model);
 
-    // what the belief on the turned table is in the axes of the straight one
+    // the belief on the turned table, in the axes of the straight one
     let back = |b: &[f64; 6]| {
         let turn = b[2] - std::f64::consts::FRAC_PI_2;
         [b[1], -b[0], turn, b[4], b[3], b[5]]

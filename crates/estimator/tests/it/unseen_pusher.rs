@@ -1,16 +1,16 @@
-//! A pusher whose poses are missing: what it does to the object meanwhile, and when it is back.
+//! A pusher whose poses are missing: its effect on the object meanwhile, and its return.
 
 use crate::common::{know_feet, setup};
 use stickslip::dynamics::Pose;
 use stickslip::*;
 
-/// Speed of the pusher (m/s), from when on it moves (s), and by how much its centre lies behind
-/// that of the disc.
+/// Speed of the pusher (m/s), time at which it starts (s), and distance of its centre behind that
+/// of the disc.
 const SPEED: f64 = 0.02;
 const START: f64 = 0.4;
 const BEHIND: f64 = 0.035;
 
-/// Where a disc is that has been pushed since [`START`].
+/// x of a disc that has been pushed since [`START`].
 fn place(time: f64) -> f64 {
     SPEED * (time - START).max(0.0)
 }
@@ -53,7 +53,8 @@ fn tracked(log: &Log, tracking: Tracking) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_pusher_that_is_seen_again_throws_nothing_ahead() {
-    // a tracker at 200 Hz that misses twenty poses; the step to the next one would be 21 times as fast
+    // a tracker at 200 Hz that misses twenty poses; the step to the next one would be 21 times as
+    // fast
     let lost = 1.5..1.6;
     let log = push(400, 200.0, |time| [time >= 1.4, lost.contains(&time)]);
     let rows = tracked(&log, Tracking::Causal);
@@ -89,7 +90,7 @@ fn where_pusher_and_object_are_hidden_together_the_push_may_have_gone_on() {
 #[test]
 fn a_pusher_that_stood_when_it_was_last_seen_has_been_lifted() {
     for tracking in [Tracking::Smoothed, Tracking::Causal] {
-        // nothing has moved yet when both are lost, a pusher beside the object
+        // nothing has moved yet when both are lost, a pusher next to the object
         let log = push(90, 30.0, |time| [time >= 0.3; 2]);
         let rows = tracked(&log, tracking);
         let [before, last] = [rows[8], rows[89]].map(|[_, std]| std);
@@ -122,8 +123,8 @@ fn a_pusher_that_is_seldom_seen_pushes_between_its_poses() {
     }
 }
 
-/// Largest distance (m) in x from where the object is while the pusher's poses are missing for a
-/// second, in which it moves the object on or is lifted off it; and the mean standard deviation.
+/// Largest error (m) in x while the pusher's poses are missing for a second, and the mean standard
+/// deviation. The pusher moves the object on in that second, or is lifted off it.
 fn without_pusher(moves_on: bool, tracking: Tracking) -> (f64, f64) {
     let setup = setup(&[]);
     let (lost, back) = (2.0, 3.0);
@@ -197,7 +198,8 @@ fn a_pusher_that_was_on_its_way_when_all_went_dark_may_have_come() {
 
 #[test]
 fn a_pusher_that_comes_back_inside_an_object_throws_it_nowhere() {
-    // it stood when all went dark, so that the object is believed to rest; then it pushed it by 30 mm
+    // it stood when both were lost, so the object is taken to rest; then it pushed the object by 30
+    // mm
     let way = |time: f64| 0.06 * (time - 1.0).clamp(0.0, 0.5);
     let mut log = Log::default();
     for k in 0..360 {
@@ -218,7 +220,7 @@ fn a_pusher_that_comes_back_inside_an_object_throws_it_nowhere() {
             std.x > 1e-6 && std.y > 1e-6 && std.theta > 1e-6,
             "{time}: {std:?}"
         );
-        // the first pose is believed
+        // the first pose is accepted
         let most = if *time < 1.6 { 0.035 } else { 1.5e-3 };
         assert!(error.abs() < most, "{time}: {error}");
     }

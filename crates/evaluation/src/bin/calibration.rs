@@ -1,11 +1,17 @@
-//! `cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...`:
-//! where the truth lies in the filter's belief, over experiments whose friction is drawn from the
-//! prior: moved by the filter's own noisy dynamics, by these without noise and by the testbed, with
-//! touch, without, and with the camera on throughout, in both modes: at the end in the runs that
-//! observe a quantity, and in all runs at the last row that the camera saw. Keys are those of a
-//! scene's `[uncertainty]`, of truths as of the filter: `latency=0 outline=0` is what they cost,
-//! `force_spread=1 creep=0.1` the model of the particles that learn friction. With keys only
-//! contact mode, which knows them, is run.
+//! Coverage of the filter's 90 % intervals over experiments whose friction is drawn from the prior:
+//!
+//! ```text
+//! cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...
+//! ```
+//!
+//! The object is moved by the filter's own noisy dynamics, by these without noise, and by the
+//! testbed. Runs are with touch, without touch, and with touch and the camera on throughout, with
+//! both models. The truth's place in the belief is taken at the end in the runs that identify a
+//! quantity, and in all runs at the last row that the camera saw.
+//!
+//! Keys are those of a scene's `[uncertainty]`, of truths as of the filter. `latency=0 outline=0`
+//! shows their cost, and `force_spread=1 creep=0.1` is the model of the particles that learn
+//! friction. With keys, only the robust model is run, since only it has them.
 
 use std::error::Error;
 
@@ -17,7 +23,7 @@ use stickslip_evaluation::{
 };
 use stickslip_formats::read_scene;
 
-/// With what names they are shown.
+/// Variants, with the names by which they are shown.
 const VARIANTS: [(Variant, &str); 3] = [
     (Variant::Particle, "touch"),
     (Variant::ParticleNoTouch, "no touch"),
@@ -68,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What `keys` say, read as a scene file's; the rest by default.
+/// Uncertainty by `keys`, read as those of a scene file; the rest by default.
 fn uncertainty(keys: &[&String]) -> Result<Uncertainty, Box<dyn Error>> {
     let lines: Vec<String> = keys.iter().map(|key| key.replacen('=', " = ", 1)).collect();
     let scene = PaperExperiment::A.scene().scene;

@@ -1,8 +1,9 @@
-//! `cargo run --release -p stickslip-evaluation --bin reference [PARTICLES [MANY [SEEDS]]]`: how
-//! near 500 particles come to what a million make of the same data, on the paper's experiments as
-//! the testbed simulates them, in the dark with touch. Where the reference is as wrong, the model
-//! is to blame; where it is better, the number of particles. A million particles take five
-//! gigabytes.
+//! `cargo run --release -p stickslip-evaluation --bin reference [PARTICLES [MANY [SEEDS]]]`:
+//! agreement of 500 particles with a million on the same data.
+//!
+//! It runs the paper's experiments as the testbed simulates them, with touch, while the camera is
+//! off. Where the reference is as wrong, the error is owed to the model; where it is better, to the
+//! number of particles. A million particles take five gigabytes.
 
 use std::error::Error;
 

@@ -9,7 +9,7 @@ use crate::variant::Variant;
 /// Standard errors that a difference must exceed to count.
 pub const CLEAR: f64 = 2.0;
 
-/// Whether an order of the paper is found again.
+/// Reproduction of an order of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
@@ -23,7 +23,7 @@ pub enum Finding {
     TooFewSeeds,
 }
 
-/// By which scores two variants are compared.
+/// Scores by which two variants are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Over all rows, against the exact motion.
@@ -41,7 +41,7 @@ pub struct Difference {
     pub difference_mm: f64,
     /// Standard error of that median (mm); null for fewer than six seeds.
     pub standard_error_mm: f64,
-    /// What became of the paper's order.
+    /// Reproduction of the paper's order.
     pub finding: Finding,
 }
 
@@ -183,7 +183,7 @@ mod tests {
     use super::*;
     use crate::score::Scores;
 
-    /// Runs whose scores over all rows are those given, twice them in the dark.
+    /// Runs whose scores over all rows are given, and twice as large over the occluded rows.
     fn runs(variant: Variant, seeds: usize, score: impl Fn(usize) -> f64) -> Vec<ScoredRun> {
         let run = |seed: usize| ScoredRun {
             variant,

@@ -1,5 +1,5 @@
 //! The paper's evaluation: its six experiments and two added ones, its tables as printed, and ours
-//! beside them.
+//! next to them.
 //!
 //! A [`Replicate`] is one experiment with one seed; a [`RunSet`] has the runs of all variants on
 //! it; [`Results`] compares the run sets with the paper's tables.

@@ -1,11 +1,11 @@
-//! How far tracked poses are from the true ones: [`Noise`].
+//! Noise of tracked poses, compared with the true ones: [`Noise`].
 
 use serde::Serialize;
 use stickslip::dynamics::Pose;
 use stickslip::{Camera, Log};
 use stickslip_formats::Truth;
 
-/// What no tracked pose is taken to be better than (m, rad): the bias that tracking may have,
+/// Least error that is assumed of any tracked pose (m, rad): the bias that tracking may have,
 /// docs/guide/camera.md. Frames have it in common, so that a filter must not average it away.
 const BIAS: [f64; 2] = [5e-5, 0.05 * std::f64::consts::PI / 180.0];
 

@@ -14,27 +14,27 @@ use crate::variant::Variant;
 /// Frames per second (Hz), as in the paper.
 const RATE: f64 = 30.0;
 
-/// What all runs of an evaluation have in common.
+/// Settings that all runs of an evaluation have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunSettings {
     /// Rules of the particle filter; the paper's are [`FilterModel::Paper`].
     pub model: FilterModel,
     /// Number of particles.
     pub particles: usize,
-    /// How the thumb is tracked.
+    /// Tracking of the thumb.
     pub tracking: Tracking,
 }
 
 /// One of the paper's experiments with one seed.
 #[derive(Clone, Debug)]
 pub struct Replicate {
-    /// Which experiment.
+    /// The experiment.
     pub paper: PaperExperiment,
     /// Seed of rig, sensors and filters.
     pub seed: u64,
-    /// What is known before, what was measured, and what is true.
+    /// Setup, log and truth of the experiment.
     pub experiment: Experiment,
-    /// When the camera is dark.
+    /// Occlusion of the camera.
     pub occlusion: Occlusion,
 }
 
@@ -47,8 +47,8 @@ impl Replicate {
         Self::simulate_with(paper, seed, [REPEATS, PUSHER_MEMORY], |_| ())
     }
 
-    /// The same rig with poses simulated at the noise of tracked ones and missing where this
-    /// replicate's are; the methods reckon with the same camera.
+    /// Simulates the same rig with poses at the noise of tracked ones, missing where this
+    /// replicate's are; the methods assume the same camera.
     ///
     /// # Errors
     /// Those of [`Replicate::simulate`].
@@ -69,7 +69,7 @@ impl Replicate {
         Ok(replicate.given(noise.given_camera()))
     }
 
-    /// The same poses, and methods that reckon with this camera.
+    /// Keeps the poses, and makes the methods assume this camera.
     #[must_use]
     pub fn given(mut self, camera: Camera) -> Self {
         self.experiment.setup.camera = Some(camera);
@@ -84,7 +84,7 @@ impl Replicate {
         ScoredRun::new(variant, &self.experiment, &self.conditions(settings), None)
     }
 
-    /// How every variant is run: with the replicate's own occlusion and seed.
+    /// Conditions of every variant: the replicate's own occlusion and seed.
     #[must_use]
     pub fn conditions(&self, settings: RunSettings) -> RunConditions {
         RunConditions {
@@ -97,7 +97,7 @@ impl Replicate {
     }
 
     /// `repeats`: share of frames that are repeated, `pusher_memory`: how long the pusher's error
-    /// lasts (s); `adjust` may change what the scene says.
+    /// lasts (s); `adjust` may change the scene.
     fn simulate_with(
         paper: PaperExperiment,
         seed: u64,

@@ -13,10 +13,10 @@ use crate::variant::Variant;
 /// Weighted RMSE under occlusion that the particle filter is to stay below (mm).
 const TARGET_MM: f64 = 0.5;
 
-/// What the particle filter is compared with under occlusion.
+/// Baselines of the particle filter under occlusion.
 const BASELINES: [Variant; 3] = [Variant::Nominal, Variant::Kalman, Variant::ParticleNoTouch];
 
-/// A variant's number in the paper beside ours.
+/// A variant's number in the paper next to ours.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cell {
     /// The variant.
@@ -82,11 +82,11 @@ pub struct OcclusionResult {
     pub experiment: &'static str,
     /// Its weighted RMSE over seeds (mm).
     pub wmse_mm: Band,
-    /// The same by its own standard deviations (mm).
+    /// Weighted RMSE by its own standard deviations (mm).
     pub spread_mm: Band,
-    /// The same of the filter whose camera stays on (mm).
+    /// Weighted RMSE of the filter whose camera stays on (mm).
     pub camera_on_mm: Band,
-    /// Whether the median is below 0.5 mm.
+    /// True if the median is below 0.5 mm.
     pub below_target: bool,
     /// Against the nominal simulation, the Kalman filter and the particle filter without tactile
     /// data.
@@ -113,7 +113,7 @@ pub struct Ratio {
     pub method: &'static str,
     /// Weighted RMSE over all rows.
     pub wmse: f64,
-    /// The same over the rows after the occlusion begins.
+    /// Weighted RMSE over the rows after the occlusion begins.
     pub dark: f64,
 }
 
@@ -143,7 +143,7 @@ impl Results {
         rows.flat_map(|row| row.orderings.iter().map(|order| (row.title, order)))
     }
 
-    /// How many of the paper's orders became of a kind, by one measure.
+    /// Number of the paper's orders with a finding, by one measure.
     #[must_use]
     pub fn count(&self, measure: Measure, finding: Finding) -> usize {
         let orders = self.orders();

@@ -32,16 +32,16 @@ pub enum PaperExperiment {
     Corner,
 }
 
-/// A scene with the truth that it does not tell.
+/// A scene, and the truth that is not in it.
 #[derive(Clone, Copy, Debug)]
 pub struct PaperScene {
     /// Name shown in errors and tables.
     pub name: &'static str,
-    /// What happens.
+    /// Story of the experiment.
     pub story: &'static str,
     /// scene.toml.
     pub scene: &'static str,
-    /// truth.json: the true friction, and the blackout where the paper says it.
+    /// truth.json: the true friction, and the occlusion where the paper states it.
     pub truth: &'static str,
 }
 

@@ -111,8 +111,8 @@ impl ConstantVelocity {
         self.filter_with_stds(times, measurements, &[])
     }
 
-    /// The same where measurements have standard deviations of their own, one per row or none at
-    /// all; those without have the model's.
+    /// Same as [`filter`](Self::filter), with standard deviations of single measurements, one per
+    /// row or none at all. Rows without one have the model's.
     ///
     /// # Errors
     /// If the model or the series is out of range, or a standard deviation is.

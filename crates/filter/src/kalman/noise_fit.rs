@@ -18,11 +18,11 @@ pub struct ProcessNoiseFit {
     pub process_noise: f64,
     /// ln p(measurements after the first | the first, q).
     pub log_likelihood: f64,
-    /// Where q lies in the range searched.
+    /// Place of q in the range searched.
     pub optimum: Optimum,
 }
 
-/// Where an optimum was found.
+/// Place at which an optimum was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Optimum {
@@ -30,7 +30,7 @@ pub enum Optimum {
     Interior,
     /// At the lower end: the measurements are consistent with a constant velocity.
     LowerEnd,
-    /// At the upper end: the measurement noise is negligible beside the motion.
+    /// At the upper end: the measurement noise is negligible compared with the motion.
     UpperEnd,
 }
 
@@ -51,8 +51,8 @@ impl ConstantVelocity {
         self.fit_process_noise_with_stds(times, measurements, &[])
     }
 
-    /// The same where measurements have standard deviations of their own, one per row or none at
-    /// all; those without have the model's.
+    /// Same as [`fit_process_noise`](Self::fit_process_noise), with standard deviations of single
+    /// measurements, one per row or none at all. Rows without one have the model's.
     ///
     /// # Errors
     /// If the model or the series is out of range or has fewer than 3 measurements, or a standard
@@ -130,8 +130,9 @@ fn points<const W: usize>(
 }
 
 /// The maximum to 1e-6 of a function with one peak between the outer two of three points, the
-/// middle one of which is highest: steps to the vertex of the parabola through the best three
-/// points so far, and golden section where these converge too slowly (Brent 1973, chapter 5).
+/// middle one of which is highest. Each step goes to the vertex of the parabola through the best
+/// three points so far. Golden section replaces it where these steps converge too slowly (Brent
+/// 1973, chapter 5).
 fn maximum([left, middle, right]: [Point; 3], at: impl Fn(f64) -> Point) -> Point {
     const TOLERANCE: f64 = 5e-7;
     const GOLDEN: f64 = 0.381_966_011_250_105_1;
@@ -232,8 +233,8 @@ fn log_likelihoods<const W: usize>(
 }
 
 /// The filters of [`ConstantVelocity`] for `W` levels of process noise side by side, written out
-/// for their two numbers, in units of measurement_std (so that R = 1, but for measurements with a
-/// noise of their own) and relative to the first measurement.
+/// for their two numbers. Units are those of measurement_std, so that R = 1 but for measurements
+/// with a noise of their own. Positions are relative to the first measurement.
 struct Filters<const W: usize> {
     process_noise: [f64; W],
     position: [f64; W],

@@ -1,6 +1,6 @@
 //! A series of measurements of one axis, checked.
 
-/// Why a series was refused.
+/// Reason why a series was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SeriesError {
@@ -47,7 +47,7 @@ pub enum SeriesError {
         name: &'static str,
         /// The value.
         value: f64,
-        /// What it must be.
+        /// Rule for the value.
         rule: &'static str,
     },
     /// Rounding made a predicted covariance singular.
@@ -95,7 +95,7 @@ impl<'a> Series<'a> {
         })
     }
 
-    /// The same with standard deviations of single measurements; none at all, or one per row.
+    /// Adds standard deviations of single measurements; none at all, or one per row.
     pub(crate) fn with_stds(self, stds: &'a [Option<f64>]) -> Result<Self, SeriesError> {
         if !stds.is_empty() && stds.len() != self.times.len() {
             return Err(SeriesError::Length {

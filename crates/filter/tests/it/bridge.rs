@@ -12,7 +12,7 @@ struct TwoNumbers {
     moves: bool,
 }
 
-/// What is observed, [`OBSERVED`], is so much of each number, and noise.
+/// Sensor whose observation, [`OBSERVED`], is a given share of each number, plus noise.
 struct Sensor {
     shares: [f64; 2],
     noise: f64,

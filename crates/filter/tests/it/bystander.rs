@@ -1,4 +1,4 @@
-//! Observations that move particles teach nothing of what they have nothing to do with.
+//! Observations that move particles say nothing of quantities that are unrelated to them.
 
 use crate::common::{settings, std};
 use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, ParticleFilter};
@@ -7,7 +7,7 @@ use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model, Parti
 /// that takes no part in it.
 struct WalkAndBystander;
 
-/// Standard deviation of what is observed.
+/// Standard deviation of the observation.
 const NOISE: f64 = 0.1;
 
 impl Model for WalkAndBystander {

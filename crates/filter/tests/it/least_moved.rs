@@ -1,4 +1,4 @@
-//! Observations that tell little, and move particles all the same.
+//! Observations that say little, and move particles all the same.
 
 use crate::common::{mean, settings, std};
 use stickslip_filter::{
@@ -16,7 +16,7 @@ struct Number {
 
 const NOISE: f64 = 3.0;
 
-/// Likelihood of an observation that is wrong, beside that of a perfect one.
+/// Likelihood of an observation that is wrong, relative to that of a perfect one.
 const WRONG: f64 = 1e-7;
 
 impl Model for Number {
@@ -94,8 +94,9 @@ impl Model for Number {
     }
 }
 
-/// Over ten seeds of 100 particles, after 2000 observations: root mean square distance of the mean
-/// from the exact one, in exact standard deviations, and the mean variance beside the exact one.
+/// Results over ten seeds of 100 particles, after 2000 observations: the root mean square distance
+/// of the mean from the exact one, in exact standard deviations, and the ratio of the mean variance
+/// to the exact one.
 fn after_many(least: f64) -> [f64; 2] {
     let (seeds, count) = (10, 2000_u32);
     let exact = 1.0 / (1.0 + f64::from(count) / (NOISE * NOISE));

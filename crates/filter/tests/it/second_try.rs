@@ -1,11 +1,11 @@
-//! Steps made again with other random numbers, and what the two sets are worth together.
+//! Steps re-simulated with other random numbers, and the evidence of the two sets together.
 
 use stickslip_filter::{
     Attempt, Block, BlockMut, Draw, Model, ParticleFilter, Pool, Settings, WeightedSums,
 };
 
-/// A fork in the road: the first step leads a particle to 1 with probability [`RIGHT`], else to 0,
-/// for good; an observation o says that ln L is o at 0, and 0 at 1.
+/// A bifurcation: the first step leads a particle to 1 with probability [`RIGHT`], else to 0, for
+/// good. An observation o says that ln L is o at 0, and 0 at 1.
 struct Fork;
 
 const RIGHT: f64 = 0.01;
@@ -23,7 +23,7 @@ impl WeightedSums for Mean {
 }
 
 impl Model for Fork {
-    /// Whether the step comes to the fork.
+    /// True if the particles take a branch in this step.
     type Input = bool;
     type Observation = f64;
     type Scratch = ();
@@ -167,8 +167,8 @@ fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
     assert!(attempt > 0, "the first set had it: choose another seed");
 }
 
-/// Evidences of tries at a fork that the first observation explains better the wrong way, by e⁶,
-/// and the second the right way, by e⁴⁰.
+/// Evidences of tries at a bifurcation. The first observation explains the wrong branch better, by
+/// e⁶, and the second the right one, by e⁴⁰.
 fn tried_at_a_deceptive_fork(resampling: bool) -> Vec<f64> {
     let settings = Settings {
         particles: 500,

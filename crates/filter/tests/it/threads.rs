@@ -1,4 +1,4 @@
-//! The same bits on any number of threads.
+//! Results are equal to the bit on any number of threads.
 
 use crate::common::{Axis, POSITION, VELOCITY, mean, series, settings, std};
 use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, keep_threads_awake};

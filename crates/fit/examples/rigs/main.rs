@@ -1,11 +1,13 @@
-//! What fits find on random virtual rigs whose constants are known, a line for each, and how often
-//! the 90 % intervals of the constants hold them:
+//! Results of fits on random virtual rigs whose constants are known, a line for each, and coverage
+//! of the 90 % intervals of the constants:
 //! `cargo run --release -p stickslip-fit --example rigs -- face 0 60`.
 //!
-//! The first word is what the rigs stand on: `tripod` (the model's own physics), `face` or `feet`
-//! (the testbed's). Numbers are the first rig and how many. The numbers of
-//! `crates/fit/src/discrepancy.rs` are those with which the even ones of 0 to 59 of each kind were
-//! most likely; the odd ones judged them, then rigs from 100 on, which nothing was chosen by.
+//! The first word is the support of the rigs: `tripod` (the model's own physics), `face` or `feet`
+//! (the testbed's). Numbers are the first rig and how many.
+//!
+//! The numbers of `crates/fit/src/discrepancy.rs` are those with which the even rigs of 0 to 59 of
+//! each kind were most likely. The odd ones judged them, then rigs from 100 on, which nothing was
+//! chosen by.
 
 mod random_rig;
 
@@ -15,7 +17,7 @@ use stickslip_fit::{Fit, FitOptions, FittedParameter, Parameter, fit};
 /// Numbers of pushes, rig by rig.
 const PUSHES: [usize; 4] = [4, 6, 8, 12];
 
-/// How a fitted value and its constant compare with the truth, in logarithms.
+/// Comparison of a fitted value and its constant with the truth, in logarithms.
 struct Outcome {
     error: f64,
     spread: f64,

@@ -13,7 +13,7 @@ const CLEARANCE: f64 = 4e-3;
 /// Largest angle between push and inward normal (rad).
 const STEEPEST: f64 = 0.6;
 
-/// What a rig stands on.
+/// Support of a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// The model's own tripod, moved by the model's own physics.
@@ -24,14 +24,14 @@ pub enum Support {
     ThreeFeet,
 }
 
-/// A rig and what is told of it.
+/// A rig, and the scene given to the fit.
 #[derive(Clone, Debug)]
 pub struct RandomRig {
     /// True friction between object and pusher.
     pub mu_p: f64,
     /// True tripod radius (m).
     pub d_tri: f64,
-    /// Pushes, with the scene that is told.
+    /// Pushes, with the scene given to the fit.
     pub pushes: Vec<Push>,
 }
 
@@ -161,7 +161,7 @@ fn moments(vertices: &[[f64; 2]]) -> [f64; 4] {
         })
 }
 
-/// The scene that is told.
+/// The scene given to the fit.
 fn told(outline: &Outline, pusher: f64) -> Setup {
     let corners: Vec<String> = outline
         .vertices

@@ -7,7 +7,7 @@ use stickslip_dynamics::{Feet, Part, Shape};
 use stickslip_evaluation::Physics;
 use stickslip_fit::{Fit, FitOptions, Parameter, Push, fit};
 
-/// Learns `names` from pushes in `truth`, told the scene of the tests.
+/// Learns `names` from pushes in `truth`, given the scene of the tests.
 fn learnt(truth: &Setup, names: &[&str], change: impl Fn(&mut Push)) -> (Vec<Push>, Fit) {
     let mut pushes = pushes_in(truth, Physics::Model, 3, 5);
     for push in &mut pushes {
@@ -68,7 +68,7 @@ fn centre_of_friction_is_found_and_written() {
         assert!((foot - truly).abs() < 1e-3, "{positions:?}");
     }
 
-    // known as well as it was found, at an angle that nobody knows more of than before
+    // as uncertain as the fit found it, at an angle that is no better known than before
     let std = written.uncertainty.centre_of_friction * written.scene.object.gyration_radius();
     let [least, most] =
         [f64::min, f64::max].map(|of| of(fit.parameters[0].std, fit.parameters[1].std));
@@ -94,8 +94,9 @@ fn offset_of_the_pusher_is_found() {
     }
 }
 
-/// The log's object poses come 0.08 s late, and nobody says so. A noisy pusher track carries the
-/// object ahead by up to 0.3 mm, since contact only pushes: at 15 mm/s that looks like 0.02 s.
+/// The log's object poses come 0.08 s late, and the scene does not say so. A noisy pusher track
+/// carries the object ahead by up to 0.3 mm, since contact only pushes: at 15 mm/s that appears as
+/// 0.02 s.
 #[test]
 fn latency_is_found_as_far_as_the_pusher_is_known() {
     let mut truth = setup();

@@ -88,7 +88,7 @@ fn what_pushes_do_not_show_keeps_its_prior() {
     assert!((mu_f.std - 0.45 * 0.25).abs() < 1e-12 && mu_f.std_ratio > 0.7);
 }
 
-/// Four pushes, what is learnt from them, and how two halves of them predict each other.
+/// Four pushes, the fit to them, and how two halves of them predict each other.
 fn halves() -> (Vec<Push>, FitOptions, CrossValidation) {
     static VALIDATION: OnceLock<CrossValidation> = OnceLock::new();
     let pushes = pushes(TRUTH, Physics::Model, 4, 40);

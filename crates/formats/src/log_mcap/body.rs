@@ -15,17 +15,17 @@ use crate::log_mcap::topics::Topic;
 use crate::log_mcap::transforms::Transforms;
 use crate::mounts::body_of;
 
-/// What one place says of a body's pose.
+/// Poses of a body from one place.
 pub(crate) struct BodyPoses {
     /// Poses by stamp, angles in [−π, π).
     pub poses: Series<Pose>,
-    /// How the frame that was seen is tilted.
+    /// Tilt of the frame that was seen.
     pub tilt: Tilt,
     /// Stamps whose pose is not known.
     pub unlinked: usize,
-    /// How noisy the poses are, by stamp (ns), where that is told.
+    /// Covariances of the poses, by stamp (ns), where the messages have one.
     pub covariances: BTreeMap<i64, PoseCovariance>,
-    /// How many are told to be noisy by numbers that are no covariance.
+    /// Number of messages whose numbers are no covariance.
     pub impossible: usize,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct TaggedBody<'a> {
     pub body: Topic,
     /// Poses of the tags on it.
     pub mounts: &'a BTreeMap<String, Pose>,
-    /// How many frames are mapped to it.
+    /// Number of frames that are mapped to it.
     pub frames: usize,
 }
 
@@ -93,8 +93,8 @@ impl BodyPoses {
 }
 
 impl TaggedBody<'_> {
-    /// Where the tag of a frame sits on the body: in its origin if it is the only one and the scene
-    /// says nothing.
+    /// Pose of a frame's tag on the body: in its origin if it is the only one and the scene says
+    /// nothing.
     fn mount(&self, frame: &str) -> Result<Pose, McapProblem> {
         match self.mounts.get(frame) {
             Some(mount) => Ok(*mount),
@@ -108,8 +108,8 @@ impl TaggedBody<'_> {
     }
 }
 
-/// The poses of several places as one series, angles unwrapped: what different ones say within 1 ms
-/// is one pose, their mean.
+/// The poses of several places as one series, angles unwrapped: poses of different places within 1
+/// ms are one pose, their mean.
 pub(crate) fn joined(places: Vec<Series<Pose>>) -> Series<Pose> {
     let mut all: Vec<(usize, Timed<Pose>)> = Vec::new();
     for (place, series) in places.into_iter().enumerate() {

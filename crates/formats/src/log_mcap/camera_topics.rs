@@ -1,4 +1,4 @@
-//! Which topics of a bag hold a camera's images and what belongs to them: [`CameraTopics`].
+//! Topics of a bag with a camera's images and with data that belong to them: [`CameraTopics`].
 
 use std::str::FromStr;
 
@@ -22,7 +22,7 @@ pub enum CameraMapping {
     Sensor(TopicMapping),
 }
 
-/// Where a bag has a camera's images, its CameraInfo, and what sensors read meanwhile.
+/// Topics of a bag with a camera's images, its CameraInfo, and the readings of sensors meanwhile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CameraTopics {
     image: String,
@@ -30,10 +30,10 @@ pub struct CameraTopics {
     sensors: Topics,
 }
 
-/// Where the CameraInfo is.
+/// Topic of the CameraInfo.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Info {
-    /// Beside the images, if it is there.
+    /// Next to the images, if it is there.
     Beside(String),
     /// On this topic.
     Mapped(String),
@@ -67,9 +67,8 @@ impl FromStr for CameraMapping {
 }
 
 impl CameraTopics {
-    /// The topics that are mapped. CameraInfo that is not mapped is looked for where ROS 2 has it,
-    /// beside the images: `/camera/camera_info` for `/camera/image_raw` and
-    /// `/camera/image_raw/compressed`.
+    /// The topics that are mapped. CameraInfo that is not mapped is sought next to the images, as
+    /// in ROS 2: `/camera/camera_info` for `/camera/image_raw` and `/camera/image_raw/compressed`.
     ///
     /// # Errors
     /// No images are mapped, or something twice.
@@ -117,8 +116,8 @@ impl CameraTopics {
         }
     }
 
-    /// Whether the name of the topic says that its images were rectified, so that the distortion
-    /// that CameraInfo tells is no longer in them.
+    /// Returns true if the name of the topic says that its images were rectified. The distortion of
+    /// CameraInfo is then no longer in them.
     #[must_use]
     pub fn is_rectified(&self) -> bool {
         self.image
@@ -126,7 +125,7 @@ impl CameraTopics {
             .any(|part| part.starts_with("image_rect") || part == "rectified")
     }
 
-    /// Whether the topic with the camera's numbers is mapped, and so must be there.
+    /// Returns true if the topic with the camera's numbers is mapped, and so must be there.
     pub(crate) fn needs_info(&self) -> bool {
         matches!(self.info, Info::Mapped(_))
     }
@@ -137,7 +136,7 @@ impl CameraTopics {
         &self.sensors
     }
 
-    /// Whether a topic of a recording is that of a sensor.
+    /// Returns true if a topic of a recording is that of a sensor.
     pub(crate) fn is_sensor(&self, name: &str) -> bool {
         match self.sensors.carries(name) {
             Some(Topic::Fixel(_)) => true,

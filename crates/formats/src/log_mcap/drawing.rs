@@ -30,7 +30,7 @@ pub(crate) struct Body<'a> {
     shape: &'a Shape,
     /// `None` where it is not known.
     pose: Option<Pose>,
-    /// Whether contact with the object is likelier than not.
+    /// True if contact with the object is likelier than not.
     touched: bool,
 }
 

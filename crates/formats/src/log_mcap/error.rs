@@ -1,4 +1,4 @@
-//! Why a recording was refused: [`McapError`].
+//! Reason why a recording was refused: [`McapError`].
 
 use std::fmt;
 
@@ -15,19 +15,19 @@ pub struct McapPlace {
     pub message: Option<(usize, u64)>,
 }
 
-/// Why a recording was refused, and where.
+/// Reason why a recording was refused, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub struct McapError {
     /// Display name of the file.
     pub file: String,
     /// Topic and message; `None` where the whole file is meant.
     pub place: Option<McapPlace>,
-    /// What is wrong.
+    /// The problem.
     pub problem: Box<McapProblem>,
 }
 
 impl McapError {
-    /// Whether it says that two frames are not joined by what was recorded.
+    /// Returns true if it says that two frames are not joined by the recorded transforms.
     pub(crate) fn is_about_frames(&self) -> bool {
         matches!(
             *self.problem,
@@ -57,7 +57,7 @@ impl fmt::Display for McapError {
     }
 }
 
-/// What is wrong with a recording.
+/// Problem of a recording.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum McapProblem {
@@ -91,7 +91,7 @@ pub enum McapProblem {
         if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
     )]
     MissingTopic {
-        /// What it carries.
+        /// Quantity that it carries.
         topic: Topic,
         /// Its name.
         name: String,
@@ -113,7 +113,7 @@ pub enum McapProblem {
         /// Topics that could be meant.
         found: Vec<String>,
     },
-    /// A camera that changes while it looks.
+    /// A camera whose numbers change during the recording.
     #[error(
         "CameraInfo changes from a focal length of {before} px to {now} px; a camera must stay as it is. Switch autofocus and zoom off, or leave CameraInfo out with info="
     )]
@@ -136,7 +136,7 @@ pub enum McapProblem {
         "its messages are {found}, and {expected} is needed. Map another topic, or convert the messages before recording"
     )]
     WrongType {
-        /// The type that is there; empty where none is told.
+        /// The type that is there; empty where none is named.
         found: String,
         /// The types that will do.
         expected: String,
@@ -189,7 +189,7 @@ pub enum McapProblem {
         /// Number of the message with the other transform.
         first: usize,
     },
-    /// A tag of which nobody said where it sits.
+    /// A tag whose place on the body is not given.
     #[error(
         "`{frame}` is not among the tags of the {body} in the scene, which has {}. Say there where it sits: [{body}] tags = {{ \"{frame}\" = [x, y, theta] }}",
         if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
@@ -197,7 +197,7 @@ pub enum McapProblem {
     UnknownTag {
         /// The frame.
         frame: String,
-        /// What carries it.
+        /// Body that carries it.
         body: Topic,
         /// The tags that the scene has.
         found: Vec<String>,
@@ -236,7 +236,7 @@ pub enum McapProblem {
     Message {
         /// The type.
         expected: &'static str,
-        /// What does not fit.
+        /// The fault.
         why: String,
     },
     /// A stamp whose nanoseconds are a second or more.
@@ -274,7 +274,7 @@ pub enum McapProblem {
         field: &'static str,
         /// The number.
         found: f64,
-        /// What it must be.
+        /// Rule for the number.
         rule: String,
     },
     /// A quaternion that is no rotation.
@@ -299,7 +299,7 @@ pub enum McapProblem {
         expected: String,
         /// The topic that has it.
         of: String,
-        /// Whether this is the wrench, which can be left out.
+        /// True if this is the wrench, which can be left out.
         wrench: bool,
     },
     /// Stamps that are different and the same in seconds.

@@ -17,7 +17,7 @@ use crate::number;
 /// row that has a pose:
 ///
 /// - `/stickslip/pose`, `geometry_msgs/msg/PoseWithCovarianceStamped`: the pose with its covariance
-///   of x, y and the angle about z; the rest is 0, and so is what the method does not know,
+///   of x, y and the angle about z; the rest is 0, and so are values that the method does not have,
 /// - `/tf`, `tf2_msgs/msg/TFMessage`: the frame `stickslip_object` in `world`,
 /// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, of the
 ///   pusher at its pose in `pusher` and of the fixels, red where contact is likelier than not,
@@ -30,7 +30,7 @@ use crate::number;
 ///   `std_msgs/msg/Float64MultiArray`: numbers of `estimate.csv`, the columns that the label of the
 ///   dimension names; NaN for empty cells.
 ///
-/// The same estimate gives the same bytes.
+/// Equal estimates give equal bytes.
 ///
 /// # Errors
 /// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says.

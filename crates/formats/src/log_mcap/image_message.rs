@@ -25,7 +25,7 @@ pub struct BagImage {
 pub enum BagPicture {
     /// `sensor_msgs/msg/CompressedImage`: an image file.
     Compressed {
-        /// What its publisher says it is.
+        /// Format that its publisher states.
         format: String,
         /// The file.
         bytes: Vec<u8>,
@@ -34,11 +34,11 @@ pub enum BagPicture {
     Raw {
         /// Columns and rows.
         size: [u32; 2],
-        /// What the bytes of a pixel are, as `mono8`.
+        /// Encoding of a pixel's bytes, as `mono8`.
         encoding: String,
         /// Bytes from one row to the next.
         step: u32,
-        /// Whether numbers of two bytes begin with the higher one.
+        /// True if numbers of two bytes begin with the higher one.
         is_big_endian: bool,
         /// The rows.
         bytes: Vec<u8>,

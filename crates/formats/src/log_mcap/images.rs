@@ -61,12 +61,14 @@ pub fn read_bag_camera_info<R: Read>(
 /// Shows the images of a bag to `take`, in the order of its files, until that says to break. One
 /// chunk of at most 256 MiB is in memory, and the image that is shown.
 ///
-/// Returns what else was read: the readings of sensors up to there.
+/// Returns the readings of sensors up to there.
 ///
 /// # Errors
-/// Those of `take`; the bytes are no MCAP file or cannot be read; the images' topic is not there or
-/// has messages of another type; a message does not fit its type; two images have one stamp; a
-/// message of CameraInfo says something else than the first one.
+/// - Those of `take`.
+/// - The bytes are no MCAP file or cannot be read.
+/// - The images' topic is not there or has messages of another type.
+/// - A message does not fit its type, or two images have one stamp.
+/// - A message of CameraInfo says something else than the first one.
 pub fn read_bag_images<R: Read, E: From<McapError>>(
     files: impl IntoIterator<Item = (String, R)>,
     topics: &CameraTopics,
@@ -107,7 +109,7 @@ pub fn read_bag_images<R: Read, E: From<McapError>>(
     })
 }
 
-/// What a bag holds besides its images.
+/// Content of a bag besides its images.
 #[derive(Debug)]
 pub struct CameraRecording {
     pub(crate) files: Vec<String>,
@@ -137,7 +139,7 @@ fn no_such_topic(
     }
 }
 
-/// An error of a whole topic, told of the latest file.
+/// An error of a whole topic, reported for the latest file.
 fn of_topic(files: &[String], topic: &str, problem: McapProblem) -> McapError {
     let place = Some(McapPlace {
         topic: topic.to_owned(),
@@ -210,7 +212,7 @@ struct Images<'t, E> {
     /// Numbers of the images in their files by stamp.
     stamps: BTreeMap<i64, usize>,
     info: Option<BagCameraInfo>,
-    /// How it ended before the end of the bag.
+    /// Result with which it ended before the end of the bag.
     ended: Option<Result<(), E>>,
 }
 
@@ -304,7 +306,7 @@ impl<'t, E: From<McapError>> Images<'t, E> {
     }
 }
 
-/// Shows images, and keeps what sensors read.
+/// Shows images, and keeps the readings of sensors.
 struct ImageVisitor<'v, 't, E> {
     images: &'v mut Images<'t, E>,
     sensors: Keeper<'v>,

@@ -1,4 +1,4 @@
-//! What is in a bag, and what of it a log could be read from: [`read_bag_info`].
+//! Content of a bag, and the parts of it that a log could be read from: [`read_bag_info`].
 
 use std::io::Read;
 
@@ -19,19 +19,20 @@ use crate::log_mcap::suggestion;
 use crate::log_mcap::transforms::Transforms;
 use crate::log_warning::LogWarning;
 
-/// Most frames of transforms that poses are looked for in.
+/// Most frames of transforms in which poses are sought.
 const MOST_PARENTS: usize = 12;
 
-/// What is in a bag.
+/// Content of a bag.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BagInfo {
     /// Its topics by name.
     pub topics: Vec<TopicInfo>,
-    /// What moves, by topic and by frame.
+    /// Motions, by topic and by frame.
     pub poses: Vec<PosesInfo>,
-    /// What of it would do for a log, as `--topic` takes it; keys are left out where nothing would.
+    /// Topics that would do for a log, as `--topic` takes them; keys are left out where nothing
+    /// would.
     pub suggestion: Vec<String>,
-    /// What of it would do to find the poses in images, as `stickslip track --topic` takes it;
+    /// Topics that would do to find the poses in images, as `stickslip track --topic` takes them;
     /// empty without images.
     pub image_suggestion: Vec<String>,
 }
@@ -64,13 +65,13 @@ pub struct PosesInfo {
     pub rate: Option<f64>,
     /// Longest time between two of them (s).
     pub longest_gap: f64,
-    /// How far from its first position it gets (m).
+    /// Largest distance from its first position (m).
     pub moves: f64,
-    /// When it has gone a tenth of that (s after the bag's first pose).
+    /// Time at which it has gone a tenth of that (s after the bag's first pose).
     pub moves_at: f64,
     /// Largest angle between its z-axis and the vertical of the frame it is in (deg).
     pub tilt_deg: f64,
-    /// Why it cannot be read, where it cannot.
+    /// Reason why it cannot be read; `None` where it can.
     pub problem: Option<String>,
 }
 
@@ -175,7 +176,7 @@ fn rate(count: usize, over: u64) -> Option<f64> {
     (count > 1 && over > 0).then(|| (count - 1) as f64 * SECOND as f64 / over as f64)
 }
 
-/// What moves among the frames of a topic, in the frame in which most of it stays upright.
+/// Frames of a topic that move, in the frame in which most of them stay upright.
 fn frames(topic: &str, transforms: &Transforms<'_>) -> Vec<(Place, Motion)> {
     let all = transforms.frames();
     let moving = transforms.moving();

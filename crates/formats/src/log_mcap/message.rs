@@ -9,7 +9,7 @@ use crate::log_mcap::error::McapProblem;
 /// Nanoseconds in a second.
 pub(crate) const SECOND: i64 = 1_000_000_000;
 
-/// Bytes that a message may be longer than its type: what writers pad it with.
+/// Bytes that a message may be longer than its type: padding by writers.
 pub(crate) const PADDING: usize = 8;
 
 /// A ROS 2 message type.
@@ -166,7 +166,7 @@ pub(crate) fn decode<M: Message>(bytes: &[u8]) -> Result<M, McapProblem> {
     }
 }
 
-/// What a message begins with, and the bytes that follow.
+/// Decodes the beginning of a message, and returns it with the bytes that follow.
 pub(crate) fn decode_front<M: Message>(bytes: &[u8]) -> Result<(M, &[u8]), McapProblem> {
     let Some((&[first, second, _, _], body)) = bytes.split_first_chunk() else {
         return Err(wrong::<M>(format!(

@@ -1,7 +1,7 @@
 //! An MCAP file as messages, as far as it can be read: [`messages`].
 //!
-//! A file is read record by record, and no more than one chunk of it is in memory. An attachment is
-//! never looked at.
+//! A file is read record by record, and no more than one chunk of it is in memory. Attachments are
+//! skipped.
 
 use std::borrow::Cow;
 use std::io::{self, Read, copy, sink};
@@ -14,19 +14,19 @@ use crate::log_mcap::records::{
     Stop, damage, damaged, parse, records, split_record, unpacked, unreadable,
 };
 
-/// How what zstd packed begins; plain CDR and MCAP begin otherwise.
+/// First bytes of data packed with zstd; plain CDR and MCAP begin otherwise.
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Where a file ends before its end.
+/// Place at which a file ends before its end.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Damage {
-    /// Which file, from 0.
+    /// Number of the file, from 0.
     pub file: usize,
     /// Bytes that were read.
     pub at: u64,
     /// Bytes of the file.
     pub size: u64,
-    /// What follows them.
+    /// Reason why the rest cannot be read.
     pub why: String,
 }
 
@@ -46,13 +46,13 @@ pub(crate) struct Recorded<'a> {
     pub topic: &'a str,
     /// Log time (ns).
     pub log_time: u64,
-    /// What it says.
+    /// Its bytes.
     pub data: &'a [u8],
 }
 
-/// What is done with the channels and messages of a file.
+/// Visitor of the channels and messages of a file.
 pub(crate) trait Visitor {
-    /// A channel, told before its messages, perhaps several times.
+    /// Takes a channel, before its messages, perhaps several times.
     fn channel(&mut self, topic: &str, kind: Kind) -> Result<(), Stop>;
 
     /// A message, in the order of the file.
@@ -232,7 +232,7 @@ impl Progress<'_> {
     }
 }
 
-/// What a message of a needed topic says, at most `limit` bytes; it may be packed with zstd by
+/// Bytes of a message of a needed topic, at most `limit` of them; it may be packed with zstd by
 /// itself.
 pub(crate) fn message_data<'d>(
     topic: &str,

@@ -1,12 +1,15 @@
 //! A log as MCAP recordings of ROS 2 messages: [`read_bag`], [`read_log_mcap`], [`write_log_mcap`].
 //!
-//! `records` takes the files apart into records, `messages` into messages, `recording` keeps those
-//! of the needed topics; `message`, `pose_message` and `image_message` have their types. `source`
-//! makes measurements of a topic, `transforms` of frames and `body` of a body's; `planar` projects
-//! poses on the table, `rows` makes a log's rows. `topics` and `place` say which topic is which.
-//! `sensors` fills in what was felt, `images` shows images one by one, by their `camera_topics`.
-//! `info` looks at a whole bag, `suggestion` which of its topics would do. `estimate` writes
-//! estimates, its bodies by `drawing`, in messages of `output_message`.
+//! - `records` takes the files apart into records, `messages` into messages; `recording` keeps
+//!   those of the needed topics.
+//! - `message`, `pose_message` and `image_message` have the types of messages.
+//! - `source` makes measurements of a topic, `transforms` of frames and `body` of a body's.
+//! - `planar` projects poses on the table, `rows` makes a log's rows.
+//! - `topics` and `place` say which topic is which.
+//! - `sensors` fills in touches and forces.
+//! - `images` shows images one by one, by their `camera_topics`.
+//! - `info` describes a whole bag, `suggestion` names those of its topics that would do.
+//! - `estimate` writes estimates, its bodies by `drawing`, in messages of `output_message`.
 
 mod body;
 mod camera_topics;

@@ -14,7 +14,8 @@ pub(crate) struct Colour {
     pub a: f32,
 }
 
-/// `visualization_msgs/msg/Marker`, its pose laid out flat; what no marker of ours has stays empty.
+/// `visualization_msgs/msg/Marker`, its pose laid out flat; fields that no marker of ours uses stay
+/// empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Marker {
     pub header: Header,
@@ -113,7 +114,7 @@ impl Numbers {
 
 /// A line from point to point.
 pub(crate) const LINE_STRIP: i32 = 4;
-/// What to do with a marker: draw it anew, take it away.
+/// Actions on a marker: draw it again, take it away.
 pub(crate) const ADD: i32 = 0;
 pub(crate) const DELETE: i32 = 2;
 

@@ -1,4 +1,4 @@
-//! Where the messages of a key are: [`Place`], a topic or two frames on one.
+//! Place of a key's messages: [`Place`], a topic or two frames on one.
 
 use std::fmt;
 use std::str::FromStr;

@@ -8,26 +8,26 @@ use stickslip_dynamics::Pose;
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::message::{Quaternion, Vector3};
 
-/// How far a quaternion's length may be from 1.
+/// Largest difference of a quaternion's length from 1.
 const UNIT: f64 = 0.01;
 /// Tilt from which a pose is not one in the plane (rad).
 const TILTED: f64 = 5.0 * PI / 180.0;
 /// Tilt from which a pose has no angle about the vertical (rad).
 const UPSIDE_DOWN: f64 = 179.9 * PI / 180.0;
 
-/// Which way the z-axis of a frame may point.
+/// Directions in which the z-axis of a frame may point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ZAxis {
     /// Up from the table.
     Up,
-    /// Up or, as detectors of tags have it, into the tag.
+    /// Up or, as for detectors of tags, into the tag.
     UpOrDown,
 }
 
 /// Poses that stand askew.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Tilt {
-    /// How many are tilted by more than 5°.
+    /// Number of poses tilted by more than 5°.
     pub count: usize,
     /// Largest tilt (rad).
     pub largest: f64,

@@ -73,7 +73,7 @@ pub(crate) struct StampedPose {
     pub noise: ToldNoise,
 }
 
-/// What a message says of its pose's noise.
+/// Noise of a pose by its message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ToldNoise {
     /// Nothing: its type has no covariance, or that is 0 throughout, as where it is not known.
@@ -87,7 +87,7 @@ pub(crate) enum ToldNoise {
 impl ToldNoise {
     /// Of the covariance of x, y, z and turns about the three axes.
     fn of(covariance: &Covariance) -> Self {
-        /// Where x, y and the turn about z are.
+        /// Indices of x, y and the turn about z.
         const PLANAR: [usize; 3] = [0, 1, 5];
         let [x, y, theta] = PLANAR.map(|k| covariance[k][k]);
         let [x_y, x_theta, y_theta] = [(0, 1), (0, 5), (1, 5)].map(|(i, j)| covariance[i][j]);
@@ -111,7 +111,7 @@ impl ToldNoise {
     }
 }
 
-/// How far the two halves of a covariance may differ, as a correlation.
+/// Largest difference between the two halves of a covariance, as a correlation.
 const ASYMMETRY: f64 = 1e-6;
 
 /// A covariance of x, y and the turn about z in that of a pose in space, 0 elsewhere.

@@ -23,12 +23,12 @@ use crate::log_warning::LogWarning;
 use crate::mounts::Mounts;
 use crate::nearest::nearest;
 
-/// How a bag is read.
+/// Options for reading a bag.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BagOptions {
-    /// Which topic is which.
+    /// Topics of all quantities.
     pub topics: Topics,
-    /// How tags sit on object and pusher, where these are read from transforms.
+    /// Places of tags on object and pusher, where these are read from transforms.
     pub mounts: Mounts,
     /// Force from which a sensor that gives forces is touched (N).
     pub touch_force: f64,
@@ -64,35 +64,39 @@ pub fn read_log_mcap(
 /// Reads a log from the MCAP files of a bag of ROS 2 messages, each with the name to show in errors
 /// and warnings.
 ///
-/// Poses are `geometry_msgs/msg/PoseStamped`, `PoseWithCovarianceStamped`,
-/// `TransformStamped` or `nav_msgs/msg/Odometry`, or the way between two frames of
-/// `tf2_msgs/msg/TFMessage`; forces are `geometry_msgs/msg/WrenchStamped`, tactile readings
-/// `std_msgs/msg/Bool` or a force that is compared with a threshold. Time (s) is `header.stamp`, of
-/// Bool the log time; messages may come in any order.
+/// Poses are `geometry_msgs/msg/PoseStamped`, `PoseWithCovarianceStamped`, `TransformStamped` or
+/// `nav_msgs/msg/Odometry`, or the way between two frames of `tf2_msgs/msg/TFMessage`. Forces are
+/// `geometry_msgs/msg/WrenchStamped`, tactile readings `std_msgs/msg/Bool` or a force that is
+/// compared with a threshold. Time (s) is `header.stamp`, of Bool the log time; messages may come
+/// in any order.
 ///
-/// A row stands at every stamp of the object and, where there is none for longer than the camera's
-/// period, at stamps of the pusher, about one per period or per 0.05 s. The pusher is interpolated
-/// between poses at most 0.2 s apart, and so are transforms on the way between two frames. A
-/// tactile cell is 1 if any reading in the interval that ends at its row is true, 0 if there are
-/// only false ones, without any the last one if it is at most 0.5 s old; a force cell is the
-/// interval's mean. The first row's interval is as long as the second's. θ = 2 atan2(q_z, q_w),
-/// unwrapped.
+/// A row stands at every stamp of the object. Where there is none for longer than the camera's
+/// period, rows stand at stamps of the pusher, about one per period or per 0.05 s. The pusher is
+/// interpolated between poses at most 0.2 s apart, and so are transforms on the way between two
+/// frames.
 ///
-/// Where messages of the object have a covariance, that of x, y and the turn about z is the row's;
-/// one of zeros is not known, and so is one that is none, with a warning.
+/// A tactile cell is 1 if any reading in the interval that ends at its row is true, and 0 if there
+/// are only false ones. Without any, it is the last reading if that is at most 0.5 s old. A force
+/// cell is the interval's mean. The first row's interval is as long as the second's. θ = 2
+/// atan2(q_z, q_w), unwrapped.
+///
+/// Where messages of the object have a covariance, that of x, y and the turn about z is the row's.
+/// A covariance of zeros counts as unknown. So do numbers that are no covariance, with a warning.
 ///
 /// Files are read piece by piece; memory is taken for one chunk of at most 256 MiB, and for the
 /// messages of the needed topics. Files, chunks and messages may be packed with zstd.
 ///
-/// A file that is cut off or damaged is read up to there, with a warning for which
-/// [`LogWarning::is_loss`] holds.
+/// A file that is cut off or damaged is read up to there, with a warning whose
+/// [`LogWarning::is_loss`] is true.
 ///
 /// # Errors
-/// The bytes are no MCAP file or cannot be read; the topic of object or pusher, or one that is
-/// mapped, is missing; sensors are not numbered without gaps; a topic has messages of another type
-/// or encoding; a number is not finite, an orientation no rotation; two messages of a topic have
-/// one stamp; frames differ or are not joined; a tag's place on its body is not told; there is no
-/// pose at all.
+/// - The bytes are no MCAP file or cannot be read.
+/// - The topic of object or pusher, or one that is mapped, is missing; sensors are not numbered
+///   without gaps.
+/// - A topic has messages of another type or encoding.
+/// - A number is not finite, an orientation no rotation; two messages of a topic have one stamp.
+/// - Frames differ or are not joined; a tag's place on its body is not given.
+/// - There is no pose at all.
 pub fn read_bag<R: Read>(
     files: impl IntoIterator<Item = (String, R)>,
     options: &BagOptions,
@@ -139,7 +143,7 @@ pub fn read_bag<R: Read>(
     Ok((log, warnings))
 }
 
-/// How noisy the object's poses are row by row; nothing where none is told to be.
+/// Covariances of the object's poses row by row; empty where no message has one.
 fn own_covariances(
     rows: &Rows,
     told: &BTreeMap<i64, PoseCovariance>,
@@ -152,7 +156,7 @@ fn own_covariances(
         .collect()
 }
 
-/// An error of the whole bag, told of its latest file.
+/// An error of the whole bag, reported for its latest file.
 pub(crate) fn whole(files: &[String], problem: McapProblem) -> McapError {
     McapError {
         file: files.last().cloned().unwrap_or_default(),

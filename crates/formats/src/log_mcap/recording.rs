@@ -16,17 +16,17 @@ const MESSAGE_LIMIT: usize = 1 << 16;
 /// A message as it is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RawMessage {
-    /// Which file it is in, from 0.
+    /// Number of its file, from 0.
     pub file: usize,
     /// Number among those of its topic in the file, from 1.
     pub number: usize,
     /// Log time (ns).
     pub log_time: u64,
-    /// What it says.
+    /// Its bytes.
     pub data: Vec<u8>,
 }
 
-/// What a topic holds.
+/// Content of a topic.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Content {
     /// Types and encodings of its channels.
@@ -35,9 +35,9 @@ pub(crate) struct Content {
     pub messages: Vec<RawMessage>,
 }
 
-/// Which topics are read.
+/// Choice of the topics that are read.
 pub(crate) trait Wanted {
-    /// Whether a topic with messages of a type is read.
+    /// Returns true if a topic with messages of a type is read.
     fn wants(&self, name: &str, schema: &str) -> bool;
 }
 
@@ -47,7 +47,7 @@ impl Wanted for Topics {
     }
 }
 
-/// What was seen of a topic, read or not.
+/// Counts of a topic, read or not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seen {
     /// Message type.
@@ -85,9 +85,9 @@ pub(crate) struct Recording {
     pub names: BTreeMap<String, Seen>,
     /// The needed ones by name.
     pub topics: BTreeMap<String, Content>,
-    /// Where its files were cut off.
+    /// Places at which its files were cut off.
     pub damage: Vec<Damage>,
-    /// How many files were read.
+    /// Number of files that were read.
     files: usize,
 }
 
@@ -95,14 +95,14 @@ pub(crate) struct Recording {
 pub(crate) struct Keeper<'t> {
     wanted: &'t dyn Wanted,
     recording: &'t mut Recording,
-    /// Which file it is, from 0.
+    /// Number of the file, from 0.
     file: usize,
     /// Messages so far by topic.
     numbers: BTreeMap<String, usize>,
 }
 
 impl Recording {
-    /// Adds what a file holds of the topics that `wanted` names, up to the first damage. The whole
+    /// Adds a file's messages of the topics that `wanted` names, up to the first damage. The whole
     /// file may be packed with zstd.
     pub(crate) fn add(&mut self, file: impl Read, wanted: &dyn Wanted) -> Result<(), McapProblem> {
         let mut keeper = self.keeper(wanted);
@@ -112,7 +112,7 @@ impl Recording {
         Ok(())
     }
 
-    /// What keeps the messages of one more file.
+    /// Visitor that keeps the messages of one more file.
     pub(crate) fn keeper<'t>(&'t mut self, wanted: &'t dyn Wanted) -> Keeper<'t> {
         self.files += 1;
         Keeper {

@@ -1,4 +1,4 @@
-//! An MCAP file as records, as far as it can be read: [`records`], and what is in a chunk.
+//! An MCAP file as records, as far as it can be read: [`records`], and the content of a chunk.
 //!
 //! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in
 //! them.
@@ -18,13 +18,13 @@ pub(crate) const CHUNK_LIMIT: u64 = 1 << 28;
 /// Most bytes that are taken from a file at once: a record may claim more than there is.
 const LARGEST_READ: usize = 1 << 20;
 
-/// Why reading stopped.
+/// Reason why reading stopped.
 pub(crate) enum Stop {
     /// The file is damaged here.
     Damage(String),
     /// It cannot be read.
     Refused(McapProblem),
-    /// Whoever looks has seen enough.
+    /// The visitor has seen enough.
     Enough,
 }
 
@@ -34,14 +34,14 @@ impl From<mcap::McapError> for Stop {
     }
 }
 
-/// Why a file cannot be read at all.
+/// Reason why a file cannot be read at all.
 pub(crate) fn unreadable(error: &io::Error) -> McapProblem {
     McapProblem::Unreadable {
         why: error.to_string(),
     }
 }
 
-/// Why a file cannot be read on: what unpacks it says so by these two kinds.
+/// Reason why a file cannot be read on: its decoder reports that by these two kinds.
 pub(crate) fn damaged(error: &io::Error) -> Stop {
     match error.kind() {
         ErrorKind::UnexpectedEof | ErrorKind::Other => Stop::Damage(error.to_string()),
@@ -77,7 +77,7 @@ pub(crate) fn records(file: &mut dyn Read, take: &mut Take<'_>) -> Result<(), St
     Ok(())
 }
 
-/// The first record of a chunk's content: its opcode, its body and what follows.
+/// The first record of a chunk's content: its opcode, its body and the bytes that follow.
 pub(crate) fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (opcode, rest) = bytes.split_first()?;
     let (length, rest) = rest.split_first_chunk()?;
@@ -86,7 +86,7 @@ pub(crate) fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
 }
 
 /// A record whose texts lie within it; the library reserves memory by their lengths before it
-/// looks.
+/// checks them.
 pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
     let fits = match opcode {
         op::SCHEMA => body
@@ -111,7 +111,7 @@ pub(crate) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
     }
 }
 
-/// What follows `count` texts, each behind its length.
+/// Bytes that follow `count` texts, each behind its length.
 fn after_texts(bytes: &[u8], count: usize) -> Option<&[u8]> {
     (0..count).try_fold(bytes, |rest, _| {
         let (length, rest) = rest.split_first_chunk()?;
@@ -119,7 +119,7 @@ fn after_texts(bytes: &[u8], count: usize) -> Option<&[u8]> {
     })
 }
 
-/// Whether all keys and values of a map lie in it.
+/// `Some` if all keys and values of a map lie in it.
 fn map_fits(bytes: &[u8]) -> Option<()> {
     let (length, rest) = bytes.split_first_chunk()?;
     let mut map = rest.get(..u32::from_le_bytes(*length) as usize)?;

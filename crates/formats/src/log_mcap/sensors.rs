@@ -1,4 +1,4 @@
-//! What a bag's sensors read, in the rows of a log: [`Readings`].
+//! Readings of a bag's sensors, in the rows of a log: [`Readings`].
 
 use std::collections::BTreeSet;
 
@@ -20,18 +20,18 @@ pub struct Readings {
     pub tactile: Vec<Vec<Option<bool>>>,
     /// Forces (N); empty without a topic of them.
     pub force: Vec<Option<[f64; 2]>>,
-    /// What was odd about them.
+    /// Warnings about them.
     pub warnings: Vec<LogWarning>,
 }
 
 impl CameraRecording {
-    /// Where the bag's files were cut off.
+    /// Places at which the bag's files were cut off.
     #[must_use]
     pub fn damage(&self) -> Vec<LogWarning> {
         damage_warnings(&self.recording, &self.files)
     }
 
-    /// What sensors read in rows at `time` (ns, rising); forces from `touch_force` (N) on are
+    /// Readings of sensors in rows at `time` (ns, rising); forces from `touch_force` (N) on are
     /// touches. As in [`read_bag`](crate::read_bag).
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use crate::log_mcap::message::SECOND;
 pub(crate) struct Timed<T> {
     /// Time (ns).
     pub time: i64,
-    /// What was measured.
+    /// The measurement.
     pub value: T,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct Source<'a> {
     pub files: &'a [String],
     /// Name of the topic.
     pub name: &'a str,
-    /// What it holds.
+    /// Its content.
     pub content: &'a Content,
 }
 
@@ -35,11 +35,11 @@ pub(crate) struct Source<'a> {
 pub(crate) struct TopicPoses {
     /// By stamp, angles in [−π, π).
     pub poses: Series<Pose>,
-    /// How they are tilted.
+    /// Tilt of the frame.
     pub tilt: Tilt,
-    /// How noisy they are, by stamp (ns), where their messages say it.
+    /// Covariances of the poses, by stamp (ns), where their messages have one.
     pub covariances: BTreeMap<i64, PoseCovariance>,
-    /// How many messages say it by numbers that are no covariance.
+    /// Number of messages whose numbers are no covariance.
     pub impossible: usize,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct FromMessage<'a, T> {
 }
 
 impl<'a> Source<'a> {
-    /// Poses by stamp, angles in [−π, π), with what their messages say of them.
+    /// Poses by stamp, angles in [−π, π), with the tilt and noise in their messages.
     pub(crate) fn poses(&self, frame: &mut CommonFrame) -> Result<TopicPoses, McapError> {
         let schema = self.kind(&PoseKind::TYPES)?;
         let mut found = TopicPoses::default();
@@ -94,8 +94,8 @@ impl<'a> Source<'a> {
         self.by_stamp(read)
     }
 
-    /// Whether something touches: readings by log time, since such messages have no stamp, or
-    /// forces by stamp, of which those of `touch_force` (N) and more are touches.
+    /// Touches of a sensor: readings by log time, since such messages have no stamp, or forces by
+    /// stamp, of which those of `touch_force` (N) and more are touches.
     pub(crate) fn touches(&self, touch_force: f64) -> Result<Series<bool>, McapError> {
         if self.kind(&[Bool::TYPE, WrenchStamped::TYPE])? == WrenchStamped::TYPE {
             let read = self.read(|data| {

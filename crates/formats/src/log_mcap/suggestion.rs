@@ -1,4 +1,5 @@
-//! Which topics of a bag would do for a log, by their names and by what moves: [`suggestion`].
+//! Topics of a bag that would do for a log, by their names and by the motion in them:
+//! [`suggestion`].
 
 use crate::log_mcap::camera_topics::{CameraMapping, CameraTopics};
 use crate::log_mcap::info::{PosesInfo, TopicInfo};
@@ -79,7 +80,7 @@ pub(crate) fn images(topics: &[TopicInfo]) -> Vec<String> {
     [image].into_iter().chain(sensors(topics)).collect()
 }
 
-/// Whether a frame is named as that of a table.
+/// Returns true if a frame is named as that of a table.
 pub(crate) fn is_table(frame: &str) -> bool {
     has_word(frame, &TABLE)
 }
@@ -118,8 +119,8 @@ fn sensors(topics: &[TopicInfo]) -> Vec<String> {
         .collect()
 }
 
-/// Whether one of the words is a part of the name; parts end at other characters than letters, and
-/// where a small letter meets a capital one.
+/// Returns true if one of the words is a part of the name. Parts end at other characters than
+/// letters, and where a small letter meets a capital one.
 fn has_word(name: &str, words: &[&str]) -> bool {
     let mut parts = vec![String::new()];
     let mut before = ' ';

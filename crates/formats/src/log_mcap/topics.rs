@@ -1,4 +1,4 @@
-//! Which topic carries what: [`Topic`], [`TopicMapping`], [`Topics`].
+//! Topics and the quantities that they carry: [`Topic`], [`TopicMapping`], [`Topics`].
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::str::FromStr;
 use crate::log_mcap::place::Place;
 use crate::nearest::nearest;
 
-/// What a topic carries.
+/// Quantity that a topic carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Topic {
     /// Poses of the object.
@@ -24,18 +24,18 @@ pub enum Topic {
 /// `object=/tf:table.tag_7` for a frame among transforms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TopicMapping {
-    /// What it carries.
+    /// Quantity that it carries.
     pub topic: Topic,
-    /// Where that is in the recording; `None` for a wrench that is not to be read or written.
+    /// Its place in the recording; `None` for a wrench that is not to be read or written.
     pub place: Option<Place>,
 }
 
-/// Where all topics are: at `/object/pose`, `/pusher/pose`, `/pusher/wrench`,
-/// `/fixel_<k>/contact`, or where they are mapped to. A body may have several frames.
+/// Places of all topics: `/object/pose`, `/pusher/pose`, `/pusher/wrench`, `/fixel_<k>/contact`, or
+/// those that they are mapped to. A body may have several frames.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topics(BTreeMap<Topic, Vec<Place>>);
 
-/// Why a mapping was refused.
+/// Reason why a mapping was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TopicError {
@@ -52,7 +52,7 @@ pub enum TopicError {
         /// A key that is one.
         nearest: String,
     },
-    /// What follows a colon is not two frames.
+    /// The text after a colon is not two frames.
     #[error("`{0}` does not name two frames; write TOPIC:PARENT.CHILD, as /tf:table.tag_7")]
     NoFrames(String),
     /// Frames where none can be.
@@ -246,24 +246,24 @@ impl Topics {
         self.places(topic).first().map(Place::to_string)
     }
 
-    /// Where a topic is; nowhere if it is left out.
+    /// Places of a topic; none if it is left out.
     pub(crate) fn places(&self, topic: Topic) -> Vec<Place> {
         let own = || vec![Place::topic(topic.default_name())];
         self.0.get(&topic).cloned().unwrap_or_else(own)
     }
 
-    /// Whether nothing is mapped.
+    /// Returns true if nothing is mapped.
     #[must_use]
     pub fn is_default(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Whether the topic is mapped to a name, and so must be there.
+    /// Returns true if the topic is mapped to a name, and so must be there.
     pub(crate) fn is_mapped(&self, topic: Topic) -> bool {
         self.0.get(&topic).is_some_and(|places| !places.is_empty())
     }
 
-    /// Whether a topic of a recording is needed.
+    /// Returns true if a topic of a recording is needed.
     pub(crate) fn wants(&self, name: &str) -> bool {
         let mut mapped = self.0.values().flatten();
         let is_here =
@@ -271,8 +271,8 @@ impl Topics {
         mapped.any(is_here) || self.carries(name).is_some()
     }
 
-    /// What a topic of a recording carries, if anything. A name that something is mapped to carries
-    /// that and no other; one with frames carries nothing by itself.
+    /// Quantity that a topic of a recording carries, if any. A name that something is mapped to
+    /// carries that and no other; one with frames carries nothing by itself.
     pub(crate) fn carries(&self, name: &str) -> Option<Topic> {
         let at = |(topic, place): (&Topic, &Place)| {
             (place.topic == name).then_some(Some(*topic).filter(|_| place.frames.is_none()))

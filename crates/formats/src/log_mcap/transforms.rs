@@ -21,10 +21,10 @@ pub(crate) struct Transforms<'a> {
     links: BTreeMap<String, BTreeMap<String, Link<'a>>>,
 }
 
-/// What was recorded of a frame in its parent.
+/// Recorded transforms of a frame in its parent.
 struct Link<'a> {
     source: Source<'a>,
-    /// Whether it is told once and for all.
+    /// True if it is published once and for all.
     is_static: bool,
     samples: Vec<(&'a RawMessage, TransformStamped)>,
 }
@@ -96,7 +96,7 @@ impl<'a> Transforms<'a> {
         self.frames().into_iter().filter(moves).collect()
     }
 
-    /// How many frames are above one.
+    /// Number of frames above one.
     pub(crate) fn depth(&self, frame: &str) -> usize {
         self.ancestry(frame).map_or(0, |line| line.len() - 1)
     }
@@ -190,7 +190,7 @@ impl<'a> Transforms<'a> {
 }
 
 impl Link<'_> {
-    /// The motion, every transform checked. The same transform may be told several times.
+    /// The motion, every transform checked. One transform may be published several times.
     fn motion(&self) -> Result<Motion, McapError> {
         let mut samples = Vec::with_capacity(self.samples.len());
         for (raw, transform) in &self.samples {
@@ -229,7 +229,7 @@ impl Link<'_> {
 }
 
 impl Motion {
-    /// Where the frame is at a time (ns), if that is known.
+    /// Pose of the frame at a time (ns), if it is known.
     fn at(&self, time: i64) -> Option<Isometry3<f64>> {
         let series = match self {
             Self::Static(pose) => return Some(*pose),

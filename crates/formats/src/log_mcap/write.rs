@@ -22,7 +22,7 @@ const FRAME: &str = "world";
 /// Size of a chunk (bytes); a file that is cut off loses at most one.
 const CHUNK: u64 = 1 << 16;
 
-/// Why a log was not written.
+/// Reason why a log was not written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum McapWriteError {
@@ -69,14 +69,14 @@ impl From<mcap::McapError> for McapWriteError {
     }
 }
 
-/// Writes a log as an MCAP recording of ROS 2 messages: poses as `geometry_msgs/msg/PoseStamped`,
-/// the object's as `PoseWithCovarianceStamped` where the log has covariances (zeros in rows
-/// without), tactile readings as `std_msgs/msg/Bool`, forces as `geometry_msgs/msg/WrenchStamped`,
-/// all in the frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no
-/// message. The same log gives the same bytes.
+/// Writes a log as an MCAP recording of ROS 2 messages. Poses are `geometry_msgs/msg/PoseStamped`,
+/// the object's `PoseWithCovarianceStamped` where the log has covariances (zeros in rows without).
+/// Tactile readings are `std_msgs/msg/Bool`, forces `geometry_msgs/msg/WrenchStamped`. All are in
+/// the frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no message.
+/// Equal logs give equal bytes.
 ///
-/// What [`crate::read_log_mcap`] does not bring back: rows without any pose, and which cells were
-/// empty where its rules fill them.
+/// Reading by [`crate::read_log_mcap`] loses rows without any pose, and which cells were empty
+/// where its rules fill them.
 ///
 /// # Errors
 /// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says. After the
@@ -254,7 +254,7 @@ impl<W: Write + Seek> Recorder<W> {
     }
 }
 
-/// The header of what is in the common frame at a time (ns).
+/// The header of a message in the common frame at a time (ns).
 pub(crate) fn header(stamp: i64) -> Header {
     let Some(stamp) = Time::of(stamp) else {
         panic!("{stamp} ns was checked")

@@ -3,8 +3,8 @@
 use crate::outline::Point;
 use crate::outline::error::OutlineProblem;
 
-/// Joins lines whose ends are at most `near` apart into closed contours, without repeated points;
-/// what is closed already stays as it is.
+/// Joins lines whose ends are at most `near` apart into closed contours, without repeated points; a
+/// line that is closed already stays as it is.
 pub(super) fn closed_contours(
     lines: Vec<Vec<Point>>,
     near: f64,
@@ -65,7 +65,7 @@ pub(super) fn edges(contour: &[Point]) -> impl Iterator<Item = [Point; 2]> {
     contour.iter().zip(next).map(|(p, q)| [*p, *q])
 }
 
-/// Whether a point is inside a contour (by the edges that a ray to the right crosses).
+/// Returns true if a point is inside a contour (by the edges that a ray to the right crosses).
 pub(super) fn contains(contour: &[Point], [x, y]: Point) -> bool {
     let crossed = edges(contour).filter(|[p, q]| {
         (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
@@ -87,7 +87,7 @@ pub(super) fn crossing(contour: &[Point]) -> Option<Point> {
     None
 }
 
-/// Whether two segments have a point in common.
+/// Returns true if two segments have a point in common.
 fn meet([p, q]: &[Point; 2], [r, s]: &[Point; 2]) -> bool {
     let side = |a: &Point, b: &Point, c: &Point| {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

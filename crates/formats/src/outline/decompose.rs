@@ -3,8 +3,8 @@
 use crate::outline::Point;
 use crate::outline::error::OutlineProblem;
 
-/// Cuts a simple counter-clockwise polygon into convex ones that share edges: ears are cut off,
-/// then edges are taken out where both ends stay convex (Hertel & Mehlhorn 1983), which leaves at
+/// Cuts a simple counter-clockwise polygon into convex ones that share edges. Ears are cut off,
+/// then edges are taken out where both ends stay convex (Hertel & Mehlhorn 1983). That leaves at
 /// most four times as many parts as there must be.
 ///
 /// Ears are cut off fattest first, so that no sliver is left, and in the order of the boundary from
@@ -116,7 +116,7 @@ fn fatness([a, b, c]: [Point; 3]) -> f64 {
     turn([a, b, c]) / square(a, b).max(square(b, c)).max(square(c, a))
 }
 
-/// Whether a vertex sticks out and no other one lies in its triangle.
+/// Returns true if a vertex sticks out and no other one lies in its triangle.
 fn is_ear(polygon: &[Point], left: &[usize], k: usize) -> bool {
     let corners = around(left, k);
     let [a, b, c] = corners.map(|k| polygon[k]);

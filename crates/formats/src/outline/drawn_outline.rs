@@ -11,7 +11,7 @@ use crate::outline::error::OutlineProblem;
 use crate::outline::{OutlineOptions, Point};
 use crate::scene::NEW_SCENE;
 
-/// Coordinates are rounded to this (m), a hundredth of what a camera sees.
+/// Coordinates are rounded to this (m), a hundredth of the resolution of a camera.
 const ROUNDED: f64 = 1e-7;
 /// Most vertices of an outline that has to be cut, and most parts of a scene's shape.
 const MOST_VERTICES: usize = 1000;
@@ -23,11 +23,11 @@ const LEAST_AREA: f64 = 1e-9;
 /// The unit of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnUnit {
-    /// What it says itself, as `mm`.
+    /// The drawing's own, as `mm`.
     Said(&'static str),
     /// SVG's own, a 96th of an inch, in a drawing that says no other.
     Pixel,
-    /// What was given, in metres.
+    /// The given one, in metres.
     Given(f64),
 }
 
@@ -44,7 +44,7 @@ pub struct Outline {
     pub area: f64,
     /// Its holes, which are not among the parts.
     pub holes: usize,
-    /// Where the origin was in the drawing, y up (m).
+    /// Place of the origin in the drawing, y up (m).
     pub centre: [f64; 2],
     /// The drawing's unit.
     pub unit: DrawnUnit,
@@ -133,7 +133,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// Of what a contour encloses, whichever way it runs.
+    /// Of the area that a contour encloses, whichever way it runs.
     fn of(contour: &[Point]) -> Self {
         // about its first point, so that nothing cancels far from the drawing's origin
         let [x0, y0] = contour[0];

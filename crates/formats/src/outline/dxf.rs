@@ -6,7 +6,7 @@ use crate::outline::flatten::Flattener;
 use crate::outline::lines::Lines;
 use crate::outline::{OutlineOptions, Point};
 
-/// What to do about a file that is no DXF.
+/// Next step for a file that is no DXF.
 const SAVE_AS: &str = "Save the drawing as DXF in ASCII, R12 or later";
 /// Entities that draw no line of the outline.
 const NOT_DRAWN: [&str; 10] = [

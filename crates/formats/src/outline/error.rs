@@ -1,8 +1,8 @@
-//! Why a drawing gives no outline: [`OutlineError`].
+//! Reason why a drawing gives no outline: [`OutlineError`].
 
 use crate::outline::Point;
 
-/// Why a drawing gives no outline.
+/// Reason why a drawing gives no outline.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{file}{}: {problem}", .line.map_or(String::new(), |line| format!(":{line}")))]
 pub struct OutlineError {
@@ -10,11 +10,11 @@ pub struct OutlineError {
     pub file: String,
     /// Line, from 1, where one is meant.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// The problem.
     pub problem: OutlineProblem,
 }
 
-/// What is wrong with a drawing.
+/// Problem of a drawing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutlineProblem {
@@ -23,9 +23,9 @@ pub enum OutlineProblem {
     Format {
         /// SVG or DXF.
         format: &'static str,
-        /// What does not fit.
+        /// The fault.
         why: String,
-        /// What to do.
+        /// Next step.
         next: &'static str,
     },
     /// Something that is drawn by reference.
@@ -33,7 +33,7 @@ pub enum OutlineProblem {
     Unsupported {
         /// The element or entity.
         what: String,
-        /// What to do.
+        /// Next step.
         next: &'static str,
     },
     /// A number that is none.
@@ -41,7 +41,7 @@ pub enum OutlineProblem {
     Number {
         /// The text found.
         found: String,
-        /// What is expected.
+        /// The expected text.
         expected: &'static str,
     },
     /// Lengths without a unit.
@@ -68,13 +68,13 @@ pub enum OutlineProblem {
         "there are {count} outlines that do not lie in each other, of which one is the object's. Delete the others"
     )]
     Several {
-        /// How many.
+        /// Their number.
         count: usize,
     },
     /// An outline that crosses itself.
     #[error("the outline crosses or touches itself near ({}, {}) mm. Draw it as a simple line", mm(.at[0]), mm(.at[1]))]
     Crossing {
-        /// Where (m).
+        /// Place (m).
         at: Point,
     },
     /// Sizes that cannot be meant.
@@ -91,7 +91,7 @@ pub enum OutlineProblem {
         "its curves are more than {most} points as lines. Save the outline alone, or draw curves with a larger --tolerance"
     )]
     Points {
-        /// How many are taken.
+        /// Largest number that is taken.
         most: usize,
     },
     /// Too fine.
@@ -104,7 +104,7 @@ pub enum OutlineProblem {
         vertices: usize,
         /// Its convex parts; 0 where it was not cut.
         parts: usize,
-        /// What is allowed, in words.
+        /// Limit, in words.
         most: &'static str,
     },
 }

@@ -3,7 +3,7 @@
 use crate::outline::Point;
 use crate::outline::error::OutlineProblem;
 
-/// Most points of all lines together: a hundred times what a scene takes.
+/// Most points of all lines together: a hundred times as many as a scene takes.
 const MOST_POINTS: usize = 100_000;
 
 /// Lines so far, of which a drawing cannot have more than an outline needs.

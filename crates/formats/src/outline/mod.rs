@@ -18,12 +18,12 @@ pub use dxf::read_dxf_outline;
 pub use error::{OutlineError, OutlineProblem};
 pub use svg::read_svg_outline;
 
-/// How a drawing is read.
+/// Options for reading a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutlineOptions {
     /// Metres that one unit of the drawing is; `None`: as the drawing says.
     pub scale: Option<f64>,
-    /// How far the outline may lie from a curve that it stands for (m).
+    /// Largest distance of the outline from a curve that it stands for (m).
     pub tolerance: f64,
 }
 

@@ -204,7 +204,7 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// Draws an element; returns the map of what is in it, `None` if that is not drawn.
+    /// Draws an element; returns the map of its content, `None` if that is not drawn.
     fn element(
         &mut self,
         node: Node<'_, '_>,
@@ -354,14 +354,14 @@ impl Drawing {
     }
 }
 
-/// Refuses numbers of a path that are too large: as many curves stand for an arc as its radius asks
-/// for.
+/// Refuses numbers of a path that are too large: the number of curves for an arc grows with its
+/// radius.
 fn check_numbers(d: &str) -> Result<(), OutlineProblem> {
     use svgtypes::PathSegment::{
         ClosePath, CurveTo, EllipticalArc, HorizontalLineTo, LineTo, MoveTo, Quadratic,
         SmoothCurveTo, SmoothQuadratic, VerticalLineTo,
     };
-    // what is no path is told where it is drawn
+    // a shape that is no path is reported at the place where it is drawn
     for segment in PathParser::from(d).map_while(Result::ok) {
         let numbers: [f64; 6] = match segment {
             MoveTo { x, y, .. } | LineTo { x, y, .. } | SmoothQuadratic { x, y, .. } => {

@@ -1,4 +1,4 @@
-//! A TOML document whose every value knows its place: [`Source`], [`Table`], [`Node`].
+//! A TOML document whose every value has its place in the text: [`Source`], [`Table`], [`Node`].
 //!
 //! A derived reader would lose the place of a number in nested lists, and could not name the
 //! quantity that is missing.
@@ -216,7 +216,7 @@ impl<'a> Node<'a> {
         Ok(named.collect())
     }
 
-    /// Whether it is a list.
+    /// Returns true if it is a list.
     pub(super) fn is_list(&self) -> bool {
         matches!(self.value.get_ref(), DeValue::Array(_))
     }

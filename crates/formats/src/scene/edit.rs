@@ -13,7 +13,7 @@ const DIGITS: i32 = 6;
 ///
 /// ```
 /// # use stickslip_formats::SceneEdit;
-/// # let text = std::fs::read_to_string("../cli/demo/slide-ell-disc-110/scene.toml")?;
+/// # let text = std::fs::read_to_string("../testkit/experiments/slide-ell-disc-110/scene.toml")?;
 /// let mut edit = SceneEdit::new(&text, "scene.toml")?;
 /// edit.set(&["support", "friction"], 0.312);
 /// edit.set(&["uncertainty", "mu_s"], 0.1);
@@ -64,7 +64,7 @@ impl SceneEdit {
     }
 
     /// Writes the outline of a body, `object` or `pusher`, one part a line; the names of its parts
-    /// stay, what was written between them does not.
+    /// stay, text between them does not.
     ///
     /// # Panics
     /// If the scene has no such body.

@@ -1,8 +1,8 @@
-//! Why a scene file was refused: [`SceneError`].
+//! Reason why a scene file was refused: [`SceneError`].
 
 use stickslip_dynamics::ShapeError;
 
-/// Why a scene file was refused, and where.
+/// Reason why a scene file was refused, and where.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{file}:{line}:{column}: {problem}")]
 pub struct SceneError {
@@ -12,12 +12,12 @@ pub struct SceneError {
     pub line: usize,
     /// Column, in characters, from 1.
     pub column: usize,
-    /// What is wrong.
+    /// The problem.
     pub problem: Box<SceneProblem>,
 }
 
-/// What is wrong with a scene file. `key` is the way to the value, as `object.shape[2].polygon`;
-/// items of lists count from 1.
+/// Problem of a scene file. `key` is the way to the value, as `object.shape[2].polygon`; items of
+/// lists count from 1.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneProblem {
@@ -28,7 +28,7 @@ pub enum SceneProblem {
     Syntax {
         /// The line as it stands.
         found: String,
-        /// What the parser says.
+        /// Message of the parser.
         message: String,
     },
     /// A key that the format does not have.
@@ -45,7 +45,7 @@ pub enum SceneProblem {
     Missing {
         /// The key.
         key: String,
-        /// What to give.
+        /// Value to give.
         what: String,
     },
     /// A value of another type.
@@ -57,7 +57,7 @@ pub enum SceneProblem {
         found: String,
         /// The type expected.
         expected: String,
-        /// What to give.
+        /// Value to give.
         what: String,
     },
     /// A number against its rule.
@@ -69,7 +69,7 @@ pub enum SceneProblem {
         found: String,
         /// The rule.
         rule: String,
-        /// What to give.
+        /// Value to give.
         what: String,
     },
     /// A part of a shape that is none or several of the three kinds.
@@ -79,7 +79,7 @@ pub enum SceneProblem {
     PartKind {
         /// The part.
         key: String,
-        /// How many of the three it has.
+        /// Number of the three that it has.
         found: usize,
     },
     /// An outline that is too fine.
@@ -91,7 +91,7 @@ pub enum SceneProblem {
         key: String,
         /// Its length.
         found: usize,
-        /// What it lists.
+        /// Kind of its items.
         of: &'static str,
         /// The most that are read.
         most: usize,
@@ -101,7 +101,7 @@ pub enum SceneProblem {
     Shape {
         /// The part or the shape.
         key: String,
-        /// Why.
+        /// The reason.
         source: ShapeError,
     },
     /// Feet and a tripod are both given.
@@ -112,7 +112,7 @@ pub enum SceneProblem {
         /// The tripod's key.
         key: &'static str,
     },
-    /// What is missing cannot be worked out, since the object is no uniform plate.
+    /// A missing value that cannot be worked out, since the object is no uniform plate.
     #[error(
         "`{key}` is missing, and the middle of the outline is at ({x:.4}, {y:.4}) m; it can be worked out only where that is the centre of mass, the origin of the object frame. Move the outline by ({dx:.4}, {dy:.4}), or give `{key}`", dx = -x, dy = -y
     )]

@@ -1,4 +1,4 @@
-//! `scene.toml`, what is known before the experiment: [`read_scene`].
+//! `scene.toml`, the prior knowledge of an experiment: [`read_scene`].
 //!
 //! SI units, angles counter-clockwise; the object's frame has its origin in the centre of mass.
 
@@ -70,7 +70,8 @@ pub fn read_mounts(text: &str, name: &str) -> Result<Mounts> {
     parsed(text, name, tags::mounts)
 }
 
-/// What a scene file leaves out that [`read_scene`] works out from the outline, in a sentence each.
+/// Assumptions of [`read_scene`] about values that a scene file leaves out and that follow from the
+/// outline, in a sentence each.
 ///
 /// # Errors
 /// Those of [`read_scene`] about syntax, keys, mass, shape and support.
@@ -105,7 +106,7 @@ pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
     })
 }
 
-/// What `read` makes of the document.
+/// Result of `read` on the document.
 fn parsed<T>(text: &str, name: &str, read: impl FnOnce(&Table<'_>) -> Result<T>) -> Result<T> {
     let source = Source { name, text };
     let document = DeTable::parse(text).map_err(|error| syntax_error(source, &error))?;
@@ -117,7 +118,7 @@ fn syntax_error(source: Source<'_>, error: &toml::de::Error) -> SceneError {
     syntax(source, place, error.message())
 }
 
-/// What a TOML parser says of a place.
+/// Syntax error with the message of a TOML parser about a place.
 fn syntax(source: Source<'_>, place: usize, message: &str) -> SceneError {
     let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
     source.error(
@@ -204,8 +205,8 @@ fn object(table: &Table<'_>) -> Result<Object> {
 
 /// The object as a uniform plate, from which the missing `key` is worked out.
 fn plate(table: &Table<'_>, key: &'static str) -> Result<Plate> {
-    /// How far the middle of the outline may lie from the centre of mass, as a share of the radius
-    /// of gyration.
+    /// Largest distance of the middle of the outline from the centre of mass, as a share of the
+    /// radius of gyration.
     const OFF: f64 = 0.05;
     let plate = Plate::of(shape(table)?.parts());
     let [x, y] = plate.centre;

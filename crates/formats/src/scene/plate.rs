@@ -1,4 +1,4 @@
-//! What follows from an outline where nothing else is known: [`Plate`].
+//! Properties that follow from an outline where nothing else is known: [`Plate`].
 
 use stickslip_dynamics::Part;
 
@@ -13,7 +13,8 @@ pub(super) struct Plate {
     /// Mean square of the distance from the origin (m²): the moment of inertia about it, per mass.
     pub mean_square: f64,
     /// Mean distance from the origin (m): a tripod of this radius resists turning as the whole
-    /// surface does, since friction's moment is mu N times the mean distance of what carries.
+    /// surface does, since friction's moment is mu N times the mean distance of the points that
+    /// carry.
     pub mean_radius: f64,
 }
 
@@ -71,7 +72,7 @@ fn range(part: &Part) -> [f64; 2] {
     }
 }
 
-/// Where a line of constant y is covered, from left to right.
+/// Covered intervals of a line of constant y, from left to right.
 fn covered(parts: &[Part], y: f64) -> Vec<[f64; 2]> {
     let mut pieces: Vec<[f64; 2]> = parts.iter().filter_map(|part| cut(part, y)).collect();
     pieces.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -85,7 +86,7 @@ fn covered(parts: &[Part], y: f64) -> Vec<[f64; 2]> {
     union
 }
 
-/// Where a line of constant y is in a part.
+/// Interval of a line of constant y in a part.
 fn cut(part: &Part, y: f64) -> Option<[f64; 2]> {
     match part {
         Part::Polygon { vertices } => cut_polygon(vertices, y),

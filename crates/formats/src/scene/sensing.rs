@@ -29,7 +29,7 @@ pub(super) fn tactile(table: &Table<'_>) -> Result<Tactile> {
     })
 }
 
-/// `[filter]`; what it does not tell is by `default`.
+/// `[filter]`; values that it leaves out are those of `default`.
 pub(super) fn filter(table: &Table<'_>, default: FilterSettings) -> Result<FilterSettings> {
     Ok(FilterSettings {
         force_std: table.number_or("force_std", default.force_std)?,

@@ -8,7 +8,7 @@ use super::error::{SceneError, SceneProblem};
 const KINDS: [&str; 3] = ["polygon", "disc", "ellipse"];
 /// Most parts of a shape.
 pub(super) const MOST_PARTS: usize = 200;
-/// Most vertices of a polygon: they approximate a disc of 1 m within 1 µm.
+/// Most vertices of a polygon: they resolve a disc of 1 m to 1 µm.
 pub(super) const MOST_VERTICES: usize = 3000;
 
 /// The shape under the key `shape` of a body's table.

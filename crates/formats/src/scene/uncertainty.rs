@@ -1,4 +1,4 @@
-//! `[uncertainty]`, what the other numbers leave open.
+//! `[uncertainty]`, the uncertainty of the other numbers.
 
 use stickslip::Uncertainty;
 use stickslip::dynamics::Friction;
@@ -6,8 +6,8 @@ use stickslip::dynamics::Friction;
 use super::document::Table;
 use super::error::SceneError;
 
-/// What is not known where the file does not say: where feet are given, they stand there, and so
-/// does a tripod whose angle is.
+/// Default uncertainty for a support. Feet that are given are exact, and so is the angle of a
+/// tripod that is given.
 pub(super) fn with_support(support: &Table<'_>) -> Uncertainty {
     let given = |key: &str| support.optional(key).is_some();
     let mut unknown = Uncertainty::default();
@@ -20,7 +20,7 @@ pub(super) fn with_support(support: &Table<'_>) -> Uncertainty {
     unknown
 }
 
-/// `[uncertainty]`, beside what is not known by `default`.
+/// `[uncertainty]`, over the uncertainty of `default`.
 pub(super) fn uncertainty(
     table: &Table<'_>,
     default: Uncertainty,

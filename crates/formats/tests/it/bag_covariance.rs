@@ -44,7 +44,8 @@ fn poses_are_read_from_four_messages() {
     }
 }
 
-/// Zeros say that nothing is known; what is no covariance is told, and counts as not known.
+/// Zeros mean that nothing is known. Numbers that are no covariance give a warning, and count as
+/// not known.
 #[test]
 fn covariances_that_are_none_are_not_used() {
     let kind = "geometry_msgs/msg/PoseWithCovarianceStamped";

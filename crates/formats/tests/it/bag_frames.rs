@@ -92,7 +92,7 @@ fn numbers(m: Matrix) -> [f64; 7] {
     [m[0][3], m[1][3], m[2][3], q[0], q[1], q[2], q[3]]
 }
 
-/// A camera 0.8 m above the table that looks down, turned by 0.4 about its axis.
+/// A camera 0.8 m above the table that faces down, turned by 0.4 about its axis.
 fn camera() -> Matrix {
     product(motion([0.1, -0.2, 0.8], 0, PI), motion([0.0; 3], 2, 0.4))
 }
@@ -170,7 +170,7 @@ fn pusher_in(frame: &str, stamp: i64) -> Line {
 
 #[test]
 fn links_that_move_too_are_interpolated_at_the_stamps_of_the_tag() {
-    // the camera moves evenly along x, told 20 ms apart and out of step with the tag
+    // the camera moves evenly along x, published 20 ms apart and out of step with the tag
     let arm = |time: i64| motion([1e-9 * time as f64, 0.0, 0.0], 2, 0.3);
     let mut lines: Vec<Line> = (-2..60)
         .map(|k| (20 * k + 7) * MS)
@@ -300,7 +300,7 @@ fn frames_are_refused_with_place_value_rule_and_next_step() {
         &tag,
         "/pusher/pose, message 1 (log time 0.003000000 s): header.frame_id is `world`, and `table` in /tf",
     );
-    // the same transform told twice is one
+    // one transform published twice is one
     let twice = tf(&[(0, "table", "tag_7", still), (0, "table", "tag_7", still)]);
     assert_eq!(read(&twice, &tag).unwrap().0.len(), 1);
 }

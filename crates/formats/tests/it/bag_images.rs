@@ -1,4 +1,4 @@
-//! Images of a bag, what their camera says of itself, and what sensors read meanwhile.
+//! Images of a bag, their CameraInfo, and the readings of sensors meanwhile.
 
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ fn topics(mappings: &[&str]) -> CameraTopics {
     CameraTopics::new(mappings.iter().map(|text| text.parse().unwrap())).unwrap()
 }
 
-/// All images of a file, and what came with them.
+/// All images of a file, and the data that came with them.
 fn images(
     bytes: &[u8],
     topics: &CameraTopics,

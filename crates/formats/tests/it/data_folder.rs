@@ -1,5 +1,5 @@
 //! Every file of the data folder reads without an error: `STICKSLIP_DATA`, by default
-//! `../shared/data` beside the workspace.
+//! `../shared/data` next to the workspace.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What files of an experiment must have in common.
+//! Properties that files of an experiment must have in common.
 
 use stickslip::Log;
 use stickslip_formats::{Experiment, TruthFacts, read_scene};

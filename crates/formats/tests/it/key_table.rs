@@ -7,7 +7,7 @@ use toml::Value as Toml;
 use crate::scene_schema::{Key, item_schema, keys, limits, schema};
 use crate::scene_text::lines::{FEET, Line, TRIPOD, all_keys, lines};
 
-/// A document as the reader shows what it makes of it.
+/// The setup of a document as text, or the reader's error.
 fn read(document: &Toml) -> Result<String, String> {
     let text = toml::to_string(document).unwrap();
     let setup = read_scene(&text, "scene.toml");
@@ -107,7 +107,7 @@ fn a_stated_default_is_the_one_of_a_missing_key() {
     assert!(tried > 35, "{tried}");
 }
 
-/// Is called with the way to a number, its schema, and a document that has another one there.
+/// Function that is called with the way to a number, its schema, and a document that has another one there.
 type Found<'a> = &'a mut dyn FnMut(&str, &Value, &dyn Fn(f64) -> Toml);
 
 /// Every number of a schema at the place of `template` in the document that `whole` makes.
@@ -235,7 +235,7 @@ fn rows_of_the_guide() -> Vec<(&'static str, &'static str, Vec<&'static str>)> {
     rows
 }
 
-/// How the guide writes the range of a number.
+/// The range of a number in the guide's words.
 fn range_words(number: &Value) -> &'static str {
     let at = |word: &str| number[word].as_f64();
     match (at("minimum"), at("maximum"), at("exclusiveMinimum")) {

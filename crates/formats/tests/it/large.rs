@@ -36,7 +36,7 @@ impl<R: Read> Read for Watched<R> {
     }
 }
 
-/// Poses beside camera images of `size` bytes.
+/// Poses with camera images of `size` bytes between them.
 fn with_images(count: i64, size: usize) -> Vec<u8> {
     let image = |log_time: i64| Line {
         topic: "/camera".to_owned(),

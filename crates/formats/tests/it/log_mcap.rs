@@ -38,7 +38,8 @@ fn rows_stand_at_object_stamps_with_the_nearest_pusher_pose_within_a_millisecond
 
 #[test]
 fn fast_pusher_makes_rows_only_where_the_camera_is_blocked_at_about_its_rate() {
-    // 25 Hz, dark from 200 to 400 ms and from 600 ms on; the pusher at 500 Hz from 200 ms before
+    // 25 Hz, occluded from 200 to 400 ms and from 600 ms on; the pusher at 500 Hz from 200 ms
+    // before
     let seen = |k: &i64| *k <= 5 || (10..=15).contains(k);
     let lines: Vec<Line> = (0..25)
         .filter(seen)

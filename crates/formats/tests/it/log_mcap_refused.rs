@@ -1,4 +1,4 @@
-//! MCAP recordings: every kind of bad input at its place, damaged files, and what is written.
+//! MCAP recordings: every kind of bad input at its place, damaged files, and refusals when writing.
 
 use std::io::Cursor;
 
@@ -292,7 +292,7 @@ fn small(compression: Option<Compression>) -> Vec<u8> {
     file_with(&lines, compression, 300)
 }
 
-/// The chunks' checksums set to 0, "none", so that what is damaged behind them is looked at.
+/// The chunks' checksums set to 0, "none", so that damage behind them is reached.
 fn unchecked(bytes: &mut [u8]) {
     let mut at = 8;
     while let Some(length) = bytes

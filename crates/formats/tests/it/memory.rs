@@ -1,4 +1,4 @@
-//! Lengths that lie take no memory: what a reader asks for follows what is there.
+//! Lengths that lie take no memory: the memory of a reader follows the size of the input.
 
 use crate::bag::{MS, file_with, object, pusher, touch};
 use allocation_counter::measure;
@@ -9,7 +9,7 @@ use stickslip_formats::{
     read_row_json, read_scene, read_truth_json,
 };
 
-/// What any reader may take at once for a small input (bytes).
+/// Memory that any reader may take at once for a small input (bytes).
 const SMALL: u64 = 32 << 20;
 
 const SCENE: &str = include_str!("full_scene.toml");
@@ -41,7 +41,7 @@ fn read_with_all(bytes: &[u8]) {
     let _ = read_log_mcap(bytes, "f", &Topics::default());
 }
 
-/// A recording of one chunk packed with zstd: what it says that it unpacks to, and what is in it.
+/// A recording of one chunk packed with zstd: the unpacked size that it claims, and its content.
 fn one_chunk(says: u64, packed: &[u8]) -> Vec<u8> {
     let text = |text: &str| {
         [

@@ -363,7 +363,7 @@ fn star() -> impl Strategy<Value = Vec<[f64; 2]>> {
     })
 }
 
-/// Whether a point is in a polygon, by the turns of the boundary about it.
+/// Returns true if a point is in a polygon, by the turns of the boundary about it.
 fn winds(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let angle = |k: usize| {
         let [px, py] = polygon[k % polygon.len()];

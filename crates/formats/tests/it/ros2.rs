@@ -1,5 +1,5 @@
-//! Recordings against two other programs, mcap-ros2-support and rosbags: they read what is written
-//! here, and what rosbags writes is read here.
+//! Recordings against two other programs, mcap-ros2-support and rosbags: they read our files, and
+//! we read the files of rosbags.
 //!
 //! `cargo test -p stickslip-formats --test it -- --ignored ros2::`, with these Python packages
 //! where `python3` finds them.
@@ -22,7 +22,7 @@ const LOGS: [&str; 3] = [
     "real/zhou-tripod-push/hardboard_3pts_10-10_10-130_130-10_03",
 ];
 
-/// What the script says of the noise of poses.
+/// Noise of poses in the script.
 const TOLD: PoseCovariance = PoseCovariance {
     x: 1e-6,
     y: 1e-6 * 2.0,

@@ -15,7 +15,7 @@ use stickslip_formats::{read_scene, write_estimate_mcap, write_estimate_tum};
 /// An estimate of two rows, the first without a pose, in the scene of an embedded experiment; all
 /// fixels are touched.
 fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
-    let scene = include_str!("../../../cli/demo/stop-square50-bar-000/scene.toml");
+    let scene = include_str!("../../../testkit/experiments/stop-square50-bar-000/scene.toml");
     let setup = read_scene(scene, "scene.toml").unwrap();
     let fixels = setup.scene.fixels.len();
     let quarters = ContactSlip {
@@ -141,7 +141,7 @@ fn parts_of_others(setup: &Setup) -> usize {
     shapes.map(|shape| shape.parts().len()).sum()
 }
 
-/// Of the messages for viewers without markers, and of numbers, what one holds.
+/// Content of one of the messages for viewers without markers, and of one with numbers.
 fn assert_drawn((topic, label): (&str, &str), numbers: &[f64], (pose, setup): (Pose, &Setup)) {
     match (topic, label) {
         ("/stickslip/points/object", _) => assert_on_square(numbers, pose, setup),

@@ -271,7 +271,7 @@ fn limits_that_are_not_told_leave_room_about_the_nominal_values() {
         (limits.mu_s, limits.mu_p, limits.mu_f),
         (default.mu_s, default.mu_p, default.mu_f)
     );
-    // what is told is kept
+    // configured limits are kept
     let told = read(&format!("{wide}\n[filter]\nd_tri = [0.05, 0.12]\n"));
     assert_eq!(
         told.filter.limits.d_tri,

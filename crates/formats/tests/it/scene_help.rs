@@ -1,4 +1,4 @@
-//! What helps to write `scene.toml`: the schema, the scene to begin with, what may be left out.
+//! Help for writing `scene.toml`: the schema, the scene to begin with, values that may be left out.
 
 use crate::scene_schema::{mismatch, schema};
 use crate::scene_text::lines::{FEET, TRIPOD, all_keys};

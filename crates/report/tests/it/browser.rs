@@ -1,9 +1,9 @@
 //! The report in a real browser: no error, nothing loaded, moving the scrubber changes the drawing,
-//! the dark rows are shaded, the page fits a phone. Chromium prints the page after its scripts have
-//! run, with a verdict that a script added here wrote into it.
+//! the occluded rows are shaded, the page fits a phone. Chromium prints the page after its scripts
+//! have run, with a verdict that a script added here wrote into it.
 //!
 //! `cargo test -p stickslip-report --test it -- --ignored browser::`; the browser is `chromium`, or
-//! what `STICKSLIP_CHROMIUM` names.
+//! the program that `STICKSLIP_CHROMIUM` names.
 
 mod chromium;
 
@@ -27,17 +27,15 @@ fn folder() -> PathBuf {
 fn page() -> String {
     let (setup, log) = (setup(), log(200));
     let experiment = experiment("a grasp", &setup, &log, 60);
-    let summary = experiment.summary().to_vec();
     Report {
         title: "A test of the report".to_owned(),
-        summary,
         sections: vec![experiment.section()],
         ..Report::default()
     }
     .to_html()
 }
 
-/// What Chromium prints of a page, or the screenshot that it makes, at a width (px).
+/// Chromium's print of a page, or the screenshot that it makes, at a width (px).
 fn opened(page: &Path, width: u32, what: &str) -> String {
     // browsers that run at the same time may not share a profile
     let name = page.file_stem().unwrap().display();

@@ -1,4 +1,4 @@
-//! Every figure is a picture whatever its numbers are, and what it shows lies where it should.
+//! Every figure is a picture whatever its numbers are, and its content lies where it should.
 
 use crate::common::{HALF, disc, experiment, log, setup, square, truth};
 use resvg::tiny_skia::{Color, Pixmap};
@@ -25,7 +25,7 @@ fn pixels(svg: &str) -> Pixmap {
     Pixmap::decode_png(&png_of(svg).unwrap()).unwrap()
 }
 
-/// Whether the pixel of a point of the SVG has this colour, within a little.
+/// Returns true if the pixel of a point of the SVG has this colour, within a little.
 fn has(pixels: &Pixmap, [x, y]: [f64; 2], colour: Colour) -> bool {
     let found = pixels.pixel((2.0 * x) as u32, (2.0 * y) as u32).unwrap();
     [
@@ -169,7 +169,7 @@ fn every_figure_of_an_experiment_is_drawn_even_of_one_row() {
     }
 }
 
-/// Where nobody knows where the object is, the pictures hold the estimate of it.
+/// Without a reference for the object, the pictures contain the estimate of it.
 #[test]
 fn a_picture_without_a_reference_holds_the_estimate() {
     let (setup, log) = (setup(), log(90));
@@ -187,8 +187,8 @@ fn a_picture_without_a_reference_holds_the_estimate() {
     holds(false);
 }
 
-/// A curve at 2 from 0 to 1 s on an axis from 0 to 4 is drawn in the middle of its panel, and
-/// shading only where it is dark.
+/// A curve at 2 from 0 to 1 s on an axis from 0 to 4 is drawn in the middle of its panel. Shading
+/// covers only the occluded times.
 #[test]
 fn a_curve_lies_where_its_values_are() {
     let panel = Panel {

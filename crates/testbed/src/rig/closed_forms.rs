@@ -64,7 +64,7 @@ fn start(speed: f64) -> Start {
     }
 }
 
-/// The same friction everywhere, even pressure, a rigid drive.
+/// A rig with uniform friction, even pressure and a rigid drive.
 fn plain(scene: &Scene) -> Rig {
     let table = TableFriction {
         unevenness: 0.0,

@@ -5,7 +5,7 @@
 
 use stickslip_dynamics::Gap;
 
-/// How far a contact point may move on the object within one step and keep its bristle (m).
+/// Distance that a contact point may move on the object within one step and keep its bristle (m).
 const SAME_POINT: f64 = 1e-3;
 
 /// Stiffness and damping of contacts.

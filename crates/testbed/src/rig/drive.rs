@@ -10,14 +10,14 @@ use super::random_stream::RandomStream;
 /// Wavelengths of the two ripples (m) and their shares of the whole.
 const RIPPLES: [(f64, f64); 2] = [(2e-3, 0.7), (0.31e-3, 0.3)];
 
-/// How the pusher is driven.
+/// Settings of the pusher's drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveSettings {
     /// Time constant of the motor's response to its command (s); 0 follows at once.
     pub lag: f64,
     /// Largest deviation of the motor's speed, as a share of it.
     pub ripple: f64,
-    /// What is between motor and pusher; `None` is rigid, whatever resists.
+    /// Transmission between motor and pusher; `None` is rigid, whatever resists.
     pub spindle: Option<Spindle>,
 }
 

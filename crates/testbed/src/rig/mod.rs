@@ -40,9 +40,9 @@ pub struct Rig {
     pub mu_p: f64,
     /// Friction of object and fixels.
     pub mu_f: f64,
-    /// How the object's weight rests on the table.
+    /// Distribution of the object's weight over the table.
     pub pressure: PressureDistribution,
-    /// How friction varies over the table.
+    /// Variation of friction over the table.
     pub table: TableFriction,
     /// The bristles between object and table.
     pub bristles: Bristles,

@@ -1,4 +1,4 @@
-//! How the object's weight rests on the table: [`PressureDistribution`], [`SupportPoint`].
+//! Distribution of the object's weight over the table: [`PressureDistribution`], [`SupportPoint`].
 
 use stickslip_dynamics::{Part, Shape};
 
@@ -9,13 +9,13 @@ use crate::trial::TrialError;
 /// A point of the object that stands on the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupportPoint {
-    /// Where, in the object frame (m).
+    /// Position in the object frame (m).
     pub position: [f64; 2],
     /// Its share of the weight; all shares sum to 1.
     pub load: f64,
 }
 
-/// Where the object bears on the table, and with which share of its weight.
+/// Points at which the object bears on the table, each with its share of the weight.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PressureDistribution {
     /// Its whole face: points spread evenly over the shape, loaded unevenly, with the resultant at

@@ -2,16 +2,16 @@
 
 use stickslip_filter::{Draw, Streams};
 
-/// What is random about a rig.
+/// Random quantity of a rig.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RandomStream {
-    /// Where the points of the support lie.
+    /// Positions of the support's points.
     Points,
     /// Load of each point.
     Roughness,
-    /// How the load varies over the face.
+    /// Variation of the load over the face.
     Pressure,
-    /// How friction varies over the table.
+    /// Variation of friction over the table.
     Table,
     /// Phases of the drive's ripple.
     Drive,

@@ -9,7 +9,7 @@ use stickslip_dynamics::{Pose, Scene, Twist, Wrench};
 use super::pressure::SupportPoint;
 use super::table_friction::FrictionField;
 
-/// Travel of the object after which the table's friction is looked up anew (m).
+/// Travel of the object after which the table's friction is looked up again (m).
 const REFRESH: f64 = 3e-4;
 
 /// Points side by side.
@@ -72,7 +72,7 @@ struct Law {
     damping: f64,
 }
 
-/// How the object moves, with its angle's sine and cosine.
+/// Motion of the object, with its angle's sine and cosine.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     sin: f64,

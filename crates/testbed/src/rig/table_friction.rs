@@ -3,7 +3,7 @@
 use super::random_field::RandomField;
 use super::random_stream::RandomStream;
 
-/// How the friction of the table varies.
+/// Variation of the table's friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableFriction {
     /// Standard deviation over the table, as a share of μ_s.

@@ -1,5 +1,5 @@
-//! Whole experiments: same bits from the same seed, what a trace holds, what cannot be simulated,
-//! and Γ in the rig's place.
+//! Whole experiments: equal bits from equal seeds, the content of a trace, trials that cannot be
+//! simulated, and Γ in the rig's place.
 
 use crate::common::{bench_scene, bench_start, reference};
 use stickslip_dynamics::{Body, Feet, Pose, SpeedProfile, Start};

@@ -1,8 +1,14 @@
-//! `cargo run --release -p stickslip-testkit --bin closed_loop [SCENES] [SEED] [--frames FRAMES] [--only INDEX]`:
-//! the particle filter in random scenes, 10,000 by default, 300 frames each, with every step
-//! judged. `--only` runs one scene and prints the problems of its steps that have no solution, and
-//! of the slowest. Exits with 1 where a step failed, a proof of infeasibility is wrong, or a
-//! residual contradicts the solver's.
+//! The particle filter in random scenes, 10,000 by default, 300 frames each, with every step
+//! judged:
+//!
+//! ```text
+//! cargo run --release -p stickslip-testkit --bin closed_loop
+//!     [SCENES] [SEED] [--frames FRAMES] [--only INDEX]
+//! ```
+//!
+//! `--only` runs one scene and prints the problems of its steps that have no solution, and of the
+//! slowest. Exits with 1 where a step failed, a proof of infeasibility is wrong, or a residual
+//! contradicts the solver's.
 
 use std::io::{self, Write};
 use std::process::ExitCode;

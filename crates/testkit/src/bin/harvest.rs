@@ -43,7 +43,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether every step was solved or proven to have no solution.
+/// Harvests all recorded cases. Returns true if every step was solved or proven to have no
+/// solution.
 fn harvest_all(roots: &[PathBuf], out: &mut impl Write) -> Result<bool, Failure> {
     if roots.is_empty() {
         return Err("no recorded data; give folders, or set STICKSLIP_DATA".into());
@@ -93,8 +94,8 @@ fn survey(all: &Harvest, out: &mut impl Write) -> io::Result<bool> {
     Ok(sound)
 }
 
-/// The experiment's last two folders, its scene where that is not the usual one, and what is
-/// hidden.
+/// The experiment's last two folders, its scene where that is not the usual one, and the hidden
+/// rows.
 fn name(case: &RecordedCase) -> String {
     let parts: Vec<_> = case
         .folder

@@ -1,7 +1,7 @@
 //! Times the steps of a block of particles: [`BlockTimer`].
 //!
-//! A thread that has to wait for a processor looks slow. Where a block seems slower than all before
-//! it, its steps are made again, all together and one by one, and the shorter time counts.
+//! A thread that has to wait for a processor seems slow. Where a block seems slower than all before
+//! it, its steps are repeated, all together and one by one, and the shorter time counts.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,7 @@ use stickslip_dynamics::{
 /// Lanes of the chunks that a filter steps.
 pub(super) const LANES: usize = 8;
 
-/// A block's steps are made again where it took so much longer than the longest one so far.
+/// Factor over the longest block so far from which a block's steps are repeated.
 const LONGER: f64 = 1.2;
 
 /// Repetitions of a particle-step that seems to be the slowest.
@@ -31,7 +31,7 @@ pub(super) struct TimedStep {
 /// Times of the blocks of one run.
 #[derive(Debug, Default)]
 pub(super) struct BlockTimer {
-    /// What the current block starts from.
+    /// Input of the current block.
     input: Option<StepInput>,
     particles: Vec<Particles<LANES>>,
     began: Option<Instant>,
@@ -50,7 +50,7 @@ impl BlockTimer {
         self.began = Some(Instant::now());
     }
 
-    /// The time of the block that has ended by `now`, told once; also its slowest particle-step
+    /// The time of the block that has ended by `now`, returned once; also its slowest particle-step
     /// where it is the longest block so far.
     pub fn end(
         &mut self,

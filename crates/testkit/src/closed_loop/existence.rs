@@ -1,4 +1,4 @@
-//! Whether a step has a solution, by means that share nothing with the solver: [`Existence`].
+//! Existence of a step's solution, by means that share nothing with the solver: [`Existence`].
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 
@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-9;
 /// Contacts whose modes are enumerated.
 const ENUMERATED: usize = 3;
 
-/// What is known of a step's solutions.
+/// Knowledge of a step's solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existence {
     /// There is one of a speed that is sought: no impulses within the friction cones cancel each
@@ -26,7 +26,7 @@ pub enum Existence {
 }
 
 impl Existence {
-    /// Of one step, from what its gaps and friction cones say alone: a fraction of a millisecond.
+    /// Of one step, from its gaps and friction cones alone: a fraction of a millisecond.
     ///
     /// # Panics
     /// Where Clarabel fails on a bounded program.
@@ -55,7 +55,7 @@ impl Existence {
     }
 }
 
-/// Whether some mode of the nearest contacts gives a solution of the whole problem.
+/// Returns true if some mode of the nearest contacts gives a solution of the whole problem.
 fn has_solution(problem: &StepProblem) -> bool {
     let gap = |i: &usize| problem.contacts[*i].gap;
     let mut nearest: Vec<usize> = (0..problem.contacts.len()).collect();

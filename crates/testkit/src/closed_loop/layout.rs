@@ -1,4 +1,4 @@
-//! Where the bodies of a random scene stand: [`Layout`].
+//! Layout of the bodies of a random scene: [`Layout`].
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,11 +1,11 @@
-//! How the steps of random scenes ended: [`LoopTally`].
+//! Outcomes of the steps of random scenes: [`LoopTally`].
 
 use std::fmt;
 use std::time::Duration;
 
 use crate::survey::Tally;
 
-/// Where a particle-step stands among all scenes of a seed.
+/// Address of a particle-step among all scenes of a seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct StepAddress {
     /// Index of the scene.
@@ -23,8 +23,8 @@ pub struct LoopTally {
     pub scenes: u64,
     /// Frames that the filter made, the first of each scene not counted.
     pub frames: u64,
-    /// How the particle-steps ended; failed and contradicted ones by the index of their scene. The
-    /// residual is the largest of the solver's own and of the independent ones.
+    /// Outcomes of the particle-steps; failed and contradicted ones by the index of their scene.
+    /// The residual is the largest of the solver's own and of the independent ones.
     pub steps: Tally,
     /// Solved steps whose independent residual was taken.
     pub checked: u64,
@@ -65,7 +65,7 @@ impl LoopTally {
         )
     }
 
-    /// Whether no step failed, no proof was found wrong and no certificate.
+    /// Returns true if no step failed, and no proof or certificate was found wrong.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.steps.failed.is_empty() && self.steps.contradicted.is_empty() && self.refuted == 0

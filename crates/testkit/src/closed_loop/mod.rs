@@ -50,15 +50,15 @@ pub struct ClosedLoop {
 pub struct SceneRun {
     /// Index of the scene.
     pub index: u64,
-    /// How its bodies stand.
+    /// Kind of its layout.
     pub kind: SceneKind,
-    /// What its log says of the pusher.
+    /// Poses of the pusher in its log.
     pub pusher_poses: PusherPoses,
-    /// Whether the filter takes the pusher for one that never gives way.
+    /// True if the filter assumes a pusher that never yields.
     pub rigid: bool,
-    /// How its steps ended.
+    /// Outcomes of its steps.
     pub tally: LoopTally,
-    /// Those worth a look.
+    /// Noteworthy steps.
     pub noted: NotedSteps,
 }
 

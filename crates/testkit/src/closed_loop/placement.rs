@@ -1,4 +1,4 @@
-//! Where bodies stand beside an object: [`Standing`].
+//! Poses of bodies next to an object: [`Standing`].
 
 use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};
 
@@ -10,7 +10,7 @@ const MARCH: usize = 200;
 /// Halvings of the way between apart and overlapping.
 const HALVINGS: usize = 60;
 
-/// An object at a pose, beside which other bodies are put.
+/// An object at a pose, next to which other bodies are put.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing<'a> {
     pub shape: &'a Shape,
@@ -41,8 +41,8 @@ impl Side {
 }
 
 impl Standing<'_> {
-    /// The pose of `body`, turned by `theta` (rad), that comes nearest on this side; a body that
-    /// passes the object stands beside its centre.
+    /// The pose of `body`, turned by `theta` (rad), that comes nearest on this side. A body that
+    /// passes the object stands level with its centre.
     pub fn beside(&self, body: &Shape, theta: f64, side: &Side) -> Pose {
         let across = left(side.towards);
         let at = |distance: f64| {
@@ -70,7 +70,7 @@ impl Standing<'_> {
         at(outside + side.clearance)
     }
 
-    /// Whether the object overlaps `body`.
+    /// Returns true if the object overlaps `body`.
     pub fn overlaps(&self, body: &Shape, pose: Pose) -> bool {
         let mut gaps = Vec::new();
         let (object, other) = (Placed::new(self.shape, self.pose), Placed::new(body, pose));
@@ -78,7 +78,7 @@ impl Standing<'_> {
         gaps.iter().any(|gap| gap.gap < 0.0)
     }
 
-    /// How far the object reaches from its origin along a unit vector of the world (m).
+    /// Extent of the object from its origin along a unit vector of the world (m).
     pub fn reach(&self, direction: [f64; 2]) -> f64 {
         let direction = Pose::new(0.0, 0.0, -self.pose.theta).rotate(direction);
         self.shape

@@ -6,7 +6,7 @@ use stickslip_dynamics::Pose;
 
 use crate::rng::SplitMix64;
 
-/// How a pusher is commanded to move.
+/// Commanded motion of a pusher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Motion {
     /// Straight on, at one speed.

@@ -15,14 +15,14 @@ use crate::rng::SplitMix64;
 
 const GRAVITY: f64 = 9.81;
 
-/// What the log says of the pusher.
+/// Poses of the pusher in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PusherPoses {
-    /// Where it stands, exactly; the scene says so, or 1 µm.
+    /// Its true poses, exactly; the scene says so, or 1 µm.
     Exact,
-    /// Where it stands, with the jitter that the scene says.
+    /// Its true poses, with the jitter that the scene says.
     Noisy,
-    /// Where it was told to be, exactly, however far it stalled behind.
+    /// Its commanded poses, exactly, however far it stalled behind.
     Commanded,
 }
 
@@ -31,16 +31,16 @@ impl PusherPoses {
     pub const ALL: [Self; 3] = [Self::Exact, Self::Noisy, Self::Commanded];
 }
 
-/// A random scene: what is true, what the filter is told, and how it is run.
+/// A random scene: the truth, the setup of the filter, and its options.
 #[derive(Clone, Debug)]
 pub(super) struct RandomScene {
     pub kind: SceneKind,
-    /// What the filter is told.
+    /// Setup that the filter is given.
     pub setup: Setup,
     pub options: RunOptions,
     /// True friction.
     pub truth: Friction,
-    /// Force at which the true pusher gives way (N); the filter's may be rigid.
+    /// Force at which the true pusher yields (N); the filter's may be rigid.
     pub true_stall_force: f64,
     /// Pose of the object in the first frame.
     pub start: Pose,
@@ -176,7 +176,7 @@ fn world_frame(rng: &mut SplitMix64) -> Pose {
     }
 }
 
-/// How far the pusher goes on once all bodies touch (m).
+/// Distance that the pusher goes on once all bodies touch (m).
 fn way_beyond(rng: &mut SplitMix64) -> f64 {
     rng.log_within(1e-3, 40e-3)
 }
@@ -218,7 +218,7 @@ fn limits(radius: f64) -> Friction<Limits> {
     }
 }
 
-/// What the filter takes for the friction: up to half as much again, or as little.
+/// Friction that the filter assumes: the true values, each times 0.67 to 1.5.
 fn disturbed(rng: &mut SplitMix64, truth: Friction, limits: &Friction<Limits>) -> Friction {
     let mut nominal = truth;
     for (value, limits) in nominal.fields_mut().into_iter().zip(limits.fields()) {

@@ -17,14 +17,14 @@ const FARTHEST: f64 = 1.0;
 /// Longest step of the true motion (s).
 const LONGEST_STEP: f64 = 0.05;
 
-/// What happened up to one frame.
+/// State at one frame, and touches up to it.
 struct Frame {
     object: Pose,
     pusher: Pose,
     touches: Vec<bool>,
 }
 
-/// Moves the object and writes down what camera, pusher and touch sensors would measure.
+/// Moves the object and records the measurements of camera, pusher and touch sensors.
 pub(super) fn record(scene: &RandomScene) -> Log {
     let frames = frames(scene);
     let mut rng = scene.noise.clone();

@@ -1,6 +1,6 @@
-//! What happens to the object in a random scene: [`SceneKind`].
+//! Kinds of random scenes, by the situation of the object: [`SceneKind`].
 
-/// How the bodies of a random scene stand. The push goes along +x of the scene's own frame.
+/// Layout of the bodies of a random scene. The push goes along +x of the scene's own frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SceneKind {
     /// An ordinary push, past a fixel that the object grazes.

@@ -1,4 +1,4 @@
-//! Looks at every step of a run: [`StepJudge`] counts outcomes, checks residuals and proofs, and
+//! Check of every step of a run: [`StepJudge`] counts outcomes, checks residuals and proofs, and
 //! takes times.
 
 use std::fmt::Debug;
@@ -28,20 +28,20 @@ const LARGEST_RESIDUAL: f64 = 2e-9;
 const FIRST_PROOFS: u64 = 4;
 const PROOFS_ONE_IN: u64 = 100;
 
-/// A step that is worth a look.
+/// A noteworthy step.
 #[derive(Clone, Debug)]
 pub struct NotedStep {
-    /// Where it stands.
+    /// Address of the step.
     pub address: StepAddress,
     /// The problem.
     pub problem: StepProblem,
-    /// What the solver answered.
+    /// Answer of the solver.
     pub solution: StepSolution,
-    /// How it ended.
+    /// Outcome of the step.
     pub report: Report,
 }
 
-/// Steps of one scene that are worth a look.
+/// Noteworthy steps of one scene.
 #[derive(Clone, Debug, Default)]
 pub struct NotedSteps {
     /// The first ones that failed.
@@ -64,7 +64,7 @@ pub(super) struct StepJudge<'a> {
     state: Mutex<State>,
 }
 
-/// What a run has shown so far.
+/// Results of a run so far.
 #[derive(Debug, Default)]
 pub(super) struct State {
     pub tally: LoopTally,
@@ -96,7 +96,7 @@ impl<'a> StepJudge<'a> {
         }
     }
 
-    /// What it has seen.
+    /// Results of what it has checked.
     pub fn into_state(self) -> State {
         self.state
             .into_inner()
@@ -241,7 +241,7 @@ impl LoopTally {
     }
 }
 
-/// Whether the pusher, or a fixel, presses on the object.
+/// Returns true if the pusher, or a fixel, presses on the object.
 fn presses(problem: &StepProblem, solution: &StepSolution, pusher: bool) -> bool {
     let mut contacts = problem.contacts.iter().zip(&solution.normal);
     contacts.any(|(contact, p_n)| contact.on_pusher == pusher && *p_n > 0.0)

@@ -1,4 +1,4 @@
-//! Random scenes in closed loop: a slice of what the program `closed_loop` runs.
+//! Random scenes in closed loop: a part of those that the program `closed_loop` runs.
 
 use std::sync::OnceLock;
 
@@ -69,7 +69,7 @@ fn every_kind_of_scene_is_pushed_and_held() {
     }
 }
 
-/// What was found in a scene can be found again.
+/// Runs are reproducible from seed and index.
 #[test]
 fn run_is_a_function_of_seed_and_index() {
     let again = |index| counts(LOOP.run(index, 0).expect("a scene"));

@@ -1,5 +1,5 @@
-//! What the solver answers where it proves that there is no solution: the solution with compliant
-//! gap rows, and nothing else.
+//! Answer of the solver where it proves that there is no solution: the solution with compliant gap
+//! rows, and nothing else.
 
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution, Twist, solve};
 use stickslip_testkit::{Corpus, residual_si};

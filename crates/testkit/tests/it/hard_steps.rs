@@ -7,7 +7,7 @@ use stickslip_testkit::{gap_margin, hard_steps, is_solvable, is_sought, may_jam,
 /// Largest residual of a solved step (m/s).
 const TOLERANCE: f64 = 1e-9;
 
-/// Linear systems within which each is decided: what the search of a step of a block may take.
+/// Linear systems within which each is decided: the limit for the search of a step of a block.
 const MOST_SYSTEMS: u32 = 6_000;
 
 #[test]

@@ -140,7 +140,7 @@ fn find_table_says_what_the_frame_lacks() {
     assert!(text.contains("px is good. Measure tag_size"), "{text}");
 }
 
-/// Why a calibration from some frames of the recording is refused.
+/// Reason why a calibration from some frames of the recording is refused.
 fn refusal(frames: &[CalibrationFrame], board: &BoardOnTable) -> CalibrationError {
     let recording = BoardRecording {
         frames: frames.to_vec(),

@@ -1,4 +1,4 @@
-//! What is drawn as PDF is to scale, by another program that draws it: poppler's `pdftoppm`.
+//! Drawings as PDF are to scale, by another program that draws them: poppler's `pdftoppm`.
 //!
 //! `cargo test -p stickslip-vision --test it -- --ignored pdf::`, with that program.
 

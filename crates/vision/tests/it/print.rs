@@ -1,5 +1,5 @@
-//! What is drawn for the printer is what the detector finds: tags and boards, drawn by another
-//! program at a known scale.
+//! The detector finds tags and boards that are drawn for the printer, when another program draws
+//! them at a known scale.
 
 use image::GrayImage;
 use resvg::{tiny_skia, usvg};

@@ -199,7 +199,7 @@ fn track_is_the_same_on_any_number_of_threads() {
     assert_eq!(one, on(3));
 }
 
-/// Frames must not be looked at one inside the other: thousands of them with the stack of a few.
+/// Frames must not be processed one inside the other: thousands of them take the stack of a few.
 #[test]
 fn track_takes_no_more_stack_for_more_frames() {
     let load =

@@ -13,7 +13,7 @@ use tungstenite::{Message, WebSocket, connect};
 pub struct Tab {
     browser: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
-    /// What the page is called in the protocol.
+    /// Name of the page in the protocol.
     page: Option<String>,
     asked: u64,
 }
@@ -45,7 +45,7 @@ impl Tab {
             .map_while(Result::ok)
             .find_map(|line| Some(line.strip_prefix("DevTools listening on ")?.to_owned()))
             .expect("Chromium says where it can be asked");
-        // what nobody reads would block the browser
+        // output that is not read would block the browser
         std::thread::spawn(move || told.for_each(drop));
         let (socket, _) = connect(door).unwrap();
         let mut tab = Self {
@@ -65,7 +65,7 @@ impl Tab {
         tab
     }
 
-    /// What an expression, or what it promises, is in the page.
+    /// Value of an expression, or of its promise, in the page.
     pub fn evaluate(&mut self, expression: &str) -> Value {
         let what = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
         let mut told = self.ask("Runtime.evaluate", what);

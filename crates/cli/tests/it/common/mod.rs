@@ -6,10 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// The embedded experiment that jams.
+/// Recorded grasp that jams.
 pub const STOP: &str = "stop-square50-bar-000";
 
-/// The embedded experiment that slides.
+/// Recorded grasp that slides.
 pub const SLIDE: &str = "slide-ell-disc-110";
 
 /// The program.
@@ -30,7 +30,7 @@ pub fn succeeds(command: &mut Command) -> Output {
     run
 }
 
-/// What the program prints as JSON; it must succeed.
+/// Output of the program as JSON; it must succeed.
 #[track_caller]
 pub fn json(command: &mut Command) -> serde_json::Value {
     serde_json::from_slice(&succeeds(command).stdout).unwrap()
@@ -53,12 +53,12 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// Copies an embedded experiment.
+    /// Copies a recorded grasp.
     pub fn copy(name: &str, test: &str) -> Self {
         let (folder, source) = (
             empty_folder(test),
             Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join("demo")
+                .join("../testkit/experiments")
                 .join(name),
         );
         for file in ["scene.toml", "log.csv", "truth.csv", "truth.json"] {

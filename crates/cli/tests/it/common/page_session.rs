@@ -9,12 +9,12 @@ use super::{Experiment, stickslip};
 /// A session with a page.
 pub struct Session {
     child: Child,
-    /// Where its rows come from.
+    /// Source of its rows.
     pub input: Option<ChildStdin>,
     errors: BufReader<ChildStderr>,
     /// 127.0.0.1:port.
     pub host: String,
-    /// What the page's address ends in.
+    /// End of the page's address.
     pub token: String,
 }
 
@@ -51,7 +51,7 @@ impl Session {
         }
     }
 
-    /// What the server says to a request; `TOKEN` and `HOST` stand for its own.
+    /// Answer of the server to a request; `TOKEN` and `HOST` stand for its own.
     pub fn ask(&self, request: &str) -> String {
         let request = request
             .replace("TOKEN", &self.token)

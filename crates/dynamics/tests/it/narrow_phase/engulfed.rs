@@ -7,8 +7,8 @@ use super::shapes::{Random, contacts, disc, ellipse, polygon, rectangle, shape, 
 /// Directions that are tried.
 const DIRECTIONS: usize = 720;
 
-/// What their spacing may cost in a distance (m): half the largest radius of curvature, 0.3 m,
-/// times half the spacing squared.
+/// Error of a distance that their spacing may cause (m): half the largest radius of curvature, 0.3
+/// m, times half the spacing squared.
 const SPACING: f64 = 4e-6;
 
 /// An L of two bars, a small one at the end of a large one, and a notched block of triangles.

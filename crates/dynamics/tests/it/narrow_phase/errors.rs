@@ -1,4 +1,4 @@
-//! What [`Shape::new`] refuses, and that it says where and what to do.
+//! Shapes that [`Shape::new`] refuses; the message says where, and what to do.
 
 use stickslip_dynamics::{Part, Shape, ShapeError};
 

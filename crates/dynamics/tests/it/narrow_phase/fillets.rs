@@ -16,7 +16,7 @@ fn sides(part: &Part, pose: Pose) -> Vec<[[f64; 2]; 2]> {
         .collect()
 }
 
-/// How far a point is from a segment (m).
+/// Distance of a point from a segment (m).
 fn distance(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let [u, v] = [
         [b[0] - a[0], b[1] - a[1]],

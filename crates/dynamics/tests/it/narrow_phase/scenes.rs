@@ -1,5 +1,5 @@
 //! The shapes of all recorded scenes, where the data folder is present (`STICKSLIP_DATA`, else
-//! `../shared/data` beside the workspace).
+//! `../shared/data` next to the workspace).
 
 use std::path::{Path, PathBuf};
 

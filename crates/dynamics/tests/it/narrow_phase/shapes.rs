@@ -63,7 +63,7 @@ pub fn random_polygon(random: &mut Random) -> Part {
     polygon_of(count, random)
 }
 
-/// The same of 16 to 79 corners.
+/// A convex polygon of 16 to 79 corners on an ellipse of random axes.
 pub fn random_polygon_of_many(random: &mut Random) -> Part {
     let count = 16 + random.below(64);
     polygon_of(count, random)
@@ -128,7 +128,7 @@ pub fn smallest(gaps: &[Gap]) -> f64 {
     gaps.iter().map(|gap| gap.gap).fold(f64::INFINITY, f64::min)
 }
 
-/// The same contacts in any order, to `tolerance` (m, and in the normals).
+/// Returns true if both are equal in any order, to `tolerance` (m, and in the normals).
 pub fn same(a: &[Gap], b: &[Gap], tolerance: f64) -> bool {
     let near = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) <= tolerance;
     let equal = |p: &Gap, q: &Gap| {

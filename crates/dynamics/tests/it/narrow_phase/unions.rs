@@ -67,7 +67,7 @@ fn probes() -> Vec<Shape> {
     parts.into_iter().map(|part| shape(vec![part])).collect()
 }
 
-/// Whether a probe's contacts say that it overlaps by less than `depth`.
+/// Returns true if a probe's contacts say that it overlaps by less than `depth`.
 fn shallow(object: &Shape, probe: (&Shape, Pose), depth: f64) -> bool {
     smallest(&contacts((object, Pose::default()), probe, 0.01)) > -depth
 }

@@ -59,7 +59,7 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
     }
 }
 
-/// The feet stand as told: no particle has its own.
+/// Makes the feet stand as in the scene: no particle has its own.
 pub fn know_feet(setup: &mut Setup) {
     setup.uncertainty = setup.uncertainty.with_known_feet();
 }
@@ -82,15 +82,15 @@ pub fn log(
 /// Particles of [`run_into_the_dark`]: not more than a block, so that they are shown in one piece.
 pub const PARTICLES: usize = 64;
 
-/// Some particles whose object at the origin a pusher comes to move after the camera went dark:
-/// what is seen would tell of what they do not know.
+/// Runs some particles whose object at the origin a pusher moves after the camera turned off.
+/// Camera poses would reveal what they do not know.
 pub fn run_into_the_dark(setup: &Setup, seed: u64, observer: &impl Observer) {
     run_from_rest(setup, seed, false, observer);
 }
 
-/// The same, with the camera `seeing` the object to the end, at rest, or not.
+/// Runs these particles with the camera `seeing` the object to the end, at rest, or not.
 pub fn run_from_rest(setup: &Setup, seed: u64, seeing: bool, observer: &impl Observer) {
-    // no frame is the one before once more
+    // no frame equals the one before
     let object = |time| Pose::new(1e-9 * time, 0.0, 0.0);
     let pusher = |time: f64| Some(Pose::new(-0.05 + 0.02 * time, 0.0, 0.0));
     let log = log(
@@ -107,8 +107,8 @@ pub fn run_from_rest(setup: &Setup, seed: u64, seeing: bool, observer: &impl Obs
     run_observed(setup, &log, &options, observer, &mut |_| ()).expect("a run");
 }
 
-/// A disc that is pushed beside its middle against a fixel jams where both frictions are above
-/// 0.29, else it slides round the fixel, if its feet stand about its middle. Here it slides.
+/// A disc that is pushed off its middle against a fixel jams if both frictions are above 0.29.
+/// Otherwise it slides round the fixel, if its feet stand about its middle. Here it slides.
 pub fn slippery() -> (Setup, Log) {
     let mut slippery = setup(&[[0.032, -0.022]]);
     know_feet(&mut slippery);
@@ -126,7 +126,8 @@ pub fn slippery() -> (Setup, Log) {
     (slippery, log)
 }
 
-/// The same, told another friction with pusher and fixel: most particles believe that it jams.
+/// The slippery experiment with another nominal friction of pusher and fixel: most particles expect
+/// that it jams.
 pub fn sticky(slippery: &Setup, friction: f64) -> Setup {
     let mut sticky = slippery.clone();
     let nominal = &mut sticky.scene.nominal;

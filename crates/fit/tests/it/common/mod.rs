@@ -16,7 +16,7 @@ fixel   = [{ position = [0.5, 0.5], shape = [{ disc = { radius = 0.005 } }] }]
 camera  = { position_std = 3.0e-4, orientation_std = 5.0e-3 }
 ";
 
-/// The scene as methods are told it.
+/// The scene that methods are given.
 pub fn setup() -> Setup {
     read_scene(SCENE, "scene.toml").unwrap()
 }
@@ -26,7 +26,7 @@ pub fn pushes(truth: Friction, physics: Physics, count: usize, seed: u64) -> Vec
     pushes_in(&with(truth), physics, count, seed)
 }
 
-/// The same in another scene.
+/// Pushes in another scene.
 pub fn pushes_in(truth: &Setup, physics: Physics, count: usize, seed: u64) -> Vec<Push> {
     (0..count)
         .map(|k| {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What Python prints.
+/// Output of Python.
 pub fn peer(arguments: &[&Path]) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/ros2_peer/peer.py");
     let run = Command::new("python3")

@@ -78,7 +78,7 @@ impl Key {
             .collect()
     }
 
-    /// Whether it names a table.
+    /// True if it names a table.
     pub fn is_table(&self) -> bool {
         self.schema["properties"].is_object() || self.schema["items"]["properties"].is_object()
     }
@@ -111,7 +111,7 @@ pub fn keys() -> Vec<Key> {
     keys
 }
 
-/// Why a value does not match a schema of the few words that ours is written in.
+/// Reason why a value does not match a schema of the few words that ours is written in.
 pub fn mismatch(schema: &Value, value: &Value, path: &str) -> Option<String> {
     if let Some(kinds) = schema["oneOf"].as_array().or(schema["anyOf"].as_array()) {
         let fits = kinds

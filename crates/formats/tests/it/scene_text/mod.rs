@@ -1,4 +1,4 @@
-//! Scene files as text, and what reading them says.
+//! Scene files as text, and the result of reading them.
 
 use stickslip::Setup;
 use stickslip_formats::read_scene;

@@ -19,7 +19,7 @@
     verdict["row 10 is lit"] = !find(".stage").classList.contains("blind") && find(".badge").textContent === "camera on";
     const transform = find(".truth").getAttribute("transform");
     scrub(150);
-    verdict["row 150 is dark"] = find(".stage").classList.contains("blind") && find(".badge").textContent === "camera dark";
+    verdict["row 150 is occluded"] = find(".stage").classList.contains("blind") && find(".badge").textContent === "camera off";
     verdict["the object moved"] = find(".truth").getAttribute("transform") !== transform;
     const shade = find(".strip .dark");
     const shadeFrom = shade && Number(shade.getAttribute("x"));
@@ -27,10 +27,10 @@
     const data = JSON.parse(find("script").textContent);
     // from the last row that was seen on
     const expected = (1000 * (data.time[data.dark[0][0] - 1] - data.time[0])) / (data.time[shown - 1] - data.time[0]);
-    verdict["the dark rows are shaded"] = Math.abs(shadeFrom - expected) < 1 && shade.getBoundingClientRect().width > 5;
+    verdict["occluded rows are shaded"] = Math.abs(shadeFrom - expected) < 1 && shade.getBoundingClientRect().width > 5;
     verdict["particles are drawn"] = find(".stage").querySelectorAll(".cloud path").length === 120;
-    verdict["errors are told"] = [...player.querySelectorAll(".readout td")].every((cell) => /^\d+\.\d\d$/.test(cell.textContent));
-    verdict["contacts are told"] = /particle filter: \d+ %/.test(find(".contacts").textContent);
+    verdict["errors are shown"] = [...player.querySelectorAll(".readout td")].every((cell) => /^\d+\.\d\d$/.test(cell.textContent));
+    verdict["contacts are shown"] = /particle filter: \d+ %/.test(find(".contacts").textContent);
     press("ArrowRight");
     press("ArrowRight", { shiftKey: true });
     verdict["arrow keys step"] = player.dataset.row === "161" && slider.value === "161";

@@ -1,9 +1,9 @@
-//! Chromium without a window: what pages look like once their scripts have run.
+//! Chromium without a window: the state of pages once their scripts have run.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What Chromium prints of the page at `address`, or the screenshot that it makes, at a window's
+/// Chromium's print of the page at `address`, or the screenshot that it makes, at a window's
 /// `width` (px) and after `budget` (ms) of the browser's own time; its profile lies in `folder`.
 pub fn chromium(
     folder: &Path,

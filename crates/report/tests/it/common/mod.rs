@@ -1,5 +1,5 @@
-//! An experiment made of formulas: a disc moves a square along x until it stands still, the camera
-//! dark from row 60 % on.
+//! An experiment made of formulas: a disc moves a square along x until it stands still, with the
+//! camera off from row 60 % on.
 use stickslip::dynamics::{Feet, Fixel, Friction, Object, Part, Pose, Pusher, Scene, Shape};
 use stickslip::{Estimate, EstimateRow, FilterSettings, Log, Setup, Spread, Tactile, Uncertainty};
 use stickslip_evaluation::{Reference, ScoredRun, Scores, Variant};
@@ -60,7 +60,7 @@ pub fn setup() -> Setup {
     }
 }
 
-/// Where the object is at a row, of so many.
+/// Pose of the object at a row, of so many.
 pub fn truth(row: usize, rows: usize) -> Pose {
     let way = (row as f64 / (0.7 * rows as f64)).min(1.0);
     Pose::new(0.06 * way, 0.002 * way, 0.3 * way)
@@ -121,7 +121,7 @@ fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
     }
 }
 
-/// A run whose error is `off` metres, twice that in the dark.
+/// A run whose error is `off` metres, twice that while the camera is off.
 fn scored(variant: Variant, estimate: Estimate, off: f64) -> ScoredRun {
     ScoredRun {
         variant,

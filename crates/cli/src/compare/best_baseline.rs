@@ -1,0 +1,114 @@
+//! Best simple method of a comparison against the particle filter: [`BestBaseline`].
+
+use std::fmt;
+
+use serde::Serialize;
+use stickslip::Method;
+use stickslip_evaluation::{Direction, PairedDifference, Variant, quantile};
+
+use super::results::FolderResult;
+
+/// Standard errors from which a difference is clear.
+const CLEAR: f64 = 2.0;
+
+/// Ratio of median errors up to which two methods are level.
+const LEVEL: f64 = 1.1;
+
+/// Baseline with the lowest median error, and the particle filter on the same folders.
+#[derive(Clone, Debug, Serialize)]
+pub struct BestBaseline {
+    /// The baseline.
+    #[serde(skip)]
+    variant: Variant,
+    /// Its name in JSON.
+    method: &'static str,
+    /// Its median pose RMSE (mm).
+    median_mm: f64,
+    /// Median pose RMSE of the particle filter (mm).
+    particle_median_mm: f64,
+    /// Median over folders of the particle filter's error minus the baseline's (mm).
+    difference_mm: f64,
+    /// Standard error of that median (mm); `None` below six folders.
+    standard_error_mm: Option<f64>,
+    /// Folders in which the particle filter is nearer.
+    particle_nearer: usize,
+    /// Folders with both.
+    folders: usize,
+    /// Verdict on the difference.
+    #[serde(skip)]
+    direction: Direction,
+}
+
+impl BestBaseline {
+    /// `None` without a scored particle filter and a scored baseline.
+    pub fn of(folders: &[FolderResult]) -> Option<Self> {
+        let baselines = Variant::COMPARED
+            .into_iter()
+            .filter(|variant| variant.method() != Method::Particle && !variant.camera_on());
+        let all = baselines.filter_map(|variant| Self::against(variant, folders));
+        all.min_by(|a, b| a.median_mm.total_cmp(&b.median_mm))
+    }
+
+    fn against(variant: Variant, folders: &[FolderResult]) -> Option<Self> {
+        let error = |folder: &FolderResult, variant: Variant| {
+            let mut methods = folder.methods.iter();
+            let found = methods.find(|entry| entry.variant == variant)?;
+            found.scores.wmse_mm
+        };
+        let pairs = folders.iter().filter_map(|folder| {
+            Some((error(folder, Variant::Particle)?, error(folder, variant)?))
+        });
+        let (particle, baseline): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        let difference = PairedDifference::of(&particle, &baseline)?;
+        let nearer = particle.iter().zip(&baseline).filter(|(p, b)| p < b);
+        Some(Self {
+            variant,
+            method: variant.key(),
+            median_mm: quantile(&baseline, 0.5)?,
+            particle_median_mm: quantile(&particle, 0.5)?,
+            difference_mm: difference.median,
+            standard_error_mm: Some(difference.standard_error).filter(|error| error.is_finite()),
+            particle_nearer: nearer.count(),
+            folders: difference.pairs,
+            direction: difference.direction(CLEAR),
+        })
+    }
+
+    /// "beats", "is level with" or "is worse than": the particle filter against the baseline.
+    fn verdict(&self) -> &'static str {
+        let [low, high] = [LEVEL * self.particle_median_mm, LEVEL * self.median_mm];
+        match (self.standard_error_mm, self.direction) {
+            (Some(_), Direction::Below) => "beats",
+            (Some(_), Direction::Above) => "is worse than",
+            (None, _) if self.median_mm > low => "beats",
+            (None, _) if self.particle_median_mm > high => "is worse than",
+            _ => "is level with",
+        }
+    }
+}
+
+impl fmt::Display for BestBaseline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "The particle filter {} the best simple method here, the {}: {:.2} against {:.2} mm",
+            self.verdict(),
+            self.variant.title(),
+            self.particle_median_mm,
+            self.median_mm
+        )?;
+        match (self.standard_error_mm, self.folders) {
+            (_, 1) => write!(f, ", one experiment."),
+            (Some(error), folders) => write!(
+                f,
+                " in the median, nearer in {} of {folders}; median difference {:+.2} ± {error:.2} mm.",
+                self.particle_nearer, self.difference_mm
+            ),
+            (None, folders) => write!(
+                f,
+                " in the median, nearer in {} of {folders}; too few experiments for a test.",
+                self.particle_nearer
+            ),
+        }
+    }
+}
