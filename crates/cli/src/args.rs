@@ -271,7 +271,7 @@ impl From<ModelName> for FilterModel {
 }
 
 impl SharedArgs {
-    /// What the options hide.
+    /// Rows that the options hide.
     pub fn occlusion(&self) -> Occlusion {
         match (self.occlude, self.occlude_middle) {
             (Some(rows), _) => Occlusion::Rows {
@@ -283,7 +283,7 @@ impl SharedArgs {
         }
     }
 
-    /// How the pusher is tracked.
+    /// Tracking of the pusher.
     pub fn tracking(&self) -> Tracking {
         if self.causal {
             Tracking::Causal
@@ -294,7 +294,7 @@ impl SharedArgs {
 }
 
 impl FilterArgs {
-    /// What runs.
+    /// The method, with or without touch.
     pub fn variant(&self) -> Variant {
         Variant::of(self.method.into(), self.tactile())
     }

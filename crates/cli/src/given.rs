@@ -33,7 +33,7 @@ pub struct Given {
 }
 
 impl GivenArgs {
-    /// What was meant; `command` is the program's command that was given it.
+    /// The log and the scene that are meant; `command` is the program's command that was given it.
     ///
     /// # Errors
     ///
@@ -79,7 +79,7 @@ pub fn scene_file(given: &Path) -> PathBuf {
     }
 }
 
-/// Whether a path is a scene by its name.
+/// True if a path is a scene by its name.
 pub fn is_scene(path: &Path) -> bool {
     let toml = path
         .extension()
@@ -87,7 +87,7 @@ pub fn is_scene(path: &Path) -> bool {
     toml && !path.is_dir()
 }
 
-/// A scene that is given alone stands for the log beside it.
+/// A scene that is given alone stands for the log next to it.
 fn log_beside(scene: &Path, command: &str) -> Result<Given> {
     let folder = match scene.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -98,7 +98,7 @@ fn log_beside(scene: &Path, command: &str) -> Result<Given> {
         true => Ok(Given::of(&log, scene.to_owned())),
         false => Err(hinted(
             format!(
-                "{}: this is a scene, and no log lies beside it",
+                "{}: this is a scene, and there is no log next to it",
                 scene.display()
             ),
             format!(

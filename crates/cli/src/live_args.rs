@@ -46,7 +46,7 @@ pub struct LiveArgs {
 }
 
 impl LiveArgs {
-    /// What becomes of tactile readings.
+    /// Use of tactile readings.
     pub fn tactile(&self) -> TactileUse {
         if self.no_tactile {
             TactileUse::Ignored

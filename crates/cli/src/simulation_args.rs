@@ -86,7 +86,7 @@ impl ReproduceArgs {
     }
 }
 
-/// What moves the object of a simulation.
+/// Simulator that moves the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PhysicsName {
     /// Rig with compliant contacts, uneven friction, a drive that lags and stalls

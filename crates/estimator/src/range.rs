@@ -127,8 +127,8 @@ impl Rule {
         }
     }
 
-    /// Smallest and largest number that it allows in `unit`, infinity left aside. Of numbers between
-    /// 0 and the unit's smallest one, [`Rule::broken_by`] knows more.
+    /// Smallest and largest number that it allows in `unit`, without infinity. [`Rule::broken_by`]
+    /// also refuses some sizes between 0 and the smallest one of the unit.
     ///
     /// ```
     /// use std::ops::Bound::Included;

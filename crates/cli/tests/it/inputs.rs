@@ -210,7 +210,7 @@ fn new_takes_an_outline_from_a_drawing() {
         "0.001",
     ]));
     let warned = String::from_utf8(run.stderr).unwrap();
-    assert!(warned.contains("1 holes are not part"), "{warned}");
+    assert!(warned.contains("1 hole left out"), "{warned}");
 
     for (arguments, words) in [
         (

@@ -293,7 +293,7 @@ impl Key {
         Self { note, ..self }
     }
 
-    /// What to give, with the unit.
+    /// The meaning with the unit.
     pub(super) fn order(&self) -> String {
         match (self.form, self.unit) {
             (Pose | Poses, _) => format!("{} in m and rad", self.what),

@@ -107,7 +107,7 @@ fn a_stated_default_is_the_one_of_a_missing_key() {
     assert!(tried > 35, "{tried}");
 }
 
-/// Function that is called with the way to a number, its schema, and a document that has another one there.
+/// Function that is called with the path of a number, its schema, and a setter of it in a document.
 type Found<'a> = &'a mut dyn FnMut(&str, &Value, &dyn Fn(f64) -> Toml);
 
 /// Every number of a schema at the place of `template` in the document that `whole` makes.
