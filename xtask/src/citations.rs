@@ -3,7 +3,8 @@
 //!
 //! `docs/method.md (7)` cites an equation, `docs/method.md, "Jamming"` a section,
 //! `docs/decisions/004...` or `decision 004` a decision; `paper eq. 3` is the paper's own number.
-//! An equation is a line of a block marked `text` in the method that ends with its number.
+//! An equation is a line of the method with `\tag{7}`, or one of a block marked `text` that ends
+//! with its number.
 
 use crate::finding::Finding;
 use crate::rust_text::names;
@@ -57,6 +58,13 @@ fn equations(method: &str) -> Vec<(usize, usize)> {
     for (index, line) in method.lines().enumerate() {
         if line.starts_with("```") {
             inside = line == "```text";
+            continue;
+        }
+        let tag = line
+            .split_once("\\tag{")
+            .and_then(|(_, rest)| rest.split_once('}'));
+        if let Some(number) = tag.and_then(|(n, _)| n.parse().ok()) {
+            equations.push((number, index + 1));
             continue;
         }
         let bare = match line.rfind("[paper") {
@@ -313,7 +321,7 @@ fn resolved(from: &str, link: &str) -> String {
 mod tests {
     use super::*;
 
-    const THE_METHOD: &str = "# The method\n## Jamming\n```text\na = b (1)  [paper eq. 1]\nsee (2)\n```\n```algorithm\nstep (1)\n```\n| x | `Pose::advance` | `crates/a/src/lib.rs` |\n";
+    const THE_METHOD: &str = "# The method\n## Jamming\n```text\na = b (1)  [paper eq. 1]\n```\n$$\nc = d \\tag{2}\n$$\n```algorithm\nstep (1)\n```\n| x | `Pose::advance` | `crates/a/src/lib.rs` |\n";
 
     fn found(path: &str, text: &str) -> Vec<String> {
         let tree = Tree::from([
@@ -401,7 +409,7 @@ mod tests {
     #[test]
     fn check_finds_gaps_in_the_numbers_and_names_that_moved() {
         let unknown = THE_METHOD.replace("step (1)", "step (7)");
-        let renumbered = THE_METHOD.replace("see (2)", "see (3)");
+        let renumbered = THE_METHOD.replace("tag{2}", "tag{3}");
         let moved = THE_METHOD.replace("advance", "retreat");
         for (method, word) in [
             (unknown, "no equation (7)"),

@@ -1,7 +1,7 @@
 //! An experiment as a moving picture that needs no script: [`ReportedExperiment::animation`].
 //!
-//! The SVG moves by itself (SMIL), also inside an `img` element. A viewer that shows no motion shows
-//! the last frame.
+//! The SVG moves by itself (SMIL), also inside an `img` element. A viewer without motion shows the
+//! last frame.
 
 use maud::{Markup, html};
 use stickslip::dynamics::{Pose, Shape};
@@ -40,8 +40,8 @@ struct Animation {
 }
 
 impl ReportedExperiment<'_> {
-    /// Moving picture of the truth, the estimates and the learner's particles, next to a list of the
-    /// methods with their errors.
+    /// Moving picture of the truth, the estimates and the learner's particles, with a list of the
+    /// methods and their errors.
     #[must_use]
     pub fn animation(&self) -> Drawing {
         let animation = Animation::of(self);

@@ -279,8 +279,8 @@ impl ReportedExperiment<'_> {
         }
     }
 
-    /// Bodies that a picture shows in full: the known ones, and the learner's object if the true one is
-    /// unknown.
+    /// Bodies that a picture shows in full: the known ones, and the learner's object if the true
+    /// one is unknown.
     fn in_view(&self, row: usize) -> Vec<Body> {
         let mut bodies = self.known_bodies(row);
         if self.reference.pose_at(self.time_of(row)).is_none() {

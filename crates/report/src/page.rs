@@ -12,7 +12,7 @@ use crate::story::{Fate, Story};
 use crate::table::Table;
 
 const STYLE: &str = include_str!("../page/report.css");
-/// What an address may not hold as it stands, of a table that is mostly digits and commas.
+/// Characters that are escaped in an address of a table, mostly digits and commas.
 const ESCAPED: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b',')
     .remove(b'.')
@@ -26,11 +26,11 @@ pub(crate) const SCRIPT: &str = include_str!("../page/player.js");
 pub struct Report {
     /// Title.
     pub title: String,
-    /// What a reader should know after a minute.
+    /// Warnings and findings above the sections.
     pub summary: Vec<Block>,
     /// The rest.
     pub sections: Vec<Section>,
-    /// What made it, name by name: program, command, seed.
+    /// Origin, name by name: program, command, seed.
     pub origin: Vec<(String, String)>,
 }
 
@@ -39,11 +39,11 @@ pub struct Report {
 pub struct Section {
     /// Heading; may be empty.
     pub title: String,
-    /// What stands below it.
+    /// Content below the heading.
     pub blocks: Vec<Block>,
 }
 
-/// What a section is made of.
+/// Part of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A paragraph.
@@ -62,7 +62,7 @@ pub enum Block {
     Download {
         /// Its name.
         name: String,
-        /// What it has, as "every row of the particle filter".
+        /// Its content in words, as "every row of the particle filter".
         what: String,
         /// Its content, text.
         bytes: Vec<u8>,

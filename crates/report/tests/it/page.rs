@@ -178,14 +178,14 @@ fn data_read_back_to_the_numbers_they_were() {
     );
     // as the run has them, and more where drawn particles lie at a body
     for (body, least) in [50, 25, 100].into_iter().enumerate() {
-        let told: Vec<u64> = data["methods"][3]["contact"][body]
+        let shares: Vec<u64> = data["methods"][3]["contact"][body]
             .as_array()
             .unwrap()
             .iter()
             .map(|p| p.as_u64().unwrap())
             .collect();
-        assert_eq!(told[..30], [least; 30]);
-        assert!(told.len() == 90 && told.iter().all(|p| (least..=100).contains(p)));
+        assert_eq!(shares[..30], [least; 30]);
+        assert!(shares.len() == 90 && told.iter().all(|p| (least..=100).contains(p)));
     }
     assert!(
         data["methods"][2]["contact"].is_null(),
@@ -321,7 +321,7 @@ fn pages_of_nothing_and_of_one_row_are_pages() {
     );
 }
 
-/// The paragraph beside the stage.
+/// The paragraph next to the stage.
 fn legend(experiment: &ReportedExperiment<'_>) -> String {
     let sections = vec![experiment.section()];
     let page = Report {
