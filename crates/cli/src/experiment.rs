@@ -179,7 +179,7 @@ pub fn scene_beside(given: &Path) -> Result<PathBuf> {
     found.ok_or_else(|| {
         hinted(
             format!(
-                "{}: there is no scene.toml in it or beside it",
+                "{}: there is no scene.toml in it or next to it",
                 given.display()
             ),
             "give the scene with --scene; docs/guide/formats.md says how to write one",

@@ -255,10 +255,17 @@ fn tables(
         Variant::of(args.method.into(), TactileUse::Used).title(),
         reference_name(experiment)
     );
+    let radius = args
+        .virtual_radius
+        .unwrap_or(experiment.setup.virtual_radius());
+    let about_score = format!(
+        "pose RMSE: weighted RMSE of the pose, angles times {:.1} mm (JSON key wmse_mm, the paper's WMSE)\n",
+        1e3 * radius
+    );
     let parameters = LearnedParameter::all(estimate);
     let friction =
         (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
-    let parts = [title, score_table(summary).to_string()]
+    let parts = [title, score_table(summary).to_string(), about_score]
         .into_iter()
         .chain(friction)
         .chain(final_pose_line(experiment, estimate))
@@ -277,13 +284,17 @@ fn score_table(summary: &Summary<'_>) -> Table {
     let mut row = |name: &str, value: String, unit: &str| {
         table.push([name.to_owned(), value, unit.to_owned()])
     };
-    row("WMSE", number(summary.wmse_mm, 3), "mm");
+    row("pose RMSE", number(summary.wmse_mm, 3), "mm");
     row(
-        "WMSE, hidden rows",
+        "pose RMSE, occluded rows",
         number(summary.wmse_occluded_mm, 3),
         "mm",
     );
-    row("WMSE, moving", number(summary.wmse_moving_mm, 3), "mm");
+    row(
+        "pose RMSE, moving object",
+        number(summary.wmse_moving_mm, 3),
+        "mm",
+    );
     row(
         "final position error",
         number(summary.final_error_mm, 3),
@@ -298,7 +309,7 @@ fn score_table(summary: &Summary<'_>) -> Table {
     row("unsolved particle steps", summary.unsolved.to_string(), "");
     row("of them failed", summary.failed.to_string(), "");
     row("collapses", summary.collapses.to_string(), "");
-    row("second tries", summary.second_tries.to_string(), "");
+    row("re-simulations", summary.second_tries.to_string(), "");
     row(
         "real-time factor",
         format!("{:.1}", summary.real_time_factor),

@@ -99,7 +99,7 @@ impl LogFiles {
             files.map(|file| in_folder(path, Path::new(file))).collect()
         } else {
             talk(format_args!(
-                "warning: {}: without {METADATA}, as a recorder leaves a bag that was not stopped; its .mcap files are read",
+                "warning: {}: no {METADATA}, the recorder was not stopped; its .mcap files are read",
                 path.display()
             ));
             recordings_in(path)
@@ -140,7 +140,7 @@ impl LogFiles {
         self.opened(&self.shown)?;
         Err(hinted(
             format!("{}: this is no bag", self.shown.display()),
-            "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
+            "give the folder of a bag, or an .mcap file; `stickslip check` reads tables",
         ))
     }
 
@@ -160,7 +160,7 @@ impl LogFiles {
         }
         if !self.missing.is_empty() {
             talk(format_args!(
-                "warning: {}: {} is not there; what it held is lost",
+                "warning: {}: {} is not there; its messages are lost",
                 self.shown.display(),
                 names(&self.missing)
             ));

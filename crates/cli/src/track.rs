@@ -20,7 +20,7 @@ use crate::failure::hinted;
 use crate::files::{ready_folder, write_out};
 use crate::frames::FrameFolder;
 use crate::log_files::LogFiles;
-use crate::output::{show_result, talk};
+use crate::output::{counted, show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 
@@ -253,7 +253,7 @@ fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {
         return;
     };
     talk(format_args!(
-        "warning: the {body}'s tag is seen {:.1} mm large at the height {} m, {body}.size says {:.1} mm; measure the edge of its black square, and the height",
+        "warning: {body} tag {:.1} mm wide at height {} m; tags.toml: {body}.size {:.1} mm. Measure the edge of its black square, and its height",
         1e3 * size,
         given.place.height,
         1e3 * given.place.size
@@ -327,8 +327,9 @@ impl Summary {
             table.push([name.to_owned()].into_iter().chain(counts).chain(stds));
         }
         format!(
-            "{} frames, {} of them repeated\n\n{table}",
-            self.frames, self.repeated
+            "{}, {} repeated\n\n{table}",
+            counted(self.frames as u64, "frame"),
+            self.repeated
         )
     }
 }

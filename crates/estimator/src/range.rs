@@ -4,6 +4,7 @@
 //! slips. With them arithmetic overflows or a step never ends.
 
 use std::fmt;
+use std::ops::Bound::{self, Excluded, Included};
 
 /// Unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,6 +124,25 @@ impl Rule {
             size if size > most => limit("at most", most),
             size if size > 0.0 && size < least && self.forbids_tiny() => limit("at least", least),
             _ => None,
+        }
+    }
+
+    /// Smallest and largest number that it allows in `unit`, without infinity. [`Rule::broken_by`]
+    /// also refuses some sizes between 0 and the smallest one of the unit.
+    ///
+    /// ```
+    /// use std::ops::Bound::Included;
+    /// use stickslip::{Rule, Unit};
+    /// assert_eq!(Rule::Positive.range(Unit::Kilogram), (Included(1e-6), Included(1e6)));
+    /// ```
+    pub const fn range(self, unit: Unit) -> (Bound<f64>, Bound<f64>) {
+        let [least, most] = unit.limits();
+        match self {
+            Self::Finite => (Included(-most), Included(most)),
+            Self::Positive | Self::PositiveOrInfinite => (Included(least), Included(most)),
+            Self::NotNegative => (Included(0.0), Included(most)),
+            Self::Probability => (Excluded(0.0), Excluded(1.0)),
+            Self::Share => (Included(0.0), Included(1.0)),
         }
     }
 

@@ -13,7 +13,7 @@
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
 
-use stickslip::{Log, PoseCovariance, Rule, Setup, Unit};
+use stickslip::{Log, PoseCovariance, Rule, Setup, Unit, counted};
 use stickslip_dynamics::Pose;
 
 use crate::csv_error::{CsvProblem, LogError};
@@ -37,8 +37,8 @@ pub(crate) const TACTILE: &str = "tactile_";
 /// A log has more tactile sensors than its scene has fixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the log has {sensors} tactile sensors and the scene {fixels} fixels; sensor k is the k-th fixel. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
-    .fixels + 1
+    "the log has {} and the scene {}; sensor k is the k-th fixel. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
+    counted(*.sensors as u64, "tactile sensor"), counted(*.fixels as u64, "fixel"), .fixels + 1
 )]
 pub struct SensorError {
     /// Tactile columns of the log.

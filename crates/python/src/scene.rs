@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip::Setup;
+use stickslip::{Setup, counted};
 use stickslip_dynamics::{Dynamics, Friction};
 use stickslip_formats::read_scene;
 
@@ -96,7 +96,11 @@ impl Scene {
     }
 
     fn __repr__(&self) -> String {
-        format!("Scene({:?}, {} fixels)", self.name, self.fixels())
+        format!(
+            "Scene({:?}, {})",
+            self.name,
+            counted(self.fixels() as u64, "fixel")
+        )
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (String, String)) {

@@ -11,6 +11,7 @@ use stickslip_formats::{CsvRecorder, McapRecorder};
 
 use crate::failure::hinted;
 use crate::files::ready_file;
+use crate::output::counted;
 
 /// Time of rows in a chunk (s); a chunk is lost where the program is killed.
 const CHUNK: f64 = 1.0;
@@ -131,7 +132,8 @@ impl Recording {
         let left_out = match self.left_out {
             0 => String::new(),
             count => format!(
-                " without {count} rows that its format cannot hold, late or at a time that was there"
+                " without {}: late, repeated or negative times",
+                counted(count, "row")
             ),
         };
         Ok(format!("wrote {}{left_out}", self.path.display()))

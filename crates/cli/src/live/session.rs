@@ -9,6 +9,8 @@ use serde::Serialize;
 use stickslip::{ParticleBudget, Row, RowError, Setup, StepSize, Tracker, TrackerOptions};
 use stickslip_formats::{Pace, estimate_json, read_row_json};
 
+use crate::output::counted;
+
 use super::latencies::Latencies;
 use super::lines::Line;
 use super::shown_row::ShownRow;
@@ -148,16 +150,23 @@ impl<'a> Session<'a> {
     pub fn summary(&self) -> Vec<String> {
         let collapses = self.collapses + u64::from(self.tracker.collapses());
         let rows = format!(
-            "{} rows, {} of them late; {} lines refused; {} restarts after pauses; {collapses} collapses",
-            self.rows, self.late, self.refused, self.restarts
+            "{}, {} late; {} refused; {} after pauses; {}",
+            counted(self.rows, "row"),
+            self.late,
+            counted(self.refused, "line"),
+            counted(self.restarts, "restart"),
+            counted(collapses, "collapse")
         );
         let pacing = self.pacing.as_ref().map(|pacing| {
             let (fewest, most) = (pacing.fewest, self.options.particles);
-            format!("{fewest} to {most} particles, by what was in time")
+            format!("{fewest} to {most} particles, to meet the deadline")
         });
         let left_out = self.left_out + u64::from(self.tracker.pusher_poses_left_out());
         let left_out = (left_out > 0).then(|| {
-            format!("{left_out} pusher poses counted as missing, since the pusher cannot have come there")
+            format!(
+                "{} that the pusher cannot have reached, counted as missing",
+                counted(left_out, "pusher pose")
+            )
         });
         let lines = [Some(rows), left_out, self.latencies.summary(), pacing];
         lines.into_iter().flatten().collect()

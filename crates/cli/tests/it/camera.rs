@@ -135,7 +135,7 @@ fn track_names_an_image_that_cannot_be_read() {
         &mut track(&frames, &tags, &out, &["--rate", "30"]),
         &[
             "000001.png: the PNG image cannot be decoded",
-            "Record or copy it anew",
+            "Record or copy it again",
         ],
     );
     fs::write(frames.join("000001.png"), "not an image").unwrap();
@@ -189,8 +189,7 @@ fn track_names_a_wrong_tag_a_wrong_size_and_no_tag() {
     let run = succeeds(&mut track(&frames, &tags, &out, &["--rate", "30"]));
     let told = String::from_utf8_lossy(&run.stderr);
     assert!(
-        told.contains("warning: the pusher's tag is seen 24.0 mm large")
-            && told.contains("pusher.size says 26.4 mm"),
+        told.contains("warning: pusher tag 24.0 mm wide") && told.contains("pusher.size 26.4 mm"),
         "{told}"
     );
 
@@ -269,7 +268,7 @@ fn calibrate_says_what_is_wrong_with_board_and_frames() {
             .arg("--board")
             .arg(RENDERED.join("board.toml"))
             .args(["--flat", "x.png"]),
-        &["--flat x.png: there is no such frame; they go from 000.png to 007.png"],
+        &["--flat x.png: there is no such image; the first is 000.png, the last 007.png"],
     );
     assert!(!out.join("calibration.toml").exists());
 }

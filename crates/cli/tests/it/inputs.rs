@@ -143,7 +143,7 @@ fn new_scene_and_prints_are_ready_to_use() {
     let run = succeeds(stickslip().args(["new", &at("")]));
     let told = String::from_utf8(run.stdout).unwrap();
     assert!(
-        told.contains("object.inertia is missing: 2.083e-4 kg m^2 is taken"),
+        told.contains("object.inertia is missing; 2.083e-4 kg m^2 is assumed"),
         "{told}"
     );
     let again = stickslip().args(["new", &at("")]).output().unwrap();
@@ -210,7 +210,7 @@ fn new_takes_an_outline_from_a_drawing() {
         "0.001",
     ]));
     let warned = String::from_utf8(run.stderr).unwrap();
-    assert!(warned.contains("1 holes are not part"), "{warned}");
+    assert!(warned.contains("1 hole left out"), "{warned}");
 
     for (arguments, words) in [
         (

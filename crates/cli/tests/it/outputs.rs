@@ -111,7 +111,7 @@ fn a_file_that_cannot_be_finished_leaves_the_old_one() {
     assert_eq!(run.status.code(), Some(1), "{talk}");
     assert!(talk.contains("estimate.csv: cannot be written"), "{talk}");
     // the scores of the run are not lost with the file
-    assert!(String::from_utf8_lossy(&run.stdout).contains("WMSE"));
+    assert!(String::from_utf8_lossy(&run.stdout).contains("pose RMSE"));
     assert_eq!(fs::read(&file).unwrap(), b"old");
     assert_eq!(names(&out), ["estimate.csv"]);
 }

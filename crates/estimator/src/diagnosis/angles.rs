@@ -6,6 +6,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 
 /// Angle beyond which the values are degrees (rad): no object is turned twice around on a table.
 const LARGEST: f64 = 2.0 * TAU;
@@ -29,7 +30,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if found.is_empty() {
         let words = match range(&evidence.log.object) {
             Some((low, high)) => format!("object_theta goes from {low:.2} to {high:.2} rad"),
-            None => "there is no object_theta".to_owned(),
+            None => "no object_theta in the log".to_owned(),
         };
         found.push(Finding::ok(Subject::Angles, words));
     }
@@ -56,18 +57,18 @@ fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
     let (full, half) = (about(TAU), about(PI));
     if let Some(first) = full.first() {
         let found = format!(
-            "{name} jumps by a full turn at {} rows, first at row {first}: it is wrapped to one turn",
-            full.len()
+            "{name} jumps by a full turn at {}, first at row {first}: it is wrapped",
+            counted(full.len() as u64, "row")
         );
-        let advice = "write angles unwrapped, so that they go on smoothly";
+        let advice = "write unwrapped angles, without jumps";
         return Some(Finding::problem(Subject::Angles, found, advice));
     }
     half.first().map(|first| {
         let found = format!(
-            "{name} jumps by half a turn at {} rows, first at row {first}: the body is seen the wrong way round",
-            half.len()
+            "{name} jumps by half a turn at {}, first at row {first}: the tracker mistakes the orientation",
+            counted(half.len() as u64, "row")
         );
-        let advice = "leave the cells of such rows empty, or turn them back";
+        let advice = "leave the cells of these rows empty, or correct their angle by pi";
         Finding::warning(Subject::Angles, found, advice)
     })
 }
@@ -83,7 +84,7 @@ fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
     let found = || {
         let twice = "at the object's rim";
         format!(
-            "object_theta scatters by {:.3} from row to row, {twice} {ratio:.0} times the positions' noise: it seems to be in degrees",
+            "object_theta scatters by {:.3} from row to row, {twice} {ratio:.0} times the noise of positions: it seems to be in degrees",
             noise.angle
         )
     };

@@ -11,6 +11,7 @@
 
 use super::evidence::{Evidence, median, quantile};
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 
 /// Delays that are tried (s).
 const RANGE: [f64; 2] = [-0.3, 0.5];
@@ -68,7 +69,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let stated = evidence.latency();
     let Some(latency) = estimate(evidence) else {
         let found = format!(
-            "the pusher never stops while it pushes: the delay cannot be told (the scene says {stated} s)"
+            "camera latency not measured: the pusher never stops while it pushes; scene.toml: {stated} s"
         );
         return vec![Finding::ok(Subject::Latency, found)];
     };
@@ -79,13 +80,13 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         ..
     } = latency;
     let found = format!(
-        "object poses are {delay:.3} s late, told from {stops} {} of the pusher; the scene says {stated} s",
-        if stops == 1 { "stop" } else { "stops" }
+        "camera latency {delay:.3} s (from {}); scene.toml: {stated} s",
+        counted(stops as u64, "pusher stop")
     );
     let advice = match delay < 0.0 {
         false => format!("set latency = {delay:.2} under [camera]"),
         true => format!(
-            "the pusher's poses are {:.2} s late, or the object's times too early: set the log's times right",
+            "the pusher's poses are {:.2} s late, or the object's times too early: correct the log's times",
             -delay
         ),
     };

@@ -2,6 +2,7 @@
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 use crate::pusher::jumps::believed;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
@@ -12,14 +13,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let Some(first) = left_out.first() else {
         return Vec::new();
     };
-    let found = match left_out.len() {
-        1 => format!(
-            "the pusher cannot have come to its pose in row {first}: that pose counts as missing"
-        ),
-        count => format!(
-            "the pusher cannot have come to {count} of its poses, the first in row {first}: these count as missing"
-        ),
-    };
-    let advice = "see why they are wrong (a tag misread, a clock that jumps): where the pusher is seldom seen, what it did meanwhile is a guess";
+    let found = format!(
+        "{} that the pusher cannot have reached, first in row {first}: counted as missing",
+        counted(left_out.len() as u64, "pusher pose")
+    );
+    let advice = "find the cause (a tag misread, a clock that jumps); the pusher's motion between rare poses is a guess";
     vec![Finding::warning(Subject::PusherPoses, found, advice)]
 }
