@@ -17,6 +17,7 @@ mod lens;
 mod live;
 mod live_page;
 mod mcap;
+mod newcomers;
 mod outputs;
 mod paper_scenes;
 mod program;
