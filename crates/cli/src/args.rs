@@ -202,6 +202,9 @@ pub struct SharedArgs {
     /// Track the pusher without later rows, as live does
     #[arg(long)]
     pub causal: bool,
+    /// Run also if units, frames or columns are found to be wrong
+    #[arg(long)]
+    pub force: bool,
     /// How many threads
     #[command(flatten)]
     pub threads: ThreadArgs,

@@ -6,12 +6,14 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use stickslip::diagnosis::refused;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
     BagOptions, Experiment, Topics, Truth, TruthFacts, read_log, read_mounts, read_scene,
     read_truth_csv, read_truth_json, scene_assumptions,
 };
 
+use crate::args::SharedArgs;
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
 use crate::output::talk;
@@ -62,7 +64,10 @@ pub fn read_experiment(
     let truth = truth
         .map(Path::to_path_buf)
         .or(beside("truth.csv"))
-        .map(|path| read_truth_file(&path))
+        .map(|path| {
+            let truth = read_truth_file(&path)?;
+            check_clock(&path, &truth, &log_data).map(|()| truth)
+        })
         .transpose()?;
     let facts = beside("truth.json")
         .map(|path| read_facts_file(&path))
@@ -103,6 +108,36 @@ pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<
         )),
         _ => Ok(()),
     }
+}
+
+/// Refuses an experiment whose units, frames or columns are found to be wrong, unless `--force`
+/// asks for a run.
+pub fn check_sense(shared: &SharedArgs, experiment: &Experiment) -> Result<()> {
+    let found = refused(&experiment.setup, &experiment.log).filter(|_| !shared.force);
+    found.map_or(Ok(()), |finding| {
+        let advice = finding.advice.unwrap_or_default();
+        let help =
+            format!("{advice}. `stickslip check` shows all findings; --force runs all the same");
+        Err(hinted(finding.found, help))
+    })
+}
+
+/// Refuses a truth on another clock: none of its times is among the log's.
+fn check_clock(path: &Path, truth: &Truth, log: &Log) -> Result<()> {
+    let ends = |time: &[f64]| Some([*time.first()?, *time.last()?]);
+    let (Some([from, to]), Some([first, last])) = (ends(&truth.time), ends(&log.time)) else {
+        return Ok(());
+    };
+    if from <= last && first <= to {
+        return Ok(());
+    }
+    Err(hinted(
+        format!(
+            "{}: no time in common with the log: the truth goes from {from} to {to} s, the log from {first} to {last} s",
+            path.display()
+        ),
+        "write both on one clock, in seconds",
+    ))
 }
 
 /// Name of the experiment of a log: its folder where the log has the name that all have.

@@ -20,7 +20,9 @@ use stickslip_report::{
 };
 
 use crate::args::{FilterArgs, MethodName, Program};
-use crate::experiment::{check_occlusion, experiment_name, read_experiment, reference_name};
+use crate::experiment::{
+    check_occlusion, check_sense, experiment_name, read_experiment, reference_name,
+};
 use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
 use crate::given::Given;
 use crate::log_files::LogFiles;
@@ -72,6 +74,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
+    check_sense(&args.shared, &experiment).with_context(|| given.log.display().to_string())?;
     check_places(args, &given)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =

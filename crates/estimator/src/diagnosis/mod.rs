@@ -2,11 +2,12 @@
 //!
 //! Each finding measures one thing (a gap, a delay, a share of rows). It compares it with what the
 //! scene says or with what is possible on a table top, and gives advice. Nothing is repaired.
-//! Findings that need the geometry are left out if units or angles are wrong: they would only
-//! repeat that.
+//! A cause is reported without its consequences. Wrong units or angles leave out all that is
+//! measured on poses, wrong frames all that is measured on gaps.
 
 mod angles;
 mod collapses;
+mod contact;
 mod evidence;
 mod finding;
 mod frame;
@@ -63,17 +64,29 @@ use crate::setup::Setup;
 pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
     let evidence = Evidence::new(setup, log);
     let mut findings = plain(&evidence);
-    let geometric = [
-        frame::check,
+    if !findings.iter().any(is_misread) {
+        findings.extend(frame::check(&evidence));
+    }
+    let of_gaps = [
+        contact::check,
         overlap::check,
         latency::check,
         pushing::check,
         sensors::check,
     ];
     if !findings.iter().any(is_misread) {
-        findings.extend(geometric.iter().flat_map(|check| check(&evidence)));
+        findings.extend(of_gaps.iter().flat_map(|check| check(&evidence)));
     }
     findings
+}
+
+/// Finds what makes an estimate meaningless: wrong units, angles or frames, noise in other units,
+/// swapped columns. Only the first cause is returned.
+pub fn refused(setup: &Setup, log: &Log) -> Option<Finding> {
+    let evidence = Evidence::new(setup, log);
+    let checks = [units::check, angles::check, noise::check, frame::check];
+    let mut findings = checks.iter().flat_map(|check| check(&evidence));
+    findings.find(|finding| finding.severity == Severity::Problem)
 }
 
 /// Finds the problems that are cheap enough to check before every run: numbers in other units or by
@@ -93,30 +106,35 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     if !findings.iter().any(is_misread) {
         findings.extend(left_out::check(&evidence));
         findings.extend(noise::pusher(&evidence));
+        findings.extend(contact::none(&evidence));
     }
     findings
 }
 
-/// Returns the findings that need no geometry.
+/// Returns the findings that need no geometry; the causes alone if units or angles are wrong.
 fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let checks = [
-        units::check,
-        angles::check,
+    let causes = [units::check, angles::check, timing::check];
+    let others = [
         limits::check,
         stall_force::check,
-        timing::check,
         lost_poses::check,
         jumps::check,
         left_out::check,
         repeats::check,
         noise::check,
     ];
-    checks.iter().flat_map(|check| check(evidence)).collect()
+    let mut findings: Vec<Finding> = causes.iter().flat_map(|check| check(evidence)).collect();
+    if !findings.iter().any(is_misread) {
+        findings.extend(others.iter().flat_map(|check| check(evidence)));
+    }
+    findings
 }
 
-/// Returns true if units or angles are wrong. Findings that need the geometry would only repeat
-/// that.
+/// Returns true for a cause that other findings would only repeat.
 fn is_misread(finding: &Finding) -> bool {
     finding.severity == Severity::Problem
-        && matches!(finding.subject, Subject::Units | Subject::Angles)
+        && matches!(
+            finding.subject,
+            Subject::Units | Subject::Angles | Subject::Frames
+        )
 }

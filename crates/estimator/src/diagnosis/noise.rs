@@ -34,7 +34,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     };
     let mut findings = vec![match evidence.noise {
         None => Finding::ok(Subject::Noise, "not measured: too few object poses"),
-        Some(noise) => compared(&noise, &stated),
+        Some(noise) => compared(&noise, &stated, evidence.size()),
     }];
     let lasting = evidence.lasting.as_ref();
     findings.extend(lasting.and_then(|errors| lasts(errors, &stated)));
@@ -58,8 +58,14 @@ pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     Some(Finding::warning(Subject::Noise, found, advice))
 }
 
-fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
+fn compared(noise: &PoseNoise, stated: &PoseNoise, size: f64) -> Finding {
     let found = told("object", noise, stated);
+    if let Some(unit) = in_other_units(noise, stated, size) {
+        let advice =
+            "give position_std in m and orientation_std in rad under [camera], as measured";
+        let found = format!("{found}: the scene's noise seems to be in {unit}");
+        return Finding::problem(Subject::Noise, found, advice);
+    }
     let none = PoseNoise {
         position: 0.0,
         angle: 0.0,
@@ -92,6 +98,17 @@ fn lasts(errors: &Lasting, stated: &PoseNoise) -> Option<Finding> {
         worth(wander.angle)
     );
     Some(Finding::warning(Subject::Noise, found, advice))
+}
+
+/// Returns the unit of stated noise that is far above the measured one, and as large as the object:
+/// a quarter of its radius, or 0.2 rad.
+fn in_other_units(noise: &PoseNoise, stated: &PoseNoise, size: f64) -> Option<&'static str> {
+    let above =
+        |stated: f64, measured: f64, large: f64| stated > FAR_OFF * measured && stated > large;
+    if above(stated.position, noise.position, 0.25 * size) {
+        return Some("mm");
+    }
+    above(stated.angle, noise.angle, 0.2).then_some("degrees")
 }
 
 /// Returns true if a noise is above `ratio` times the stated one, and above what needs no

@@ -24,7 +24,16 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
             "give each sensor its [[fixel]], in the same order",
         )];
     }
-    (0..sensors).map(|sensor| judge(evidence, sensor)).collect()
+    let judged = (0..sensors).map(|sensor| judge(evidence, sensor));
+    let without = (sensors > 0 && sensors < fixels).then(|| {
+        let found = format!(
+            "the log has {}, the scene {}: sensor k is on the k-th fixel, the others have none",
+            counted(sensors as u64, "sensor"),
+            counted(fixels as u64, "fixel")
+        );
+        Finding::ok(Subject::Sensor(sensors + 1), found)
+    });
+    judged.chain(without).collect()
 }
 
 fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {

@@ -4,7 +4,7 @@
 //! schema all that it says.
 
 use stickslip::Rule::{
-    self, Finite, NotNegative, Positive, PositiveOrInfinite, Probability, Share,
+    self, Finite, NotNegative, Positive, PositiveOrInfinite, Probability, Share, Turn,
 };
 use stickslip::Unit::{
     self, Kilogram, KilogramMetre2, Metre, MetrePerSecond, MetrePerSecond2, Newton, Radian, Second,
@@ -109,7 +109,7 @@ const TABLES: [(&str, &[Key]); 14] = [
             "the nominal friction coefficient mu_s between object and support"),
         number("tripod_radius", Metre, Positive, Derived(MEAN_DISTANCE),
             "the nominal radius d_tri of the support tripod"),
-        number("tripod_angle", Radian, Finite, Derived("pi / 2, and unknown"),
+        number("tripod_angle", Radian, Turn, Derived("pi / 2, and unknown"),
             "the direction of the first foot in the object frame"),
         list(Feet, "feet", Metre, Finite, Optional,
             "three feet as [[x, y], [x, y], [x, y]] in the object frame")
@@ -133,7 +133,7 @@ const TABLES: [(&str, &[Key]); 14] = [
     ("fixel", &[
         list(Pair, "position", Metre, Finite, Required,
             "the fixel's position in the world as [x, y]"),
-        number("angle", Radian, Finite, Or("0.0"), "the fixel's angle"),
+        number("angle", Radian, Turn, Or("0.0"), "the fixel's angle"),
         of(Shape, "shape", Required, OUTLINE),
     ]),
     ("camera", &[
@@ -226,7 +226,7 @@ const TABLES: [(&str, &[Key]); 14] = [
         of(Pose, "object", Required, "the object's pose as [x, y, theta]"),
         of(Pose, "pusher", Required,
             "the pusher's pose as [x, y, theta]").note("It keeps its angle."),
-        number("direction", Radian, Finite, Or("0.0"),
+        number("direction", Radian, Turn, Or("0.0"),
             "the direction of the pusher's motion in the world"),
         list(Speed, "speed", MetrePerSecond, Finite, Required,
             "the pusher's speed in m/s, or its course as [[time, speed], ...] in s and m/s")
@@ -247,7 +247,7 @@ const TABLES: [(&str, &[Key]); 14] = [
         list(Pair, "semi_axes", Metre, Positive, Required,
             "the half lengths of the two axes as [a, b]"),
         list(Pair, "centre", Metre, Finite, Or("[0.0, 0.0]"), "the centre as [x, y]"),
-        number("angle", Radian, Finite, Or("0.0"), "the angle of the first axis"),
+        number("angle", Radian, Turn, Or("0.0"), "the angle of the first axis"),
     ]),
 ];
 
