@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let left_out = Ingredient::ALL.into_iter().map(Some);
     for left_out in std::iter::once(None).chain(left_out) {
-        let name = left_out.map_or("contact mode", Ingredient::left_out);
+        let name = left_out.map_or("robust model", Ingredient::left_out);
         let dark = Scored::of(&experiments, seeds, left_out, true)?;
         let lit = Scored::of(&experiments, seeds, left_out, false)?;
         println!(

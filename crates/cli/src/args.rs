@@ -33,7 +33,7 @@ pub enum Command {
     Filter(FilterArgs),
     /// Run every method on experiment folders and compare their errors
     Compare(CompareArgs),
-    /// Fit friction and geometry to many pushes, with their spread
+    /// Fit friction and geometry to many pushes, with spreads
     Fit(FitArgs),
     /// Simulate an experiment: scene, log and truth
     Simulate(SimulateArgs),
@@ -137,7 +137,7 @@ pub struct CompareArgs {
     /// Experiment folders (scene.toml, a log, the truth if known), or folders of such folders
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
-    /// Number of seeds, 1 to 10000: 0 to K - 1 for the particle filter; scores are medians
+    /// Seeds 0 to K - 1 of the particle filter, K at most 10000; scores are medians
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub seeds: u64,
     /// Scene file in each folder
@@ -222,7 +222,7 @@ pub enum MethodName {
     Kalman,
     /// As kalman; with the camera off it stops at the first touch
     KalmanStops,
-    /// As kalman; with the camera off it is glued to the pusher
+    /// As kalman; with the camera off the object is glued to the pusher
     WithPusher,
     /// Extended Kalman filter over contact dynamics, without touch
     ExtendedKalman,

@@ -289,15 +289,11 @@ fn score_table(summary: &Summary<'_>) -> Table {
     };
     row("pose RMSE", number(summary.wmse_mm, 3), "mm");
     row(
-        "pose RMSE, occluded rows",
+        "pose RMSE, occluded",
         number(summary.wmse_occluded_mm, 3),
         "mm",
     );
-    row(
-        "pose RMSE, moving object",
-        number(summary.wmse_moving_mm, 3),
-        "mm",
-    );
+    row("pose RMSE, moving", number(summary.wmse_moving_mm, 3), "mm");
     row(
         "final position error",
         number(summary.final_error_mm, 3),

@@ -15,7 +15,7 @@ pub struct GivenArgs {
     /// Recorded experiment: log.csv, an MCAP file, a bag's folder, or a folder with one of these
     #[arg(value_name = "LOG")]
     first: PathBuf,
-    /// Scene of the experiment [default: scene.toml in the log's folder or next to it]
+    /// Scene, before or after LOG [default: scene.toml in the log's folder or next to it]
     #[arg(value_name = "SCENE.toml")]
     second: Option<PathBuf>,
     /// Scene under any name, or a folder with scene.toml

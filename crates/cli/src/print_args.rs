@@ -28,7 +28,7 @@ pub struct PrintArgs {
     /// Calibration board to draw (board.toml)
     #[arg(long, value_name = "TOML")]
     pub board: Option<PathBuf>,
-    /// Paper size in mm, each side 20 to 5000; the default is A4 upright
+    /// Paper size in mm, each side 20 to 5000; 210x297 is A4
     #[arg(long, value_name = "WxH", value_parser = paper, default_value = "210x297")]
     pub paper: Paper,
 }

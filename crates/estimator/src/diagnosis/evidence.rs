@@ -257,5 +257,7 @@ pub(super) fn quantile(values: impl IntoIterator<Item = f64>, q: f64) -> f64 {
 
 /// A length in mm, as text.
 pub(super) fn mm(length: f64) -> String {
-    format!("{:.1} mm", 1e3 * length)
+    // no minus sign before a rounded zero
+    let tenths = (1e4 * length).round() + 0.0;
+    format!("{:.1} mm", tenths / 10.0)
 }
