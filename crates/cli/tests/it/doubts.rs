@@ -33,7 +33,7 @@ fn has(warnings: &[String], words: &str) -> bool {
 fn filter_says_when_nothing_was_explained() {
     let case = in_millimetres("doubts/filter");
     let page = case.folder.join("report.html");
-    let arguments = ["--scene", &case.scene(), "--particles", "50"].map(str::to_owned);
+    let arguments = ["--scene", &case.scene(), "--particles", "50", "--force"].map(str::to_owned);
     let filter = || {
         let mut command = stickslip();
         command.arg("filter").arg(case.log()).args(&arguments);
@@ -68,7 +68,7 @@ fn compare_says_when_nothing_was_explained() {
         command
             .arg("compare")
             .arg(&case.folder)
-            .args(["--particles", "50"]);
+            .args(["--particles", "50", "--force"]);
         command
     };
     let result = json(compare().arg("--json"));

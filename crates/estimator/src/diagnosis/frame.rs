@@ -23,6 +23,8 @@ const FEWEST: usize = 10;
 
 type Change = fn(Pose, Pose) -> (Pose, Pose);
 
+const SWAPPED_AXES: &str = "x and y are swapped in object and pusher";
+
 /// Slips, each with its correction of the object's and the pusher's pose in the log.
 const SLIPS: [(&str, Change); 9] = [
     (
@@ -53,9 +55,7 @@ const SLIPS: [(&str, Change); 9] = [
         (Pose::new(o.x, o.y, o.theta + 2.0 * FRAC_PI_2), p)
     }),
     ("the object's x and y are swapped", |o, p| (swapped(o), p)),
-    ("x and y are swapped in object and pusher", |o, p| {
-        (swapped(o), swapped(p))
-    }),
+    (SWAPPED_AXES, |o, p| (swapped(o), swapped(p))),
 ];
 
 fn mirrored(pose: Pose) -> Pose {
@@ -78,8 +78,11 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         )];
     }
     let (off, nearest) = (distance(&gaps), median(gaps.iter().copied()));
-    // a mirrored frame may keep the bodies near each other, but not in touch
-    let explained = || off > 2.0 * evidence.tolerance() && slip(evidence, off).is_some();
+    // swapped axes of both bodies keep them near each other, but not in touch
+    let touching =
+        |(name, distance): (&str, f64)| name == SWAPPED_AXES && distance < evidence.tolerance();
+    let explained =
+        || off > 2.0 * evidence.tolerance() && slip(evidence, off).is_some_and(touching);
     if off < APART * evidence.size() && !explained() {
         return vec![Finding::ok(
             Subject::Frames,
@@ -93,8 +96,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         "gap between pusher and moving object {} (median): their poses are not in the same frame",
         mm(nearest)
     );
-    let advice = slip(evidence, off)
-        .unwrap_or("give object and pusher poses in the same world frame, x and y right-handed, angles counter-clockwise");
+    let advice = slip(evidence, off).map_or(
+        "give object and pusher poses in the same world frame, x and y right-handed, angles counter-clockwise",
+        |(name, _)| name,
+    );
     vec![Finding::problem(Subject::Frames, found, advice)]
 }
 
@@ -122,14 +127,14 @@ fn leading(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// Returns the slip that explains the gap best, if one does.
-fn slip(evidence: &Evidence<'_>, off: f64) -> Option<&'static str> {
+/// Returns the slip that explains the gap best, if one does, with the gap's distance from zero (m).
+fn slip(evidence: &Evidence<'_>, off: f64) -> Option<(&'static str, f64)> {
     let tried = SLIPS
         .iter()
         .map(|(name, change)| (*name, distance(&gaps(evidence, change))));
     let swapped = ("object and pusher are swapped", swapped_distance(evidence));
     let (name, best) = tried.chain([swapped]).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (best * BETTER < off && best < APART * evidence.size()).then_some(name)
+    (best * BETTER < off && best < APART * evidence.size()).then_some((name, best))
 }
 
 /// Distance of the gaps from zero if object and pusher are swapped (m). The body that moves is then

@@ -74,7 +74,9 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
         pushing::check,
         sensors::check,
     ];
-    if !findings.iter().any(is_misread) {
+    if findings.iter().any(is_misread) {
+        findings.retain(is_misread);
+    } else {
         findings.extend(of_gaps.iter().flat_map(|check| check(&evidence)));
     }
     findings
@@ -135,6 +137,6 @@ fn is_misread(finding: &Finding) -> bool {
     finding.severity == Severity::Problem
         && matches!(
             finding.subject,
-            Subject::Units | Subject::Angles | Subject::Frames
+            Subject::Units | Subject::Angles | Subject::Timing | Subject::Noise | Subject::Frames
         )
 }

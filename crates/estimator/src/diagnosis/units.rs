@@ -20,9 +20,11 @@ const GRAVITY: [f64; 2] = [1.0, 30.0];
 const METRES: &str = "give all lengths in metres";
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let found: Vec<Finding> = [size, positions, fixels, mass, inertia, gravity, tripod]
+    let positions = positions(evidence).or_else(|| fixels(evidence));
+    let found: Vec<Finding> = [size, mass, inertia, gravity, tripod]
         .iter()
         .filter_map(|check| check(evidence))
+        .chain(positions)
         .collect();
     if !found.is_empty() {
         return found;
