@@ -30,7 +30,7 @@ pub use collapses::collapsed;
 pub use finding::{Finding, Severity, Subject};
 pub use stall_force::assumed_stall_force;
 
-use evidence::Evidence;
+use evidence::{Evidence, unwrapped};
 
 use crate::log::Log;
 use crate::setup::Setup;
@@ -61,8 +61,9 @@ use crate::setup::Setup;
 /// # Ok::<(), stickslip::dynamics::ShapeError>(())
 /// ```
 pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let mut findings = plain(&evidence);
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = plain(&evidence, log);
     let geometric = [
         frame::check,
         overlap::check,
@@ -84,8 +85,9 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
 /// impossible. It tracks pusher poses that scatter by more than the scene states by the noise that
 /// they have.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let mut findings = plain(&evidence);
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = plain(&evidence, log);
     if !findings.iter().any(is_misread) {
         findings.extend(overlap::check(&evidence));
     }
@@ -97,11 +99,9 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     findings
 }
 
-/// Returns the findings that need no geometry.
-fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
+/// Returns the findings that need no geometry; angles are judged as `given`.
+fn plain(evidence: &Evidence<'_>, given: &Log) -> Vec<Finding> {
     let checks = [
-        units::check,
-        angles::check,
         limits::check,
         stall_force::check,
         timing::check,
@@ -111,7 +111,10 @@ fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
         repeats::check,
         noise::check,
     ];
-    checks.iter().flat_map(|check| check(evidence)).collect()
+    let mut findings = units::check(evidence);
+    findings.extend(angles::check(evidence, given));
+    findings.extend(checks.iter().flat_map(|check| check(evidence)));
+    findings
 }
 
 /// Returns true if units or angles are wrong. Findings that need the geometry would only repeat
