@@ -1,8 +1,8 @@
 //! Experiments from files: [`read_experiment`], [`read_folder`], and from [`Texts`] inside the
 //! program.
 
-use std::fs::{self, File};
-use std::io::{self, ErrorKind};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -173,22 +173,15 @@ pub fn reference_name(experiment: &Experiment) -> &'static str {
 
 /// Reads a scene file.
 pub fn read_scene_file(path: &Path) -> Result<Setup> {
-    let (text, name) = (text_of(path, "scene")?, path.display().to_string());
-    let setup = read_scene(&text, &name)?;
-    for line in scene_assumptions(&text, &name)? {
+    parse_scene(&text_of(path, "scene")?, &path.display().to_string())
+}
+
+fn parse_scene(text: &str, name: &str) -> Result<Setup> {
+    let setup = read_scene(text, name)?;
+    for line in scene_assumptions(text, name)? {
         talk(format_args!("note: {name}: {line}"));
     }
     Ok(setup)
-}
-
-/// Reads other values of a scene file about the recording of a log: places of tags, and the force
-/// from which a sensor is touched; `topics` are those of the command line.
-fn bag_options(path: &Path, setup: &Setup, topics: &Topics) -> Result<BagOptions> {
-    Ok(BagOptions {
-        topics: topics.clone(),
-        mounts: read_mounts(&text_of(path, "scene")?, &path.display().to_string())?,
-        touch_force: setup.tactile.touch_force,
-    })
 }
 
 /// Reads a scene and a log with it. The verdict says whether all of the log could be read.
@@ -197,8 +190,15 @@ pub fn read_scene_and_log(
     log: &LogFiles,
     topics: &Topics,
 ) -> Result<(Setup, Log, Verdict)> {
-    let setup = read_scene_file(scene)?;
-    let (log, verdict) = log.read(&bag_options(scene, &setup, topics)?)?;
+    // once, since it may be a pipe
+    let (text, name) = (text_of(scene, "scene")?, scene.display().to_string());
+    let setup = parse_scene(&text, &name)?;
+    let options = BagOptions {
+        topics: topics.clone(),
+        mounts: read_mounts(&text, &name)?,
+        touch_force: setup.tactile.touch_force,
+    };
+    let (log, verdict) = log.read(&options)?;
     Ok((setup, log, verdict))
 }
 
@@ -245,9 +245,24 @@ pub fn read_facts_file(path: &Path) -> Result<TruthFacts> {
     )?)
 }
 
+/// Largest text file that is read as a whole (bytes).
+const LARGEST_TEXT: u64 = 64_000_000;
+
 /// The text of a file that is called `what` in errors.
 pub fn text_of(path: &Path, what: &str) -> Result<String> {
-    fs::read_to_string(path).map_err(|error| unreadable(path, what, &error))
+    let mut bytes = Vec::new();
+    let read = open(path, what)?
+        .take(LARGEST_TEXT + 1)
+        .read_to_end(&mut bytes);
+    read.map_err(|error| unreadable(path, what, &error))?;
+    if bytes.len() as u64 > LARGEST_TEXT {
+        let error = format!("it has more than {} MB", LARGEST_TEXT / 1_000_000);
+        return Err(unreadable(path, what, &io::Error::other(error)));
+    }
+    String::from_utf8(bytes).map_err(|_| {
+        let error = io::Error::new(ErrorKind::InvalidData, "it is no text in UTF-8");
+        unreadable(path, what, &error)
+    })
 }
 
 /// Opens a file that is called `what` in errors.

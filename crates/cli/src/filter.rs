@@ -23,7 +23,7 @@ use crate::args::{FilterArgs, MethodName, Program};
 use crate::experiment::{
     check_occlusion, check_sense, experiment_name, read_experiment, reference_name,
 };
-use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::given::Given;
 use crate::log_files::LogFiles;
 use crate::origin::origin;
@@ -192,7 +192,7 @@ fn report(
     write_report(path.to_owned(), &report)
 }
 
-/// Writes the estimate in all forms that are asked for.
+/// Writes the estimate in all forms that are asked for, estimate.csv first.
 fn write_all(
     args: &FilterArgs,
     folder: &Path,
@@ -200,23 +200,21 @@ fn write_all(
     experiment: &Experiment,
 ) -> Result<Vec<PathBuf>> {
     let estimate = &run.scored.estimate;
-    let mut written = vec![folder.join(ESTIMATE), folder.join("modes.csv")];
-    write_out(&written[0], |file| write_estimate(file, estimate))?;
-    write_out(&written[1], |file| write_modes(file, estimate))?;
+    let mut results = Results::default();
+    results.add(folder.join(ESTIMATE), |file| write_estimate(file, estimate))?;
+    results.add(folder.join("modes.csv"), |file| write_modes(file, estimate))?;
     if args.tum {
         let path = folder.join("estimate.tum");
-        write_out(&path, |file| write_estimate_tum(file, estimate))?;
-        written.push(path);
+        results.add(path, |file| write_estimate_tum(file, estimate))?;
     }
     if args.mcap {
         let path = folder.join("estimate.mcap");
         let mut bytes = Cursor::new(Vec::new());
         let (setup, pusher) = (&experiment.setup, &experiment.log.pusher);
         write_estimate_mcap(&mut bytes, estimate, &run.cloud, pusher, setup)?;
-        write_out(&path, |file| file.write_all(bytes.get_ref()))?;
-        written.push(path);
+        results.add(path, |file| file.write_all(bytes.get_ref()))?;
     }
-    Ok(written)
+    results.place()
 }
 
 impl<'a> Summary<'a> {

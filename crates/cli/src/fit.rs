@@ -17,7 +17,7 @@ use stickslip_report::{Block, Report, Section, Table};
 use crate::args::Program;
 use crate::compare::expand;
 use crate::experiment::{experiment_name, read_folder, text_of};
-use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::fit_args::FitArgs;
 use crate::log_files::log_path;
 use crate::origin::origin;
@@ -79,8 +79,10 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
         result.cross_validation.as_ref(),
     )?;
     let json = serde_json::to_string_pretty(&result)? + "\n";
-    write_out(&scene_out, |file| file.write_all(scene.as_bytes()))?;
-    write_out(&json_out, |file| file.write_all(json.as_bytes()))?;
+    let mut results = Results::default();
+    results.add(scene_out.clone(), |file| file.write_all(scene.as_bytes()))?;
+    results.add(json_out.clone(), |file| file.write_all(json.as_bytes()))?;
+    results.place()?;
     show_result(args.json, &result, || text(&result))?;
     if let Some(path) = &args.report {
         let path = write_report(path.clone(), &page(&result, args.seed))?;

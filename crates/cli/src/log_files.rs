@@ -197,6 +197,12 @@ impl LogFiles {
     fn opened(&self, path: &Path) -> Result<File> {
         let name = path.display();
         let mut file = open(path, "log")?;
+        if !file.metadata().is_ok_and(|there| there.is_file()) {
+            return Err(hinted(
+                format!("{name}: this is a pipe or a device; a log is read from a file"),
+                "write it into a file first, and give that",
+            ));
+        }
         let kind = kind_of(&mut file).map_err(|error| unreadable(path, "log", &error))?;
         match kind {
             Kind::Sqlite => Err(not_mcap(path, "sqlite3")),

@@ -126,6 +126,29 @@ fn track_takes_any_folder_of_images_at_a_rate() {
 }
 
 #[test]
+fn track_asks_about_names_whose_order_is_not_sure() {
+    let (frames, out) = (two_frames("camera/names"), RENDERED.join("names"));
+    let tags = RENDERED.join("tags.toml");
+    let mut names: Vec<PathBuf> = fs::read_dir(&frames)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    names.sort();
+    for (path, name) in names.iter().zip(["12.25.png", "12.5.png"]) {
+        fs::rename(path, frames.join(name)).unwrap();
+    }
+    assert_refused(
+        &mut track(&frames, &tags, &out, &["--rate", "30"]),
+        &[
+            "`12.25.png` comes before `12.5.png` if these are decimal numbers",
+            "write frames.csv",
+        ],
+    );
+    fs::rename(frames.join("12.25.png"), frames.join("12.05.png")).unwrap();
+    succeeds(&mut track(&frames, &tags, &out, &["--rate", "30"]));
+}
+
+#[test]
 fn track_names_an_image_that_cannot_be_read() {
     let (frames, out) = (two_frames("camera/broken"), RENDERED.join("broken"));
     let tags = RENDERED.join("tags.toml");

@@ -131,14 +131,17 @@ fn check_names_small_angles_in_degrees_by_their_noise() {
 }
 
 #[test]
-fn check_names_a_wrapped_angle() {
-    let case = Experiment::copy(STOP, "wrapped");
-    case.edit_rows(|rows| {
-        rows.iter_mut()
-            .skip(200)
-            .for_each(|row| row[6] -= std::f64::consts::TAU)
-    });
-    assert_problem(&case, &["angles: pusher_theta", "full turn", "unwrapped"]);
+fn check_takes_angles_wrapped_to_one_turn_and_names_a_body_seen_the_wrong_way_round() {
+    let turned = |name: &str, by: f64| {
+        let case = Experiment::copy(STOP, name);
+        case.edit_rows(|rows| rows.iter_mut().skip(200).for_each(|row| row[6] -= by));
+        let run = stickslip().args(["check", &case.log()]).output().unwrap();
+        String::from_utf8(run.stdout).unwrap()
+    };
+    let wrapped = turned("wrapped", std::f64::consts::TAU);
+    assert!(wrapped.contains("ok       angles"), "{wrapped}");
+    let half = turned("half_turn", std::f64::consts::PI);
+    assert!(half.contains("pusher_theta jumps by half a turn"), "{half}");
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod inputs;
 mod lens;
 mod live;
 mod live_page;
+mod live_recovery;
 mod mcap;
 mod newcomers;
 mod outputs;

@@ -31,7 +31,7 @@ pub use collapses::collapsed;
 pub use finding::{Finding, Severity, Subject};
 pub use stall_force::assumed_stall_force;
 
-use evidence::Evidence;
+use evidence::{Evidence, unwrapped};
 
 use crate::log::Log;
 use crate::setup::Setup;
@@ -62,8 +62,9 @@ use crate::setup::Setup;
 /// # Ok::<(), stickslip::dynamics::ShapeError>(())
 /// ```
 pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let mut findings = plain(&evidence);
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = plain(&evidence, log);
     if !findings.iter().any(is_misread) {
         findings.extend(frame::check(&evidence));
     }
@@ -85,10 +86,15 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
 /// Finds what makes an estimate meaningless: wrong units, angles or frames, noise in other units,
 /// swapped columns. Only the first cause is returned.
 pub fn refused(setup: &Setup, log: &Log) -> Option<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let checks = [units::check, angles::check, noise::check, frame::check];
-    let mut findings = checks.iter().flat_map(|check| check(&evidence));
-    findings.find(|finding| finding.severity == Severity::Problem)
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = units::check(&evidence);
+    findings.extend(angles::check(&evidence, log));
+    findings.extend(noise::check(&evidence));
+    findings.extend(frame::check(&evidence));
+    findings
+        .into_iter()
+        .find(|finding| finding.severity == Severity::Problem)
 }
 
 /// Finds the problems that are cheap enough to check before every run: numbers in other units or by
@@ -99,8 +105,9 @@ pub fn refused(setup: &Setup, log: &Log) -> Option<Finding> {
 /// impossible. It tracks pusher poses that scatter by more than the scene states by the noise that
 /// they have.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let mut findings = plain(&evidence);
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = plain(&evidence, log);
     if !findings.iter().any(is_misread) {
         findings.extend(overlap::check(&evidence));
     }
@@ -114,8 +121,8 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
 }
 
 /// Returns the findings that need no geometry; the causes alone if units or angles are wrong.
-fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let causes = [units::check, angles::check, timing::check];
+/// Angles are judged as `given`.
+fn plain(evidence: &Evidence<'_>, given: &Log) -> Vec<Finding> {
     let others = [
         limits::check,
         stall_force::check,
@@ -125,7 +132,9 @@ fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
         repeats::check,
         noise::check,
     ];
-    let mut findings: Vec<Finding> = causes.iter().flat_map(|check| check(evidence)).collect();
+    let mut findings = units::check(evidence);
+    findings.extend(angles::check(evidence, given));
+    findings.extend(timing::check(evidence));
     if !findings.iter().any(is_misread) {
         findings.extend(others.iter().flat_map(|check| check(evidence)));
     }

@@ -34,6 +34,9 @@ use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
+/// Largest scene file (bytes).
+const LARGEST: usize = 1_000_000;
+
 /// Reads a scene file; `name` is shown in errors.
 ///
 /// # Errors
@@ -109,6 +112,10 @@ pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
 /// Result of `read` on the document.
 fn parsed<T>(text: &str, name: &str, read: impl FnOnce(&Table<'_>) -> Result<T>) -> Result<T> {
     let source = Source { name, text };
+    if text.len() > LARGEST {
+        let found = text.len();
+        return Err(source.error(0, SceneProblem::TooLarge { found }));
+    }
     let document = DeTable::parse(text).map_err(|error| syntax_error(source, &error))?;
     read(&Table::root(source, &document)?)
 }

@@ -40,6 +40,14 @@ fn full_scene_bodies_arrive() {
 }
 
 #[test]
+fn scene_above_1_mb_is_refused_and_at_1_mb_read() {
+    let text = |bytes: usize| format!("{LEAST}#{}", "x".repeat(bytes - LEAST.len() - 1));
+    assert_eq!(read(&text(1_000_000)).scene.gravity, 9.81);
+    let words = ["the file has 1000001 bytes", "at most 1 MB"];
+    refused_text(&text(1_000_001), "1:1", &words);
+}
+
+#[test]
 fn full_scene_shapes_arrive() {
     let scene = read(FULL).scene;
     let corners = vec![
