@@ -8,11 +8,11 @@ use std::path::Path;
 pub struct FrameNames {
     /// The names in their order.
     pub names: Vec<String>,
-    /// What the names leave open; `None` if their order is sure.
+    /// Question that the names leave open; `None` if their order is sure.
     pub question: Option<String>,
 }
 
-/// What `12.5` is in a name.
+/// Meaning of `12.5` in a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Reading {
     /// The number twelve and a half, as in times in seconds.
@@ -81,7 +81,7 @@ impl FrameNames {
     }
 }
 
-/// What fractions of different lengths are; `None` if that cannot be known.
+/// Meaning of fractions of different lengths; `None` if it cannot be known.
 fn reading(names: &[String]) -> Option<Reading> {
     let pieces = names.iter().flat_map(|name| pieces(stem(name)));
     let fractions: Vec<&str> = pieces

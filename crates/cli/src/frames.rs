@@ -23,7 +23,7 @@ pub struct FrameFolder {
     pub names: Vec<String>,
     /// Their times (s), where frames.csv gives them.
     pub time: Option<Vec<f64>>,
-    /// What their names leave open of their order.
+    /// Question that their names leave open about their order.
     pub question: Option<String>,
 }
 

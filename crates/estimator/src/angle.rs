@@ -20,8 +20,8 @@ pub fn unwrapped(angle: f64, near: f64) -> f64 {
     near + wrapped(angle - near)
 }
 
-/// The angle nearest to `near` that is full turns from `angle` (rad); `angle` itself, to the bit, if
-/// no turn is needed.
+/// The angle nearest to `near` that is full turns from `angle` (rad); `angle` itself, to the bit,
+/// if no turn is needed.
 pub fn nearest_winding(angle: f64, near: f64) -> f64 {
     angle - TAU * ((angle - near) / TAU).round()
 }

@@ -124,8 +124,8 @@ impl CsvTable {
         }
     }
 
-    /// Bytes before the line of `error` if this is the last one and was cut off while it was written:
-    /// it has no end, and cells are missing or the last one cannot be read.
+    /// Bytes before the line of `error` if this is the last one and was cut off while it was
+    /// written: it has no end, and cells are missing or the last one cannot be read.
     pub(crate) fn cut_off(&self, error: &CsvError) -> Option<usize> {
         let start = self.text.rfind('\n')? + 1;
         let is_last = self.text[..start].matches('\n').count() + 1 == error.line;

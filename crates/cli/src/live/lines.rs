@@ -77,7 +77,7 @@ impl Lines {
         Self { lines, stop }
     }
 
-    /// What ends them.
+    /// Flag that ends them.
     pub fn stop(&self) -> Stop {
         self.stop.clone()
     }

@@ -188,8 +188,8 @@ impl Write for Patient {
 }
 
 impl Shared {
-    /// Takes a stranger in, and ends the oldest one if there are too many; returns its number. Those
-    /// who have no token thus keep nobody out who has it.
+    /// Accepts a stranger, and ends the oldest one if there are too many; returns its number.
+    /// Clients without the token thus never keep its owner out.
     fn receive(&self, stream: &TcpStream) -> io::Result<u64> {
         let mut strangers = lock(&self.strangers);
         if strangers.streams.len() >= MOST_STRANGERS
@@ -296,8 +296,8 @@ impl Shared {
         Ok(())
     }
 
-    /// Shows a page the newest row again and again. A page that is opened while no rows come is told
-    /// the age of the one that it is shown.
+    /// Sends a page the newest row again and again. A page that is opened while no rows come also
+    /// gets the age of that row.
     fn show_rows(&self, socket: &mut WebSocket<Patient>) -> io::Result<()> {
         let mut seen = 0;
         while is_open(socket)? {

@@ -132,8 +132,7 @@ fn session_goes_on_when_the_disk_of_its_recording_is_full() {
         assert_eq!(run.status.code(), Some(3), "{told}");
         let expected: Vec<Option<f64>> = steady(2000).map(Some).collect();
         assert_eq!(answers(&run), expected);
-        assert_eq!(told.matches("cannot be written").count(), 1, "{told}");
-        assert!(told.contains("the session goes on"), "{told}");
+        assert_eq!(told.matches("the session goes on").count(), 1, "{told}");
 
         let mut filter = stickslip();
         filter.args(["filter", &path.display().to_string(), "--method", "kalman"]);

@@ -107,8 +107,14 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 /// columns of the two are swapped.
 fn leading(evidence: &Evidence<'_>) -> Option<Finding> {
     let log = evidence.log;
+    // the median of the first poses, so that a single wrong one is no motion
     let way = |poses: &[Option<Pose>], row: usize| {
-        let start = poses.iter().flatten().next()?;
+        let first = || poses.iter().flatten().take(5);
+        let start = Pose::new(
+            median(first().map(|pose| pose.x)),
+            median(first().map(|pose| pose.y)),
+            0.0,
+        );
         let pose = poses[..=row].iter().rev().flatten().next()?;
         Some((pose.x - start.x).hypot(pose.y - start.y))
     };

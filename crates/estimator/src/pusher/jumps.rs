@@ -21,8 +21,8 @@ const SIGMAS: f64 = 20.0;
 /// tag. If such poses go on, the time to get there grows, until one is accepted.
 ///
 /// The angle of an accepted pose is the winding nearest to that of the pose before, since a tracker
-/// of poses may give angles in one turn. Every pose enters the estimator here, in a run over a whole
-/// log as row by row.
+/// of poses may give angles in one turn. Every pose enters the estimator here, in a run over a
+/// whole log as row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpGate {
     position_std: f64,
@@ -33,7 +33,8 @@ pub(crate) struct JumpGate {
     left_out: u32,
 }
 
-/// Returns the accepted pusher poses of `log`, row by row, angles unwrapped. Without a `camera` poses count as exact.
+/// Returns the accepted pusher poses of `log`, row by row, angles unwrapped. Without a `camera`
+/// poses count as exact.
 pub(crate) fn believed(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
     let mut gate = JumpGate::new(camera);
     let rows = log.time.iter().zip(&log.pusher);

@@ -259,7 +259,7 @@ impl<'a> Node<'a> {
     pub(super) fn pose(&self) -> Result<Pose> {
         let [x, y, theta] = self.exactly::<3>()?;
         let metres = |node: &Self| node.number_in(Unit::Metre, Rule::Finite);
-        let theta = theta.number_in(Unit::Radian, Rule::Turn);
+        let theta = theta.number_in(Unit::Radian, Rule::Finite);
         Ok(Pose::new(metres(&x)?, metres(&y)?, theta?))
     }
 
