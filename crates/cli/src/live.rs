@@ -39,12 +39,8 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     };
     let deadline = args.deadline_ms.map(|milliseconds| 1e-3 * milliseconds);
     let mut session = Session::new(&setup, &options, deadline)?;
-    let sensors = setup.scene.fixels.len();
-    let mut recording = args
-        .record
-        .as_deref()
-        .map(|path| Recording::create(path, sensors))
-        .transpose()?;
+    let record = |path| Recording::create(path, setup.scene.fixels.len());
+    let mut recording = args.record.as_deref().map(record).transpose()?;
     let mut recorded = Verdict::Done;
     let mut page = args
         .page

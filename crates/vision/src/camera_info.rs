@@ -118,7 +118,7 @@ impl CameraInfo {
             "plumb_bob" if finite && !only_five => {
                 let right = match numbers.len() {
                     ..=8 => "rational_polynomial",
-                    ..=12 => "OpenCV's thin prism model",
+                    9..=12 => "OpenCV's thin prism model",
                     _ => "OpenCV's tilted model",
                 };
                 let numbers = numbers.clone();
