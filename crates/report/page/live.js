@@ -70,7 +70,8 @@ class Live {
     socket.addEventListener("message", (event) => {
       const message = JSON.parse(event.data);
       this.latest = performance.now() - 1000 * (message.silent ?? 0);
-      if (message.silent !== undefined) return this.listen();
+      // after the row that waits to be drawn
+      if (message.silent !== undefined) return requestAnimationFrame(() => this.listen());
       if (this.newest === null) requestAnimationFrame(() => this.draw());
       this.newest = message;
     });
