@@ -70,8 +70,7 @@ class Live {
     socket.addEventListener("message", (event) => {
       const message = JSON.parse(event.data);
       this.latest = performance.now() - 1000 * (message.silent ?? 0);
-      // after the row that waits to be drawn
-      if (message.silent !== undefined) return requestAnimationFrame(() => this.listen());
+      if (message.silent !== undefined) return this.listen();
       if (this.newest === null) requestAnimationFrame(() => this.draw());
       this.newest = message;
     });
@@ -91,7 +90,8 @@ class Live {
   /** Says for how long no row has come, if that is long; returns true then. */
   listen() {
     const silent = this.latest === null ? 0 : performance.now() - this.latest;
-    const isSilent = silent > SILENCE;
+    // a row that waits to be drawn comes first
+    const isSilent = this.newest === null && silent > SILENCE;
     this.find(".stage").classList.toggle("silent", isSilent);
     if (isSilent) this.say("no rows", ` for ${Math.floor(silent / 1000)} s`);
     return isSilent;
