@@ -2,7 +2,6 @@
 
 use stickslip_lanes::{Lanes, Mask};
 
-use crate::creep::{creep, speed};
 use crate::friction::Friction;
 use crate::geometry::contact::Contact;
 use crate::geometry::narrow_phase::NarrowPhase;
@@ -38,8 +37,6 @@ pub struct Assembly<const W: usize> {
     pub(crate) rows: Vec<Row<W>>,
     /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
-    /// Growth of the object beyond its shape (m).
-    growth: Lanes<W>,
     pub(crate) scaling: Scaling<W>,
 }
 
@@ -78,8 +75,6 @@ struct Other<'a, const W: usize> {
     shape: &'a Shape,
     transform: Transform<Lanes<W>>,
     mu: Lanes<W>,
-    /// Slip at which friction reaches its bound (m/s); `None` where no contact creeps.
-    creep: Option<Lanes<W>>,
     motion: Option<&'a PusherMotion<Lanes<W>>>,
     /// The lanes in which it may touch the object.
     active: Mask<W>,
@@ -110,21 +105,15 @@ impl<const W: usize> Assembly<W> {
     ) {
         self.rows.clear();
         ncp.clear();
-        self.growth = bodies.growth;
         let object = Transform::from(particles.pose);
         self.set_body(prepared, &bodies, (particles, &object), ncp);
         let scene = &prepared.scene;
-        let creep = bodies.creep.map(|shares| {
-            let speed = speed(&particles.twist, prepared.rho);
-            shares.map(|share| share * speed)
-        });
 
         let pusher = bodies.pusher.map(|pusher| Other {
             body: Body::Pusher,
             shape: &scene.pusher.shape,
             transform: pusher.transform,
             mu: particles.friction.mu_p,
-            creep: creep.map(|[of_pusher, _]| of_pusher),
             motion: Some(&pusher.motion),
             active: pusher.present,
         });
@@ -141,7 +130,6 @@ impl<const W: usize> Assembly<W> {
                     shape,
                     transform,
                     mu: particles.friction.mu_f,
-                    creep: creep.map(|[_, of_fixels]| of_fixels),
                     motion: None,
                     active: Mask::splat(true),
                 }
@@ -207,14 +195,8 @@ impl<const W: usize> Assembly<W> {
         may_touch(
             [&scene.object.shape, other],
             [object.origin, origin],
-            self.reach(),
+            self.search_distance,
         )
-    }
-
-    /// Distance from the object's shape within which contacts are sought.
-    #[inline(always)]
-    fn reach(&self) -> Lanes<W> {
-        self.search_distance + self.growth.max(Lanes::ZERO)
     }
 
     /// Sets all that does not depend on contacts: free velocity, feet, stall force.
@@ -290,9 +272,9 @@ impl<const W: usize> Assembly<W> {
             shape: other.shape,
             transform: other.transform,
         };
-        narrow.collide(placed, other_placed, self.reach(), other.active);
+        narrow.collide(placed, other_placed, self.search_distance, other.active);
         for contact in narrow.contacts().filter(|contact| contact.present.any()) {
-            let gap = contact.gap - self.growth;
+            let gap = contact.gap;
             let gap = gap.abs().gt(Lanes::splat(CLOSED)).zero_unless(gap);
             let key = (other.body.number() * Contact::<W>::ID_COUNT as usize + contact.id as usize)
                 as f64;
@@ -302,14 +284,8 @@ impl<const W: usize> Assembly<W> {
                 present: contact.present,
                 gap,
             });
-            let mut row = row(&self.scaling, object, other, contact, gap);
-            if let Some(slip) = other.creep {
-                let [p_n, _] = remembered(particles, key);
-                row.creep = contact
-                    .present
-                    .zero_unless(creep(slip, row.mu, p_n, &ncp.feet));
-            }
-            ncp.contacts.push(row);
+            ncp.contacts
+                .push(row(&self.scaling, object, other, contact, gap));
         }
     }
 
@@ -412,7 +388,6 @@ fn row<const W: usize>(
         nd: Lanes::ZERO,
         td: Lanes::ZERO,
         mu: keep(other.mu),
-        creep: Lanes::ZERO,
     }
 }
 

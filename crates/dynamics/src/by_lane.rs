@@ -75,7 +75,6 @@ impl<const W: usize> Pushers<'_, W> {
                 fixels,
             } => {
                 let beside: Vec<_> = self.fixel_offsets(chunk).iter().map(alone).collect();
-                let creep: Vec<_> = self.creep(chunk).into_iter().map(alone).collect();
                 let feet = self.foot_offset(chunk).into_iter();
                 let feet: Vec<_> = feet
                     .map(|offset| offset.map(|x| Lanes([x.0[lane]])))
@@ -86,9 +85,7 @@ impl<const W: usize> Pushers<'_, W> {
                     pusher: &[alone(&offsets.pusher[chunk])],
                     pusher_turn: &turn,
                     fixels: &beside,
-                    growth: &[Lanes([offsets.growth[chunk].0[lane]])],
                     foot_offsets: &feet,
-                    creep: &creep,
                 };
                 then(&Pushers::Offset {
                     pusher: *pusher,

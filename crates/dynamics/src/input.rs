@@ -29,8 +29,8 @@ impl PusherMotion {
     }
 }
 
-/// Offsets of pusher, fixels and feet from the poses that the input and the scene give, growth of
-/// the object's outline, and creep of its contacts, particle by particle.
+/// Offsets of pusher, fixels and feet from the poses that the input and the scene give, particle by
+/// particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
     /// Offset of the pusher (m), chunk by chunk.
@@ -40,15 +40,9 @@ pub struct Offsets<'a, const W: usize> {
     pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
-    /// Distances by which the object's outline lies outside its shape (m), chunk by chunk: every
-    /// gap is smaller by that.
-    pub growth: &'a [Lanes<W>],
     /// Offsets of the feet from the scene's (m, m), and their turns about their centre of friction
     /// (rad), in the object's frame, chunk by chunk. Empty where they stand as in the scene.
     pub foot_offsets: &'a [Pose<Lanes<W>>],
-    /// Shares of the object's speed at which the friction of contacts with pusher and fixels
-    /// reaches its bound (docs/method.md (50)), chunk by chunk. Empty where no contact creeps.
-    pub creep: &'a [[Lanes<W>; 2]],
 }
 
 /// Input of one step.

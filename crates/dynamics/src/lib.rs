@@ -5,7 +5,6 @@ mod block_problems;
 mod by_lane;
 mod compiled_step;
 mod contact_state;
-mod creep;
 mod feet;
 mod friction;
 mod geometry;

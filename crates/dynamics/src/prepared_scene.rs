@@ -81,13 +81,9 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub pusher: Option<&'a PusherContext<W>>,
     /// Offsets of the fixels (m); none where they stand as the scene says.
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
-    /// Growth of the object beyond its shape (m).
-    pub growth: Lanes<W>,
     /// Offset of the feet from the scene's, and their turn; `None` where they stand as in the
     /// scene.
     pub foot_offset: Option<&'a Pose<Lanes<W>>>,
-    /// Creep of contacts with pusher and fixels; `None` where they do not creep.
-    pub creep: Option<&'a [Lanes<W>; 2]>,
 }
 
 /// The pusher of every chunk of particles in one step, and where the fixels stand.
@@ -180,16 +176,6 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// Creep of the contacts of one chunk with the pusher and with fixels; `None` where they do not
-    /// creep.
-    #[inline(always)]
-    pub fn creep(&self, chunk: usize) -> Option<&[Lanes<W>; 2]> {
-        match self {
-            Self::Offset { offsets, .. } => offsets.creep.get(chunk),
-            _ => None,
-        }
-    }
-
     /// Offset of the feet from the scene's, and their turn, in one chunk; `None` where they stand
     /// as in the scene.
     #[inline(always)]
@@ -197,15 +183,6 @@ impl<const W: usize> Pushers<'_, W> {
         match self {
             Self::Offset { offsets, .. } => offsets.foot_offsets.get(chunk),
             _ => None,
-        }
-    }
-
-    /// Growth of the object beyond its shape (m) in one chunk.
-    #[inline(always)]
-    pub fn growth(&self, chunk: usize) -> Lanes<W> {
-        match self {
-            Self::Offset { offsets, .. } => offsets.growth[chunk],
-            _ => Lanes::ZERO,
         }
     }
 }

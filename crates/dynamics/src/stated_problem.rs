@@ -52,7 +52,6 @@ impl<const W: usize> Assembly<W> {
                 ],
                 gap,
                 mu: numbers.mu.0[lane],
-                creep: numbers.creep.0[lane] / mass,
                 surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
                 on_pusher: row.body == Body::Pusher,
             }

@@ -123,12 +123,12 @@ impl Dynamics {
     }
 
     /// Advances a block of particles, each with its own `offsets`. They shift pusher, fixels and
-    /// feet from the given poses, enlarge the object beyond its shape, and let contacts creep.
+    /// feet from the given poses.
     ///
     /// # Panics
-    /// If an offset of the pusher or a growth is missing for a chunk of particles, or an offset of
-    /// a fixel. Also if the turns of the pusher, the offsets of the feet or the creeps are neither
-    /// none at all nor one for each chunk.
+    /// If an offset of the pusher or of a fixel is missing for a chunk of particles. Also if the
+    /// turns of the pusher or the offsets of the feet are neither none at all nor one for each
+    /// chunk.
     pub fn step_block_offset<const W: usize>(
         &self,
         input: &StepInput,
@@ -141,13 +141,10 @@ impl Dynamics {
         let (chunks, fixels) = (particles.len(), self.scene.fixels.len());
         assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
-        assert_eq!(offsets.growth.len(), chunks, "a growth for each chunk");
         let turn = offsets.pusher_turn.len();
         assert!(turn == chunks || turn == 0, "a turn for each chunk");
         let feet = offsets.foot_offsets.len();
         assert!(feet == chunks || feet == 0, "feet for each chunk");
-        let creep = offsets.creep.len();
-        assert!(creep == chunks || creep == 0, "a creep for each chunk");
         let pushers = Pushers::Offset {
             pusher: SharedPusher::new(&self.scene, input.pusher.as_ref()),
             offsets,

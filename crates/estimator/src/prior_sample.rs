@@ -65,8 +65,7 @@ impl PriorSample {
         let first = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
 
         // the motion. Re-simulations would favour what agrees with the pusher, as `chance` does
-        // already. The pose of a waiting object is not redrawn, because the first pose is all that
-        // is known of it
+        // already
         let options = RunOptions {
             model,
             particles: 1,
@@ -78,7 +77,6 @@ impl PriorSample {
             },
             moves: Moves {
                 second_tries: false,
-                waiting: false,
                 ..Moves::default()
             },
             ..RunOptions::default()

@@ -5,9 +5,8 @@ use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
 use crate::options::{Method, RunOptions, TactileUse};
-use crate::particle::contact_filter::{Drive, Measured};
+use crate::particle::contact_filter::{ContactFilter, Drive, Measured};
 use crate::particle::filter_options::FilterOptions;
-use crate::particle::learning_filter::LearningFilter;
 use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
 use crate::particle::view::ParticleView;
@@ -173,7 +172,6 @@ fn track_smoothed(
         seed: options.seed,
         late: 0.0,
         moves: options.moves,
-        least_moved: 0.0,
         observer: *observer,
     };
     let start = PoseAt {
@@ -181,16 +179,10 @@ fn track_smoothed(
         pose: *start,
         covariance: prepared.covariance(*first),
     };
-    let mut filter = LearningFilter::new(setup, camera, start, &filter_options)?;
+    let mut filter = ContactFilter::new(setup, camera, start, &filter_options)?;
     let mut estimate = prepared.empty_estimate(setup);
     estimate.rows[*first].clone_from(filter.latest());
-    let show = |row: usize, filter: &LearningFilter<'_>| {
-        prepared.show(row, Some(filter.particles()), filter.friction_particles());
-    };
-    show(*first, &filter);
-    if *first == prepared.last_seen {
-        filter.learn_no_more();
-    }
+    prepared.show(*first, Some(filter.particles()));
     let mut row_at = Row::default();
     for row in first + 1..log.len() {
         prepared.read(row, options.tactile, &mut row_at);
@@ -205,10 +197,7 @@ fn track_smoothed(
             [] => filter.look(measured),
             _ => filter.step(measured, drive),
         });
-        show(row, &filter);
-        if row == prepared.last_seen {
-            filter.learn_no_more();
-        }
+        prepared.show(row, Some(filter.particles()));
         progress(row);
     }
     let run = ParticleRun {
@@ -233,10 +222,7 @@ fn track_causal(
     for row in 0..prepared.log.len() {
         prepared.read(row, options.tactile, &mut row_at);
         estimate.rows[row].clone_from(tracker.push(&row_at)?);
-        prepared.show(row, tracker.particles(), tracker.friction_particles());
-        if row == prepared.last_seen {
-            tracker.learn_no_more();
-        }
+        prepared.show(row, tracker.particles());
         if row > prepared.first {
             progress(row);
         }
@@ -250,21 +236,9 @@ fn track_causal(
 }
 
 impl PreparedLog<'_> {
-    /// Shows the observer the particles after a row: those with the friction of the estimate, then
-    /// those of the pose.
-    fn show(
-        &self,
-        row: usize,
-        poses: Option<ParticleView<'_>>,
-        friction: Option<ParticleView<'_>>,
-    ) {
-        let Some(observer) = self.observer else {
-            return;
-        };
-        if let Some(particles) = friction {
-            observer.on_friction(row, &particles);
-        }
-        if let Some(particles) = poses {
+    /// Shows the observer the particles after a row.
+    fn show(&self, row: usize, particles: Option<ParticleView<'_>>) {
+        if let Some((observer, particles)) = self.observer.zip(particles) {
             observer.on_row(row, &particles);
         }
     }

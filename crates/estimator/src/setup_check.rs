@@ -251,8 +251,6 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     ];
     let plain = [
         ("uncertainty.centre_of_friction", unknown.centre_of_friction),
-        ("uncertainty.drift", unknown.drift),
-        ("uncertainty.variation", unknown.variation),
         ("uncertainty.force_std", unknown.force_std),
         ("uncertainty.roughness", unknown.roughness),
         ("uncertainty.camera_noise", unknown.camera_noise),
@@ -260,10 +258,8 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     let lengths = [
         ("uncertainty.pusher_offset", unknown.pusher_offset),
         ("uncertainty.fixel_position", unknown.fixel_position),
-        ("uncertainty.outline", unknown.outline),
     ];
     let positive = [
-        ("uncertainty.variation_length", unknown.variation_length),
         ("uncertainty.pusher_lag", unknown.pusher_lag),
         ("uncertainty.touch_gap", unknown.touch_gap),
     ];
@@ -280,9 +276,6 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     let angle = unknown.tripod_angle;
     numbers.push(("uncertainty.tripod_angle", angle, NotNegative, Unit::Radian));
     numbers.push(("uncertainty.latency", unknown.latency, Share, Unit::Second));
-    let spread = unknown.force_spread;
-    numbers.push(("uncertainty.force_spread", spread, Share, Unit::None));
-    numbers.push(("uncertainty.creep", unknown.creep, Share, Unit::None));
     let factor = unknown.well_measured;
     numbers.push(("uncertainty.well_measured", factor, Share, Unit::None));
     numbers

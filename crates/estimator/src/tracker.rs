@@ -9,9 +9,8 @@ use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
 use crate::moves::Moves;
 use crate::options::{RunOptions, TactileUse};
-use crate::particle::contact_filter::{Drive, Measured};
+use crate::particle::contact_filter::{ContactFilter, Drive, Measured};
 use crate::particle::filter_options::FilterOptions;
-use crate::particle::learning_filter::LearningFilter;
 use crate::particle::observation::PoseAt;
 use crate::particle::observer::Observer;
 use crate::particle::pose_clock::PoseClock;
@@ -157,7 +156,7 @@ pub struct Tracker<'o> {
     /// Time of the latest step's end (s).
     stepped: Option<f64>,
     /// The filter, from the first object pose on.
-    filter: Option<LearningFilter<'o>>,
+    filter: Option<ContactFilter<'o>>,
     /// Empty row, for rows before the first object pose.
     nothing: EstimateRow,
 }
@@ -219,7 +218,6 @@ impl<'o> Tracker<'o> {
             seed: self.options.seed,
             late: self.options.late,
             moves: self.options.moves,
-            least_moved: 0.0,
             observer: self.observer,
         }
     }
@@ -303,7 +301,7 @@ impl<'o> Tracker<'o> {
                     pose,
                     covariance: row.object_covariance,
                 };
-                let filter = LearningFilter::new(&self.setup, self.camera, start, &options);
+                let filter = ContactFilter::new(&self.setup, self.camera, start, &options);
                 self.filter = Some(filter.expect("the settings were checked"));
             }
             (None, None) => {}
@@ -357,27 +355,12 @@ impl<'o> Tracker<'o> {
     pub fn estimate(&self) -> &EstimateRow {
         self.filter
             .as_ref()
-            .map_or(&self.nothing, LearningFilter::latest)
+            .map_or(&self.nothing, ContactFilter::latest)
     }
 
-    /// The particles that estimate the pose, after the latest row; `None` before the first object
-    /// pose. Other particles learn the friction of the estimate, docs/method.md (52).
+    /// The particles after the latest row; `None` before the first object pose.
     pub fn particles(&self) -> Option<ParticleView<'_>> {
-        self.filter.as_ref().map(LearningFilter::particles)
-    }
-
-    /// The particles that have the friction of the estimate.
-    pub(crate) fn friction_particles(&self) -> Option<ParticleView<'_>> {
-        self.filter
-            .as_ref()
-            .and_then(LearningFilter::friction_particles)
-    }
-
-    /// Stops learning friction, because no camera pose will follow.
-    pub(crate) fn learn_no_more(&mut self) {
-        if let Some(filter) = &mut self.filter {
-            filter.learn_no_more();
-        }
+        self.filter.as_ref().map(ContactFilter::particles)
     }
 
     /// Time of the latest row (s).
@@ -388,7 +371,7 @@ impl<'o> Tracker<'o> {
     /// Number of rows at which no particle explained the camera pose, so that all were
     /// reinitialised around it.
     pub fn collapses(&self) -> u32 {
-        self.filter.as_ref().map_or(0, LearningFilter::collapses)
+        self.filter.as_ref().map_or(0, ContactFilter::collapses)
     }
 
     /// Number of pusher poses that counted as missing, since the pusher could not have come there
@@ -400,7 +383,7 @@ impl<'o> Tracker<'o> {
     /// Number of re-simulations of the steps since an occlusion began, see
     /// [`Run::second_tries`](crate::Run::second_tries).
     pub fn second_tries(&self) -> u32 {
-        self.filter.as_ref().map_or(0, LearningFilter::second_tries)
+        self.filter.as_ref().map_or(0, ContactFilter::second_tries)
     }
 
     /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence);
@@ -408,6 +391,6 @@ impl<'o> Tracker<'o> {
     pub fn log_evidence(&self) -> f64 {
         self.filter
             .as_ref()
-            .map_or(0.0, LearningFilter::log_evidence)
+            .map_or(0.0, ContactFilter::log_evidence)
     }
 }

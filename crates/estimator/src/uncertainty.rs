@@ -14,19 +14,9 @@ pub struct Uncertainty {
     pub centre_of_friction: f64,
     /// Standard deviation of the angle by which the feet are turned about that centre (rad).
     pub tripod_angle: f64,
-    /// Random step of ln β per step of 1/30 s, while the camera is on or the pusher moves. It keeps
-    /// the prior.
-    pub drift: f64,
-    /// Standard deviation of the logarithm by which friction differs from place to place.
-    pub variation: f64,
-    /// Correlation length of that variation (m).
-    pub variation_length: f64,
     /// Disturbing force per step of 1/30 s, as a share of μ_s m g on each axis, times the radius of
     /// gyration for rotation.
     pub force_std: f64,
-    /// Standard deviation of the logarithm of a factor of that force: some pushes are smoother than
-    /// others.
-    pub force_spread: f64,
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
@@ -35,23 +25,18 @@ pub struct Uncertainty {
     pub pusher_lag: f64,
     /// Standard deviation of the error of each fixel's position, on each axis (m).
     pub fixel_position: f64,
-    /// Standard deviation of the distance by which the object's outline lies outside its shape (m).
-    pub outline: f64,
-    /// Standard deviation of the logarithm of a factor of these offsets and of the latency: rigs
-    /// differ.
+    /// Standard deviation of the logarithm of a factor of these offsets: rigs differ.
     pub roughness: f64,
-    /// Factor on the smoother half of rigs of `fixel_position`, `outline`, `latency` and, while the
-    /// camera is off, `force_std`. Its fourth root is the factor of `pusher_offset`. A value below
+    /// Factor on the smoother half of rigs of `fixel_position` and, while the camera is off,
+    /// `force_std`. Its fourth root is the factor of `pusher_offset`. A value below
     /// 1 means that some rigs are measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
     /// value.
     pub camera_noise: f64,
-    /// Mean time by which the camera lags more than the scene says (s).
+    /// Median of the time by which the camera lags more than the scene says (s); its logarithm is
+    /// normal.
     pub latency: f64,
-    /// Share of the object's speed at which a contact slips when friction reaches its bound: the
-    /// median of a log-normal prior (docs/method.md (50)). 0 is Coulomb's law.
-    pub creep: f64,
     /// Gap at which object and body may already touch, in addition to the errors of their poses and
     /// shapes (m).
     pub touch_gap: f64,
@@ -72,34 +57,31 @@ impl Default for Uncertainty {
             },
             centre_of_friction: 0.15,
             tripod_angle: ANY_ANGLE,
-            drift: 0.05,
-            variation: 0.3,
-            variation_length: 0.04,
             force_std: 0.25,
-            force_spread: 0.0,
             pusher_offset: 3e-4,
             pusher_lag: 3e-4,
             fixel_position: 3e-4,
-            outline: 1.5e-4,
             roughness: 0.5,
             well_measured: 0.1,
             camera_noise: 0.3,
-            latency: 0.03,
-            creep: 0.0,
+            latency: 0.01,
             touch_gap: 2.5e-4,
         }
     }
 }
 
+/// Share of its spread by which every unknown wanders within 1/30 s: copies of a particle must
+/// differ.
+pub(crate) const JITTER: f64 = 0.1;
+
 /// Steepness of the transition between the two halves of rigs, per unit of ln of roughness.
 const BETWEEN_HALVES: f64 = 10.0;
 
-/// Least values of `force_spread` and `creep` for particles that learn friction.
-const FORCE_SPREAD_OF_LEARNERS: f64 = 1.0;
-const CREEP_OF_LEARNERS: f64 = 0.1;
+/// Standard deviation of the logarithm of the camera's unknown latency.
+const LATENCY_SPREAD: f64 = 1.2;
 
-/// Multiples of its mean that the unknown part of the camera's latency may reach.
-const LATEST: f64 = 10.0;
+/// Multiple of its median that this latency may reach: it is longer on one rig in eighty.
+const LATEST: f64 = 15.0;
 
 impl Uncertainty {
     /// Returns the uncertainty with feet that are known to stand as the scene says.
@@ -112,8 +94,8 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/method.md (36), the factor of `fixel_position`, `outline`, `latency` and, while
-    /// the camera is off, `force_std`. The logarithm of the rig's roughness is `roughness`, whose
+    /// b of docs/method.md (36), the factor of `fixel_position` and, while the camera is off,
+    /// `force_std`. The logarithm of the rig's roughness is `roughness`, whose
     /// own factor is not included. b is `well_measured` on the smoother half of rigs, 1 on the
     /// others.
     #[inline(always)]
@@ -122,7 +104,7 @@ impl Uncertainty {
         if self.roughness == 0.0 {
             return one;
         }
-        let smooth = one / (one + (roughness * BETWEEN_HALVES).exp());
+        let smooth = one / (one + (roughness * (BETWEEN_HALVES * self.roughness)).exp());
         one - smooth * (1.0 - self.well_measured)
     }
 
@@ -132,14 +114,11 @@ impl Uncertainty {
         self.well_measured_at(roughness).sqrt().sqrt()
     }
 
-    /// Uncertainty for particles that learn friction, docs/method.md (52): pushes may be smoother
-    /// than others, and contacts may creep.
-    pub(crate) fn of_learners(&self) -> Self {
-        Self {
-            force_spread: self.force_spread.max(FORCE_SPREAD_OF_LEARNERS),
-            creep: self.creep.max(CREEP_OF_LEARNERS),
-            ..*self
-        }
+    /// Time by which the camera lags more than the scene says (s), of a standard normal number.
+    #[inline(always)]
+    pub(crate) fn latency_at<const W: usize>(&self, normal: Lanes<W>) -> Lanes<W> {
+        let latency = (normal * LATENCY_SPREAD).exp() * self.latency;
+        latency.min(Lanes::splat(self.most_latency()))
     }
 
     /// Longest time by which the camera may lag more than the scene says (s).

@@ -208,19 +208,12 @@ struct Ranks<'a> {
     truth: &'a [SampledState],
     /// By row, in the order of [`QUANTITIES`].
     ranks: Mutex<Vec<[f64; 7]>>,
-    /// The latest ones of friction that particles of their own learn.
-    learned: Mutex<Option<[f64; 7]>>,
 }
 
 impl<'a> Ranks<'a> {
     fn of(truth: &'a [SampledState]) -> Self {
         let ranks = Mutex::new(vec![[f64::NAN; 7]; truth.len()]);
-        let learned = Mutex::new(None);
-        Self {
-            truth,
-            ranks,
-            learned,
-        }
+        Self { truth, ranks }
     }
 
     /// At a row.
@@ -234,17 +227,8 @@ impl Observer for Ranks<'_> {
     fn on_step(&self, _: &SolvedStep<'_>) {}
 
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
-        let mut ranks = self.among(row, particles);
-        // friction stays as they left it
-        if let Some(learned) = *self.learned.lock().expect("no thread panicked") {
-            ranks[POSE..].copy_from_slice(&learned[POSE..]);
-        }
-        self.ranks.lock().expect("no thread panicked")[row] = ranks;
-    }
-
-    fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
         let ranks = self.among(row, particles);
-        *self.learned.lock().expect("no thread panicked") = Some(ranks);
+        self.ranks.lock().expect("no thread panicked")[row] = ranks;
     }
 }
 

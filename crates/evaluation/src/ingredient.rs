@@ -7,12 +7,10 @@ use stickslip::{RunOptions, Setup, TactileUse};
 /// docs/decisions/007.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ingredient {
-    /// Priors of the friction parameters, and their drift.
+    /// Priors of the friction parameters.
     FrictionPriors,
     /// A centre of friction that is not the centre of mass, and feet that are turned.
     Support,
-    /// Friction that differs from place to place.
-    Variation,
     /// Four fifths of the random force: without any, particles would have one future.
     Force,
     /// An offset between the camera's frame and the pusher's.
@@ -21,8 +19,6 @@ pub enum Ingredient {
     PusherAsSensor,
     /// Errors of the fixels' positions.
     FixelPositions,
-    /// An error of the object's outline.
-    Outline,
     /// Rigs that differ in how rough they are.
     Roughness,
     /// Rigs that are measured much better than others.
@@ -35,33 +31,25 @@ pub enum Ingredient {
     Touch,
     /// Re-simulation of steps, (42).
     SecondTries,
-    /// Latency exchanged for offset under a steady push, (43).
-    SteadyPush,
-    /// Redrawing of the pose of an object that waits, (44).
-    Waiting,
     /// Camera poses that move particles, (45).
     CameraMoves,
 }
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 13] = [
         Self::FrictionPriors,
         Self::Support,
-        Self::Variation,
         Self::Force,
         Self::PusherOffset,
         Self::PusherAsSensor,
         Self::FixelPositions,
-        Self::Outline,
         Self::Roughness,
         Self::WellMeasured,
         Self::CameraNoise,
         Self::Latency,
         Self::Touch,
         Self::SecondTries,
-        Self::SteadyPush,
-        Self::Waiting,
         Self::CameraMoves,
     ];
 
@@ -69,22 +57,18 @@ impl Ingredient {
     #[must_use]
     pub fn left_out(self) -> &'static str {
         match self {
-            Self::FrictionPriors => "nominal friction, no drift",
+            Self::FrictionPriors => "nominal friction",
             Self::Support => "nominal feet",
-            Self::Variation => "no variation from place to place",
             Self::Force => "a fifth of the force",
             Self::PusherOffset => "pusher where logged",
             Self::PusherAsSensor => "pusher no sensor",
             Self::FixelPositions => "nominal fixel positions",
-            Self::Outline => "nominal outline",
             Self::Roughness => "all rigs alike",
             Self::WellMeasured => "no rig measured better",
             Self::CameraNoise => "nominal camera noise",
             Self::Latency => "nominal latency",
             Self::Touch => "no touch",
             Self::SecondTries => "no re-simulation, (42)",
-            Self::SteadyPush => "no exchange of latency, (43)",
-            Self::Waiting => "object at rest not redrawn, (44)",
             Self::CameraMoves => "weighing alone, (45)",
         }
     }
@@ -93,25 +77,18 @@ impl Ingredient {
     pub fn remove_from(self, setup: &mut Setup, options: &mut RunOptions) {
         let (unknown, moves) = (&mut setup.uncertainty, &mut options.moves);
         match self {
-            Self::FrictionPriors => {
-                unknown.friction = Friction::default();
-                unknown.drift = 0.0;
-            }
+            Self::FrictionPriors => unknown.friction = Friction::default(),
             Self::Support => *unknown = unknown.with_known_feet(),
-            Self::Variation => unknown.variation = 0.0,
             Self::Force => unknown.force_std *= 0.2,
             Self::PusherOffset => unknown.pusher_offset = 0.0,
             Self::PusherAsSensor => unknown.pusher_lag = FAR,
             Self::FixelPositions => unknown.fixel_position = 0.0,
-            Self::Outline => unknown.outline = 0.0,
             Self::Roughness => unknown.roughness = 0.0,
             Self::WellMeasured => unknown.well_measured = 1.0,
             Self::CameraNoise => unknown.camera_noise = 0.0,
             Self::Latency => unknown.latency = 0.0,
             Self::Touch => options.tactile = TactileUse::Ignored,
             Self::SecondTries => moves.second_tries = false,
-            Self::SteadyPush => moves.steady_push = false,
-            Self::Waiting => moves.waiting = false,
             Self::CameraMoves => moves.camera = false,
         }
     }

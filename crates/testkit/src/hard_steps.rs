@@ -75,7 +75,6 @@ fn contact(next: &mut impl FnMut() -> f64) -> ContactPoint {
         gap,
         surface_velocity: [-normal[1] * slip, normal[0] * slip],
         mu: next(),
-        creep: 0.0,
         on_pusher: next() > 0.0,
     }
 }

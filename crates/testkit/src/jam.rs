@@ -151,7 +151,6 @@ mod tests {
             normal: [-sign, 0.0],
             arm: [0.3 * sign, apart * sign],
             mu: 0.5,
-            creep: 0.0,
             on_pusher: true,
             gap: 0.0,
             surface_velocity: [0.0; 2],

@@ -213,7 +213,6 @@ impl ProblemBuilder {
             arm,
             gap,
             mu,
-            creep: 0.0,
             surface_velocity,
             on_pusher: other == Other::Pusher,
         }

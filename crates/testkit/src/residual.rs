@@ -156,8 +156,7 @@ fn contact_rows(
     let (normal, tangential) = (solution.normal[i], solution.tangential[i]);
     let relative = relative_velocity(problem, solution, contact);
     let gap_speed = dot(contact.normal, relative) + contact.gap / problem.h;
-    // what friction resists: the slip, and c p_t where the contact creeps
-    let slip = dot(left(contact.normal), relative) + contact.creep * tangential;
+    let slip = dot(left(contact.normal), relative);
     let limit = contact.mu * normal.max(0.0);
     let gap_row = normal.min(problem.mass * gap_speed);
     let slip_row = tangential - (tangential - problem.mass * slip).min(limit).max(-limit);
@@ -220,7 +219,6 @@ fn numbers(problem: &StepProblem, solution: &StepSolution) -> Vec<f64> {
             c.arm[1],
             c.gap,
             c.mu,
-            c.creep,
             c.surface_velocity[0],
             c.surface_velocity[1],
         ]);

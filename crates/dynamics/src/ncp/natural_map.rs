@@ -31,8 +31,7 @@ pub struct NaturalMap<const W: usize> {
 pub struct ContactVelocity<const W: usize> {
     /// Gap velocity γ + κ p_n.
     pub gap: Lanes<W>,
-    /// Slip that friction resists: slip velocity s, or s + c p_t where the contact creeps; 0 where
-    /// it is open and carries nothing in every lane.
+    /// Slip velocity s; 0 where it is open and carries nothing in every lane.
     pub slip: Lanes<W>,
 }
 
@@ -76,7 +75,7 @@ impl<const W: usize> NaturalMap<W> {
             let mut slip = Lanes::ZERO;
             // the slip of a contact that is open and carries nothing enters no row
             if ((p_n.abs() + p_t.abs()).gt(Lanes::ZERO) | gap.lt(Lanes::ZERO)).any() {
-                slip = row.resisted_slip(&z.v, z.pusher_yield, *p_t);
+                slip = row.slip_velocity(&z.v, z.pusher_yield);
                 largest.accumulate(friction_violation(row, slip, [*p_n, *p_t]));
             }
             self.contacts.push(ContactVelocity { gap, slip });

@@ -27,9 +27,6 @@ pub struct ContactPoint {
     pub gap: f64,
     /// Coulomb friction coefficient.
     pub mu: f64,
-    /// c: friction resists the slip velocity s + c p_t, so that below its bound the contact slips
-    /// at −c p_t (m/s per N s); 0 is Coulomb's law (docs/method.md (50)).
-    pub creep: f64,
     /// Commanded velocity of the other body's surface at the contact point (m/s); zero for a fixel.
     pub surface_velocity: [f64; 2],
     /// True if the other body is the pusher, which may stall.

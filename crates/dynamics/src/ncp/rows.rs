@@ -71,8 +71,6 @@ pub struct ContactRow<const W: usize> {
     pub td: Lanes<W>,
     /// Friction coefficient μ.
     pub mu: Lanes<W>,
-    /// c: below its bound the contact slips at −c p_t; 0 where it sticks.
-    pub creep: Lanes<W>,
 }
 
 /// Contacts for which working memory has room from the start, so that a buffer first needed late in
@@ -124,7 +122,6 @@ impl<const W: usize> ContactRow<W> {
         nd: Lanes::ZERO,
         td: Lanes::ZERO,
         mu: Lanes::ZERO,
-        creep: Lanes::ZERO,
     };
 
     /// Returns true if a lane has this contact, rather than padding.
@@ -143,12 +140,6 @@ impl<const W: usize> ContactRow<W> {
     #[inline(always)]
     pub fn slip_velocity(&self, v: &Triple<W>, pusher_yield: Lanes<W>) -> Lanes<W> {
         (dot(&self.t, v) + self.slip_offset).add_mul(self.td, pusher_yield)
-    }
-
-    /// Slip that friction resists at tangential impulse `p_t`: s + c p_t.
-    #[inline(always)]
-    pub fn resisted_slip(&self, v: &Triple<W>, pusher_yield: Lanes<W>, p_t: Lanes<W>) -> Lanes<W> {
-        self.slip_velocity(v, pusher_yield).add_mul(self.creep, p_t)
     }
 
     /// Makes it a contact of a body that yields along `direction`. The body moves at `catch_up`
@@ -172,7 +163,6 @@ impl<const W: usize> ContactRow<W> {
         to.nd.0[slot] = self.nd.0[lane];
         to.td.0[slot] = self.td.0[lane];
         to.mu.0[slot] = self.mu.0[lane];
-        to.creep.0[slot] = self.creep.0[lane];
     }
 
     /// Overwrites one lane with a contact of `problem`.
@@ -196,7 +186,6 @@ impl<const W: usize> ContactRow<W> {
         self.nd.0[lane] = along(n, d);
         self.td.0[lane] = along(t, d);
         self.mu.0[lane] = c.mu;
-        self.creep.0[lane] = c.creep * problem.mass;
     }
 }
 
@@ -283,13 +272,6 @@ impl<const W: usize> Ncp<W> {
         }
         for row in &mut to.contacts[packed..] {
             ContactRow::<1>::OPEN.copy_lane(0, row, slot);
-        }
-    }
-
-    /// Lets no contact of one lane creep.
-    pub fn stop_creep(&mut self, lane: usize) {
-        for row in &mut self.contacts {
-            row.creep.0[lane] = 0.0;
         }
     }
 

@@ -240,9 +240,8 @@ impl<const W: usize> Solver<W> {
             #[inline(always)]
             || self.follow_paths(source, ncps, z, reports),
         );
-        // search over modes, compliant problem, of contacts that do not creep
+        // search over modes, compliant problem
         for &LaneIndex { chunk, lane } in &self.unsolved {
-            ncps[chunk].stop_creep(lane);
             let (ncp, report) = (&ncps[chunk], &mut reports[chunk][lane]);
             let solution = self.fallback.solve(ncp, lane, self.limit, report);
             z[chunk].unpack_lane(ncp, lane, solution, 0);

@@ -35,8 +35,7 @@ impl<const W: usize> ContactMode<W> {
         if !(closed.any() || (p[0].abs() + p[1].abs()).gt(Lanes::ZERO).any()) {
             return None;
         }
-        // an impulse changes what friction resists by the inertia, and by the creep
-        let inertia = one.add_mul(row.t[2], row.t[2]) * IMPULSE_WEIGHT + row.creep;
+        let inertia = one.add_mul(row.t[2], row.t[2]) * IMPULSE_WEIGHT;
         let z = (-velocity.slip).add_mul(p[1], inertia);
         Some(Self {
             closed,

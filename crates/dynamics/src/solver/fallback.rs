@@ -53,7 +53,7 @@ impl Default for Fallback {
 }
 
 impl Fallback {
-    /// Solves one lane of `ncp`, none of whose contacts creeps, with at most so much work; the
+    /// Solves one lane of `ncp` with at most so much work; the
     /// result is on the lane's own contacts, without padding rows.
     #[inline(never)]
     pub fn solve<const W: usize>(

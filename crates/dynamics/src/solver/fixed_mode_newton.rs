@@ -87,10 +87,9 @@ impl<const W: usize> FixedModeNewton<W> {
         for (i, (row, (mode, (p_n, p_t)))) in ncp.contacts.iter().zip(points).enumerate() {
             let velocity = ContactVelocity {
                 gap: row.gap_velocity(&z.v, z.pusher_yield) + ncp.compliance * *p_n,
-                slip: row.resisted_slip(&z.v, z.pusher_yield, *p_t),
+                slip: row.slip_velocity(&z.v, z.pusher_yield),
             };
-            let step =
-                ContactStep::in_mode([*p_n, *p_t], &velocity, *mode, &penalty).creeping(row.creep);
+            let step = ContactStep::in_mode([*p_n, *p_t], &velocity, *mode, &penalty);
             self.linearised.contacts.push((i, step));
         }
         for k in 0..3 {

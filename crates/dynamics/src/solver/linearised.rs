@@ -34,25 +34,6 @@ pub struct FootStep<const W: usize> {
     pub k: [[Lanes<W>; 2]; 2],
 }
 
-impl<const W: usize> ContactStep<W> {
-    /// Adds creep to a step whose tt is −∂p_t/∂(s + c p_t), by the slip that friction resists, with
-    /// c = `creep`: that slip itself grows by c dp_t.
-    #[inline(always)]
-    pub fn creeping(self, creep: Lanes<W>) -> Self {
-        // a division only where some contact creeps
-        if !creep.gt(Lanes::ZERO).any() {
-            return self;
-        }
-        let share = Lanes::splat(1.0) / Lanes::splat(1.0).add_mul(creep, self.tt);
-        Self {
-            t: self.t * share,
-            tn: self.tn * share,
-            tt: self.tt * share,
-            ..self
-        }
-    }
-}
-
 impl<const W: usize> FootStep<W> {
     /// Moves the impulse `p` of `foot` by its step under a change `dv` of the twist.
     #[inline(always)]

@@ -215,7 +215,7 @@ impl<const W: usize> Linearised<W> {
         for (i, (row, (velocity, (p_n, p_t)))) in ncp.contacts.iter().zip(points).enumerate() {
             let p = [*p_n, *p_t];
             if let Some(mode) = ContactMode::by_natural_map(row, p, velocity) {
-                let step = ContactStep::in_mode(p, velocity, mode, &penalty).creeping(row.creep);
+                let step = ContactStep::in_mode(p, velocity, mode, &penalty);
                 self.contacts.push((i, step));
             }
         }

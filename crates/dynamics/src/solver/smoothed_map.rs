@@ -76,7 +76,7 @@ impl<const W: usize> SmoothedMap<W> {
         for (row, (p_n, p_t)) in ncp.contacts.iter().zip(z.contacts()) {
             let gap = row.gap_velocity(&z.v, z.pusher_yield) + ncp.compliance * *p_n;
             let pair = SmoothedPair::new(*p_n, gap, squared);
-            let slip = row.resisted_slip(&z.v, z.pusher_yield, *p_t);
+            let slip = row.slip_velocity(&z.v, z.pusher_yield);
             let inv_sigma = squared.add_mul(slip, slip).inverse_sqrt();
             largest.accumulate(pair.value);
             largest.accumulate(p_t.add_mul(row.mu * p_n.max(Lanes::ZERO), slip * inv_sigma));
@@ -235,7 +235,6 @@ impl<const W: usize> Aim<W> {
             tn: ratio * nn,
             tt,
         }
-        .creeping(row.creep)
     }
 
     #[inline(always)]

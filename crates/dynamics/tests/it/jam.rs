@@ -345,7 +345,6 @@ fn between_walls(mu: f64) -> StepProblem {
         gap: 0.0,
         surface_velocity: [0.0; 2],
         mu,
-        creep: 0.0,
         on_pusher: false,
     };
     let arms = [[0.0, 0.5], [0.4, -0.3], [-0.4, -0.3]];
@@ -394,7 +393,6 @@ fn squeezed(u: f64, angle: f64) -> (StepProblem, f64) {
         arm: normal.map(|n| -0.02 * n),
         gap: 0.0,
         mu: 0.0,
-        creep: 0.0,
         surface_velocity,
         on_pusher,
     };

@@ -7,7 +7,6 @@ mod closed_forms;
 mod common;
 mod cone_program;
 mod corpus;
-mod creep;
 mod energy;
 mod invariance;
 mod jam;

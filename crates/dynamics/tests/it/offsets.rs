@@ -99,9 +99,7 @@ fn lanes_step_as_alone(level: Level) {
             pusher: &pushers,
             pusher_turn: &[],
             fixels: &places,
-            growth: &[Lanes::ZERO],
             foot_offsets: &[],
-            creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -165,9 +163,7 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
             pusher: &[[Lanes::ZERO; 2]],
             pusher_turn: &turns,
             fixels: &[[Lanes::ZERO; 2]; 2],
-            growth: &[Lanes::ZERO],
             foot_offsets: &[],
-            creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -233,9 +229,7 @@ fn feet_stand_as_known(level: Level, about: Option<Pose>) {
             pusher: &[[Lanes::ZERO; 2]],
             pusher_turn: &[],
             fixels: &[[Lanes::ZERO; 2]; 2],
-            growth: &[Lanes::ZERO],
             foot_offsets: &frames,
-            creep: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -281,113 +275,4 @@ fn on_known_feet(frame: Pose) -> Scene {
         loads: [1.0 / 3.0; 3],
     };
     scene
-}
-
-/// A larger object is one that meets discs which are larger by as much.
-#[test]
-fn an_object_that_has_grown_meets_larger_discs() {
-    const LANES: usize = 8;
-    let growth = |i: usize| 1e-4 * (i as f64 - 3.0);
-    let dynamics = Dynamics::new(scene([[0.0; 2]; 2]));
-    let mut chunk = [Particles::<LANES>::default()];
-    (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
-    let grown = [Lanes(std::array::from_fn(growth))];
-    let mut work = StepWork::default();
-    let mut alone: Vec<Particle> = vec![Particle::default(); LANES];
-    let mut own_work = StepWork::<1>::default();
-    for step in 0..30 {
-        let offsets = Offsets {
-            pusher: &[[Lanes::ZERO; 2]],
-            pusher_turn: &[],
-            fixels: &[[Lanes::ZERO; 2]; 2],
-            growth: &grown,
-            foot_offsets: &[],
-            creep: &[],
-        };
-        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
-        for (i, particle) in alone.iter_mut().enumerate() {
-            let mut one = [*particle];
-            let larger = scene_of_discs([[0.0; 2]; 2], 0.005 + growth(i));
-            Dynamics::new(larger).step(&push(step, [0.0; 2]), &[FRICTION], &mut one, &mut own_work);
-            *particle = one[0];
-            let (found, expected) = (chunk[0].get(i).pose, particle.pose);
-            let apart = (found.x - expected.x).abs() + (found.y - expected.y).abs();
-            assert!(
-                apart + 0.02 * (found.theta - expected.theta).abs() < 1e-7,
-                "lane {i}, step {step}: {found:?}, {expected:?}"
-            );
-        }
-    }
-    let moved: Vec<f64> = alone.iter().map(|particle| particle.pose.x).collect();
-    assert!(moved.windows(2).any(|pair| pair[0] != pair[1]), "{moved:?}");
-}
-
-/// c = share · ‖v‖ B/max(p_n, B) / (μ p_n) of the step before, B what the feet resist
-/// (docs/method.md (50)); eight lanes of shares of their own do as each alone.
-#[test]
-fn contacts_creep_by_the_speed_and_the_load_of_the_step_before() {
-    const LANES: usize = 8;
-    let share = |i: usize| 0.1 * i as f64;
-    let dynamics = Dynamics::new(scene([[0.0; 2]; 2]));
-    let mut chunk = [Particles::<LANES>::default()];
-    (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
-    let shares = [[0, 1].map(|_| Lanes(std::array::from_fn(share)))];
-    let mut work = StepWork::<LANES>::default();
-    let mut one = Particles::<1>::default();
-    one.set(0, &Particle::default(), &FRICTION);
-    let mut alone = vec![[one]; LANES];
-    let mut own_work = StepWork::<1>::default();
-    let rho: f64 = (2.1e-4_f64 / 0.5).sqrt();
-    let (mut checked, mut harder) = (0, 0);
-    for step in 0..30 {
-        let before: Vec<(f64, f64)> = (0..LANES)
-            .map(|i| {
-                let Twist { vx, vy, omega } = chunk[0].get(i).twist;
-                let speed = (vx * vx + vy * vy + omega * omega * rho * rho).sqrt();
-                let pressed = match step {
-                    0 => 0.0,
-                    _ => work.normal_impulse(i, Body::Pusher),
-                };
-                (speed, pressed)
-            })
-            .collect();
-        let offsets = Offsets {
-            pusher: &[[Lanes::ZERO; 2]],
-            pusher_turn: &[],
-            fixels: &[[Lanes::ZERO; 2]; 2],
-            growth: &[Lanes::ZERO],
-            foot_offsets: &[],
-            creep: &shares,
-        };
-        dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
-        for (i, particle) in alone.iter_mut().enumerate() {
-            let offsets = Offsets {
-                pusher: &[[Lanes::ZERO; 2]],
-                pusher_turn: &[],
-                fixels: &[[Lanes::ZERO; 2]; 2],
-                growth: &[Lanes::ZERO],
-                foot_offsets: &[],
-                creep: &[[Lanes([share(i)]); 2]],
-            };
-            dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, particle, &mut own_work);
-            assert_eq!(chunk[0].get(i), particle[0].get(0), "lane {i}, step {step}");
-            // where one contact with the pusher carried more than the least load
-            let problem = work.problem(i);
-            let contacts: Vec<_> = problem.contacts.iter().filter(|c| c.on_pusher).collect();
-            let (speed, pressed) = before[i];
-            if let ([contact], true) = (&contacts[..], pressed > 0.02) {
-                let feet = problem.feet.iter().map(|foot| foot.bound).sum::<f64>();
-                let slip = share(i) * speed * (feet / pressed).min(1.0);
-                let expected = slip / (FRICTION.mu_p * pressed);
-                harder += usize::from(pressed > feet);
-                assert!(
-                    (contact.creep - expected).abs() <= 1e-12 * expected,
-                    "lane {i}, step {step}: {} instead of {expected}",
-                    contact.creep
-                );
-                checked += 1;
-            }
-        }
-    }
-    assert!(checked > 100 && harder > 20, "{checked} {harder}");
 }

@@ -7,6 +7,7 @@ use stickslip_filter::Gaussian;
 
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
 use crate::setup::{Limits, Setup};
+use crate::uncertainty::JITTER;
 
 /// Numbers of a state: x, y, θ (m, m, rad), v_x, v_y, ω (m/s, m/s, rad/s), ln β/β_nominal of the
 /// four friction parameters, and w_app in units of its standard deviations.
@@ -120,14 +121,14 @@ impl Belief {
 
     /// Makes a random step of the friction parameters that `took_part`, over `steps` steps of 1/30
     /// s. It keeps their priors (docs/method.md (34)).
-    pub fn drift(&mut self, took_part: &Friction<bool>, drift: f64, steps: f64) {
+    pub fn drift(&mut self, took_part: &Friction<bool>, steps: f64) {
         let Gaussian { mean, covariance } = &mut self.normal;
         for (k, took_part) in took_part.fields().into_iter().enumerate() {
             let std = self.prior.stds[k];
             if !took_part || std <= 0.0 {
                 continue;
             }
-            let share = (drift * steps.sqrt() / std).min(1.0);
+            let share = (JITTER * steps.sqrt()).min(1.0);
             let kept = (1.0 - share * share).sqrt();
             let k = FRICTION + k;
             mean[k] *= kept;

@@ -69,8 +69,7 @@ fn predict(
     }
     if prepared.schedule.driven(row - 1) || prepared.visible(row).is_some() {
         let h = prepared.log.time[row] - prepared.log.time[row - 1];
-        let (took_part, drift) = (&step.since.took_part, setup.uncertainty.drift);
-        belief.drift(took_part, drift, h / NOISE_STEP);
+        belief.drift(&step.since.took_part, h / NOISE_STEP);
     }
 }
 

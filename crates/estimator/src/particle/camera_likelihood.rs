@@ -263,8 +263,6 @@ impl Latency {
     #[inline(always)]
     fn of(&self, columns: Columns, block: &Block<'_>, chunk: usize) -> Column {
         let rest = load_chunk(block.column(columns.latency()), chunk, 0.0);
-        let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
-        let scale = roughness.exp() * self.uncertainty.well_measured_at(roughness);
-        (rest * scale).min(Lanes::splat(self.uncertainty.most_latency())) + Lanes::splat(self.told)
+        self.uncertainty.latency_at(rest) + Lanes::splat(self.told)
     }
 }

@@ -16,7 +16,7 @@ const SINGLE: usize = 11;
 const FLAGS_PER_FIXEL: usize = 5;
 
 /// Columns of the robust model that do not belong to a fixel.
-const UNKNOWNS: usize = 20;
+const UNKNOWNS: usize = 12;
 
 /// Columns of the robust model for each fixel.
 const PER_FIXEL: usize = BELIEF_LEN + 2;
@@ -146,63 +146,41 @@ impl Columns {
         Self::FLAGS + (SINGLE + FLAGS_PER_FIXEL * self.fixels).div_ceil(BITS)
     }
 
-    /// Logarithms by which the four friction parameters differ at this place (robust model).
-    pub fn variation(&self) -> usize {
-        self.unknowns()
-    }
-
-    /// ln of the rig's roughness, a factor of all offsets (robust model).
-    pub fn roughness(&self) -> usize {
-        self.unknowns() + 8
-    }
-
     /// Offset of the pusher's logged poses, in standard deviations: x, y (robust model).
     pub fn pusher_offset(&self) -> usize {
-        self.unknowns() + 4
-    }
-
-    /// Turn of the pusher relative to its logged poses, in standard deviations (robust model).
-    pub fn pusher_turn(&self) -> usize {
-        self.unknowns() + 16
-    }
-
-    /// Time by which the camera lags more than its nominal latency (s) (robust model).
-    pub fn latency(&self) -> usize {
-        self.unknowns() + 9
-    }
-
-    /// Distance by which the object's outline lies outside its shape, in standard deviations
-    /// (robust model).
-    pub fn growth(&self) -> usize {
-        self.unknowns() + 6
-    }
-
-    /// Three columns of [`CameraNoise`](crate::particle::camera_noise::CameraNoise) (robust model).
-    pub fn camera_noise(&self) -> usize {
-        self.unknowns() + 10
-    }
-
-    /// Logarithm by which the random force is larger than its nominal value (robust model).
-    pub fn force(&self) -> usize {
-        self.unknowns() + 13
-    }
-
-    /// Logarithms, in spreads, by which contacts creep more than their nominal value: with the
-    /// pusher, with fixels (robust model).
-    pub fn creep(&self) -> usize {
-        self.unknowns() + 14
-    }
-
-    /// Displacement and turn of the feet relative to the scene's, in standard deviations: x, y,
-    /// angle (robust model).
-    pub fn support(&self) -> usize {
-        self.unknowns() + 17
+        self.unknowns()
     }
 
     /// log-likelihood of the pusher's place and the tactile readings of the latest row, without the
     /// camera (robust model).
     pub fn felt_log_likelihood(&self) -> usize {
-        self.unknowns() + 7
+        self.unknowns() + 2
+    }
+
+    /// ln of the rig's roughness, a factor of all offsets, in standard deviations (robust model).
+    pub fn roughness(&self) -> usize {
+        self.unknowns() + 3
+    }
+
+    /// ln of the camera's unknown latency over its median, in standard deviations (robust model).
+    pub fn latency(&self) -> usize {
+        self.unknowns() + 4
+    }
+
+    /// Three columns of [`CameraNoise`](crate::particle::camera_noise::CameraNoise) (robust model).
+    pub fn camera_noise(&self) -> usize {
+        self.unknowns() + 5
+    }
+
+    /// Turn of the pusher relative to its logged poses, in standard deviations (robust model).
+    pub fn pusher_turn(&self) -> usize {
+        self.unknowns() + 8
+    }
+
+    /// Displacement and turn of the feet relative to the scene's, in standard deviations: x, y,
+    /// angle (robust model).
+    pub fn support(&self) -> usize {
+        self.unknowns() + 9
     }
 
     /// Belief about sensor `fixel`, the numbers of a
@@ -274,15 +252,11 @@ mod tests {
             (Columns::FRICTION, 4),
             (Columns::PUSHER_LAG, 2),
             (Columns::WARM_START, WARM),
-            (columns.variation(), 4),
             (columns.pusher_offset(), 2),
-            (columns.growth(), 1),
             (columns.felt_log_likelihood(), 1),
             (columns.roughness(), 1),
             (columns.latency(), 1),
             (columns.camera_noise(), 3),
-            (columns.force(), 1),
-            (columns.creep(), 2),
             (columns.pusher_turn(), 1),
             (columns.support(), 3),
         ];

@@ -3,7 +3,7 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::{Friction, Pose, StepInput};
+use stickslip_dynamics::{Pose, StepInput};
 use stickslip_filter::{ParticleFilter, StepReport, WeightUpdate};
 
 use crate::covariance::PoseCovariance;
@@ -18,17 +18,17 @@ use crate::particle::history::PoseHistory;
 use crate::particle::mode_finder::ModeFinder;
 use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
-use crate::particle::normal_pose::NormalPose;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::pose_clock::PoseClock;
 use crate::particle::replay::Replay;
-use crate::particle::resting_pose::RestingPose;
-use crate::particle::steadiness::Steadiness;
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
 use crate::particle::sums::Reference;
 use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
+
+/// Least share of a camera pose that moves particles; the rest weighs them (docs/method.md (45)).
+const LEAST_MOVED: f64 = 0.9;
 
 /// Measurements of a row.
 #[derive(Clone, Copy, Debug)]
@@ -85,20 +85,11 @@ pub(crate) struct ContactFilter<'o> {
     log_evidence: f64,
     trust: CameraTrust,
     replay: Replay,
-    steadiness: Steadiness,
     pusher: HiddenPusher,
-    resting: RestingPose,
+    /// The latest camera pose.
+    shown: Pose,
     /// Ways to move particles to where weighing would leave few.
     moves: Moves,
-}
-
-/// Place where an object waits that nothing has touched.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Waiting {
-    /// Its pose.
-    pub at: PoseAt,
-    /// Belief from all that the camera has shown of it.
-    resting: RestingPose,
 }
 
 impl<'o> ContactFilter<'o> {
@@ -119,9 +110,7 @@ impl<'o> ContactFilter<'o> {
         let PoseAt { time, pose, .. } = start;
         let history = PoseHistory::new(camera.latency + unknown + options.late, time);
         let model = ContactModel::new(options.model, setup, camera, start, history.slots());
-        let model = model
-            .observed(options.observer)
-            .moved_by(options.least_moved);
+        let model = model.observed(options.observer).moved_by(LEAST_MOVED);
         let reference = Reference::new(pose, setup.scene.nominal);
         let mut this = Self {
             filter: ParticleFilter::new(model, options.settings(setup))?,
@@ -139,14 +128,10 @@ impl<'o> ContactFilter<'o> {
             log_evidence: 0.0,
             trust: CameraTrust::default(),
             replay: Replay::default(),
-            steadiness: Steadiness::new(camera.latency + unknown),
             pusher: HiddenPusher::default(),
-            resting: RestingPose::new(time, (pose, start.covariance), &camera, setup),
+            shown: pose,
             moves: options.moves,
         };
-        // a first pose with a covariance of its own is drawn by it
-        let told = start.covariance.is_some();
-        this.plan.resting = this.where_it_rests().filter(|_| !told);
         this.filter.recompute_sums(&this.plan);
         this.summarise();
         this.latest.visual = true;
@@ -155,6 +140,10 @@ impl<'o> ContactFilter<'o> {
 
     /// Takes one row: the step that leads to it, then its measurements.
     pub fn step(&mut self, measured: Measured<'_>, drive: Drive<'_>) -> &EstimateRow {
+        let measured = Measured {
+            object: measured.object.filter(|pose| self.is_new(*pose)),
+            ..measured
+        };
         let was_dark = self.plan.is_dark();
         let was_unwatched = was_dark && self.pusher.is_hidden();
         self.plan_step(&measured, drive);
@@ -168,12 +157,9 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.extend(tactile);
         let contact = self.model() == FilterModel::Robust;
         self.observation.felt = contact;
-        if self.latest.any_contact() {
-            self.resting.touch();
-        }
         self.observation.moves = self.camera_moves();
 
-        self.expect_pose(was_dark, was_unwatched);
+        self.expect_pose(was_unwatched);
         let tries = self.moves.second_tries && self.plan.is_dark();
         self.replay.before(&mut self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
@@ -217,27 +203,25 @@ impl<'o> ContactFilter<'o> {
         count.expect("a particle set is numbered in u32 and never empty")
     }
 
-    /// Returns true if camera poses may move particles: the object no longer waits where it was
-    /// first seen, or never did.
-    fn camera_moves(&self) -> bool {
-        self.model() == FilterModel::Robust && self.moves.camera && self.resting.waits_no_longer()
+    /// Returns true if a camera pose is a new measurement. In the robust model, a pose that equals
+    /// the one before is that frame again.
+    fn is_new(&mut self, pose: Pose) -> bool {
+        let before = std::mem::replace(&mut self.shown, pose);
+        pose != before || self.model() == FilterModel::Paper
     }
 
-    /// Decides before a camera pose whether it is accepted even if no particle explains it. It may
-    /// be if it is the first one after an occlusion. It is if the pusher was not seen, either.
-    fn expect_pose(&mut self, was_dark: bool, was_unwatched: bool) {
-        let Some(pose) = self.observation.pose else {
+    /// Returns true if camera poses may move particles.
+    fn camera_moves(&self) -> bool {
+        self.model() == FilterModel::Robust && self.moves.camera
+    }
+
+    /// Decides before a camera pose whether it is accepted even if no particle explains it. It is
+    /// if it is the first one after neither object nor pusher was seen.
+    fn expect_pose(&mut self, was_unwatched: bool) {
+        if self.observation.pose.is_none() {
             return;
-        };
-        let belief = self.latest.pose.zip(self.latest.spread);
-        let belief = belief.map(|(mean, spread)| NormalPose {
-            mean,
-            variance: spread.pose.fields().map(|std| std * std),
-        });
-        let belief = belief.filter(|_| was_dark);
-        let noise = self.resting.noise_of(self.observation.covariance);
-        let belief = belief.as_ref();
-        if let Some(trusted) = self.trust.expect((&pose, noise), belief, was_unwatched) {
+        }
+        if let Some(trusted) = self.trust.expect(was_unwatched) {
             self.filter
                 .change_model(|model| model.trust_camera(trusted));
         }
@@ -251,28 +235,6 @@ impl<'o> ContactFilter<'o> {
         if !contact || self.collapsed {
             self.plan.seen.pose = None;
         }
-    }
-
-    /// Takes the camera's latest pose as one of an object that has not moved yet. If the particles
-    /// were reinitialised around it, it counts as the first one.
-    fn learn_where_it_rests(&mut self) {
-        self.plan.resting = None;
-        let Some(pose) = self.observation.pose else {
-            return;
-        };
-        let seen = (pose, self.observation.covariance);
-        match self.collapsed {
-            true => self.resting = self.resting.started_at(seen),
-            false => self.resting.see(self.observation.time, seen),
-        }
-        self.plan.resting = self.where_it_rests();
-    }
-
-    /// Returns the belief from which the poses of particles are drawn that nothing has moved yet
-    /// (robust model).
-    fn where_it_rests(&self) -> Option<RestingPose> {
-        let contact = self.model() == FilterModel::Robust;
-        (contact && self.moves.waiting).then_some(self.resting)
     }
 
     /// Notes where each particle finds its past poses.
@@ -289,7 +251,6 @@ impl<'o> ContactFilter<'o> {
         self.collapsed = report.collapsed();
         self.collapses += u32::from(self.collapsed);
         self.trust.judge(report);
-        self.learn_where_it_rests();
     }
 
     /// Writes the plan of the step to a row.
@@ -309,8 +270,6 @@ impl<'o> ContactFilter<'o> {
         };
         plan.noise_age = self.noise.age(plan.duration());
         plan.reference = self.reference;
-        plan.steady = self.steadiness.velocity(measured.time, drive.substeps);
-        plan.steady = plan.steady.filter(|_| self.moves.steady_push);
         let scene = &self.filter.model().setup().scene;
         plan.pusher_is_back = false;
         plan.unseen_pusher = match drive.substeps.last().filter(|_| !drive.unseen) {
@@ -330,9 +289,38 @@ impl<'o> ContactFilter<'o> {
         }
     }
 
+    /// Takes a row that comes so soon after the latest step that no step leads to it. Its pose is
+    /// weighed as one of the past.
+    pub fn look(&mut self, measured: Measured<'_>) -> &EstimateRow {
+        let seen = measured.object.is_some_and(|pose| {
+            self.weigh(PoseAt {
+                time: measured.time,
+                pose,
+                covariance: measured.covariance,
+            })
+        });
+        let row = &mut self.latest;
+        row.visual = seen;
+        for count in [&mut row.unsolved, &mut row.failed] {
+            *count = count.map(|_| 0);
+        }
+        row.resampled = row.resampled.map(|_| false);
+        row.collapsed = row.collapsed.map(|collapsed| collapsed && seen);
+        &self.latest
+    }
+
     /// Weighs the particles by a pose that arrives late, against their own poses at its time. The
     /// latency has not been subtracted from that time.
     pub fn weigh_late(&mut self, late: PoseAt) -> &EstimateRow {
+        self.weigh(late);
+        &self.latest
+    }
+
+    /// Weighs the particles by a pose; returns true if it is a new one.
+    fn weigh(&mut self, late: PoseAt) -> bool {
+        if !self.is_new(late.pose) {
+            return false;
+        }
         let PoseAt { time, pose, .. } = late;
         self.observation.pose = Some(pose);
         self.observation.covariance = late.covariance;
@@ -341,7 +329,7 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.clear();
         self.observation.felt = false;
         self.observation.moves = self.camera_moves();
-        self.expect_pose(false, false);
+        self.expect_pose(false);
         let report = self.filter.observe(&self.plan, &self.observation);
         self.take(&report);
         self.camera.late_pose();
@@ -349,18 +337,7 @@ impl<'o> ContactFilter<'o> {
         self.summarise();
         self.filter.count_ancestors_from_now();
         self.latest.collapsed = Some(self.collapsed);
-        &self.latest
-    }
-
-    /// Turns the latest row into one that no step leads to, with a pose or without.
-    pub fn make_no_step(&mut self, visual: bool) {
-        let row = &mut self.latest;
-        row.visual = visual;
-        for count in [&mut row.unsolved, &mut row.failed] {
-            *count = count.map(|_| 0);
-        }
-        row.resampled = row.resampled.map(|_| false);
-        row.collapsed = row.collapsed.map(|collapsed| collapsed && visual);
+        true
     }
 
     /// Writes the estimate of the particles.
@@ -377,42 +354,6 @@ impl<'o> ContactFilter<'o> {
         let lineage = self.filter.lineage();
         row.distinct = Some(lineage.parents() as u32);
         row.ancestors = Some(lineage.ancestors() as u32);
-    }
-
-    /// Returns where the object waits at the latest row, whose time this is (s).
-    pub fn waiting_at(&self, time: f64) -> Waiting {
-        Waiting {
-            at: PoseAt {
-                time,
-                pose: self.latest.pose.unwrap_or_default(),
-                covariance: None,
-            },
-            resting: self.resting,
-        }
-    }
-
-    /// Takes over how another filter has seen the object wait.
-    pub fn go_on_waiting(&mut self, waiting: &Waiting) {
-        self.resting = waiting.resting;
-        self.plan.resting = self.where_it_rests();
-    }
-
-    /// Writes another filter's friction into the latest row, in place of that of the particles.
-    pub fn tell_friction(&mut self, mean: Friction, std: Friction) {
-        self.latest.friction = Some(mean);
-        if let Some(spread) = &mut self.latest.spread {
-            spread.friction = Some(std);
-        }
-    }
-
-    /// Adds the steps of another filter's row that have no certified solution.
-    pub fn count_steps_of(&mut self, other: &EstimateRow) {
-        let EstimateRow {
-            unsolved, failed, ..
-        } = &mut self.latest;
-        for (count, more) in [(unsolved, other.unsolved), (failed, other.failed)] {
-            *count = count.zip(more).map(|(count, more)| count + more);
-        }
     }
 
     /// The estimate at the latest row.

@@ -12,20 +12,14 @@ use crate::particle::propagation::{Propagation, Transition, load_columns, store_
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
 use crate::setup::Limits;
+use crate::uncertainty::JITTER;
 
 /// Numbers of the draws of unknowns: they follow those of all substeps.
-const VARIATION_PAIR: u32 = 1 << 20;
-const OFFSET_PAIR: u32 = VARIATION_PAIR + 2;
-const LATENCY_PAIR: u32 = OFFSET_PAIR + 2;
-const EXCHANGE_PAIR: u32 = LATENCY_PAIR + 2;
-const RESTING_PAIR: u32 = EXCHANGE_PAIR + 2;
-const FIXEL_PAIR: u32 = RESTING_PAIR + 2;
-/// Number behind those of all fixels.
-const CREEP_PAIR: u32 = 1 << 21;
-pub(super) const UNSEEN_PAIR: u32 = CREEP_PAIR + 2;
-const SHAKEN_PAIR: u32 = UNSEEN_PAIR + 2;
-const TURN_PAIR: u32 = SHAKEN_PAIR + 2;
+const OFFSET_PAIR: u32 = 1 << 20;
+pub(super) const UNSEEN_PAIR: u32 = OFFSET_PAIR + 2;
+const TURN_PAIR: u32 = UNSEEN_PAIR + 2;
 const SUPPORT_PAIR: u32 = TURN_PAIR + 2;
+const FIXEL_PAIR: u32 = SUPPORT_PAIR + 2;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -44,10 +38,6 @@ impl Propagation {
             #[inline(always)]
             || self.note_untouched(transition, block),
         );
-        if let Some(resting) = &plan.resting {
-            self.normals_of(draw, RESTING_PAIR, block);
-            self.draw_resting_pose(transition, (resting, plan.duration()), block);
-        }
         self.carried.fill(Twist::default());
         if let Some(pusher) = plan.unseen_pusher {
             self.normals_of(draw, UNSEEN_PAIR, block);
@@ -59,20 +49,10 @@ impl Propagation {
             #[inline(always)]
             || self.draw_friction(transition, plan, block),
         );
-        self.normals_of(draw, VARIATION_PAIR, block);
-        on_widest(
-            self.level,
-            #[inline(always)]
-            || self.vary_friction(transition, plan, block),
-        );
         // drawn in every row of a fast pusher, its offset would be the largest of many when it
         // comes near
         if plan.noise_age == 0 {
             self.draw_rig(transition, plan, draw, block);
-            if plan.shows_rest() {
-                self.normals_of(draw, SHAKEN_PAIR, block);
-                self.shake(transition, plan, block);
-            }
         }
         on_widest(
             self.level,
@@ -123,27 +103,6 @@ impl Propagation {
                 || self.draw_support(transition, plan, block),
             );
         }
-        self.normals_of(draw, LATENCY_PAIR, block);
-        on_widest(
-            self.level,
-            #[inline(always)]
-            || {
-                self.draw_latency(transition, plan, block);
-                self.draw_force_factor(transition, block);
-            },
-        );
-        if transition.setup.uncertainty.creep > 0.0 {
-            self.normals_of(draw, CREEP_PAIR, block);
-            on_widest(
-                self.level,
-                #[inline(always)]
-                || self.draw_creep(transition, plan, block),
-            );
-        }
-        if let Some(velocity) = plan.steady.filter(|_| plan.unknowns_wander()) {
-            self.normals_of(draw, EXCHANGE_PAIR, block);
-            self.exchange_latency(transition, plan, velocity, block);
-        }
     }
 
     /// Fills the columns of normals, on the widest instructions.
@@ -185,8 +144,8 @@ impl Propagation {
         block: &BlockMut<'_>,
     ) {
         let h = plan.duration();
-        let drift = match plan.unknowns_wander() {
-            true => setup.uncertainty.drift * (h / NOISE_STEP).sqrt(),
+        let step = match plan.unknowns_wander() {
+            true => (JITTER * (h / NOISE_STEP).sqrt()).min(1.0),
             false => 0.0,
         };
         let priors = setup.uncertainty.friction.fields();
@@ -200,7 +159,6 @@ impl Propagation {
                 }
                 let felt = flag(&block.as_block(), Columns::felt(k), chunk);
                 let fresh = load_chunk(&self.normals[k], chunk, 0.0) * prior;
-                let step = (drift / prior).min(1.0);
                 let before = (*value * (1.0 / nominal)).ln();
                 let wandered = before * (1.0 - step * step).sqrt() + fresh * step;
                 let drawn = felt.select(wandered, fresh).exp() * nominal;
@@ -210,37 +168,6 @@ impl Propagation {
                 *value = stays.select(*value, drawn);
             }
             self.proposed[chunk] = *friction;
-        }
-    }
-
-    /// Applies the friction of this place. It differs from the object's by a logarithm that loses
-    /// its memory along the way.
-    #[inline(always)]
-    fn vary_friction(
-        &mut self,
-        Transition { setup, columns, .. }: &Transition<'_>,
-        plan: &StepPlan,
-        block: &mut BlockMut<'_>,
-    ) {
-        let unsure = &setup.uncertainty;
-        let h = plan.duration();
-        let rho = setup.scene.object.gyration_radius();
-        let limits = setup.filter.limits.fields();
-        let one = Lanes::splat(1.0);
-        for chunk in 0..block.len().div_ceil(LANES) {
-            let particles = &mut self.particles[chunk];
-            let Twist { vx, vy, omega } = particles.twist;
-            let turn = omega * rho;
-            let way = (vx * vx + vy * vy + turn * turn).sqrt() * h;
-            let kept = (way * (-1.0 / unsure.variation_length)).exp();
-            let fresh = (one - kept * kept).sqrt() * unsure.variation;
-            for (k, friction) in particles.friction.fields_mut().into_iter().enumerate() {
-                let column = columns.variation() + k;
-                let before = load_chunk(block.column(column), chunk, 0.0);
-                let variation = kept * before + fresh * load_chunk(&self.normals[k], chunk, 0.0);
-                store_chunk(block.column_mut(column), chunk, &variation);
-                *friction = within(*friction * variation.exp(), limits[k]);
-            }
         }
     }
 
@@ -255,8 +182,6 @@ impl Propagation {
             pusher: &self.pusher_offsets,
             pusher_turn: &self.pusher_turn,
             fixels: &self.fixel_offsets,
-            growth: &self.growth,
-            creep: &self.creep,
             foot_offsets: &self.foot_offsets,
         };
         let particles = &mut self.particles[..chunks];

@@ -20,8 +20,6 @@ pub(crate) struct FilterOptions<'o> {
     pub late: f64,
     /// Ways to move particles to where weighing would leave few (robust model).
     pub moves: Moves,
-    /// Least share of a camera pose that moves particles, if it may move them (robust model).
-    pub least_moved: f64,
     /// Observer of every time step.
     pub observer: Option<&'o dyn Observer>,
 }

@@ -1,6 +1,5 @@
 //! The particle filter over contact dynamics: the model, its columns, and its estimate.
 
-mod aside;
 mod camera_likelihood;
 pub(crate) mod camera_noise;
 pub(crate) mod camera_trust;
@@ -10,29 +9,21 @@ pub(crate) mod contact_filter;
 mod contact_flags;
 mod contact_mode;
 pub(crate) mod filter_options;
-mod free_motion;
 mod geometric_median;
 mod group;
 mod hidden_pusher;
 mod history;
-pub(crate) mod learning_filter;
 mod mode_finder;
 mod model;
 mod moved;
 pub(crate) mod noise_clock;
-mod normal_pose;
 pub(crate) mod observation;
 pub(crate) mod observer;
 pub(crate) mod pose_clock;
-mod pose_scatter;
 pub(crate) mod propagation;
 mod replay;
-mod rest;
-mod resting_pose;
 mod rig;
-mod steadiness;
 mod step_plan;
-mod student_pose;
 mod summary;
 mod sums;
 mod support;

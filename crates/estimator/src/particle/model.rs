@@ -23,11 +23,8 @@ use crate::setup::{Camera, Setup};
 /// reinitialised around it (docs/method.md (27)).
 const COLLAPSED: f64 = -6.0;
 
-/// Number of a particle's first draw of the creep of contacts: behind those for all fixels.
-const CREEP_NUMBER: u32 = 1 << 20;
-
-/// Number of a particle's first draw of the turn of the pusher.
-const TURN_NUMBER: u32 = CREEP_NUMBER + 2;
+/// Number of a particle's first draw of the turn of the pusher: behind those for all fixels.
+const TURN_NUMBER: u32 = 1 << 20;
 
 /// Number of a particle's first draw of where its feet stand.
 const SUPPORT_NUMBER: u32 = TURN_NUMBER + 2;
@@ -162,23 +159,17 @@ impl<'o> ContactModel<'o> {
     /// Draws the unknowns of the robust model from their priors.
     fn draw_unknowns(&self, draw: Draw, particle: u32, block: &mut BlockMut<'_>, i: usize) {
         let Transition { setup, columns, .. } = &self.transition;
-        let prior = &setup.uncertainty;
-        let normals = draw.normals::<14>(particle, 4);
+        let normals = draw.normals::<8>(particle, 4);
         let friction = setup.drawn_friction([0, 1, 2, 3].map(|k| normals[k]));
         write(block, Columns::FRICTION, i, friction.fields());
-        for k in 0..4 {
-            block.column_mut(columns.variation() + k)[i] = prior.variation * normals[4 + k];
-        }
-        for axis in 0..2 {
-            block.column_mut(columns.pusher_offset() + axis)[i] = normals[8 + axis];
-        }
-        block.column_mut(columns.roughness())[i] = prior.roughness * normals[10];
-        block.column_mut(columns.growth())[i] = normals[11];
-        block.column_mut(columns.force())[i] = prior.force_spread * draw.normal(particle, 3);
-        let creep = draw.normals::<2>(particle, CREEP_NUMBER);
-        write(block, columns.creep(), i, creep.each_ref());
-        let [a, b] = [normals[12], normals[13]];
-        block.column_mut(columns.latency())[i] = prior.latency * 0.5 * (a * a + b * b);
+        write(
+            block,
+            columns.pusher_offset(),
+            i,
+            [&normals[4], &normals[5]],
+        );
+        block.column_mut(columns.roughness())[i] = normals[6];
+        block.column_mut(columns.latency())[i] = normals[7];
         block.column_mut(columns.pusher_turn())[i] = draw.normal(particle, TURN_NUMBER);
         let support = draw.normals::<3>(particle, SUPPORT_NUMBER);
         write(block, columns.support(), i, support.each_ref());

@@ -41,12 +41,4 @@ pub trait Observer: Debug + Sync {
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
         let _ = (row, particles);
     }
-
-    /// Takes the particles that have the friction of the estimate (robust model, docs/method.md
-    /// (52)). It is called before [`on_row`](Self::on_row), after each row in which the camera sees
-    /// the object, if it moves or nothing has touched it yet. The friction stays as they have it in
-    /// rows between.
-    fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
-        let _ = (row, particles);
-    }
 }

@@ -45,17 +45,13 @@ pub(crate) struct Transition<'o> {
 pub struct Propagation {
     pub(super) work: StepWork<LANES>,
     pub(super) particles: [Particles<LANES>; CHUNKS],
-    /// Friction of the object as a whole. That of this place differs from it in the robust model.
+    /// Friction drawn for the step.
     pub(super) proposed: [Friction<Column>; CHUNKS],
     /// Offsets of each particle's pusher and fixels from their poses (robust model).
     pub(super) pusher_offsets: Vec<[Column; 2]>,
     /// Turn of the pusher; empty if it is known (robust model).
     pub(super) pusher_turn: Vec<Column>,
     pub(super) fixel_offsets: Vec<[Column; 2]>,
-    /// Distance by which each particle's object is larger than its shape (robust model).
-    pub(super) growth: Vec<Column>,
-    /// Creep of contacts with pusher and fixels; empty if none creeps (robust model).
-    pub(super) creep: Vec<[Column; 2]>,
     /// Offsets of each particle's feet from the scene's; empty if they are known (robust model).
     pub(super) foot_offsets: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (robust model).
@@ -112,8 +108,6 @@ impl Default for Propagation {
             pusher_offsets: Vec::new(),
             pusher_turn: Vec::new(),
             fixel_offsets: Vec::new(),
-            growth: Vec::new(),
-            creep: Vec::new(),
             foot_offsets: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             carried: [Twist::default(); CHUNKS],

@@ -3,7 +3,6 @@
 use stickslip_filter::{Attempt, Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
 use crate::filter_model::FilterModel;
-use crate::particle::columns::Columns;
 use crate::particle::model::ContactModel;
 use crate::particle::observation::Observation;
 use crate::particle::step_plan::StepPlan;
@@ -14,10 +13,6 @@ use crate::particle::step_plan::StepPlan;
 /// back. If none went the way of the object, pusher and touch sensors go on contradicting all of
 /// them. Then the steps since the occlusion began are re-simulated with other random numbers, and
 /// all sets share the particles by their evidence.
-///
-/// If that does not help, every other re-simulation runs without resampling. One way of a
-/// bifurcation may explain the rows better at first and the other in the end: resampling leaves
-/// particles only on the first.
 #[derive(Debug, Default)]
 pub(crate) struct Replay {
     checkpoint: Option<Checkpoint>,
@@ -33,41 +28,16 @@ pub(crate) struct Replay {
     /// Number of re-simulations since the occlusion began, and in all.
     attempts: u32,
     tries: u32,
-    /// Number of ancestors below which a set that takes over has too few, and number of further
-    /// rows at which others are looked for.
-    few: usize,
-    more: u32,
 }
 
 /// Largest number of steps that are re-simulated: it bounds the cost of a row.
 const LONGEST: usize = 120;
 
 /// Largest number of re-simulations in one occlusion.
-const ATTEMPTS: u32 = 48;
+const ATTEMPTS: u32 = 16;
 
-/// Fall of ln of the evidence that causes a re-simulation, the first [`EARLY`] times: 1 in 3000.
+/// Fall of ln of the evidence that causes a re-simulation: 1 in 3000.
 const WORSE: f64 = 8.0;
-
-/// Number of the first times, which find most of what can be found.
-const EARLY: u32 = 16;
-
-/// Fall that causes the other ones. No re-simulation explains what the scene states wrongly: the
-/// evidence then falls a little at every touch. At a bifurcation that all particles took the wrong
-/// way it falls at every row, by hundreds in the end.
-const MUCH_WORSE: f64 = 32.0;
-
-/// Attempt from which on every other one does not resample. Such an attempt leaves few particles,
-/// too few if the evidence fell by chance.
-const DECEIVED: u32 = 6;
-
-/// Share of the particles from which on a set made without resampling takes over.
-const TAKES_OVER: f64 = 0.9;
-
-/// Number of ancestors below which its particles are too few, if the checkpoint has as many.
-const FEW: usize = 8;
-
-/// Number of rows at which steps are then re-simulated, to find others that go its way.
-const MORE: u32 = 8;
 
 impl Replay {
     /// Prepares a step. If the camera is off, it saves the particles at the first such step, and
@@ -91,11 +61,9 @@ impl Replay {
             self.attempts = 0;
         }
         self.dark = true;
-        self.few = FEW.min(filter.lineage().ancestors());
-        self.more = 0;
         self.made = 0;
         self.pool = Pool::default();
-        self.limit = -self.fall();
+        self.limit = -WORSE;
     }
 
     /// Completes a step. If the particles explain the measurements of the occlusion too badly, it
@@ -113,15 +81,7 @@ impl Replay {
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.pool.log_evidence += log_evidence;
         }
-        // the pusher's lag may be the bodies' compliance, which weighs no particle; or all
-        // particles went another way
-        if !plan.driven {
-            self.limit -= log_share_beside(filter);
-        }
-        let contradicted = self.pool.log_evidence < self.limit;
-        let few = self.more > 0 && filter.lineage().ancestors() < self.few;
-        self.more = if few { self.more - 1 } else { 0 };
-        if !(contradicted || few) || self.attempts == ATTEMPTS {
+        if self.pool.log_evidence >= self.limit || self.attempts == ATTEMPTS {
             return None;
         }
         let checkpoint = self.checkpoint.as_ref()?;
@@ -132,27 +92,11 @@ impl Replay {
         let before = self.pool;
         let attempt = Attempt {
             number: u64::from(self.attempts),
-            resampling: contradicted && (self.attempts < DECEIVED || self.attempts % 2 == 1),
+            resampling: true,
         };
-        let tried = filter.try_again(checkpoint, steps, before, attempt);
-        self.pool = tried.pool;
-        if contradicted {
-            let leaves_few = !attempt.resampling && tried.share > TAKES_OVER;
-            self.more = if leaves_few { MORE } else { 0 };
-            self.limit = self.pool.log_evidence - self.fall();
-        } else {
-            self.limit += self.pool.log_evidence - before.log_evidence;
-        }
+        self.pool = filter.try_again(checkpoint, steps, before, attempt).pool;
+        self.limit = self.pool.log_evidence - WORSE;
         Some(self.pool.log_evidence - before.log_evidence)
-    }
-
-    /// Returns the fall of ln of the evidence that causes the next attempt.
-    fn fall(&self) -> f64 {
-        if self.attempts < EARLY {
-            WORSE
-        } else {
-            MUCH_WORSE
-        }
     }
 
     /// Excludes the steps so far from re-simulation: something else was learned since, or there are
@@ -174,24 +118,6 @@ impl Replay {
             }
             None => self.steps.push((plan.clone(), observation.clone())),
         }
-        self.steps[self.made].0.second_try = true;
         self.made += 1;
     }
-}
-
-/// ln of the share of particles whose pusher stands within the bound of (13). A pusher beyond the
-/// bound counts less, by its distance, (40).
-fn log_share_beside(filter: &ParticleFilter<ContactModel<'_>>) -> f64 {
-    let setup = filter.model().setup();
-    let (bound, std) = (setup.most_pusher_lag(), setup.uncertainty.pusher_lag);
-    let column = |axis: usize| filter.particles().column(Columns::PUSHER_LAG + axis);
-    let weights = filter.weights().weights();
-    let lags = column(0).zip(column(1)).zip(weights);
-    let share: f64 = lags
-        .map(|((x, y), weight)| {
-            let beyond = (x * x + y * y - bound * bound).max(0.0);
-            weight * libm::exp(-0.5 * beyond / (std * std))
-        })
-        .sum();
-    libm::log(share.max(f64::MIN_POSITIVE))
 }

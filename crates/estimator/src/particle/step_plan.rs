@@ -3,7 +3,6 @@
 use stickslip_dynamics::{StepInput, Twist};
 
 use crate::particle::observation::Observation;
-use crate::particle::resting_pose::RestingPose;
 use crate::particle::sums::Reference;
 
 /// Random step of the friction parameters, or none.
@@ -37,9 +36,6 @@ pub struct StepPlan {
     pub parameter_noise: ParameterNoise,
     /// Number of steps since the one that drew the noise of this step; 0 if it draws its own.
     pub noise_age: u64,
-    /// The pusher's velocity (m/s), if it has been the same for as long as the camera may lag
-    /// (robust model).
-    pub steady: Option<[f64; 2]>,
     /// The pusher, if its place is not known and it may carry the object along (robust model).
     pub unseen_pusher: Option<UnseenPusher>,
     /// True if the pusher has just come back into view (robust model).
@@ -49,15 +45,10 @@ pub struct StepPlan {
     /// Observation that weighed the particles at the row before, from which they learn the camera's
     /// noise; without a pose in the paper's model.
     pub seen: Observation,
-    /// Place of the object if nothing has moved it yet, if the row before gave more evidence of it
-    /// (robust model).
-    pub resting: Option<RestingPose>,
     /// Tactile readings at the end of the step, one per sensor.
     pub tactile: Vec<Option<bool>>,
     /// Values near the estimate, about which sums are taken.
     pub reference: Reference,
-    /// True if the step is re-simulated, (42).
-    pub second_try: bool,
 }
 
 impl StepPlan {
@@ -68,25 +59,21 @@ impl StepPlan {
             driven,
             parameter_noise,
             noise_age,
-            steady,
             unseen_pusher,
             pusher_is_back,
             slot,
             seen,
-            resting,
             tactile,
             reference,
-            second_try,
         } = other;
         self.substeps.clone_from(substeps);
         self.tactile.clone_from(tactile);
         self.seen.overwrite(seen);
         (self.driven, self.parameter_noise) = (*driven, *parameter_noise);
-        (self.noise_age, self.steady) = (*noise_age, *steady);
+        self.noise_age = *noise_age;
         (self.unseen_pusher, self.slot) = (*unseen_pusher, *slot);
         self.pusher_is_back = *pusher_is_back;
-        (self.resting, self.reference) = (*resting, *reference);
-        self.second_try = *second_try;
+        self.reference = *reference;
     }
 
     /// Length of the step (s).
@@ -107,12 +94,6 @@ impl StepPlan {
         self.driven || !self.is_dark()
     }
 
-    /// Returns true if the camera sees where the object rests. Only errors of the rig then keep it
-    /// from the poses that are seen.
-    pub(crate) fn shows_rest(&self) -> bool {
-        !self.driven && self.unseen_pusher.is_none() && !self.is_dark()
-    }
-
     /// A plan of no step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {
@@ -120,15 +101,12 @@ impl StepPlan {
             driven: false,
             parameter_noise: ParameterNoise::Frozen,
             noise_age: 0,
-            steady: None,
             unseen_pusher: None,
             pusher_is_back: false,
             slot: 0,
             seen: Observation::default(),
-            resting: None,
             tactile: Vec::new(),
             reference,
-            second_try: false,
         }
     }
 }

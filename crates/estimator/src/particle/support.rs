@@ -1,16 +1,13 @@
 //! Unknowns of how the object stands (robust model; docs/method.md (55)): where its centre of
 //! friction lies, and in which directions its three feet.
 
-use stickslip_dynamics::{Lanes, Pose};
+use stickslip_dynamics::Pose;
 use stickslip_filter::BlockMut;
 
 use crate::particle::chunk::{LANES, flag};
 use crate::particle::columns::Columns;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
-
-/// Share of their spread by which centre and angle wander: copies of a particle must differ.
-const SUPPORT_STEP: f64 = 0.1;
 
 /// Index of μ_s, the parameter that takes part where the object moves: so do the feet.
 const MOVED: usize = 0;
@@ -25,12 +22,11 @@ impl Propagation {
         plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
-        let step = Lanes::splat(SUPPORT_STEP);
         for chunk in 0..block.len().div_ceil(LANES) {
             let moved = flag(&block.as_block(), Columns::felt(MOVED), chunk);
             for number in 0..3 {
                 let column = columns.support() + number;
-                self.wander(plan, (moved, step), number, block.column_mut(column), chunk);
+                self.wander(plan, moved, number, block.column_mut(column), chunk);
             }
         }
     }

@@ -3,7 +3,6 @@
 mod belief;
 mod common;
 mod contact_mode;
-mod creep;
 mod diagnosis;
 mod extended_kalman;
 mod fast_pusher;

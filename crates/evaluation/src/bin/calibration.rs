@@ -9,9 +9,8 @@
 //! both models. The truth's place in the belief is taken at the end in the runs that identify a
 //! quantity, and in all runs at the last row that the camera saw.
 //!
-//! Keys are those of a scene's `[uncertainty]`, of truths as of the filter. `latency=0 outline=0`
-//! shows their cost, and `force_spread=1 creep=0.1` is the model of the particles that learn
-//! friction. With keys, only the robust model is run, since only it has them.
+//! Keys are those of a scene's `[uncertainty]`, of truths as of the filter. `latency=0` shows
+//! its cost. With keys, only the robust model is run, since only it has them.
 
 use std::error::Error;
 

@@ -26,19 +26,11 @@ pub(super) fn uncertainty(
     default: Uncertainty,
 ) -> Result<Uncertainty, SceneError> {
     let number = |name: &str, default: f64| table.number_or(name, default);
-    let (fixel_position, outline, latency) = (
-        number("fixel_position", default.fixel_position)?,
-        number("outline", default.outline)?,
-        number("latency", default.latency)?,
-    );
+    let fixel_position = number("fixel_position", default.fixel_position)?;
     // who says that a rig is measured worse than most means all of it
-    let told_rough = fixel_position > default.fixel_position
-        || outline > default.outline
-        || latency > default.latency;
-    let well_measured = if told_rough {
-        1.0
-    } else {
-        default.well_measured
+    let well_measured = match fixel_position > default.fixel_position {
+        true => 1.0,
+        false => default.well_measured,
     };
     Ok(Uncertainty {
         friction: Friction {
@@ -49,20 +41,14 @@ pub(super) fn uncertainty(
         },
         centre_of_friction: number("centre_of_friction", default.centre_of_friction)?,
         tripod_angle: number("tripod_angle", default.tripod_angle)?,
-        drift: number("drift", default.drift)?,
-        variation: number("variation", default.variation)?,
-        variation_length: number("variation_length", default.variation_length)?,
         force_std: number("force_std", default.force_std)?,
-        force_spread: number("force_spread", default.force_spread)?,
-        creep: number("creep", default.creep)?,
         pusher_offset: number("pusher_offset", default.pusher_offset)?,
         pusher_lag: number("pusher_lag", default.pusher_lag)?,
         fixel_position,
-        outline,
         roughness: number("roughness", default.roughness)?,
         well_measured: number("well_measured", well_measured)?,
         camera_noise: number("camera_noise", default.camera_noise)?,
-        latency,
+        latency: number("latency", default.latency)?,
         touch_gap: number("touch_gap", default.touch_gap)?,
     })
 }

@@ -56,7 +56,6 @@ fn between_fixels(heights: [f64; 2], mu: f64, gap: f64) -> StepProblem {
         arm: [-0.03 * side, height],
         gap,
         mu,
-        creep: 0.0,
         surface_velocity: [0.0; 2],
         on_pusher: false,
     };

@@ -19,7 +19,6 @@ fn push(mu: f64) -> ContactPoint {
         arm: [-0.03, 0.0],
         gap: 0.0,
         mu,
-        creep: 0.0,
         surface_velocity: [SPEED, 0.0],
         on_pusher: true,
     }
