@@ -142,7 +142,7 @@ impl<const W: usize> Assembly<W> {
             if !other.active.any() {
                 continue;
             }
-            self.collide(scene, (&object, particles), &other, narrow, ncp);
+            self.collide(scene, &object, &other, narrow, ncp);
             if other.body == Body::Pusher {
                 // which may stall
                 self.let_pusher_yield(particles, ncp);
@@ -259,7 +259,7 @@ impl<const W: usize> Assembly<W> {
     fn collide(
         &mut self,
         scene: &Scene,
-        (object, particles): (&Transform<Lanes<W>>, &Particles<W>),
+        object: &Transform<Lanes<W>>,
         other: &Other<'_, W>,
         narrow: &mut NarrowPhase<W>,
         ncp: &mut Ncp<W>,

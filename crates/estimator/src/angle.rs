@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stickslip_dynamics::{Lanes, Pose};
+use stickslip_dynamics::Lanes;
 
 /// The angle in [−π, π) that equals `angle` on the circle (rad).
 pub fn wrapped(angle: f64) -> f64 {
@@ -24,13 +24,4 @@ pub fn unwrapped(angle: f64, near: f64) -> f64 {
 /// if no turn is needed.
 pub fn nearest_winding(angle: f64, near: f64) -> f64 {
     angle - TAU * ((angle - near) / TAU).round()
-}
-
-/// Difference `to` − `from`, with θ taken on the circle.
-pub fn difference(to: &Pose, from: &Pose) -> Pose {
-    Pose {
-        x: to.x - from.x,
-        y: to.y - from.y,
-        theta: wrapped(to.theta - from.theta),
-    }
 }

@@ -50,6 +50,14 @@ impl Spread {
         }
     }
 
+    /// Adds independent errors of these standard deviations.
+    pub(crate) fn add(&mut self, errors: Pose) {
+        let errors = errors.fields().into_iter();
+        for (std, error) in self.pose.fields_mut().into_iter().zip(errors) {
+            *std = std.hypot(*error);
+        }
+    }
+
     /// Converts deviations about a mean to those about a pose that is `way` from it.
     pub(crate) fn move_centre(&mut self, way: Pose) {
         let Pose { x, y, theta } = way;
@@ -119,12 +127,6 @@ impl EstimateRow {
     pub fn moves(&self) -> bool {
         self.twist
             .is_some_and(|v| v.vx.hypot(v.vy) > MOVING || v.omega.abs() > TURNING)
-    }
-
-    /// Returns true if a contact with pusher or fixel is possible at all.
-    pub(crate) fn any_contact(&self) -> bool {
-        let fixels = self.contact_fixels.iter().flatten();
-        fixels.chain(&self.contact_pusher).any(|share| *share > 0.0)
     }
 }
 

@@ -21,8 +21,6 @@ pub(crate) struct PreparedLog<'a> {
     pub hidden: Vec<bool>,
     /// First row with a visible object pose: row 0 of the estimate.
     pub first: usize,
-    /// Last row with a visible object pose.
-    pub last_seen: usize,
     /// Pose in row `first`.
     pub start: Pose,
     /// The pusher's track.
@@ -45,14 +43,12 @@ impl<'a> PreparedLog<'a> {
                 .map(|pose| (row, pose))
         });
         let first = seen.next();
-        let last_seen = seen.next_back();
         let (first, start) = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
         let track = PusherTrack::new(log, setup.camera.as_ref(), options.tracking)?;
         Ok(Self {
             log,
             hidden,
             first,
-            last_seen: last_seen.map_or(first, |(row, _)| row),
             start,
             schedule: Schedule::new(&log.time, &track, options.substeps),
             track,

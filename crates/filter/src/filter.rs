@@ -36,20 +36,11 @@ pub struct ParticleFilter<M: Model> {
     sums: M::Sums,
 }
 
-/// Parts of a step other than moving and weighing the particles.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StepParts {
-    /// True if it resamples them where the condition for that is met.
-    pub resampling: bool,
-    /// True if it takes the sums over them.
-    pub sums: bool,
-}
-
-impl StepParts {
-    const ALL: Self = Self {
-        resampling: true,
-        sums: true,
-    };
+/// Sums over the particles after a step: taken, or left out since more steps follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Summing {
+    On,
+    Off,
 }
 
 impl<M: Model> ParticleFilter<M> {
@@ -109,31 +100,31 @@ impl<M: Model> ParticleFilter<M> {
     /// model allows it, an observation also moves the particles: as far as weighing alone would
     /// leave few, or as far as the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
-        self.make_step(input, observation, StepParts::ALL)
+        self.make_step(input, observation, Summing::On)
     }
 
-    /// One time step with these parts.
+    /// One time step.
     pub(crate) fn make_step(
         &mut self,
         input: &M::Input,
         observation: Option<&M::Observation>,
-        StepParts { resampling, sums }: StepParts,
+        summing: Summing,
     ) -> StepReport {
         self.step += 1;
         self.observed = 0;
         self.lineage.begin_step();
-        let resampled = resampling && self.satisfies_resample_condition();
+        let resampled = self.satisfies_resample_condition();
         if resampled {
             self.choose_ancestors(Purpose::Resample);
         }
-        self.pass_over_blocks(resampled, (input, observation), sums);
+        self.pass_over_blocks(resampled, (input, observation), summing == Summing::On);
         let (weight_update, judged) = match observation {
             Some(observation) => self.update_weights(observation),
             None => (WeightUpdate::Unobserved, None),
         };
         self.lineage.end_step();
         match weight_update {
-            _ if !sums => {}
+            _ if summing == Summing::Off => {}
             WeightUpdate::Unobserved => self.combine_sums(|_| 1.0),
             WeightUpdate::Weighed { .. } if self.bridge.parted() => self.recompute_sums(input),
             WeightUpdate::Weighed { .. } => self.combine_sums(BlockWeights::scale),

@@ -49,7 +49,7 @@ pub use model::{Model, WeightedSums};
 pub use particles::{BLOCK, Block, BlockMut, ParticleSet, useful_threads};
 pub use report::{StepReport, WeightUpdate};
 pub use resample::Resampling;
-pub use second_try::{Attempt, Checkpoint, Pool, SecondTry};
+pub use second_try::{Checkpoint, Pool, SecondTry};
 pub use settings::{Settings, SettingsError};
 pub use streams::{Draw, Purpose, Streams};
 pub use weights::{LogWeights, WeightError};

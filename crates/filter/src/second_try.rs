@@ -1,7 +1,7 @@
 //! Re-simulation. If the particles explain their observations ever worse, the steps since a
 //! [`Checkpoint`] are re-simulated with other random numbers, see [`ParticleFilter::try_again`].
 
-use crate::filter::{ParticleFilter, StepParts};
+use crate::filter::{ParticleFilter, Summing};
 use crate::lineage::Lineage;
 use crate::model::Model;
 use crate::particles::{BLOCK, ParticleSet};
@@ -61,20 +61,6 @@ impl Default for Pool {
 /// falls farther would have no particle, and makes no more steps.
 const GIVEN_UP: f64 = 50.0;
 
-/// One re-simulation of the steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Attempt {
-    /// Number of the re-simulation since the checkpoint, from 1 on: each has random numbers of its
-    /// own.
-    pub number: u64,
-    /// True if the particles are resampled on the way, as they were the first time. If false, they
-    /// are resampled before the first step and the last one only. Each then goes its way and is
-    /// judged by all observations but the last at once. A particle that early observations speak
-    /// against and later ones for is not lost. But few are left, and the last step makes many
-    /// copies of them.
-    pub resampling: bool,
-}
-
 /// Result of a re-simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondTry {
@@ -114,7 +100,7 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.lineage.clone_from(&self.lineage);
     }
 
-    /// Re-simulates all steps since `checkpoint`, with the random numbers of this `attempt`. Then
+    /// Re-simulates all steps since `checkpoint`, with random numbers of its `number`, from 1 on. Then
     /// draws particles from the new set and from the sets in `pool`, which the present particles
     /// are drawn from. The share of each set is its share of the evidence. The weights become
     /// equal.
@@ -135,7 +121,7 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint: &Checkpoint,
         steps: impl ExactSizeIterator<Item = (&'a M::Input, Option<&'a M::Observation>)>,
         pool: Pool,
-        attempt: Attempt,
+        number: u64,
     ) -> SecondTry
     where
         M::Input: 'a,
@@ -155,20 +141,15 @@ impl<M: Model> ParticleFilter<M> {
         std::mem::swap(&mut self.weights, &mut rivals.weights);
         std::mem::swap(&mut self.lineage, &mut rivals.lineage);
         self.step = checkpoint.step;
-        self.streams = Streams::new(self.settings.seed).attempt(attempt.number);
-        let all = steps.len();
+        self.streams = Streams::new(self.settings.seed).attempt(number);
         let mut again = 0.0;
         let mut last = None;
-        for (made, (input, observation)) in steps.enumerate() {
+        for (input, observation) in steps {
             last = Some(input);
             if again == f64::NEG_INFINITY {
                 continue;
             }
-            let parts = StepParts {
-                resampling: attempt.resampling || made == 0 || made + 1 == all,
-                sums: false,
-            };
-            let report = self.make_step(input, observation, parts);
+            let report = self.make_step(input, observation, Summing::Off);
             again += match report.weight_update {
                 WeightUpdate::Unobserved => 0.0,
                 WeightUpdate::Weighed { log_evidence } => log_evidence,

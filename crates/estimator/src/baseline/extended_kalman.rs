@@ -36,7 +36,7 @@ pub(crate) fn track(
         ..belief.row()
     };
     for row in first + 1..prepared.log.len() {
-        predict(&mut step, &mut belief, (setup, prepared, row));
+        predict(&mut step, &mut belief, (prepared, row));
         let noise = camera.noise(prepared.covariance(row));
         let pose = prepared.visible(row);
         let visual = pose.is_some_and(|pose| camera.see(&mut belief, pose, &noise));
@@ -61,7 +61,7 @@ pub(crate) fn track(
 fn predict(
     step: &mut LinearisedStep<'_>,
     belief: &mut Belief,
-    (setup, prepared, row): (&Setup, &PreparedLog<'_>, usize),
+    (prepared, row): (&PreparedLog<'_>, usize),
 ) {
     step.begin_row();
     for input in prepared.schedule.step(row - 1) {

@@ -7,12 +7,17 @@ use stickslip_filter::{Block, BlockMut, Draw};
 use crate::particle::chunk::{Column, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 
+/// Standard deviations up to which the prior explains the logarithm of the camera's noise.
+const MOST_SPREADS: f64 = 3.0;
+
 /// Prior of the camera's noise. Its variance, in units of the nominal one, is ν₀ over a χ² number
 /// of ν₀ degrees of freedom (docs/method.md (41)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NoisePrior {
     /// ν₀.
     freedom: f64,
+    /// Largest variance that this prior explains.
+    most: f64,
 }
 
 impl NoisePrior {
@@ -20,7 +25,8 @@ impl NoisePrior {
     /// noise is exact.
     pub fn new(camera_noise: f64) -> Option<Self> {
         let freedom = 1.0 + 0.5 / (camera_noise * camera_noise);
-        freedom.is_finite().then_some(Self { freedom })
+        let most = libm::exp(2.0 * MOST_SPREADS * camera_noise);
+        freedom.is_finite().then_some(Self { freedom, most })
     }
 
     /// Draws the variance of one sensor's noise from this prior, in units of the nominal one, by
@@ -50,6 +56,20 @@ impl NoisePrior {
         ]
     }
 
+    /// Returns the variances of the camera's errors, of position along any axis and of angle, that
+    /// do not average out after so many poses with these sums of squared residuals.
+    ///
+    /// Poses that scatter by more than the prior explains have no independent errors: two cameras
+    /// whose frames differ, say, alternate. What is beyond the prior then stays in every mean of
+    /// them. It may all lie along one axis.
+    pub fn unsettled(&self, [poses, position, angle]: [f64; 3]) -> [f64; 2] {
+        let [of_position, of_angle] = self.variances(poses, position, angle);
+        [
+            2.0 * (of_position - self.most).max(0.0),
+            (of_angle - self.most).max(0.0),
+        ]
+    }
+
     /// Returns the degrees of freedom of these variances after so many poses.
     pub fn freedoms(&self, poses: f64) -> [f64; 2] {
         [self.freedom + 2.0 * poses, self.freedom + poses]
@@ -69,16 +89,6 @@ pub(crate) struct CameraNoise {
 pub(crate) const MEMORY: f64 = 300.0;
 
 impl CameraNoise {
-    /// The noise of so many poses, with these sums of squares.
-    #[inline(always)]
-    pub fn of([poses, position, angle]: [Column; 3]) -> Self {
-        Self {
-            poses,
-            position,
-            angle,
-        }
-    }
-
     /// Loads the noise of one chunk.
     #[inline(always)]
     pub fn load(columns: Columns, block: &Block<'_>, chunk: usize) -> Self {

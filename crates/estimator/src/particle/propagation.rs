@@ -212,11 +212,7 @@ impl Propagation {
                 chunk,
                 particles.pusher_lag.each_mut(),
             );
-            // a standing pusher goes on through no jam: what it yielded may be the bodies'
-            // compliance; in view the camera tells
-            if paper || plan.driven || !plan.is_dark() {
-                particles.limit_pusher_lag(most_lag);
-            }
+            particles.limit_pusher_lag(most_lag);
             load_columns(
                 block,
                 Columns::WARM_START,

@@ -1,6 +1,6 @@
 //! Re-simulation of the steps while the camera is off: [`Replay`] (robust model).
 
-use stickslip_filter::{Attempt, Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
+use stickslip_filter::{Checkpoint, ParticleFilter, Pool, StepReport, WeightUpdate};
 
 use crate::filter_model::FilterModel;
 use crate::particle::model::ContactModel;
@@ -90,11 +90,9 @@ impl Replay {
         let steps = self.steps[..self.made].iter();
         let steps = steps.map(|(plan, observation)| (plan, Some(observation)));
         let before = self.pool;
-        let attempt = Attempt {
-            number: u64::from(self.attempts),
-            resampling: true,
-        };
-        self.pool = filter.try_again(checkpoint, steps, before, attempt).pool;
+        self.pool = filter
+            .try_again(checkpoint, steps, before, u64::from(self.attempts))
+            .pool;
         self.limit = self.pool.log_evidence - WORSE;
         Some(self.pool.log_evidence - before.log_evidence)
     }

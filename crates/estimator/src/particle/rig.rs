@@ -89,7 +89,8 @@ impl Propagation {
 
     /// Returns the factor of each particle's random force while the camera is off: a rig that is
     /// measured well is also smooth. While the camera is on, the factor is 1: what the force does
-    /// not allow for would pass for friction.
+    /// not allow for would pass for friction. At rest with the camera off it is 0: nothing would
+    /// tell the particles apart, and their spread would only grow.
     #[inline(always)]
     pub(super) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -97,6 +98,9 @@ impl Propagation {
         block: &BlockMut<'_>,
         chunk: usize,
     ) -> Column {
+        if !plan.unknowns_wander() {
+            return Lanes::ZERO;
+        }
         if !plan.is_dark() {
             return Lanes::splat(1.0);
         }

@@ -94,6 +94,11 @@ impl StepPlan {
         self.driven || !self.is_dark()
     }
 
+    /// Returns true if the pusher is tracked and stands: nothing slides then.
+    pub(crate) fn pusher_stands(&self) -> bool {
+        !self.driven && self.unseen_pusher.is_none()
+    }
+
     /// A plan of no step at all.
     pub(crate) fn none(reference: Reference) -> Self {
         Self {

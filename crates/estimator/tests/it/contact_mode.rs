@@ -284,26 +284,11 @@ fn pushed_steadily(setup: &Setup, latency: f64) -> [f64; 2] {
 }
 
 /// The camera determines o − v L under a steady push: the pusher's offset minus the way in the
-/// latency. The priors are N(0, σ²) of o and exponential of L. On that line they leave a normal
-/// distribution for where the object is, of mean −σ²/(v L̄), cut off where L = 0.
+/// latency. The priors leave a mixture on that line: that of all scales η of the rig, each by how
+/// likely it makes what the camera shows. The sums are over η and over the latency.
 #[test]
 fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
-    let mut setup = setup(&[]);
-    setup.uncertainty.roughness = 0.0;
-    setup.uncertainty.outline = 0.0;
-    let (std, late) = (setup.uncertainty.pusher_offset, setup.uncertainty.latency);
-    let [error, spread] = pushed_steadily(&setup, 0.05);
-    let expected = -std * std / (SPEED * late);
-    assert!((spread / std - 1.0).abs() < 0.25, "{spread}, {std}");
-    assert!((error - expected).abs() < 0.4 * std, "{error}, {expected}");
-}
-
-/// If rigs differ, the line leaves a mixture: that of all roughnesses η, each by how likely it
-/// makes what the camera shows. The sums are over η and over the latency.
-#[test]
-fn a_steady_push_tells_rigs_that_are_measured_well_from_others() {
-    let mut setup = setup(&[]);
-    setup.uncertainty.outline = 0.0;
+    let setup = setup(&[]);
     let unsure = setup.uncertainty;
     let expected = |true_latency: f64| {
         let (mut weight, mut mean, mut square) = (0.0, 0.0, 0.0);
@@ -312,12 +297,12 @@ fn a_steady_push_tells_rigs_that_are_measured_well_from_others() {
             let well = unsure.well_measured;
             let better = well + (1.0 - well) / (1.0 + libm::exp(-10.0 * eta));
             let std = better.sqrt().sqrt() * libm::exp(eta) * unsure.pusher_offset;
-            let late = better * libm::exp(eta) * unsure.latency;
             for step in 0..4000 {
                 let latency = 1e-4 * (f64::from(step) + 0.5);
                 let offset = SPEED * (latency - true_latency);
                 let normal = libm::pow(eta / unsure.roughness, 2.0) + libm::pow(offset / std, 2.0);
-                let density = libm::exp(-0.5 * normal - latency / late) / (std * late);
+                let late = libm::log(latency / unsure.latency) / 1.2;
+                let density = libm::exp(-0.5 * (normal + late * late)) / (std * latency);
                 weight += density;
                 mean += density * offset;
                 square += density * offset * offset;

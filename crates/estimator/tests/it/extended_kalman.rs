@@ -220,7 +220,6 @@ fn pushed() -> (Setup, Log) {
         mu_f: 0.05,
         d_tri: 0.05,
     };
-    setup.uncertainty.drift = 0.01;
     setup.uncertainty.force_std = 0.05;
     let pusher = |t: f64| Some(Pose::new(-0.035 + 0.02 * t, 0.002, 0.0));
     // begins a hundredth of a millimetre before the touch
@@ -359,7 +358,7 @@ fn propagate(
             // all but mu_f take part in a push
             let n = draw(chunk * LANES + lane);
             for k in [0, 1, 3] {
-                let a = setup.uncertainty.drift / priors[k];
+                let a = 0.1_f64;
                 let ratio = &mut weighed[lane].ratios[k];
                 *ratio = (1.0 - a * a).sqrt() * *ratio + a * priors[k] * n[3 + k];
             }

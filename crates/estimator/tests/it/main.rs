@@ -1,5 +1,6 @@
 //! The estimator on scenes whose answer is known.
 
+mod at_rest;
 mod belief;
 mod common;
 mod contact_mode;
@@ -22,5 +23,6 @@ mod tactile;
 mod track;
 mod tracker;
 mod turned_table;
+mod two_cameras;
 mod unseen_pusher;
 mod wrapped_angles;

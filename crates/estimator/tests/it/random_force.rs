@@ -66,19 +66,6 @@ fn random_force_is_as_large_as_told() {
 }
 
 #[test]
-fn factor_of_the_force_is_log_normal() {
-    // of a normal number times e^f, f ~ N(0, s²), the mean square is e^(2 s²)
-    let spread = 0.5_f64;
-    let told = TOLD * TOLD * libm::exp(2.0 * spread * spread);
-    let uncertainty = Uncertainty {
-        force_spread: spread,
-        ..alike()
-    };
-    let ratio = mean_square(uncertainty, false) / told;
-    assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
-}
-
-#[test]
 fn random_force_is_smaller_on_rigs_that_are_measured_well_in_the_dark_alone() {
     // all rigs lie between the two kinds, where b of (36) is (1 + w)/2
     let uncertainty = Uncertainty {

@@ -1,7 +1,7 @@
 //! Steps re-simulated with other random numbers, and the evidence of the two sets together.
 
 use stickslip_filter::{
-    Attempt, Block, BlockMut, Draw, Model, ParticleFilter, Pool, Settings, WeightedSums,
+    Block, BlockMut, Draw, Model, ParticleFilter, Pool, Settings, WeightedSums,
 };
 
 /// A bifurcation: the first step leads a particle to 1 with probability [`RIGHT`], else to 0, for
@@ -54,14 +54,6 @@ impl Model for Fork {
     fn reinitialise(&self, _: &f64, _: Draw, _: &mut BlockMut<'_>) {}
 }
 
-/// Every other one without resampling.
-fn numbered(number: u64) -> Attempt {
-    Attempt {
-        number,
-        resampling: number % 2 == 1,
-    }
-}
-
 const ROWS: [(bool, f64); 3] = [(true, -1.0), (false, -2.0), (false, -1.0)];
 
 /// [`ROWS`] by three sets of particles.
@@ -102,7 +94,7 @@ fn thrice(seed: u64, particles: usize) -> Thrice {
         let rows = ROWS
             .iter()
             .map(|(fork, observation)| (fork, Some(observation)));
-        let tried = filter.try_again(&checkpoint, rows, pool, numbered(attempt));
+        let tried = filter.try_again(&checkpoint, rows, pool, attempt);
         evidences[attempt as usize] = libm::exp(tried.log_evidence);
         pool = tried.pool;
     }
@@ -154,7 +146,7 @@ fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
     while filter.sums().0 < 0.5 && attempt < 20 {
         attempt += 1;
         let row = [(&true, Some(&-40.0))];
-        let tried = filter.try_again(&checkpoint, row.into_iter(), pool, numbered(attempt));
+        let tried = filter.try_again(&checkpoint, row.into_iter(), pool, attempt);
         pool = tried.pool;
     }
     assert!(
@@ -165,54 +157,6 @@ fn a_set_that_went_the_wrong_way_is_replaced_by_one_that_did_not() {
     let places: Vec<f64> = filter.particles().column(0).collect();
     assert!(places.iter().all(|place| *place == 1.0), "{places:?}");
     assert!(attempt > 0, "the first set had it: choose another seed");
-}
-
-/// Evidences of tries at a bifurcation. The first observation explains the wrong branch better, by
-/// e⁶, and the second the right one, by e⁴⁰.
-fn tried_at_a_deceptive_fork(resampling: bool) -> Vec<f64> {
-    let settings = Settings {
-        particles: 500,
-        resample_below: 1.0,
-        ..Settings::default()
-    };
-    let mut filter = ParticleFilter::new(Fork, settings).expect("settings");
-    let checkpoint = filter.checkpoint();
-    // nothing is observed of the last step, before which all resample
-    let rows = [
-        (&true, Some(&6.0)),
-        (&false, Some(&-40.0)),
-        (&false, Some(&0.0)),
-    ];
-    for (input, observation) in rows {
-        let _ = filter.step(input, observation);
-    }
-    let tries = (1..401).map(|number| {
-        let attempt = Attempt { number, resampling };
-        let all = rows.into_iter();
-        let tried = filter.try_again(&checkpoint, all, Pool::of_one(-34.0), attempt);
-        libm::exp(tried.log_evidence)
-    });
-    tries.collect()
-}
-
-#[test]
-fn a_try_without_resampling_keeps_the_way_that_only_later_observations_are_for() {
-    let mean = |tries: &[f64]| tries.iter().sum::<f64>() / tries.len() as f64;
-    let share = |tries: &[f64]| {
-        let found = tries.iter().filter(|evidence| **evidence > 1e-4);
-        found.count() as f64 / tries.len() as f64
-    };
-    let [with, without] = [true, false].map(tried_at_a_deceptive_fork);
-    // of 500 particles five go right, and are left by resampling in one of eighty tries
-    assert!(share(&with) < 0.1, "{}", share(&with));
-    assert!(share(&without) > 0.98, "{}", share(&without));
-    // either kind says without bias how likely all is, one of them with less scatter
-    let exact = RIGHT + (1.0 - RIGHT) * libm::exp(-34.0);
-    assert!(
-        (mean(&without) / exact - 1.0).abs() < 0.08,
-        "{}",
-        mean(&without)
-    );
 }
 
 #[test]
@@ -229,12 +173,7 @@ fn a_try_is_given_up_where_its_evidence_falls_below_a_share_that_no_particle_wou
         for (input, observation) in rows {
             let _ = filter.step(input, observation);
         }
-        let tried = filter.try_again(
-            &checkpoint,
-            rows.into_iter(),
-            Pool::of_one(0.0),
-            numbered(1),
-        );
+        let tried = filter.try_again(&checkpoint, rows.into_iter(), Pool::of_one(0.0), 1);
         assert_eq!((filter.steps(), tried.pool.sets), (2, 2));
         assert_eq!(filter.weights().weights(), [1.0 / 64.0; 64]);
         (tried.share, tried.log_evidence)
