@@ -16,6 +16,7 @@ mod estimate_csv;
 mod estimate_json;
 mod experiment;
 mod frames_csv;
+mod left_out;
 mod log_columns;
 mod log_csv;
 mod log_mcap;
@@ -39,6 +40,7 @@ pub use estimate_csv::{read_estimate, write_estimate};
 pub use estimate_json::{Pace, estimate_json};
 pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
+pub use left_out::{LeftOut, Reason};
 pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{

@@ -247,6 +247,21 @@ pub enum McapProblem {
         /// The nanoseconds.
         found: u32,
     },
+    /// A clock that was set back.
+    #[error(
+        "{clock} jumps back from {from} to {to} s: the recording has several runs, or a clock was set. {}",
+        if *.separable { "Read one run, by its log times" } else { "Record each run in a bag of its own" }
+    )]
+    JumpsBack {
+        /// The clock.
+        clock: &'static str,
+        /// Latest time before the jump (s).
+        from: String,
+        /// Time after it (s).
+        to: String,
+        /// True if log times tell the runs apart.
+        separable: bool,
+    },
     /// Two messages of a topic at one time.
     #[error(
         "header.stamp is {stamp} s, as in message {first}; each message of a topic needs a stamp of its own. Fill header.stamp with the time of measurement"

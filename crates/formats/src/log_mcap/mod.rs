@@ -6,11 +6,13 @@
 //! - `source` makes measurements of a topic, `transforms` of frames and `body` of a body's.
 //! - `planar` projects poses on the table, `rows` makes a log's rows.
 //! - `topics` and `place` say which topic is which.
+//! - `arrival` finds clocks that jump back, `losses` counts what a series lacks.
 //! - `sensors` fills in touches and forces.
 //! - `images` shows images one by one, by their `camera_topics`.
 //! - `info` describes a whole bag, `suggestion` names those of its topics that would do.
 //! - `estimate` writes estimates, its bodies by `drawing`, in messages of `output_message`.
 
+mod arrival;
 mod body;
 mod camera_topics;
 mod drawing;
@@ -19,6 +21,7 @@ mod estimate;
 mod image_message;
 mod images;
 mod info;
+mod losses;
 mod message;
 mod messages;
 mod output_message;

@@ -17,13 +17,13 @@ const MESSAGE_LIMIT: usize = 1 << 16;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RawMessage {
     /// Number of its file, from 0.
-    pub file: usize,
+    pub file: u32,
     /// Number among those of its topic in the file, from 1.
-    pub number: usize,
+    pub number: u32,
     /// Log time (ns).
     pub log_time: u64,
     /// Its bytes.
-    pub data: Vec<u8>,
+    pub data: Box<[u8]>,
 }
 
 /// Content of a topic.
@@ -98,7 +98,7 @@ pub(crate) struct Keeper<'t> {
     /// Number of the file, from 0.
     file: usize,
     /// Messages so far by topic.
-    numbers: BTreeMap<String, usize>,
+    numbers: BTreeMap<String, u32>,
 }
 
 impl Recording {
@@ -147,11 +147,11 @@ impl Visitor for Keeper<'_> {
         let Some(content) = self.recording.topics.get_mut(topic) else {
             return Ok(());
         };
-        let data = message_data(topic, data, MESSAGE_LIMIT)?.into_owned();
+        let data = message_data(topic, data, MESSAGE_LIMIT)?.into();
         let number = self.numbers.entry(topic.to_owned()).or_default();
         *number += 1;
         content.messages.push(RawMessage {
-            file: self.file,
+            file: self.file as u32,
             number: *number,
             log_time,
             data,
