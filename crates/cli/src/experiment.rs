@@ -9,11 +9,11 @@ use anyhow::{Context, Result};
 use stickslip::diagnosis::refused;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
-    BagOptions, Experiment, Topics, Truth, TruthFacts, read_log, read_mounts, read_scene,
-    read_truth_csv, read_truth_json, scene_assumptions,
+    BagOptions, Experiment, Truth, TruthFacts, read_log, read_mounts, read_scene, read_truth_csv,
+    read_truth_json, scene_assumptions,
 };
 
-use crate::args::SharedArgs;
+use crate::arg_values::ForceArgs;
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
 use crate::output::talk;
@@ -51,7 +51,7 @@ impl Texts<'_> {
 pub fn read_experiment(
     scene: &Path,
     log: &Path,
-    topics: &Topics,
+    topics: &BagOptions,
     truth: Option<&Path>,
 ) -> Result<(Experiment, Verdict)> {
     let (setup, log_data, verdict) = read_scene_and_log(scene, &LogFiles::find(log)?, topics)?;
@@ -79,7 +79,11 @@ pub fn read_experiment(
 }
 
 /// Reads an experiment folder, or a log, with a scene.
-pub fn read_folder(folder: &Path, scene: &Path, topics: &Topics) -> Result<(Experiment, Verdict)> {
+pub fn read_folder(
+    folder: &Path,
+    scene: &Path,
+    topics: &BagOptions,
+) -> Result<(Experiment, Verdict)> {
     read_experiment(scene, &log_path(folder), topics, None)
 }
 
@@ -112,8 +116,8 @@ pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<
 
 /// Refuses an experiment whose units, frames or columns are found to be wrong, unless `--force`
 /// asks for a run.
-pub fn check_sense(shared: &SharedArgs, experiment: &Experiment) -> Result<()> {
-    let found = refused(&experiment.setup, &experiment.log).filter(|_| !shared.force);
+pub fn check_sense(force: &ForceArgs, experiment: &Experiment) -> Result<()> {
+    let found = refused(&experiment.setup, &experiment.log).filter(|_| !force.force);
     found.map_or(Ok(()), |finding| {
         let advice = finding.advice.unwrap_or_default();
         let help =
@@ -188,15 +192,15 @@ fn parse_scene(text: &str, name: &str) -> Result<Setup> {
 pub fn read_scene_and_log(
     scene: &Path,
     log: &LogFiles,
-    topics: &Topics,
+    topics: &BagOptions,
 ) -> Result<(Setup, Log, Verdict)> {
     // once, since it may be a pipe
     let (text, name) = (text_of(scene, "scene")?, scene.display().to_string());
     let setup = parse_scene(&text, &name)?;
     let options = BagOptions {
-        topics: topics.clone(),
         mounts: read_mounts(&text, &name)?,
         touch_force: setup.tactile.touch_force,
+        ..topics.clone()
     };
     let (log, verdict) = log.read(&options)?;
     Ok((setup, log, verdict))

@@ -70,11 +70,12 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let (experiment, verdict) = read_experiment(
         &given.scene,
         &given.log,
-        &args.topics.topics(Program::command())?,
+        &args.topics.options(Program::command())?,
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment)?;
-    check_sense(&args.shared, &experiment).with_context(|| given.log.display().to_string())?;
+    check_sense(&args.shared.force, &experiment)
+        .with_context(|| given.log.display().to_string())?;
     check_places(args, &given)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =

@@ -11,12 +11,12 @@ use stickslip_fit::{
     Constant, CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
     predict,
 };
-use stickslip_formats::Topics;
+use stickslip_formats::BagOptions;
 use stickslip_report::{Block, Report, Section, Table};
 
 use crate::args::Program;
 use crate::compare::expand;
-use crate::experiment::{experiment_name, read_folder, text_of};
+use crate::experiment::{check_sense, experiment_name, read_folder, text_of};
 use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::fit_args::FitArgs;
 use crate::log_files::log_path;
@@ -53,7 +53,7 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     };
     let folders = expand(&args.folders, args.scenes())?;
     let test_folders = test_folders(args, &folders)?;
-    let topics = args.topics.topics(Program::command())?;
+    let topics = args.topics.options(Program::command())?;
     let pool = args.threads.pool()?;
     let [scene_out, json_out] = ["scene.toml", "fit.json"].map(|name| args.out.join(name));
     let all = folders.iter().chain(&test_folders);
@@ -150,12 +150,13 @@ fn learn(
 /// left out, it would change the fit.
 fn read_pushes(
     args: &FitArgs,
-    topics: &Topics,
+    topics: &BagOptions,
     folders: &[PathBuf],
 ) -> Result<(Vec<Push>, Verdict)> {
     let read = |folder: &PathBuf| {
         let (experiment, verdict) = read_folder(folder, &args.scenes().of(folder), topics)
             .with_context(|| folder.display().to_string())?;
+        check_sense(&args.force, &experiment).with_context(|| folder.display().to_string())?;
         let push = Push {
             name: experiment_name(&log_path(folder)),
             setup: experiment.setup,

@@ -92,8 +92,8 @@ impl LogFiles {
         let listed = if metadata.is_file() {
             let text = text_of(&metadata, "metadata")?;
             let bag = read_bag_metadata(&text, &metadata.display().to_string())?;
-            if bag.storage_identifier != "mcap" {
-                return Err(not_mcap(path, &bag.storage_identifier));
+            if let Some(storage) = bag.other_storage() {
+                return Err(not_mcap(path, storage));
             }
             let files = bag.relative_file_paths.iter();
             files.map(|file| in_folder(path, Path::new(file))).collect()
@@ -178,16 +178,16 @@ impl LogFiles {
         let mut files = self.open_all()?;
         let (log, warnings) = if self.is_bag {
             read_bag(files, options).map_err(topic_hint)?
-        } else if options.topics.is_default() {
+        } else if options.topics.is_default() && options.part.is_whole() {
             let (name, file) = files.remove(0);
             read_log(file, &name)?
         } else {
             return Err(hinted(
                 format!(
-                    "{}: --topic is for MCAP logs, whose names end in .mcap",
+                    "{}: --topic, --from and --to are for MCAP logs, whose names end in .mcap",
                     self.shown.display()
                 ),
-                "leave --topic out",
+                "leave them out",
             ));
         };
         Ok((log, self.told(&warnings)))
@@ -313,6 +313,10 @@ fn topic_hint(error: McapError) -> anyhow::Error {
         McapProblem::SensorNumber { missing } => {
             format!("name it with --topic fixel_{missing}=TOPIC")
         }
+        McapProblem::JumpsBack {
+            log_times: Some([to, from]),
+            ..
+        } => format!("read one run: --to {to}, or --from {from}"),
         McapProblem::Frame { wrench: true, .. } => {
             "leave forces out with --topic wrench=".to_owned()
         }

@@ -44,11 +44,11 @@ pub use left_out::{LeftOut, Reason};
 pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
-    BagCameraInfo, BagImage, BagInfo, BagOptions, BagPicture, CameraMapping, CameraRecording,
-    CameraTopics, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place, PosesInfo,
-    Readings, Topic, TopicError, TopicInfo, TopicMapping, Topics, read_bag, read_bag_camera_info,
-    read_bag_images, read_bag_info, read_log_mcap, write_estimate_mcap, write_estimate_tum,
-    write_log_mcap,
+    BagCameraInfo, BagImage, BagInfo, BagOptions, BagPart, BagPicture, CameraMapping,
+    CameraRecording, CameraTopics, Frames, LogTime, LogTimeError, McapError, McapPlace,
+    McapProblem, McapWriteError, Place, PosesInfo, Readings, Topic, TopicError, TopicInfo,
+    TopicMapping, Topics, read_bag, read_bag_camera_info, read_bag_images, read_bag_info,
+    read_log_mcap, write_estimate_mcap, write_estimate_tum, write_log_mcap,
 };
 pub use log_warning::LogWarning;
 pub use modes_csv::write_modes;

@@ -46,6 +46,15 @@ pub enum LogWarning {
         /// Their place, number and reason.
         left_out: LeftOut,
     },
+    /// Topics of poses, forces and touches that no key is mapped to.
+    Unread {
+        /// Display name of the bag.
+        file: String,
+        /// Their names.
+        topics: Vec<String>,
+        /// Number of their messages.
+        messages: usize,
+    },
     /// Messages that were recorded after later ones; they are sorted by stamp.
     Late {
         /// Display name of the bag.
@@ -88,6 +97,21 @@ impl LogWarning {
     }
 }
 
+/// Names in a row; the first ones of many, each cut off where it is very long.
+pub(crate) fn listed(names: &[String]) -> String {
+    const MOST: usize = 20;
+    const LONGEST: usize = 100;
+    let short = |name: &String| match name.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.clone(),
+    };
+    let shown: Vec<String> = names.iter().take(MOST).map(short).collect();
+    match names.len().checked_sub(MOST) {
+        None | Some(0) => shown.join(", "),
+        Some(more) => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
 impl fmt::Display for LogWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -119,6 +143,15 @@ impl fmt::Display for LogWarning {
                 largest.to_degrees()
             ),
             Self::LeftOut { file, left_out } => write!(f, "{file}: {left_out}"),
+            Self::Unread {
+                file,
+                topics,
+                messages,
+            } => write!(
+                f,
+                "{file}: not read: {messages} messages of {}. Map a topic that belongs to the log",
+                listed(topics)
+            ),
             Self::Late {
                 file,
                 place,

@@ -97,6 +97,11 @@ pub fn refused(setup: &Setup, log: &Log) -> Option<Finding> {
         .find(|finding| finding.severity == Severity::Problem)
 }
 
+/// Finds a log in which nothing touches the object: it shows neither contact nor friction.
+pub fn untouched(setup: &Setup, log: &Log) -> Option<Finding> {
+    contact::none(&Evidence::new(setup, &unwrapped(log)))
+}
+
 /// Finds the problems that are cheap enough to check before every run: numbers in other units or by
 /// other clocks, bodies that overlap at the start. An estimate and its scores mean nothing with
 /// them.

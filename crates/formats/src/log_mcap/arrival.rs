@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::message::SECOND;
+use crate::log_mcap::part::LogTime;
 use crate::log_mcap::recording::RawMessage;
 use crate::log_mcap::series::seconds_text;
 
@@ -104,7 +105,8 @@ impl Back<'_> {
             },
             from: seconds_text(self.from),
             to: seconds_text(self.to),
-            separable: clock == Clock::Stamp && log_went_on,
+            log_times: (clock == Clock::Stamp && log_went_on)
+                .then(|| [self.before, self.raw].map(|raw| LogTime(raw.log_time))),
         }
     }
 }

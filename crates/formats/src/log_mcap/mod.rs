@@ -9,6 +9,7 @@
 //! - `arrival` finds clocks that jump back, `losses` counts what a series lacks.
 //! - `sensors` fills in touches and forces.
 //! - `images` shows images one by one, by their `camera_topics`.
+//! - `part` chooses messages by log time.
 //! - `info` describes a whole bag, `suggestion` names those of its topics that would do.
 //! - `estimate` writes estimates, its bodies by `drawing`, in messages of `output_message`.
 
@@ -25,6 +26,7 @@ mod losses;
 mod message;
 mod messages;
 mod output_message;
+mod part;
 mod place;
 mod planar;
 mod pose_message;
@@ -46,6 +48,7 @@ pub use estimate::{write_estimate_mcap, write_estimate_tum};
 pub use image_message::{BagCameraInfo, BagImage, BagPicture};
 pub use images::{CameraRecording, read_bag_camera_info, read_bag_images};
 pub use info::{BagInfo, PosesInfo, TopicInfo, read_bag_info};
+pub use part::{BagPart, LogTime, LogTimeError};
 pub use place::{Frames, Place};
 pub use read::{BagOptions, read_bag, read_log_mcap};
 pub use sensors::Readings;

@@ -9,11 +9,13 @@ use stickslip_dynamics::Pose;
 
 use crate::log_mcap::body::{BodyPoses, TaggedBody, joined};
 use crate::log_mcap::error::{McapError, McapProblem};
-use crate::log_mcap::message::SECOND;
+use crate::log_mcap::message::{Bool, Message, SECOND, WrenchStamped};
 use crate::log_mcap::messages::Damage;
+use crate::log_mcap::part::BagPart;
 use crate::log_mcap::place::Place;
 use crate::log_mcap::planar::Tilt;
-use crate::log_mcap::recording::Recording;
+use crate::log_mcap::pose_message::PoseKind;
+use crate::log_mcap::recording::{Recording, Wanted};
 use crate::log_mcap::rows::Rows;
 use crate::log_mcap::series::Series;
 use crate::log_mcap::source::{CommonFrame, Source};
@@ -30,6 +32,8 @@ pub struct BagOptions {
     pub topics: Topics,
     /// Places of tags on object and pusher, where these are read from transforms.
     pub mounts: Mounts,
+    /// Part of the recording that is read.
+    pub part: BagPart,
     /// Force from which a sensor that gives forces is touched (N).
     pub touch_force: f64,
 }
@@ -39,6 +43,7 @@ impl Default for BagOptions {
         Self {
             topics: Topics::default(),
             mounts: Mounts::default(),
+            part: BagPart::default(),
             touch_force: Tactile::default().touch_force,
         }
     }
@@ -107,7 +112,7 @@ pub fn read_bag<R: Read>(
     let mut names = Vec::new();
     for (name, file) in files {
         names.push(name);
-        let added = recording.add(file, &options.topics);
+        let added = recording.add(file, options);
         added.map_err(|problem| whole(&names, problem))?;
     }
     let reader = Reader {
@@ -116,6 +121,7 @@ pub fn read_bag<R: Read>(
         recording: &recording,
     };
     let mut warnings = damage_warnings(&recording, &names);
+    warnings.extend(unread(&recording, &names, &options.topics));
     let sensors = reader
         .check_topics()
         .map_err(|problem| reader.whole(problem))?;
@@ -142,6 +148,37 @@ pub fn read_bag<R: Read>(
         force,
     };
     Ok((log, warnings))
+}
+
+impl Wanted for BagOptions {
+    fn wants(&self, name: &str, _: &str) -> bool {
+        self.topics.wants(name)
+    }
+
+    fn takes(&self, name: &str, log_time: u64) -> bool {
+        self.part.has(log_time) || name.ends_with("_static")
+    }
+}
+
+/// The warning about topics that carry poses, forces or touches and are not read. Transforms are
+/// in most bags, and are of other things.
+fn unread(recording: &Recording, files: &[String], topics: &Topics) -> Option<LogWarning> {
+    let left = topics.left_out();
+    let readable = recording.names.iter().filter(|(name, seen)| {
+        let is_measured = PoseKind::of(&seen.schema).is_some()
+            || [WrenchStamped::TYPE, Bool::TYPE].contains(&seen.schema.as_str());
+        is_measured && seen.count > 0 && !topics.wants(name) && !left.contains(name)
+    });
+    let (mut names, mut messages) = (Vec::new(), 0);
+    for (name, seen) in readable {
+        names.push(name.clone());
+        messages += seen.count;
+    }
+    (!names.is_empty()).then(|| LogWarning::Unread {
+        file: files.first().cloned().unwrap_or_default(),
+        topics: names,
+        messages,
+    })
 }
 
 /// Covariances of the object's poses row by row; empty where no message has one.
