@@ -12,7 +12,7 @@ use mcap::records::{Record, op};
 
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::records::{
-    Stop, check_unpacked, chunk_records, damage, damaged, parse, records, unreadable,
+    CHUNK_LIMIT, Stop, check_unpacked, chunk_records, damage, damaged, parse, records, unreadable,
 };
 
 /// First bytes of data packed with zstd; plain CDR and MCAP begin otherwise.
@@ -232,7 +232,7 @@ impl Progress<'_> {
             Record::Chunk { header, data } => (header, data),
             _ => return Err(damage("a chunk is none")),
         };
-        self.unpacked = self.unpacked.saturating_add(header.uncompressed_size);
+        self.unpacked = self.unpacked.saturating_add(header.uncompressed_size.min(CHUNK_LIMIT));
         check_unpacked(self.unpacked, self.read.get()).map_err(|error| damaged(&error))?;
         chunk_records(&header, &packed, &mut |opcode, body| {
             self.take(opcode, body)

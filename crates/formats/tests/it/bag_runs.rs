@@ -1,10 +1,16 @@
 //! Recordings with several runs, repeated messages, bodies that were not seen.
 
+use std::io::Cursor;
+
 use crate::bag::{
     Line, MS, Order, file, object, pose, pusher, quaternion, read, stamped, touch, transforms, xs,
 };
 use proptest::prelude::*;
-use stickslip_formats::{BagOptions, Reason, Topics, read_bag, read_bag_info, read_log_mcap};
+use stickslip::Log;
+use stickslip_dynamics::Pose;
+use stickslip_formats::{
+    BagOptions, BagPart, Reason, Topics, read_bag, read_bag_info, read_log_mcap, write_log_mcap,
+};
 
 fn refused(lines: &[Line]) -> String {
     let read = read_log_mcap(&file(lines)[..], "bag.mcap", &Topics::default());
@@ -212,4 +218,103 @@ fn transform_of_a_frame_that_was_not_seen_is_a_missing_measurement() {
     let (log, warnings) = read_bag([("f".to_owned(), &file(&lines)[..])], &options).unwrap();
     assert_eq!(xs(&log.object), [Some(1.0), Some(2.0)]);
     assert_eq!(warnings[0].left_out().unwrap().place, "/tf:table.tag");
+}
+
+/// A log whose rows have any of their measurements, from 1.2 ms after one another on.
+fn scattered() -> impl Strategy<Value = Log> {
+    let pose = || prop::option::of((-1.0..1.0_f64, -1.0..1.0_f64, -3.0..3.0_f64));
+    let row = (
+        1_200_000..90_000_000_i64,
+        pose(),
+        pose(),
+        any::<[Option<bool>; 2]>(),
+    );
+    prop::collection::vec(row, 2..60).prop_map(|rows| {
+        let mut log = Log {
+            tactile: vec![Vec::new(); 2],
+            ..Log::default()
+        };
+        let mut time = 1_700_000_000_000 * MS;
+        for (step, object, pusher, touches) in rows {
+            // a row has something, and the first one both poses
+            let (x, first) = ((0.5, 0.0, 0.0), log.is_empty());
+            let nothing = object.is_none() && pusher.is_none() && touches == [None; 2];
+            let object = object.or((first || nothing).then_some(x));
+            let pusher = pusher.or(first.then_some(x));
+            time += step;
+            log.time.push(time as f64 / 1e9);
+            let pose = |(x, y, theta): (f64, f64, f64)| Pose::new(x, y, theta / 3.0);
+            log.object.push(object.map(pose));
+            log.pusher.push(pusher.map(pose));
+            for (column, cell) in log.tactile.iter_mut().zip(touches) {
+                column.push(cell);
+            }
+        }
+        // readings count up to 1 s after the last pose
+        let last = log.len() - 1;
+        log.object[last] = log.object[last].or(Some(Pose::default()));
+        log
+    })
+}
+
+proptest! {
+    #[test]
+    fn bag_of_a_table_is_the_table(log in scattered()) {
+        let mut bytes = Cursor::new(Vec::new());
+        write_log_mcap(&mut bytes, &log, &Topics::default()).unwrap();
+        let (back, warnings) = read(bytes.get_ref());
+        let touched = |k: usize| log.tactile[k].iter().any(Option::is_some);
+        prop_assert_eq!(warnings, vec![]);
+        prop_assert_eq!(&back.time, &log.time);
+        prop_assert_eq!(xs(&back.object), xs(&log.object));
+        prop_assert_eq!(xs(&back.pusher), xs(&log.pusher));
+        for k in 0..back.tactile.len() {
+            prop_assert!(back.tactile[k] == log.tactile[k] || !touched(k));
+        }
+    }
+}
+
+#[test]
+fn part_of_a_recording_is_one_of_its_runs() {
+    let lines = [
+        run(30, 3000 * MS, 10_000 * MS),
+        run(40, 3000 * MS, 20_000 * MS),
+    ]
+    .concat();
+    let text = refused(&lines);
+    let words = "Read one run: the log times up to 10.957000000 s, or those from 20.000000000 s on";
+    assert!(text.contains(words), "{text}");
+    let bytes = file(&lines);
+    let of = |part: BagPart| {
+        let options = BagOptions {
+            part,
+            ..BagOptions::default()
+        };
+        read_bag([("f".to_owned(), &bytes[..])], &options)
+            .unwrap()
+            .0
+            .len()
+    };
+    let [to, from] = ["10.957", "20"].map(|text| Some(text.parse().unwrap()));
+    assert_eq!(of(BagPart { from: None, to }), 30);
+    assert_eq!(of(BagPart { from, to: None }), 40);
+}
+
+#[test]
+fn topics_that_are_not_read_are_named_with_their_messages() {
+    let others = [
+        pose("/arm/tool0", 0, 1.0),
+        pose("/arm/tool0", MS, 1.0),
+        touch(1, 0, true),
+    ];
+    let mut lines = [&run(3, 0, 0)[..], &others].concat();
+    lines[8].topic = "/left/touch".to_owned();
+    lines.push(transforms("/tf", &[]));
+    let (_, warnings) = read(&file(&lines));
+    let text = warnings[0].to_string();
+    assert!(
+        text.contains("not read: 3 messages of /arm/tool0, /left/touch. Map"),
+        "{text}"
+    );
+    assert_eq!(warnings.len(), 1);
 }
