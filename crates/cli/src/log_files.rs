@@ -184,10 +184,10 @@ impl LogFiles {
         } else {
             return Err(hinted(
                 format!(
-                    "{}: --topic, --from and --to are for MCAP logs, whose names end in .mcap",
+                    "{}: --topic is for MCAP logs, whose names end in .mcap, and so are --from and --to",
                     self.shown.display()
                 ),
-                "leave them out",
+                "leave --topic, --from and --to out",
             ));
         };
         Ok((log, self.told(&warnings)))

@@ -232,7 +232,9 @@ impl Progress<'_> {
             Record::Chunk { header, data } => (header, data),
             _ => return Err(damage("a chunk is none")),
         };
-        self.unpacked = self.unpacked.saturating_add(header.uncompressed_size.min(CHUNK_LIMIT));
+        self.unpacked = self
+            .unpacked
+            .saturating_add(header.uncompressed_size.min(CHUNK_LIMIT));
         check_unpacked(self.unpacked, self.read.get()).map_err(|error| damaged(&error))?;
         chunk_records(&header, &packed, &mut |opcode, body| {
             self.take(opcode, body)
