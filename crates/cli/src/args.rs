@@ -202,7 +202,7 @@ pub struct SharedArgs {
     /// Track the pusher without later rows, as live does
     #[arg(long)]
     pub causal: bool,
-    /// Whether wrong input is run
+    /// Choice to run wrong input
     #[command(flatten)]
     pub force: ForceArgs,
     /// How many threads

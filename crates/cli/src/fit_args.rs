@@ -45,7 +45,7 @@ pub struct FitArgs {
     /// Topics of the MCAP logs
     #[command(flatten)]
     pub topics: TopicArgs,
-    /// Whether wrong input is fitted
+    /// Choice to fit wrong input
     #[command(flatten)]
     pub force: ForceArgs,
     /// How many threads

@@ -33,7 +33,7 @@ pub enum FitError {
     Untouched {
         /// Its name.
         push: String,
-        /// What was found.
+        /// The finding.
         found: String,
     },
     /// Nothing is to be learnt.

@@ -36,8 +36,8 @@ enum Measured {
 }
 
 impl Rows {
-    /// Every measurement in a row at its own time. Equal times, and times that are equal in seconds,
-    /// are one row.
+    /// Every measurement in a row at its own time. Equal times, and times that are equal in
+    /// seconds, are one row.
     ///
     /// A reading within 1 ms after a row that makes a step is in that row: shorter steps are none,
     /// and readings without a step do not count. Several such readings of a sensor are a touch if
