@@ -156,7 +156,7 @@ fn read(
         Occlusion::None => experiment.facts.occlusion(),
         asked => asked,
     };
-    check_occlusion(occlusion, &experiment).map_err(|error| LostFolder::new(&path, &error))?;
+    check_occlusion(occlusion, &experiment.log).map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {
         path,
         experiment,

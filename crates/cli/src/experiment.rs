@@ -80,22 +80,20 @@ pub fn read_folder(folder: &Path, scene: &Path, topics: &Topics) -> Result<(Expe
 
 /// An occlusion that hides no pose is a slip of the pen, and one that hides every pose leaves
 /// nothing to start from.
-pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
+pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<()> {
     if occlusion == Occlusion::None {
         return Ok(());
     }
-    let rows = experiment.log.len();
-    let hidden = occlusion.hidden(&experiment.log);
-    let measured: Vec<usize> = (0..rows)
-        .filter(|row| experiment.log.object[*row].is_some())
-        .collect();
+    let rows = log.len();
+    let hidden = occlusion.hidden(log);
+    let measured: Vec<usize> = (0..rows).filter(|row| log.object[*row].is_some()).collect();
     let hides = measured.iter().filter(|row| hidden[**row]).count();
     match measured.as_slice() {
         [first, ..] if hides == measured.len() => Err(hinted(
             format!(
                 "the occlusion hides all {hides} object poses of the log; one is needed to start from"
             ),
-            format!("hide rows from {0} on: `--occlude {0}`", first + 1),
+            format!("hide rows from {} on", first + 1),
         )),
         _ if hides == 0 => Err(hinted(
             format!("the occlusion hides no object pose of the log's {rows} rows"),

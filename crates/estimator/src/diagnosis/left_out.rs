@@ -9,17 +9,17 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let believed = believed(log, evidence.setup.camera.as_ref());
     let is_left_out = |row: &usize| log.pusher[*row].is_some() && believed[*row].is_none();
     let left_out: Vec<usize> = (0..log.len()).filter(is_left_out).collect();
-    let Some(first) = left_out.first() else {
-        return Vec::new();
-    };
-    let found = match left_out.len() {
-        1 => format!(
-            "the pusher cannot have come to its pose in row {first}: that pose counts as missing"
-        ),
-        count => format!(
-            "the pusher cannot have come to {count} of its poses, the first in row {first}: these count as missing"
-        ),
-    };
-    let advice = "see why they are wrong (a tag misread, a clock that jumps): where the pusher is seldom seen, what it did meanwhile is a guess";
-    vec![Finding::warning(Subject::PusherPoses, found, advice)]
+    let first = left_out.first();
+    let place = first.map_or(String::new(), |row| format!(", first in row {row}"));
+    left_out_poses(left_out.len(), &place).into_iter().collect()
+}
+
+/// Finds that so many poses of the pusher were left out, with the place of the first one in words.
+pub(crate) fn left_out_poses(count: usize, place: &str) -> Option<Finding> {
+    let noun = if count == 1 { "pose" } else { "poses" };
+    let found = format!(
+        "{count} pusher {noun} that the pusher cannot have reached{place}: counted as missing"
+    );
+    let advice = "find the cause (a tag misread, a clock that jumps); the pusher's motion between rare poses is a guess";
+    (count > 0).then(|| Finding::warning(Subject::PusherPoses, found, advice))
 }

@@ -168,7 +168,9 @@ impl Propagation {
                 #[inline(always)]
                 || self.note_contacts(transition, chunks),
             );
-            if let Some(observer) = transition.observer {
+            if let Some(observer) = transition.observer
+                && observer.wants_steps()
+            {
                 self.show(observer, block.len());
             }
         }

@@ -1,0 +1,44 @@
+"""Faults of a scene and a log."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from stickslip import _native
+from stickslip._columns import Log
+from stickslip._files import log_of, scene_of
+from stickslip._native import Scene
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Result of one check."""
+
+    #: Subject of the check, such as ``units`` or ``sensor 1``.
+    subject: str
+    #: ``ok``, ``warning`` (estimates may be worse than they could be) or ``problem`` (estimates
+    #: will be wrong).
+    severity: Literal["ok", "warning", "problem"]
+    #: What was found, with its number.
+    found: str
+    #: The next step; None if there is nothing to do.
+    advice: str | None
+
+    def __str__(self) -> str:
+        advice = f"; {self.advice}" if self.advice else ""
+        return f"{self.severity}: {self.subject}: {self.found}{advice}"
+
+
+def check(scene: Scene | str | os.PathLike[str], log: Log) -> list[Finding]:
+    """Returns the findings of ``stickslip check`` about a scene and a log.
+
+    ``scene`` and ``log`` are those of :func:`stickslip.filter`, in either order. Nothing is
+    repaired.
+    """
+    if isinstance(log, Scene) or (isinstance(log, str | os.PathLike) and os.fspath(log).endswith(".toml")):
+        scene, log = log, scene
+    known = scene_of(scene)
+    found: Any = _native.check(log_of(log, known), known)
+    return [Finding(*parts) for parts in found]
