@@ -20,7 +20,7 @@ import stickslip
 #: x, y (m) and theta (rad).
 Pose = tuple[float, float, float]
 
-#: Shortest pause that restarts the tracker, and longest step to the row after it (s).
+#: Shortest step, forth or back, that restarts the tracker, and longest step to the row after it (s).
 PAUSE, NEAR = 5.0, 1.0
 
 #: Time for which pusher poses are kept (s).
@@ -84,6 +84,9 @@ class Rows:
 
     def pusher(self, time: float, pose: Pose) -> None:
         """Takes a pose of the pusher at a time (s); ignores it if it is out of order."""
+        if self._pusher and self._pusher[-1][0] - time > PAUSE:
+            # another clock, or one wrong time
+            self._pusher = []
         if not self._pusher or time > self._pusher[-1][0]:
             self._pusher.append((time, pose))
 
@@ -112,8 +115,9 @@ class Rows:
         return rows
 
     def _row(self, time: float, pose: Pose | None) -> stickslip.Row:
-        is_late = time <= self._latest
-        self._latest = max(time, self._latest)
+        is_set_back = self._latest - time > PAUSE
+        is_late = time <= self._latest and not is_set_back
+        self._latest = time if is_set_back else max(time, self._latest)
         readings = zip(self._touched, self._reads, strict=True)
         tactile = [None if read is None else on or read for on, read in readings]
         if not is_late:
@@ -122,33 +126,33 @@ class Rows:
 
 
 class Following:
-    """Tracker that restarts after a pause."""
+    """Tracker that restarts after a pause, or when the clock is set back."""
 
     def __init__(self, start: Callable[[], stickslip.Tracker]) -> None:
         self._start = start
         self._tracker = start()
         self.time: float | None = None
-        self._ahead: float | None = None
+        self._elsewhere: float | None = None
 
     def push(self, row: stickslip.Row) -> dict[str, float]:
         """Returns the estimate at the latest row, whose time is ``time`` (s).
 
-        Raises :class:`stickslip.Error` if the row is invalid, or if it is the first one after a
-        pause, since its time may be wrong.
+        Raises :class:`stickslip.Error` if the row is invalid, or if it is the first one that is far
+        from the others, since its time may be wrong.
         """
         time = row["time"]
         try:
             estimate = self._tracker.push(**row)
         except stickslip.Error:
-            before = self._ahead
-            paused = self.time is not None and time - self.time > PAUSE
-            self._ahead = time if paused else None
-            if not paused or before is None or not 0 <= time - before <= NEAR:
+            before = self._elsewhere
+            far = self.time is not None and abs(time - self.time) > PAUSE
+            self._elsewhere = time if far else before
+            if not far or before is None or not 0 <= time - before <= NEAR:
                 raise
             tracker = self._start()
             estimate = tracker.push(**row)
             self._tracker, self.time = tracker, None
-        self._ahead = None
+        self._elsewhere = None
         self.time = time if self.time is None else max(time, self.time)
         return estimate
 

@@ -25,7 +25,7 @@ start   = {{ object = [0, 0, 0], pusher = [{x}, -0.0285, 0], direction = {direct
 # %% [markdown]
 # Eight pushes against the lower face, at different places and angles.
 #
-# | parameter | first guess in the scene | truth |
+# | parameter | nominal value in the scene | truth |
 # | --- | --- | --- |
 # | friction at the pusher | 0.3 | 0.5 |
 # | tripod radius | 25 mm | 33 mm |
@@ -44,15 +44,15 @@ pushes = [
 # %%
 fit = stickslip.fit(pushes, ["mu_p", "tripod_radius", "mu_f"])
 for name in fit.names:
-    said = "" if fit.determined[name] else ", not determined by these pushes"
+    said = "" if fit.determined[name] else ", not identifiable from these pushes"
     print(
-        f"{name}: {fit.prior_values[name]:.4f} +- {fit.prior_stds[name]:.4f} before, "
-        f"{fit.values[name]:.4f} +- {fit.stds[name]:.4f} after{said}"
+        f"{name}: nominal {fit.prior_values[name]:.4f} +- {fit.prior_stds[name]:.4f}, "
+        f"{fit.values[name]:.4f} +- {fit.stds[name]:.4f} fitted{said}"
     )
 
 # %% [markdown]
-# No push touches a fixel. The friction at fixels therefore keeps its first guess, and the fit
-# reports it as not determined.
+# No push touches a fixel. The friction at fixels therefore keeps its nominal value, and the fit
+# reports it as not identifiable.
 
 # %%
 known = {"mu_p": truth["mu_p"], "tripod_radius": truth["d_tri"]}
@@ -67,7 +67,7 @@ assert not fit.determined["mu_f"]
 # %%
 figure, ax = plt.subplots(layout="constrained")
 ax.plot(fit.draws["mu_p"], 1e3 * fit.draws["tripod_radius"], ".", markersize=3, label="posterior")
-ax.plot(fit.prior_values["mu_p"], 1e3 * fit.prior_values["tripod_radius"], "s", label="first guess")
+ax.plot(fit.prior_values["mu_p"], 1e3 * fit.prior_values["tripod_radius"], "s", label="nominal")
 ax.plot(truth["mu_p"], 1e3 * truth["d_tri"], "r+", markersize=12, label="truth")
 ax.set(xlabel="friction at the pusher", ylabel="tripod radius (mm)")
 ax.legend()
@@ -81,8 +81,8 @@ plt.show()
 validation = fit.cross_validation
 unfitted, fitted = validation["median_final_mm"]
 print(
-    f"final position of {len(validation['pushes'])} pushes left out: {unfitted:.2f} mm off with the first guesses, "
-    f"{fitted:.2f} mm with what the others taught; 90 % intervals cover {validation['coverage_90']:.0%}"
+    f"final position of {len(validation['pushes'])} pushes left out: {unfitted:.2f} mm off with nominal values, "
+    f"{fitted:.2f} mm with a fit to the others; 90 % intervals cover {validation['coverage_90']:.0%}"
 )
 assert fitted < 0.6 * unfitted
 

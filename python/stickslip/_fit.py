@@ -30,15 +30,15 @@ class Fit:
     #: Names of the parameters, in the order of all arrays; ``pusher_offset`` and the like are two,
     #: x and y.
     names: tuple[str, ...]
-    #: Values that predict best; the first guess if the posterior's spread exceeds 0.8 of the
+    #: Values that predict best; the nominal value if the posterior's spread exceeds 0.8 of the
     #: prior's.
     values: dict[str, float]
     #: Their standard deviations, in the same unit (m, s, or none); the prior's if nothing was
     #: learnt.
     stds: dict[str, float]
-    #: First guesses.
+    #: Nominal values, the medians of the priors.
     prior_values: dict[str, float]
-    #: Standard deviations of the first guesses, at the guess.
+    #: Standard deviations of the priors at the nominal values.
     prior_stds: dict[str, float]
     #: True if the posterior's spread is less than half of the prior's.
     determined: dict[str, bool]
@@ -49,7 +49,7 @@ class Fit:
     draws: dict[str, NDArray[np.float64]]
     #: Errors on pushes left out, as ``cross_validation`` of ``fit.json``; None without such pushes.
     cross_validation: dict[str, Any] | None
-    #: First push's scene with the learnt values and spreads, or with the first guesses if
+    #: First push's scene with the learnt values and spreads, or with the nominal values if
     #: ``cross_validation["pays"]`` is false; ``scene.text`` is the file.
     scene: Scene
     #: All numbers, with the names of ``fit.json``; ``["parameters"][k]["constant"]`` is the

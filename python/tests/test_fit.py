@@ -83,9 +83,9 @@ def test_pairs_of_a_scene_and_a_log_are_pushes_too(pushes, fitted):
 def test_what_cannot_be_learnt_from_is_refused(pushes, folder):
     with pytest.raises(stickslip.Error, match="`mu_q` is no parameter that can be learnt"):
         stickslip.fit(pushes, ["mu_q"])
-    with pytest.raises(stickslip.Error, match="there are 1 pushes; at least 2"):
+    with pytest.raises(stickslip.Error, match="1 push given; at least 2"):
         stickslip.fit(pushes[:1])
-    with pytest.raises(stickslip.Error, match="there are 0 pushes"):
+    with pytest.raises(stickslip.Error, match="0 pushes given"):
         stickslip.fit([])
     blind = pushes[1].log | {
         name: np.full(len(pushes[1].log["time"]), np.nan) for name in ("object_x", "object_y", "object_theta")

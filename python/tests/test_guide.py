@@ -98,23 +98,39 @@ def test_the_program_has_the_commands_and_options_of_the_guide(program, command)
         assert re.search(rf"{option}\b", shown.stdout), f"{command}: {name} has no {option}"
 
 
-def test_the_readme_begins_with_files_that_work(shell):
+def test_the_readme_shows_commands_that_work(shell):
     text = (ROOT / "README.md").read_text()
-    scene, log = (re.search(rf"```{kind}\n(.*?)```", text, flags=re.DOTALL).group(1) for kind in ("toml", "csv"))
+    # its log is one, with the scene of the first page
+    (shell.folder / "own").mkdir()
+    (shell.folder / "own/scene.toml").write_text(_blocks("start.md", "toml")[0])
+    (shell.folder / "own/log.csv").write_text(re.search(r"```csv\n(.*?)```", text, flags=re.DOTALL).group(1))
+    shell("stickslip filter own/log.csv --scene own/scene.toml --method nominal")
+    # its commands work on a longer one
+    lines = re.findall(r"^(stickslip (?:new|check|filter|compare) .*?)(?: +#.*)?$", text, flags=re.M)
+    assert len(lines) == 4 and lines[0] == "stickslip new my"
+    shell(lines[0])
+    shell("stickslip simulate own/scene.toml --out sim")
+    (shell.folder / "my/log.csv").write_bytes((shell.folder / "sim/log.csv").read_bytes())
+    (shell.folder / "my/scene.toml").write_bytes((shell.folder / "sim/scene.toml").read_bytes())
+    for line in lines[1:]:
+        shell(line)
+    assert (shell.folder / "out/estimate.csv").is_file() and (shell.folder / "report.html").is_file()
+
+
+def test_the_first_scene_is_that_of_the_demo():
+    (scene,) = _blocks("start.md", "toml")
+    lines = [line for line in scene.splitlines() if not line.startswith("#")]
+    assert lines == (ROOT / "crates/cli/demo/turn-square-disc/scene.toml").read_text().splitlines()
+
+
+def test_the_first_page_prints_what_it_shows(shell):
     (shell.folder / "my").mkdir()
-    (shell.folder / "my/scene.toml").write_text(scene)
-    (shell.folder / "my/log.csv").write_text(log)
-    lines = re.findall(r"^(stickslip (?:check|filter|simulate|compare|fit|live) .*?)(?: +#.*)?$", text, flags=re.M)
-    assert len(lines) == 7
-    for line in lines:
-        shell(f"{line} < /dev/null")
-    assert (shell.folder / "out/estimate.csv").is_file() and (shell.folder / "r.html").is_file()
-
-
-def test_the_first_page_runs(shell, demo):
-    shutil.copytree(demo, shell.folder / "my")
-    for command in _commands("start.md"):
-        shell(command)
+    (shell.folder / "my/scene.toml").write_text(_blocks("start.md", "toml")[0])
+    for block in _blocks("start.md", "text"):
+        command, *lines = block.splitlines()
+        printed = {" ".join(line.split()) for line in shell(command.removeprefix("$ ")).splitlines()}
+        shown = {" ".join(line.split()) for line in lines}
+        assert not shown - {"..."} - printed, command
     assert (shell.folder / "out/estimate.csv").is_file() and (shell.folder / "report.html").is_file()
 
 
@@ -183,7 +199,8 @@ def _camera_info(calibration: Path) -> str:
 
 def test_frames_become_a_log(shell, demo):
     folder = shell.folder
-    _shortened(demo, folder / "crates/cli/demo" / demo.name, 10)
+    shown = ROOT / "crates/cli/demo/slide-pent-bar-97012"
+    _shortened(shown, folder / shown.relative_to(ROOT), 10)
     commands = _commands("camera.md")
     render = next(command for command in commands if command.startswith("stickslip render"))
     for command in shell(render).splitlines():

@@ -123,6 +123,20 @@ def test_a_stamp_far_ahead_makes_one_row():
     assert [row["time"] for row in rows.take()] == [0.0, 1e9]
 
 
+def test_rows_go_on_after_one_wrong_time():
+    rows, taken = node.Rows(sensors=1, period=0.04), []
+    for time in [4e9, 0.0, 0.04, 0.08, 0.12, 0.16, 0.2]:
+        rows.touch(0, time == 0.04)
+        rows.pusher(time, (time, 0.0, 0.0))
+        if time < 0.1 or time == 4e9:
+            rows.object(time, (0.0, 0.0, 0.0))
+        taken += rows.take()
+    times = [row["time"] for row in taken]
+    np.testing.assert_allclose(times, [4e9, 0.0, 0.04, 0.08, 0.12, 0.16], atol=1e-9)
+    assert [row["tactile"] for row in taken] == [[False], [False], [True]] + 3 * [[False]]
+    np.testing.assert_allclose([row["pusher"][0] for row in taken], times, atol=1e-9)
+
+
 def test_touches_count_for_the_row_after_them():
     rows = node.Rows(sensors=2, period=0.04)
     rows.touch(1, False)
@@ -175,6 +189,11 @@ def test_a_tracker_starts_anew_after_a_pause_and_not_for_one_wrong_time(scene):
     assert (len(starts), following.time) == (2, 100.04)
     following.push(row(100.0))
     assert following.time == 100.04
+    # a clock that is set back
+    with pytest.raises(stickslip.Error):
+        following.push(row(0.0))
+    following.push(row(0.04))
+    assert (len(starts), following.time) == (3, 0.04)
 
 
 class _Ros:

@@ -278,7 +278,13 @@ mod tests {
 
     /// A sentence, wrapped after each tenth word.
     fn words(count: usize) -> String {
-        let word = |k: usize| if k % 10 == 0 { "\nword" } else { " word" };
+        let word = |k: usize| {
+            if k.is_multiple_of(10) {
+                "\nword"
+            } else {
+                " word"
+            }
+        };
         let rest: String = (1..count).map(word).collect();
         format!("A{rest}.")
     }

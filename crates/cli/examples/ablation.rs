@@ -30,11 +30,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} experiments, {seeds} seeds", experiments.len());
     println!(
         "{:36} {:>15} {:>6} {:>7} {:>15} {:>6}",
-        "", "dark mm", "holds", "CRPS mm", "camera on mm", "holds"
+        "", "camera off mm", "covers", "CRPS mm", "camera on mm", "covers"
     );
     let left_out = Ingredient::ALL.into_iter().map(Some);
     for left_out in std::iter::once(None).chain(left_out) {
-        let name = left_out.map_or("contact mode", Ingredient::left_out);
+        let name = left_out.map_or("robust model", Ingredient::left_out);
         let dark = Scored::of(&experiments, seeds, left_out, true)?;
         let lit = Scored::of(&experiments, seeds, left_out, false)?;
         println!(

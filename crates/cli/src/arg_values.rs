@@ -15,8 +15,8 @@ const PER_PROCESSOR: usize = 4;
 /// Number of threads to work on.
 #[derive(Debug, Args)]
 pub struct ThreadArgs {
-    /// Threads [default: one per processor]; results do not depend on it. No more are started than
-    /// can help: four per processor, and for a single filter one per 128 particles
+    /// Threads, at most 4 per processor; results do not depend on it [default: 1 per processor, at
+    /// most 1 per 128 particles of a filter]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 }

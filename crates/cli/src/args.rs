@@ -15,62 +15,60 @@ use crate::print_args::PrintArgs;
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
-/// Tracks a pushed object through contact and visual occlusion and adapts the friction that governs
-/// it.
+/// Estimates pose and friction of a pushed object, through contact and with the camera off.
 #[derive(Debug, Parser)]
 #[command(name = "stickslip", version, max_term_width = 120)]
 pub struct Program {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do.
+/// The command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the embedded experiments through every method: tables, figures, a report
+    /// Run every method on the embedded experiments: tables, figures, a report
     Demo(DemoArgs),
-    /// Estimate the object's pose and the friction over one recorded experiment
+    /// Estimate pose and friction over one recorded experiment
     Filter(FilterArgs),
     /// Run every method on experiment folders and compare their errors
     Compare(CompareArgs),
-    /// Learn from many pushes what a scene cannot know: friction, tripod radius; with its spread
+    /// Fit friction and geometry to many pushes, with spreads
     Fit(FitArgs),
-    /// Simulate an experiment: a folder with scene, log and truth
+    /// Simulate an experiment: scene, log and truth
     Simulate(SimulateArgs),
-    /// Repeat the paper's evaluation: its tables and figures, ours beside the paper's numbers
+    /// Repeat the paper's evaluation: tables and figures, with the paper's numbers
     Reproduce(ReproduceArgs),
-    /// Write a scene to begin with, every key explained, and its JSON schema for editors
+    /// Write a scene with every key, its unit and default, and its JSON schema
     New(NewArgs),
-    /// Draw tags and the calibration board to scale, with a ruler, as PDF or SVG to be printed
+    /// Draw tags or the calibration board to scale, as PDF or SVG
     Print(PrintArgs),
-    /// Look into a ROS 2 bag: topics, types, rates, gaps, which would do, and what to type next
+    /// List the topics of a ROS 2 bag, and the commands that read it
     Info(InfoArgs),
-    /// Find what is wrong with a scene and a log: units, degrees, frames, latency, overlaps,
-    /// swapped sensors
+    /// Check a scene and a log: units, angles, frames, latency, overlap, sensors
     Check(CheckArgs),
-    /// Estimate row by row: JSON lines on standard input, an estimate for each on standard output
+    /// Estimate row by row: JSON lines in, one estimate per line out
     Live(LiveArgs),
     /// Calibrate a camera from frames of a tag board
     Calibrate(CalibrateArgs),
-    /// Track object and pusher through camera frames by their tags, into a log
+    /// Track the tags of object and pusher through camera frames, into a log
     Track(TrackArgs),
-    /// Render camera frames of an experiment, with a calibration recording
+    /// Render camera frames of an experiment and of a calibration board
     Render(RenderArgs),
 }
 
 /// Arguments of `stickslip new`.
 #[derive(Debug, Args)]
 pub struct NewArgs {
-    /// The folder of the experiment, where scene.toml and scene.schema.json are written
+    /// Folder for scene.toml and scene.schema.json
     pub folder: PathBuf,
-    /// Take the object's outline from this drawing, seen from above: a closed line in SVG or DXF
+    /// Drawing of the object's outline, seen from above, closed (.svg or .dxf)
     #[arg(long, value_name = "DRAWING")]
     pub outline: Option<PathBuf>,
-    /// Metres that one unit of the drawing is, 0.001 for millimetres [default: as the drawing says]
+    /// Length of a unit of the drawing in m: 0.001 for mm [default: from the drawing]
     #[arg(long, value_name = "M", value_parser = positive, requires = "outline")]
     pub scale: Option<f64>,
-    /// How far the outline may lie from the drawing's curves, in metres
+    /// Largest distance of the outline from the drawing's curves in m
     #[arg(long, value_name = "M", value_parser = positive, default_value_t = 2e-5, requires = "outline")]
     pub tolerance: f64,
 }
@@ -78,7 +76,7 @@ pub struct NewArgs {
 /// Arguments of `stickslip demo`.
 #[derive(Debug, Args)]
 pub struct DemoArgs {
-    /// Write report.html and the figures into this folder
+    /// Folder for report.html and the figures
     #[arg(long, value_name = "DIR", default_value = "stickslip-demo")]
     pub out: PathBuf,
     /// Number of particles
@@ -92,40 +90,40 @@ pub struct DemoArgs {
 /// Arguments of `stickslip filter`.
 #[derive(Debug, Args)]
 pub struct FilterArgs {
-    /// The log and the scene
+    /// Log and scene
     #[command(flatten)]
     pub given: GivenArgs,
     /// Topics of an MCAP log
     #[command(flatten)]
     pub topics: TopicArgs,
-    /// How to estimate
+    /// Method of estimation
     #[arg(long, value_enum, default_value_t = MethodName::Particle)]
     pub method: MethodName,
-    /// Ignore the tactile readings
+    /// Ignore the touch sensors
     #[arg(long)]
     pub no_tactile: bool,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Split every step into N substeps, instead of by its length
+    /// Substeps of each step, 1 to 10000 [default: by the step's length]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub substeps: Option<u32>,
-    /// Score against this motion, instead of truth.csv beside the log or the log's own poses
+    /// Motion to score against [default: truth.csv next to the log, else the log's poses]
     #[arg(long, value_name = "CSV")]
     pub truth: Option<PathBuf>,
-    /// Weight of an angle in the scores, as a radius [default: the radius of gyration]
+    /// Weight of angles in the pose RMSE, a radius in m [default: the radius of gyration]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub virtual_radius: Option<f64>,
-    /// Write estimate.csv into this folder
+    /// Folder for estimate.csv and modes.csv
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// With --out, write estimate.mcap too, for viewers of ROS 2
+    /// With --out, also write estimate.mcap, for ROS 2 viewers
     #[arg(long, requires = "out")]
     pub mcap: bool,
-    /// With --out, write estimate.tum too, for evo
+    /// With --out, also write estimate.tum, for evo
     #[arg(long, requires = "out")]
     pub tum: bool,
-    /// Write a report with figures and a playback into this HTML file
+    /// File for a report with figures and a playback
     #[arg(long, value_name = "HTML")]
     pub report: Option<PathBuf>,
     /// Options shared with `compare`
@@ -136,24 +134,22 @@ pub struct FilterArgs {
 /// Arguments of `stickslip compare`.
 #[derive(Debug, Args)]
 pub struct CompareArgs {
-    /// Experiment folders (scene.toml, log.csv, log.mcap or a bag, and what is known of the truth),
-    /// or folders of such folders
+    /// Experiment folders (scene.toml, a log, the truth if known), or folders of such folders
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
-    /// Run the particle filter with the seeds 0 to K - 1 and take the median of each score
+    /// Seeds 0 to K - 1 of the particle filter, K at most 10000; scores are medians
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub seeds: u64,
-    /// Name of the scene file in each folder
+    /// Scene file in each folder
     #[arg(long, value_name = "FILE", default_value = "scene.toml")]
     pub scene_name: String,
-    /// One scene for all logs, or a folder with scene.toml, instead of the scene in each folder;
-    /// then DIR may be a log by any name, too
+    /// One scene for all logs, a file or its folder; DIR may then be a log itself
     #[arg(long, conflicts_with = "scene_name")]
     pub scene: Option<PathBuf>,
     /// Topics of the MCAP logs
     #[command(flatten)]
     pub topics: TopicArgs,
-    /// Write a report with all tables into this HTML file
+    /// File for a report with all tables
     #[arg(long, value_name = "HTML")]
     pub report: Option<PathBuf>,
     /// Options shared with `filter`
@@ -164,7 +160,7 @@ pub struct CompareArgs {
 /// Arguments of `stickslip check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The log and the scene
+    /// Log and scene
     #[command(flatten)]
     pub given: GivenArgs,
     /// Topics of an MCAP log
@@ -178,7 +174,7 @@ pub struct CheckArgs {
 /// Arguments of `stickslip info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The folder of a bag, or an MCAP file
+    /// Folder of a bag, or an MCAP file
     pub bag: PathBuf,
     /// Print one JSON object
     #[arg(long)]
@@ -191,11 +187,10 @@ pub struct SharedArgs {
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
     pub particles: usize,
-    /// Hide the camera's object poses of the rows FROM to TO (excluded; to the end without TO) and
-    /// still score on them
+    /// Hide object poses from row FROM until before TO [TO default: the end]; they are still scored
     #[arg(long, value_name = "FROM[:TO]", conflicts_with = "occlude_middle")]
     pub occlude: Option<Rows>,
-    /// Hide the camera's object poses for SECONDS about the middle of the log
+    /// Hide object poses for SECONDS in the middle of the log; they are still scored
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub occlude_middle: Option<f64>,
     /// Model of the particle filter
@@ -204,9 +199,12 @@ pub struct SharedArgs {
     /// The old name of `--model`
     #[command(flatten)]
     pub renamed: RenamedArgs,
-    /// Track the pusher from the rows up to each one only, as live
+    /// Track the pusher without later rows, as live does
     #[arg(long)]
     pub causal: bool,
+    /// Run also if units, frames or columns are found to be wrong
+    #[arg(long)]
+    pub force: bool,
     /// How many threads
     #[command(flatten)]
     pub threads: ThreadArgs,
@@ -220,15 +218,15 @@ pub struct SharedArgs {
 pub enum MethodName {
     /// Particle filter over contact dynamics
     Particle,
-    /// Constant-velocity Kalman filter that knows nothing of contact
+    /// Constant-velocity Kalman filter, without contact
     Kalman,
-    /// The same, at rest from the first tactile contact in the dark on
+    /// As kalman; with the camera off it stops at the first touch
     KalmanStops,
-    /// The same, which in the dark moves with the pusher as if glued to it
+    /// As kalman; with the camera off the object is glued to the pusher
     WithPusher,
-    /// Extended Kalman filter over contact dynamics; it does not feel touch
+    /// Extended Kalman filter over contact dynamics, without touch
     ExtendedKalman,
-    /// Simulation with the nominal friction, blind after the first pose
+    /// Simulation with nominal friction, camera off after the first pose
     Nominal,
 }
 
@@ -250,8 +248,7 @@ fn refuse_mode(_: &str) -> Result<String, String> {
 /// Model of the particle filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModelName {
-    /// Friction, frame offsets, support feet and latency are unknown; sensors may fail
-    /// (`[uncertainty]` in the scene)
+    /// Priors on friction, frames, feet and latency ([uncertainty] in the scene); sensors may fail
     Robust,
     /// As published by Zhang & Trinkle (ICRA 2012)
     Paper,
@@ -277,7 +274,7 @@ impl From<ModelName> for FilterModel {
 }
 
 impl SharedArgs {
-    /// What the options hide.
+    /// Rows that the options hide.
     pub fn occlusion(&self) -> Occlusion {
         match (self.occlude, self.occlude_middle) {
             (Some(rows), _) => Occlusion::Rows {
@@ -289,7 +286,7 @@ impl SharedArgs {
         }
     }
 
-    /// How the pusher is tracked.
+    /// Tracking of the pusher.
     pub fn tracking(&self) -> Tracking {
         if self.causal {
             Tracking::Causal
@@ -300,7 +297,7 @@ impl SharedArgs {
 }
 
 impl FilterArgs {
-    /// What runs.
+    /// The method, with or without touch.
     pub fn variant(&self) -> Variant {
         Variant::of(self.method.into(), self.tactile())
     }

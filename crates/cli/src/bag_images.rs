@@ -87,7 +87,7 @@ impl BagImages {
         })?;
         match lens {
             None => talk(format_args!(
-                "note: {of}: the camera was not calibrated, so CameraInfo tells no lens"
+                "note: {of}: the camera was not calibrated, so CameraInfo has no lens"
             )),
             Some(lens) if lens.is_distorted() && self.topics.is_rectified() => {
                 return Err(hinted(

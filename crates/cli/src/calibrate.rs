@@ -17,7 +17,7 @@ use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::files::{ready_file, write_file};
 use crate::frames::FrameFolder;
-use crate::output::{show_result, talk};
+use crate::output::{counted, show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 
@@ -102,8 +102,8 @@ fn lens_and_table_of_bag(
     let flat = numbers.iter().position(|other| *other == number);
     let frames = bag.frames(&numbers)?;
     talk(format_args!(
-        "note: the lens is found, too, from {} images of the bag",
-        frames.len()
+        "note: the lens is calibrated from {} of the bag",
+        counted(frames.len() as u64, "image")
     ));
     let load = |index: usize| Ok(frames[index].clone());
     lens_and_table(args, board, flat.unwrap_or(0), frames.len(), load)
@@ -192,7 +192,7 @@ fn number(text: &str) -> Result<usize> {
     number.ok_or_else(|| {
         hinted(
             format!("--flat {text}: images of a bag have no names"),
-            "give the number of one, from 1 on",
+            "give the number of an image, from 1",
         )
     })
 }
@@ -206,8 +206,8 @@ fn flat(args: &CalibrateArgs, folder: &FrameFolder) -> Result<usize> {
     names.iter().position(|other| other == name).ok_or_else(|| {
         let (first, last) = (&names[0], &names[names.len() - 1]);
         hinted(
-            format!("--flat {name}: there is no such frame; they go from {first} to {last}"),
-            "give the name of one without its folder",
+            format!("--flat {name}: there is no such image; the first is {first}, the last {last}"),
+            "give the name of an image without its folder",
         )
     })
 }
@@ -243,8 +243,9 @@ impl Summary {
             ]);
         }
         format!(
-            "{frames} frames, {tags} tags, {tags_left_out} tags left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the \
-             table\n\n{table}"
+            "{}, {}, {tags_left_out} left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the table\n\n{table}",
+            counted(*frames as u64, "frame"),
+            counted(*tags as u64, "tag")
         )
     }
 }
@@ -270,7 +271,7 @@ impl TableSummary {
             place_std_mm,
             turn_std_deg,
         } = self;
-        let mut table = Table::new(["board before the camera", "std mm", "std deg"]);
+        let mut table = Table::new(["board in the camera frame", "std mm", "std deg"]);
         for (axis, (place, turn)) in ["x", "y", "z"]
             .iter()
             .zip(place_std_mm.iter().zip(turn_std_deg))
@@ -282,8 +283,8 @@ impl TableSummary {
             ]);
         }
         format!(
-            "{tags} tags, {tags_left_out} tags left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the table, for the lens as \
-             told\n\n{table}"
+            "{}, {tags_left_out} left out; misfit {misfit_px:.3} px, camera {camera_height_m:.3} m above the table, with the given lens\n\n{table}",
+            counted(*tags as u64, "tag")
         )
     }
 }

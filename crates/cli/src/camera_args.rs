@@ -10,26 +10,24 @@ use crate::arg_values::{Rows, ThreadArgs, positive};
 /// Arguments of `stickslip calibrate`.
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
-    /// Folder with images of the board: lying on the table in one, held and tilted to all sides in
-    /// the others; or a bag of such images. Where its CameraInfo or --lens tells the lens, one
-    /// image of the board on the table is enough
+    /// Folder or bag of images of the board: on the table in one, tilted to all sides in the
+    /// others; with a known lens (--lens, CameraInfo) the one is enough
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
-    /// Take the lens from this file, and find the table alone, from the image in which the board
-    /// lies on it: ROS' camera_info.yaml, the YAML of OpenCV's calibration, or a calibration.toml
+    /// File with the lens: camera_info.yaml of ROS, the YAML of OpenCV, or a calibration.toml
+    /// [default: calibrate it]
     #[arg(long, value_name = "FILE")]
     pub lens: Option<PathBuf>,
     /// Topics of a bag of images, as for `track`
     #[arg(long = "topic", value_name = "KEY=TOPIC")]
     pub topics: Vec<CameraMapping>,
-    /// The board (board.toml): rows, columns, tag_size, gap, and how it lies on the table
+    /// Board (board.toml): rows, columns, tag_size, gap, and its pose on the table
     #[arg(long, value_name = "TOML")]
     pub board: PathBuf,
-    /// The image in which the board lies on the table; of a bag, its number from 1 on [default: the
-    /// first one]
+    /// Image with the board on the table; of a bag, its number from 1 [default: the first one]
     #[arg(long, value_name = "NAME")]
     pub flat: Option<String>,
-    /// Write the calibration into this file
+    /// File for the calibration
     #[arg(long, value_name = "TOML", default_value = "calibration.toml")]
     pub out: PathBuf,
     /// How many threads
@@ -43,30 +41,27 @@ pub struct CalibrateArgs {
 /// Arguments of `stickslip track`.
 #[derive(Debug, Args)]
 pub struct TrackArgs {
-    /// Folder with the images, and their times in frames.csv (time,file); or a bag of images, its
-    /// folder or an .mcap file
+    /// Folder of images, with their times in frames.csv (time,file); or a bag, its folder or an
+    /// .mcap file
     #[arg(value_name = "FRAMES")]
     pub frames: PathBuf,
-    /// Topics of a bag: image=/camera/image_raw (needed); info=TOPIC for CameraInfo elsewhere than
-    /// beside the images, info= to leave it out; fixel_1=TOPIC, ..., wrench=TOPIC for what sensors
-    /// felt; may be repeated
+    /// Topics of a bag: image=/camera/image_raw (required), info=TOPIC of CameraInfo (info= ignores
+    /// it), fixel_1=TOPIC, ... and wrench=TOPIC for touch and force; repeatable
     #[arg(long = "topic", value_name = "KEY=TOPIC")]
     pub topics: Vec<CameraMapping>,
-    /// The calibrated camera (calibration.toml); with the CameraInfo of a bag, [lens] may be left
-    /// out of it
+    /// Calibrated camera (calibration.toml); [lens] is optional with the CameraInfo of a bag
     #[arg(long, value_name = "TOML")]
     pub calibration: PathBuf,
-    /// Which tag is on which body, and where (tags.toml)
+    /// Tags of object and pusher, with their size and pose (tags.toml)
     #[arg(long, value_name = "TOML")]
     pub tags: PathBuf,
-    /// Frames per second of images without frames.csv, in the order of their names
+    /// Frames per second of images without frames.csv, in the order of names
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub rate: Option<f64>,
-    /// Take tactile and force readings from this log (CSV or MCAP), whose rows have the frames'
-    /// times
+    /// Log with touch and force (CSV or MCAP), one row per frame at the frame's time
     #[arg(long, value_name = "LOG")]
     pub sensors: Option<PathBuf>,
-    /// Write log.csv, log.mcap and poses.csv (with covariances) into this folder
+    /// Folder for log.csv, log.mcap and poses.csv (with covariances)
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// How many threads
@@ -83,26 +78,26 @@ pub struct RenderArgs {
     /// Experiment folder (scene.toml, log.csv or log.mcap, truth.csv)
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// Write frames/, board/, board.toml, tags.toml and copies of scene and truth into this folder
+    /// Folder for frames/, board/, board.toml, tags.toml and copies of scene and truth
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The hand covers the object's tag in the frames FROM to TO (excluded; to the end without TO)
-    /// [default: truth.json's occlude_from]
+    /// Cover the object's tag from frame FROM until before TO [TO default: the end; default:
+    /// occlude_from of truth.json]
     #[arg(long, value_name = "FROM[:TO]")]
     pub cover: Option<Rows>,
-    /// Probability that the frame grabber delivers a frame twice
+    /// Probability that a frame is delivered twice, 0 to below 1
     #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability)]
     pub repeat: f64,
-    /// Blur of lens and defocus, as a standard deviation
+    /// Standard deviation of the blur of lens and defocus in px
     #[arg(long, value_name = "PX", default_value_t = 0.6, value_parser = positive)]
     pub blur: f64,
-    /// Time that the shutter is open
+    /// Exposure time in s
     #[arg(long, value_name = "S", default_value_t = 0.008, value_parser = positive)]
     pub exposure: f64,
-    /// Frames of the calibration recording
+    /// Frames of the calibration recording, 4 to 1000
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u16).range(4..=1000))]
     pub board_frames: u16,
-    /// Seed of all noise
+    /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// How many threads

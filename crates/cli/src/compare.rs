@@ -19,7 +19,7 @@ use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::{Experiment, Topics};
 
 use crate::args::{CompareArgs, Program};
-use crate::experiment::{check_occlusion, read_folder};
+use crate::experiment::{check_occlusion, check_sense, read_folder};
 use crate::files::{ready_file, write_report};
 use crate::given::scene_file;
 use crate::log_files::log_path;
@@ -156,7 +156,9 @@ fn read(
         Occlusion::None => experiment.facts.occlusion(),
         asked => asked,
     };
-    check_occlusion(occlusion, &experiment.log).map_err(|error| LostFolder::new(&path, &error))?;
+    check_occlusion(occlusion, &experiment.log)
+        .and_then(|()| check_sense(&args.shared, &experiment))
+        .map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {
         path,
         experiment,

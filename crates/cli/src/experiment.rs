@@ -1,17 +1,19 @@
 //! Experiments from files: [`read_experiment`], [`read_folder`], and from [`Texts`] inside the
 //! program.
 
-use std::fs::{self, File};
-use std::io::{self, ErrorKind};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use stickslip::diagnosis::refused;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
     BagOptions, Experiment, Topics, Truth, TruthFacts, read_log, read_mounts, read_scene,
     read_truth_csv, read_truth_json, scene_assumptions,
 };
 
+use crate::args::SharedArgs;
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
 use crate::output::talk;
@@ -62,7 +64,10 @@ pub fn read_experiment(
     let truth = truth
         .map(Path::to_path_buf)
         .or(beside("truth.csv"))
-        .map(|path| read_truth_file(&path))
+        .map(|path| {
+            let truth = read_truth_file(&path)?;
+            check_clock(&path, &truth, &log_data).map(|()| truth)
+        })
         .transpose()?;
     let facts = beside("truth.json")
         .map(|path| read_facts_file(&path))
@@ -103,6 +108,44 @@ pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<()> {
     }
 }
 
+/// Refuses an experiment whose units, frames or columns are found to be wrong, unless `--force`
+/// asks for a run.
+pub fn check_sense(shared: &SharedArgs, experiment: &Experiment) -> Result<()> {
+    let found = refused(&experiment.setup, &experiment.log).filter(|_| !shared.force);
+    found.map_or(Ok(()), |finding| {
+        let advice = finding.advice.unwrap_or_default();
+        let help =
+            format!("{advice}. `stickslip check` shows all findings; --force runs all the same");
+        Err(hinted(finding.found, help))
+    })
+}
+
+/// Longest step of a log that is in seconds (s).
+const LONGEST_STEP: f64 = 5.0;
+
+/// Refuses a truth on another clock: none of its times is among the log's.
+fn check_clock(path: &Path, truth: &Truth, log: &Log) -> Result<()> {
+    let ends = |time: &[f64]| Some([*time.first()?, *time.last()?]);
+    let (Some([from, to]), Some([first, last])) = (ends(&truth.time), ends(&log.time)) else {
+        return Ok(());
+    };
+    // a log whose own steps are too long has another fault, which is named later
+    let steps = log
+        .time
+        .windows(2)
+        .all(|pair| pair[1] - pair[0] < LONGEST_STEP);
+    if !steps || (from <= last && first <= to) {
+        return Ok(());
+    }
+    Err(hinted(
+        format!(
+            "{}: no time in common with the log: the truth goes from {from} to {to} s, the log from {first} to {last} s",
+            path.display()
+        ),
+        "write both on one clock, in seconds",
+    ))
+}
+
 /// Name of the experiment of a log: its folder where the log has the name that all have.
 pub fn experiment_name(log: &Path) -> String {
     let folder = log.parent().and_then(Path::file_name);
@@ -128,22 +171,15 @@ pub fn reference_name(experiment: &Experiment) -> &'static str {
 
 /// Reads a scene file.
 pub fn read_scene_file(path: &Path) -> Result<Setup> {
-    let (text, name) = (text_of(path, "scene")?, path.display().to_string());
-    let setup = read_scene(&text, &name)?;
-    for line in scene_assumptions(&text, &name)? {
+    parse_scene(&text_of(path, "scene")?, &path.display().to_string())
+}
+
+fn parse_scene(text: &str, name: &str) -> Result<Setup> {
+    let setup = read_scene(text, name)?;
+    for line in scene_assumptions(text, name)? {
         talk(format_args!("note: {name}: {line}"));
     }
     Ok(setup)
-}
-
-/// Reads other values of a scene file about the recording of a log: places of tags, and the force
-/// from which a sensor is touched; `topics` are those of the command line.
-fn bag_options(path: &Path, setup: &Setup, topics: &Topics) -> Result<BagOptions> {
-    Ok(BagOptions {
-        topics: topics.clone(),
-        mounts: read_mounts(&text_of(path, "scene")?, &path.display().to_string())?,
-        touch_force: setup.tactile.touch_force,
-    })
 }
 
 /// Reads a scene and a log with it. The verdict says whether all of the log could be read.
@@ -152,8 +188,15 @@ pub fn read_scene_and_log(
     log: &LogFiles,
     topics: &Topics,
 ) -> Result<(Setup, Log, Verdict)> {
-    let setup = read_scene_file(scene)?;
-    let (log, verdict) = log.read(&bag_options(scene, &setup, topics)?)?;
+    // once, since it may be a pipe
+    let (text, name) = (text_of(scene, "scene")?, scene.display().to_string());
+    let setup = parse_scene(&text, &name)?;
+    let options = BagOptions {
+        topics: topics.clone(),
+        mounts: read_mounts(&text, &name)?,
+        touch_force: setup.tactile.touch_force,
+    };
+    let (log, verdict) = log.read(&options)?;
     Ok((setup, log, verdict))
 }
 
@@ -177,7 +220,7 @@ pub fn scene_beside(given: &Path) -> Result<PathBuf> {
     found.ok_or_else(|| {
         hinted(
             format!(
-                "{}: there is no scene.toml in it or beside it",
+                "{}: there is no scene.toml in it or next to it",
                 given.display()
             ),
             "give the scene with --scene; docs/guide/formats.md says how to write one",
@@ -200,9 +243,24 @@ pub fn read_facts_file(path: &Path) -> Result<TruthFacts> {
     )?)
 }
 
+/// Largest text file that is read as a whole (bytes).
+const LARGEST_TEXT: u64 = 64_000_000;
+
 /// The text of a file that is called `what` in errors.
 pub fn text_of(path: &Path, what: &str) -> Result<String> {
-    fs::read_to_string(path).map_err(|error| unreadable(path, what, &error))
+    let mut bytes = Vec::new();
+    let read = open(path, what)?
+        .take(LARGEST_TEXT + 1)
+        .read_to_end(&mut bytes);
+    read.map_err(|error| unreadable(path, what, &error))?;
+    if bytes.len() as u64 > LARGEST_TEXT {
+        let error = format!("it has more than {} MB", LARGEST_TEXT / 1_000_000);
+        return Err(unreadable(path, what, &io::Error::other(error)));
+    }
+    String::from_utf8(bytes).map_err(|_| {
+        let error = io::Error::new(ErrorKind::InvalidData, "it is no text in UTF-8");
+        unreadable(path, what, &error)
+    })
 }
 
 /// Opens a file that is called `what` in errors.

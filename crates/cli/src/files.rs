@@ -1,7 +1,8 @@
-//! Writing files and folders: the fault, and the next step.
+//! Writing files and folders: the fault, and the next step. Files that belong together are
+//! [`Results`].
 
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -75,6 +76,47 @@ pub fn write_out(
     write_whole(path, content).map_err(|error| unwritable(path, &error, OTHER_OUT))
 }
 
+/// Files of one result in a folder named by `--out`. They take their places when all are written,
+/// so that no file of this result lies next to one of an older result, even if the program is
+/// killed.
+#[derive(Default)]
+pub struct Results(Vec<Part>);
+
+impl Results {
+    /// Writes a file next to its place.
+    pub fn add(
+        &mut self,
+        path: PathBuf,
+        content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<()> {
+        let part = Part::write(&path, content);
+        self.0
+            .push(part.map_err(|error| unwritable(&path, &error, OTHER_OUT))?);
+        Ok(())
+    }
+
+    /// Moves the files to their places, and returns these. Older files there but the first are
+    /// removed before.
+    pub fn place(self) -> Result<Vec<PathBuf>> {
+        let failed = |path: &Path, error: &io::Error| unwritable(path, error, OTHER_OUT);
+        for Part { place, .. } in self.0.iter().skip(1) {
+            match fs::remove_file(place) {
+                Err(error) if error.kind() != ErrorKind::NotFound => {
+                    return Err(failed(place, &error));
+                }
+                _ => {}
+            }
+        }
+        let placed = self.0.into_iter().map(|part| {
+            let place = part.place.clone();
+            part.move_to_place()
+                .map_err(|error| failed(&place, &error))?;
+            Ok(place)
+        });
+        placed.collect()
+    }
+}
+
 /// Writes a file; its folder is made where it is missing.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = write_whole(path, |file| file.write_all(bytes));
@@ -94,16 +136,7 @@ fn write_whole(
         content(&mut stream)?;
         return stream.flush();
     }
-    // a link stays, and what it leads to is written
-    let path = fs::canonicalize(path).unwrap_or(path.to_owned());
-    let beside = beside(&path);
-    let write = || {
-        let mut file = BufWriter::new(File::create(&beside)?);
-        content(&mut file)?;
-        file.into_inner()?.sync_all()?;
-        fs::rename(&beside, &path)
-    };
-    write().inspect_err(|_| drop(fs::remove_file(&beside)))
+    Part::write(path, content)?.move_to_place()
 }
 
 /// Checks that a file can be written at `path`, without touching a file that is there.
@@ -111,9 +144,7 @@ fn try_place(path: &Path) -> io::Result<()> {
     if is_stream(path) {
         return File::options().write(true).open(path).map(drop);
     }
-    let beside = beside(&fs::canonicalize(path).unwrap_or(path.to_owned()));
-    File::create(&beside)?;
-    fs::remove_file(&beside)
+    Part::create(path).map(drop)
 }
 
 /// Returns true if something is there that no file can take the place of, as `/dev/stdout`.
@@ -121,12 +152,66 @@ fn is_stream(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
-/// Path at which the file for `path` is written first.
-fn beside(path: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}.part", std::process::id()));
-    path.with_file_name(name)
+/// A file that is written next to its place first; it is removed unless it is moved there.
+struct Part {
+    beside: PathBuf,
+    place: PathBuf,
+}
+
+impl Part {
+    /// Makes an empty file next to `path`, with the permissions of the file that is there. Its name
+    /// is random: programs in several containers may have one number and share a folder.
+    fn create(path: &Path) -> io::Result<(Self, File)> {
+        // a link stays, and what it leads to is written
+        let place = fs::canonicalize(path).unwrap_or(path.to_owned());
+        let there = fs::metadata(&place).ok().map(|there| there.permissions());
+        if there.as_ref().is_some_and(Permissions::readonly) {
+            let words = "the file there is write-protected";
+            return Err(io::Error::new(ErrorKind::PermissionDenied, words));
+        }
+        let mut name = OsString::from(".");
+        name.push(place.file_name().unwrap_or_default());
+        let random = getrandom::u32().map_err(io::Error::other)?;
+        name.push(format!(".{random:08x}.part"));
+        let beside = place.with_file_name(name);
+        let mut options = File::options();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        if there.is_some() {
+            // not for others, not even as long as it is empty
+            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        }
+        let file = options.open(&beside)?;
+        let part = Self { beside, place };
+        if let Some(permissions) = there {
+            file.set_permissions(permissions)?;
+        }
+        Ok((part, file))
+    }
+
+    /// Writes a file next to its place.
+    fn write(
+        path: &Path,
+        content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> io::Result<Self> {
+        make_parent(path)?;
+        let (part, file) = Self::create(path)?;
+        let mut file = BufWriter::new(file);
+        content(&mut file)?;
+        file.into_inner()?.sync_all()?;
+        Ok(part)
+    }
+
+    fn move_to_place(self) -> io::Result<()> {
+        fs::rename(&self.beside, &self.place)
+    }
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        // nothing is there where it was moved to its place
+        let _ = fs::remove_file(&self.beside);
+    }
 }
 
 /// Writes the figures of an experiment into a folder as SVG and PNG, their names after the
@@ -153,7 +238,8 @@ pub fn write_report(path: PathBuf, report: &Report) -> Result<PathBuf> {
     Ok(path)
 }
 
-fn make_parent(path: &Path) -> io::Result<()> {
+/// Makes the folder of a file.
+pub fn make_parent(path: &Path) -> io::Result<()> {
     fs::create_dir_all(path.parent().unwrap_or(Path::new("")))
 }
 
@@ -162,4 +248,22 @@ fn unwritable(path: &Path, error: &io::Error, help: &str) -> anyhow::Error {
         format!("{}: cannot be written: {error}", path.display()),
         help,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Programs with one process number, in two containers that share a folder, write one file.
+    #[test]
+    fn parts_of_one_file_have_names_of_their_own_and_are_removed() {
+        let folder = std::env::temp_dir().join(format!("stickslip-parts-{}", std::process::id()));
+        make_folder(&folder).unwrap();
+        let parts = [(); 2].map(|()| Part::create(&folder.join("log.csv")).unwrap().0);
+        assert_ne!(parts[0].beside, parts[1].beside);
+        assert!(parts.iter().all(|part| part.beside.exists()));
+        drop(parts);
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+        fs::remove_dir(&folder).unwrap();
+    }
 }

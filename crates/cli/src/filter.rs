@@ -20,8 +20,10 @@ use stickslip_report::{
 };
 
 use crate::args::{FilterArgs, MethodName, Program};
-use crate::experiment::{check_occlusion, experiment_name, read_experiment, reference_name};
-use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::experiment::{
+    check_occlusion, check_sense, experiment_name, read_experiment, reference_name,
+};
+use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::given::Given;
 use crate::log_files::LogFiles;
 use crate::origin::origin;
@@ -72,6 +74,7 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment.log)?;
+    check_sense(&args.shared, &experiment).with_context(|| given.log.display().to_string())?;
     check_places(args, &given)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
@@ -188,7 +191,7 @@ fn report(
     write_report(path.to_owned(), &report)
 }
 
-/// Writes the estimate in all forms that are asked for.
+/// Writes the estimate in all forms that are asked for, estimate.csv first.
 fn write_all(
     args: &FilterArgs,
     folder: &Path,
@@ -196,23 +199,21 @@ fn write_all(
     experiment: &Experiment,
 ) -> Result<Vec<PathBuf>> {
     let estimate = &run.scored.estimate;
-    let mut written = vec![folder.join(ESTIMATE), folder.join("modes.csv")];
-    write_out(&written[0], |file| write_estimate(file, estimate))?;
-    write_out(&written[1], |file| write_modes(file, estimate))?;
+    let mut results = Results::default();
+    results.add(folder.join(ESTIMATE), |file| write_estimate(file, estimate))?;
+    results.add(folder.join("modes.csv"), |file| write_modes(file, estimate))?;
     if args.tum {
         let path = folder.join("estimate.tum");
-        write_out(&path, |file| write_estimate_tum(file, estimate))?;
-        written.push(path);
+        results.add(path, |file| write_estimate_tum(file, estimate))?;
     }
     if args.mcap {
         let path = folder.join("estimate.mcap");
         let mut bytes = Cursor::new(Vec::new());
         let (setup, pusher) = (&experiment.setup, &experiment.log.pusher);
         write_estimate_mcap(&mut bytes, estimate, &run.cloud, pusher, setup)?;
-        write_out(&path, |file| file.write_all(bytes.get_ref()))?;
-        written.push(path);
+        results.add(path, |file| file.write_all(bytes.get_ref()))?;
     }
-    Ok(written)
+    results.place()
 }
 
 impl<'a> Summary<'a> {
@@ -254,10 +255,17 @@ fn tables(
         Variant::of(args.method.into(), TactileUse::Used).title(),
         reference_name(experiment)
     );
+    let radius = args
+        .virtual_radius
+        .unwrap_or(experiment.setup.virtual_radius());
+    let about_score = format!(
+        "pose RMSE: weighted RMSE of the pose, angles times {:.1} mm (JSON key wmse_mm, the paper's WMSE)\n",
+        1e3 * radius
+    );
     let parameters = LearnedParameter::all(estimate);
     let friction =
         (!parameters.is_empty()).then(|| friction_table(experiment, &parameters).to_string());
-    let parts = [title, score_table(summary).to_string()]
+    let parts = [title, score_table(summary).to_string(), about_score]
         .into_iter()
         .chain(friction)
         .chain(final_pose_line(experiment, estimate))
@@ -276,13 +284,13 @@ fn score_table(summary: &Summary<'_>) -> Table {
     let mut row = |name: &str, value: String, unit: &str| {
         table.push([name.to_owned(), value, unit.to_owned()])
     };
-    row("WMSE", number(summary.wmse_mm, 3), "mm");
+    row("pose RMSE", number(summary.wmse_mm, 3), "mm");
     row(
-        "WMSE, hidden rows",
+        "pose RMSE, occluded",
         number(summary.wmse_occluded_mm, 3),
         "mm",
     );
-    row("WMSE, moving", number(summary.wmse_moving_mm, 3), "mm");
+    row("pose RMSE, moving", number(summary.wmse_moving_mm, 3), "mm");
     row(
         "final position error",
         number(summary.final_error_mm, 3),
@@ -297,7 +305,7 @@ fn score_table(summary: &Summary<'_>) -> Table {
     row("unsolved particle steps", summary.unsolved.to_string(), "");
     row("of them failed", summary.failed.to_string(), "");
     row("collapses", summary.collapses.to_string(), "");
-    row("second tries", summary.second_tries.to_string(), "");
+    row("re-simulations", summary.second_tries.to_string(), "");
     row(
         "real-time factor",
         format!("{:.1}", summary.real_time_factor),

@@ -17,18 +17,17 @@ use stickslip_report::{Block, Report, Section, Table};
 use crate::args::Program;
 use crate::compare::expand;
 use crate::experiment::{experiment_name, read_folder, text_of};
-use crate::files::{ready_file, ready_folder, refuse_inputs, write_out, write_report};
+use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::fit_args::FitArgs;
 use crate::log_files::log_path;
 use crate::origin::origin;
-use crate::output::{show_result, talk};
+use crate::output::{counted, show_result, talk};
 use crate::progress::stage;
 use crate::verdict::Verdict;
 
 /// Limits of values that predict best.
-const CANNOT_KNOW: &str = "what the model cannot know: it is only nearly right, so the value that predicts best \
-    is not the constant of the material or the support; \"constant, 90 %\" says what that may be, as on virtual rigs \
-    whose predictions drift as much";
+const CANNOT_KNOW: &str = "the value that predicts best is not the physical constant, since the model is approximate; \
+    \"constant, 90 %\" is an interval for the constant, calibrated on virtual rigs with as much model drift";
 
 /// Content of fit.json.
 #[derive(Debug, Serialize)]
@@ -82,8 +81,10 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
         result.cross_validation.as_ref(),
     )?;
     let json = serde_json::to_string_pretty(&result)? + "\n";
-    write_out(&scene_out, |file| file.write_all(scene.as_bytes()))?;
-    write_out(&json_out, |file| file.write_all(json.as_bytes()))?;
+    let mut results = Results::default();
+    results.add(scene_out.clone(), |file| file.write_all(scene.as_bytes()))?;
+    results.add(json_out.clone(), |file| file.write_all(json.as_bytes()))?;
+    results.place()?;
     show_result(args.json, &result, || text(&result))?;
     if let Some(path) = &args.report {
         let path = write_report(path.clone(), &page(&result, args.seed))?;
@@ -108,8 +109,7 @@ fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     for folder in &test {
         if std::fs::canonicalize(folder).is_ok_and(|folder| seen.contains(&folder)) {
             bail!(
-                "{}: --test names a push that is learnt from, too; a push that was seen is not predicted blind. Leave it \
-                 out of one of the two",
+                "{}: --test names a push that is also fitted; a fitted push is no test. Leave it out of one of the two",
                 folder.display()
             );
         }
@@ -125,7 +125,7 @@ fn learn(
     test: &[Push],
     options: &FitOptions,
 ) -> Result<FitResult> {
-    let progress = stage(format!("learning from {} pushes", pushes.len()));
+    let progress = stage(format!("fitting {}", counted(pushes.len() as u64, "push")));
     let fit = stickslip_fit::fit(pushes, options, &|_, _| ())?;
     let folds = args.folds.unwrap_or(default_folds(pushes.len()));
     progress.set_message(format!(
@@ -173,10 +173,15 @@ fn read_pushes(
     Ok((pushes, lost.unwrap_or(Verdict::Done)))
 }
 
+/// Title of a result.
+fn fitted_to(result: &FitResult) -> String {
+    format!("Fit to {}", counted(result.fit.pushes as u64, "push"))
+}
+
 /// The result as a terminal shows it.
 fn text(result: &FitResult) -> String {
     let mut lines = vec![
-        format!("learnt from {} pushes", result.fit.pushes),
+        fitted_to(result),
         parameters(&result.fit).to_string(),
         remarks(result).join("\n"),
     ];
@@ -203,12 +208,12 @@ fn validations(result: &FitResult) -> impl Iterator<Item = (&'static str, &Cross
 /// The result as a page.
 fn page(result: &FitResult, seed: u64) -> Report {
     let mut sections = vec![Section {
-        title: "Learnt".to_owned(),
+        title: "Fitted parameters".to_owned(),
         blocks: vec![Block::Table(parameters(&result.fit), String::new())],
     }];
     for (title, validation) in validations(result) {
         sections.push(Section {
-            title: format!("On {title}"),
+            title: format!("Predictions of {title}"),
             blocks: vec![
                 Block::Table(
                     errors(validation, title),
@@ -220,7 +225,7 @@ fn page(result: &FitResult, seed: u64) -> Report {
         });
     }
     Report {
-        title: format!("Learnt from {} pushes", result.fit.pushes),
+        title: fitted_to(result),
         summary: headlines(result)
             .into_iter()
             .chain(remarks(result))
@@ -246,23 +251,23 @@ fn headlines(result: &FitResult) -> Vec<String> {
             format!("{name}: {value} ± {std} {unit}")
                 .trim_end()
                 .to_owned()
-                + &format!(", first guess {before}")
+                + &format!(", nominal {before}")
                 + &fitted.constant.map_or(String::new(), |constant| {
-                    format!("; the constant itself: {}", interval(&constant))
+                    format!("; constant, 90 %: {}", interval(&constant))
                 })
         })
         .collect();
     if !left.is_empty() {
         let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
         lines.push(format!(
-            "not determined by these pushes: {}",
+            "not identifiable from these pushes: {}",
             names.join(", ")
         ));
     }
     if let Some(validation) = &result.cross_validation {
         let [unfitted, fitted] = validation.median_final_mm;
         lines.push(format!(
-            "final position of pushes left out: {unfitted:.2} mm off with the first guesses, {fitted:.2} mm with what the others taught"
+            "final position error of pushes left out: {unfitted:.2} mm with nominal values, {fitted:.2} mm with a fit to the others"
         ));
     }
     lines
@@ -276,7 +281,7 @@ fn remarks(result: &FitResult) -> Vec<String> {
         remarks.push(format!("strongest correlation: {a} with {b}, {strongest}"));
     }
     remarks.push(format!(
-        "the model drifts by {:.1} % of the pusher's way; the camera's noise is {:.2} times what the scene says",
+        "model drift {:.1} % of the pusher's path; camera noise {:.2} times that of scene.toml",
         100.0 * fit.noise.drift,
         fit.noise.camera_scale
     ));
@@ -292,8 +297,7 @@ fn remarks(result: &FitResult) -> Vec<String> {
     if let Some(validation) = result.cross_validation.as_ref().filter(|v| !v.pays) {
         let [gain, error] = validation.gain_mm;
         remarks.push(format!(
-            "fitting does not pay: with what the others teach, pushes left out are predicted no better (gain {gain:.2} ± {error:.2} mm); \
-             scene.toml keeps the first guesses"
+            "the fit does not improve predictions of pushes left out (gain {gain:.2} ± {error:.2} mm); scene.toml keeps the nominal values"
         ));
     }
     if fit.sampling.unsolved > 0 {
@@ -308,8 +312,8 @@ fn remarks(result: &FitResult) -> Vec<String> {
 fn parameters(fit: &Fit) -> Table {
     let mut table = Table::new([
         "parameter",
-        "before",
-        "after",
+        "nominal",
+        "fitted",
         "spread",
         "unit",
         "spread/prior",
@@ -318,9 +322,9 @@ fn parameters(fit: &Fit) -> Table {
     ]);
     for fitted in &fit.parameters {
         let said = match (fitted.determined, fitted.learnt) {
-            (true, _) => "determined",
-            (false, true) => "a hint, not determined",
-            (false, false) => "not determined by these pushes",
+            (true, _) => "identified",
+            (false, true) => "weakly identified",
+            (false, false) => "not identifiable",
         };
         table.push([
             fitted.name.to_owned(),
@@ -367,10 +371,10 @@ fn strongest_correlation(fit: &Fit) -> Option<[String; 3]> {
 
 fn errors(validation: &CrossValidation, title: &str) -> Table {
     let title = format!("{title}, median");
-    let mut table = Table::new([title.as_str(), "unfitted", "fitted", "ratio"]);
+    let mut table = Table::new([title.as_str(), "nominal", "fitted", "ratio"]);
     for (name, [unfitted, fitted]) in [
         ("final position (mm)", validation.median_final_mm),
-        ("WMSE (mm)", validation.median_wmse_mm),
+        ("pose RMSE (mm)", validation.median_wmse_mm),
     ] {
         table.push([
             name.to_owned(),
@@ -384,20 +388,20 @@ fn errors(validation: &CrossValidation, title: &str) -> Table {
 
 fn coverage(validation: &CrossValidation) -> String {
     format!(
-        "90 % intervals predicted for final x, y and theta hold {:.0} % ({} pushes, {} folds)",
+        "90 % intervals for the final x, y and theta cover {:.0} % ({}, {})",
         100.0 * validation.coverage_90,
-        validation.pushes.len(),
-        validation.folds
+        counted(validation.pushes.len() as u64, "push"),
+        counted(validation.folds as u64, "fold")
     )
 }
 
 fn each(validation: &CrossValidation) -> Table {
     let mut table = Table::new([
         "push",
-        "final, unfitted (mm)",
-        "final, fitted (mm)",
-        "WMSE, unfitted (mm)",
-        "WMSE, fitted (mm)",
+        "final position, nominal (mm)",
+        "final position, fitted (mm)",
+        "pose RMSE, nominal (mm)",
+        "pose RMSE, fitted (mm)",
         "in the intervals",
     ]);
     for push in &validation.pushes {

@@ -1,6 +1,5 @@
 //! A folder of images: [`FrameFolder`].
 
-use std::cmp::Ordering;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -10,6 +9,7 @@ use stickslip_formats::read_frames;
 use stickslip_vision::read_picture;
 
 use crate::failure::hinted;
+use crate::frame_names::FrameNames;
 
 /// Endings of files that are taken for images.
 const ENDINGS: [&str; 8] = ["png", "jpg", "jpeg", "bmp", "pgm", "ppm", "pnm", "pbm"];
@@ -23,6 +23,8 @@ pub struct FrameFolder {
     pub names: Vec<String>,
     /// Their times (s), where frames.csv gives them.
     pub time: Option<Vec<f64>>,
+    /// Question that their names leave open about their order.
+    pub question: Option<String>,
 }
 
 impl FrameFolder {
@@ -37,6 +39,7 @@ impl FrameFolder {
                 folder: folder.to_owned(),
                 names: frames.file,
                 time: Some(frames.time),
+                question: None,
             });
         }
         let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, &error))?;
@@ -60,11 +63,12 @@ impl FrameFolder {
                 format!("give a folder with {} files", ENDINGS.join(", ")),
             ));
         }
-        names.sort_by(|a, b| by_number(a, b).then_with(|| a.cmp(b)));
+        let FrameNames { names, question } = FrameNames::sort(names);
         Ok(Self {
             folder: folder.to_owned(),
             names,
             time: None,
+            question,
         })
     }
 
@@ -91,49 +95,4 @@ fn unreadable(path: &Path, error: &std::io::Error) -> anyhow::Error {
         format!("{}: cannot be read: {error}", path.display()),
         "give a folder of images, all of which can be read",
     )
-}
-
-/// Order of names in which runs of digits count by value.
-fn by_number(a: &str, b: &str) -> Ordering {
-    let pieces = |text: &str| -> Vec<(u64, String)> {
-        let is_digit = |c: &u8| c.is_ascii_digit();
-        let runs = text.as_bytes().chunk_by(|a, b| is_digit(a) == is_digit(b));
-        // words come after numbers
-        runs.map(|run| {
-            let run = String::from_utf8_lossy(run).into_owned();
-            run.parse()
-                .map_or((u64::MAX, run), |number| (number, String::new()))
-        })
-        .collect()
-    };
-    pieces(a).cmp(&pieces(b))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn by_number_counts_digits_by_value() {
-        let mut names = [
-            "b1.png",
-            "a10.png",
-            "a9.png",
-            "a009b2.png",
-            "10.png",
-            "9.png",
-        ];
-        names.sort_by(|a, b| by_number(a, b));
-        assert_eq!(
-            names,
-            [
-                "9.png",
-                "10.png",
-                "a9.png",
-                "a009b2.png",
-                "a10.png",
-                "b1.png"
-            ]
-        );
-    }
 }

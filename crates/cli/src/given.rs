@@ -12,15 +12,13 @@ use crate::log_files::log_path;
 /// A log and a scene, in any of the ways that they are given.
 #[derive(Debug, Args)]
 pub struct GivenArgs {
-    /// The recorded experiment: log.csv, an MCAP recording of ROS 2 messages, the folder of a bag,
-    /// or a folder with any of these
+    /// Recorded experiment: log.csv, an MCAP file, a bag's folder, or a folder with one of these
     #[arg(value_name = "LOG")]
     first: PathBuf,
-    /// What is known before the experiment, before or after LOG [default: scene.toml in the log's
-    /// folder or beside it]
+    /// Scene, before or after LOG [default: scene.toml in the log's folder or next to it]
     #[arg(value_name = "SCENE.toml")]
     second: Option<PathBuf>,
-    /// The same, under any name, or a folder with scene.toml
+    /// Scene under any name, or a folder with scene.toml
     #[arg(long)]
     scene: Option<PathBuf>,
 }
@@ -35,7 +33,7 @@ pub struct Given {
 }
 
 impl GivenArgs {
-    /// What was meant; `command` is the program's command that was given it.
+    /// The log and the scene that are meant; `command` is the program's command that was given it.
     ///
     /// # Errors
     ///
@@ -81,7 +79,7 @@ pub fn scene_file(given: &Path) -> PathBuf {
     }
 }
 
-/// Whether a path is a scene by its name.
+/// True if a path is a scene by its name.
 pub fn is_scene(path: &Path) -> bool {
     let toml = path
         .extension()
@@ -89,7 +87,7 @@ pub fn is_scene(path: &Path) -> bool {
     toml && !path.is_dir()
 }
 
-/// A scene that is given alone stands for the log beside it.
+/// A scene that is given alone stands for the log next to it.
 fn log_beside(scene: &Path, command: &str) -> Result<Given> {
     let folder = match scene.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -100,7 +98,7 @@ fn log_beside(scene: &Path, command: &str) -> Result<Given> {
         true => Ok(Given::of(&log, scene.to_owned())),
         false => Err(hinted(
             format!(
-                "{}: this is a scene, and no log lies beside it",
+                "{}: this is a scene, and there is no log next to it",
                 scene.display()
             ),
             format!(

@@ -111,7 +111,8 @@ fn quoted(word: &str) -> String {
 fn text(shown: &Shown) -> String {
     let BagInfo { topics, poses, .. } = &shown.info;
     if topics.is_empty() {
-        return "No message can be read: the bag is empty, or cut off before the end of its first chunk".to_owned();
+        return "No message can be read: the bag is empty or truncated within its first chunk"
+            .to_owned();
     }
     let mut parts = vec![topic_table(topics).to_string()];
     if !poses.is_empty() {
@@ -120,16 +121,16 @@ fn text(shown: &Shown) -> String {
     parts.extend(problems(poses));
     let missing = missing(&shown.info);
     if missing.is_empty() {
-        parts.push(format!("Go on with\n  {}", shown.commands.join("\n  ")));
+        parts.push(format!("Next steps:\n  {}", shown.commands.join("\n  ")));
     } else {
         parts.push(format!(
-            "Nothing that moves on the table is left for {}: record its poses, or put the transform from a frame of the table to the camera on /tf_static",
+            "No moving frame is left for {}: record its poses, or publish the transform from a table frame to the camera on /tf_static",
             missing.join(" and ")
         ));
     }
     if !shown.image_commands.is_empty() {
         parts.push(format!(
-            "Or find object and pusher in the images by their tags, with tags.toml and a calibration.toml of `stickslip calibrate`, as docs/guide/camera.md has them\n  {}",
+            "Or track tags in the images, with tags.toml and the calibration.toml of `stickslip calibrate` (docs/guide/camera.md):\n  {}",
             shown.image_commands.join("\n  ")
         ));
     }
@@ -162,7 +163,7 @@ fn topic_table(topics: &[TopicInfo]) -> Table {
         "messages",
         "rate, Hz",
         "longest gap, s",
-        "would do for",
+        "usable as",
     ]);
     for topic in topics {
         table.push([

@@ -23,6 +23,7 @@ mod files;
 mod filter;
 mod fit;
 mod fit_args;
+mod frame_names;
 mod frames;
 mod given;
 mod in_process;

@@ -8,6 +8,7 @@ mod session;
 mod shown_row;
 
 use std::io::stdin;
+use std::process::exit;
 
 use anyhow::Result;
 use stickslip::{Setup, TrackerOptions};
@@ -19,7 +20,7 @@ use crate::given::scene_file;
 use crate::live_args::LiveArgs;
 use crate::output::{Reader, stream_line, talk};
 use crate::verdict::Verdict;
-use lines::Lines;
+use lines::{Lines, Stop};
 use page::PageServer;
 use recording::Recording;
 use session::Session;
@@ -38,18 +39,16 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     };
     let deadline = args.deadline_ms.map(|milliseconds| 1e-3 * milliseconds);
     let mut session = Session::new(&setup, &options, deadline)?;
-    let sensors = setup.scene.fixels.len();
-    let mut recording = args
-        .record
-        .as_deref()
-        .map(|path| Recording::create(path, sensors, &scene))
-        .transpose()?;
+    let record = |path| Recording::create(path, setup.scene.fixels.len());
+    let mut recording = args.record.as_deref().map(record).transpose()?;
+    let mut recorded = Verdict::Done;
     let mut page = args
         .page
         .map(|port| open_page(&setup, &scene.display().to_string(), port))
         .transpose()?;
     let pool = args.threads.filter_pool(args.particles)?;
     let lines = Lines::read(stdin());
+    stop_on_signal(lines.stop());
 
     // one answer per line, until the source ends or the reader of the answers has left
     let ended = pool.install(|| -> Result<()> {
@@ -59,9 +58,6 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
             if answer.text.is_empty() {
                 continue;
             }
-            if let Some((recording, row)) = recording.as_mut().zip(answer.row.as_ref()) {
-                recording.write(row)?;
-            }
             let reader = stream_line(&answer.text)?;
             session.answered(arrived);
             if let Some(page) = page.as_mut().filter(|page| page.wants())
@@ -69,24 +65,55 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
             {
                 page.show(shown);
             }
+            // the robot has its answer, whatever becomes of the recording
+            if let Some((kept, row)) = recording.as_mut().zip(answer.row.as_ref())
+                && let Err(error) = kept.write(row)
+            {
+                talk(format_args!(
+                    "warning: {error}; the session goes on without recording"
+                ));
+                recording = None;
+                recorded = Verdict::InputLost;
+            }
             if reader == Reader::Gone {
                 break;
             }
         }
         Ok(())
     });
-    if let Some(recording) = recording {
-        talk(recording.finish()?);
+    match recording.map(Recording::finish) {
+        Some(Ok(report)) => talk(report),
+        Some(Err(error)) => {
+            talk(format_args!("warning: {error}"));
+            recorded = Verdict::InputLost;
+        }
+        None => {}
     }
     ended?;
     for text in session.summary() {
         talk(text);
     }
-    Ok(if session.refused() == 0 {
-        Verdict::Done
-    } else {
-        Verdict::InputLost
+    Ok(match session.refused() {
+        0 => recorded,
+        _ => Verdict::InputLost,
     })
+}
+
+/// Ends the session at Ctrl-C, SIGTERM or SIGHUP as the end of its source does; ends the program at
+/// the second one.
+fn stop_on_signal(stop: Stop) {
+    /// Exit code of a shell for a program that Ctrl-C has ended.
+    const INTERRUPTED: i32 = 130;
+    let on_signal = move || {
+        if !stop.set() {
+            exit(INTERRUPTED);
+        }
+    };
+    if let Err(error) = ctrlc::set_handler(on_signal) {
+        talk(format_args!(
+            "warning: a signal ends the program and not only its source: {error}"
+        ));
+    }
 }
 
 /// Serves the live page of a scene, and says where.

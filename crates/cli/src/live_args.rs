@@ -11,7 +11,7 @@ use crate::args::{ModelName, RenamedArgs};
 /// Arguments of `stickslip live`.
 #[derive(Debug, Args)]
 pub struct LiveArgs {
-    /// What is known before (scene.toml), or the folder that it lies in
+    /// Scene (scene.toml), or its folder
     pub scene: PathBuf,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = particles)]
@@ -25,20 +25,19 @@ pub struct LiveArgs {
     /// The old name of `--model`
     #[command(flatten)]
     pub renamed: RenamedArgs,
-    /// Ignore the tactile readings
+    /// Ignore the touch sensors
     #[arg(long)]
     pub no_tactile: bool,
-    /// How far behind the latest row a row may come and still count
+    /// Largest delay of a row behind the latest one
     #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
     pub late: f64,
-    /// When an answer is due after its row: fewer particles are used where all would be late, and
-    /// late answers are counted
+    /// Deadline of each answer after its row; reduces the particles to meet it [default: none]
     #[arg(long, value_name = "MS", value_parser = positive)]
     pub deadline_ms: Option<f64>,
-    /// Keep the rows in a new file, .mcap or .csv
+    /// New file for the rows, .mcap or .csv
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
-    /// Show what happens on a page that this machine alone can open; its address is printed
+    /// Serve a live page on this machine and print its address [PORT default: a free one]
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
     pub page: Option<u16>,
     /// How many threads
@@ -47,7 +46,7 @@ pub struct LiveArgs {
 }
 
 impl LiveArgs {
-    /// What becomes of tactile readings.
+    /// Use of tactile readings.
     pub fn tactile(&self) -> TactileUse {
         if self.no_tactile {
             TactileUse::Ignored

@@ -139,7 +139,7 @@ impl LogFiles {
         self.opened(&self.shown)?;
         Err(hinted(
             format!("{}: this is no bag", self.shown.display()),
-            "give the folder of a bag, or an .mcap file; `stickslip check` looks at tables",
+            "give the folder of a bag, or an .mcap file; `stickslip check` reads tables",
         ))
     }
 
@@ -156,11 +156,11 @@ impl LogFiles {
     pub fn warnings(&self, of_content: &[LogWarning]) -> Vec<String> {
         let bag = self.shown.display();
         let unlisted = self.unlisted.then(|| {
-            format!("{bag}: without {METADATA}, as a recorder leaves a bag that was not stopped; its .mcap files are read")
+            format!("{bag}: no {METADATA}, the recorder was not stopped; its .mcap files are read")
         });
         let missing = (!self.missing.is_empty()).then(|| {
             let names = names(&self.missing);
-            format!("{bag}: {names} is not there; what it held is lost")
+            format!("{bag}: {names} is not there; its messages are lost")
         });
         let of_content = of_content.iter().map(LogWarning::to_string);
         unlisted
@@ -212,6 +212,12 @@ impl LogFiles {
     fn opened(&self, path: &Path) -> Result<File> {
         let name = path.display();
         let mut file = open(path, "log")?;
+        if !file.metadata().is_ok_and(|there| there.is_file()) {
+            return Err(hinted(
+                format!("{name}: this is a pipe or a device; a log is read from a file"),
+                "write it into a file first, and give that",
+            ));
+        }
         let kind = kind_of(&mut file).map_err(|error| unreadable(path, "log", &error))?;
         match kind {
             Kind::Sqlite => Err(not_mcap(path, "sqlite3")),

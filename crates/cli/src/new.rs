@@ -12,7 +12,7 @@ use crate::args::NewArgs;
 use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::files::write_file;
-use crate::output::{show, talk};
+use crate::output::{counted, show, talk};
 use crate::verdict::Verdict;
 
 /// Runs the command.
@@ -39,8 +39,8 @@ pub fn new(args: &NewArgs) -> Result<Verdict> {
         show(format_args!("{}", described(outline, args.tolerance)))?;
         if outline.holes > 0 {
             talk(format_args!(
-                "warning: {} holes are not part of the outline that others touch; give inertia and tripod_radius, which are not those of a full plate",
-                outline.holes
+                "warning: {} left out of the outline; give inertia and tripod_radius, which differ from those of a full plate",
+                counted(outline.holes as u64, "hole")
             ));
         }
     }
@@ -53,7 +53,7 @@ pub fn new(args: &NewArgs) -> Result<Verdict> {
     };
     let assumed = assumed.iter().map(|line| format!("\n  {line}"));
     show(format_args!(
-        "wrote {name} and, for editors, {}\nPut in your own numbers. As it is:{}",
+        "wrote {name} and, for editors, {}\nFill in your own numbers. Assumed for missing keys:{}",
         schema.display(),
         assumed.collect::<String>()
     ))?;
@@ -86,7 +86,7 @@ fn outline(args: &NewArgs, path: &Path) -> Result<Outline> {
     }
 }
 
-/// What was made of a drawing.
+/// Description of the outline of a drawing.
 fn described(outline: &Outline, tolerance: f64) -> String {
     let Outline {
         parts,
@@ -98,12 +98,12 @@ fn described(outline: &Outline, tolerance: f64) -> String {
         ..
     } = outline;
     format!(
-        "outline: {:.3} x {:.3} mm, {:.1} mm^2, {vertices} vertices in {} convex parts, within {} mm of the drawing's curves; the drawing is in {unit}\n\
-         its middle, at ({:.3}, {:.3}) mm in the drawing with y up, is taken for the centre of mass: the origin",
+        "outline: {:.3} x {:.3} mm, {:.1} mm^2, {vertices} vertices in {}, within {} mm of the drawing's curves; the drawing is in {unit}\n\
+         its centroid, at ({:.3}, {:.3}) mm in the drawing with y up, is the origin: the assumed centre of mass",
         1e3 * width,
         1e3 * height,
         1e6 * area,
-        parts.len(),
+        counted(parts.len() as u64, "convex part"),
         1e3 * tolerance,
         1e3 * x,
         1e3 * y

@@ -9,15 +9,10 @@ use std::io::{self, ErrorKind, Write};
 
 use anyhow::Result;
 use serde::Serialize;
+pub use stickslip::counted;
 
 use crate::failure::{Hinted, hinted, one_line};
 use crate::verdict::Verdict;
-
-/// "1 problem", "2 problems".
-pub fn counted(count: u64, noun: &str) -> String {
-    let end = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{end}")
-}
 
 /// Writes results to standard output, with one newline at their end. Returns `Ok` also where the
 /// reader has left.

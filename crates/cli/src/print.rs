@@ -31,7 +31,7 @@ pub fn print(args: &PrintArgs) -> Result<Verdict> {
         _ => write_file(&args.out, sheet.svg().as_bytes())?,
     }
     show(format_args!(
-        "wrote {}; print it at 100 %, measure the ruler: 100 mm, and the black squares",
+        "wrote {}; print it at 100 %, then measure the ruler of 100 mm and the black squares",
         args.out.display()
     ))?;
     Ok(Verdict::Done)

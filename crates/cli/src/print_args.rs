@@ -10,7 +10,7 @@ use crate::arg_values::positive;
 /// Arguments of `stickslip print`.
 #[derive(Debug, Args)]
 pub struct PrintArgs {
-    /// The file to write: PDF where its name ends in .pdf, else SVG
+    /// File to write: PDF if its name ends in .pdf, else SVG
     #[arg(value_name = "FILE")]
     pub out: PathBuf,
     /// Numbers of the tags to draw, as 0,1
@@ -22,13 +22,13 @@ pub struct PrintArgs {
         conflicts_with = "board"
     )]
     pub tags: Vec<u16>,
-    /// Edge of a tag's black square
+    /// Edge of a tag's black square in m
     #[arg(long, value_name = "M", value_parser = positive, default_value_t = 0.028)]
     pub size: f64,
-    /// Draw the calibration board of this file (board.toml)
+    /// Calibration board to draw (board.toml)
     #[arg(long, value_name = "TOML")]
     pub board: Option<PathBuf>,
-    /// Size of the paper in mm, as 297x210 [default: A4, upright]
+    /// Paper size in mm, each side 20 to 5000; 210x297 is A4
     #[arg(long, value_name = "WxH", value_parser = paper, default_value = "210x297")]
     pub paper: Paper,
 }

@@ -21,7 +21,7 @@ use crate::experiment::{read_folder, reference_name};
 use crate::failure::hinted;
 use crate::files::{make_folder, write_out};
 use crate::log_files::log_path;
-use crate::output::{show, talk};
+use crate::output::{counted, show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 
@@ -66,8 +66,9 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         }
     }
     talk(format_args!(
-        "wrote {frames} frames and {} of the board to {}",
-        args.board_frames,
+        "wrote {} and {} to {}",
+        counted(frames as u64, "frame"),
+        counted(u64::from(args.board_frames), "board frame"),
         args.out.display()
     ));
     show(format_args!(

@@ -21,7 +21,7 @@ use crate::experiment::{read_facts_file, text_of};
 use crate::failure::hinted;
 use crate::files::write_out;
 use crate::log_files::log_path;
-use crate::output::{show, talk};
+use crate::output::{counted, show, talk};
 use crate::simulation_args::SimulateArgs;
 use crate::verdict::Verdict;
 
@@ -54,8 +54,8 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
     show(tables(&source.name, &setup, &simulation))?;
     if simulation.trace.unsolved > 0 {
         talk(format_args!(
-            "warning: {} steps have no certified solution",
-            simulation.trace.unsolved
+            "warning: {} without a certified solution",
+            counted(simulation.trace.unsolved as u64, "step")
         ));
     }
     talk(format_args!("wrote {}", args.out.display()));
@@ -69,7 +69,7 @@ fn refused(error: SimulationError, name: &str) -> anyhow::Error {
             "add [start] with object = [x, y, theta], pusher = [x, y, theta], speed = ... in m/s and duration = ... in s"
         }
         SimulationError::RigidDrive => {
-            "give the force in N at which the drive gives way, or take --physics model"
+            "give the force in N at which the drive yields, or use --physics model"
         }
         _ => return anyhow::Error::new(error).context(name.to_owned()),
     };
@@ -158,11 +158,11 @@ fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
     for (j, row) in facts.first_fixel_contacts.iter().enumerate() {
         event(format!("fixel {} touches", j + 1), *row);
     }
-    event("camera dark from".to_owned(), facts.occlude_from);
+    event("camera off from".to_owned(), facts.occlude_from);
     let assumed = assumed_stall_force(setup).map(|finding| format!("\nnote: {finding}\n"));
     format!(
-        "{name}: {} rows, {length:.1} s\n\n{events}\n{}{}",
-        log.len(),
+        "{name}: {}, {length:.1} s\n\n{events}\n{}{}",
+        counted(log.len() as u64, "row"),
         friction(setup, facts),
         assumed.unwrap_or_default()
     )

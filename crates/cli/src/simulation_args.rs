@@ -13,29 +13,28 @@ use crate::args::{ModelName, RenamedArgs};
 /// Arguments of `stickslip simulate`.
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// Bodies, nominal friction and how all begins (scene.toml with a table `start`)
+    /// Scene with a table [start]
     #[arg(required_unless_present = "paper", conflicts_with = "paper")]
     pub scene: Option<PathBuf>,
-    /// One of the paper's experiments in place of a scene
+    /// One of the paper's experiments instead of a scene
     #[arg(long, value_enum, ignore_case = true, value_name = "NAME", conflicts_with_all = ["truth", "friction_error"])]
     pub paper: Option<PaperName>,
-    /// Write scene.toml, log.csv, truth.csv and truth.json into this folder
+    /// Folder for scene.toml, log.csv, truth.csv and truth.json
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// What moves the object
+    /// Simulator
     #[arg(long, value_enum, default_value_t = PhysicsName::Testbed)]
     pub physics: PhysicsName,
-    /// Seed of all random numbers: of the rig's as of the sensors'
+    /// Seed of all random numbers, of rig and sensors
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// Camera frames per second
     #[arg(long, value_name = "HZ", default_value_t = 30.0, value_parser = positive)]
     pub rate: f64,
-    /// Take mu_s, mu_p, mu_f and occlude_from from this file (truth.json) [default: the scene's
-    /// friction]
+    /// File with mu_s, mu_p, mu_f and occlude_from (truth.json) [default: the scene's friction]
     #[arg(long, value_name = "JSON")]
     pub truth: Option<PathBuf>,
-    /// Draw the true friction within this share of the scene's, as 0.4
+    /// Draw the true friction within this share of the scene's, 0 to 1 [default: 0]
     #[arg(long, value_name = "SHARE", conflicts_with = "truth", value_parser = share)]
     pub friction_error: Option<f64>,
 }
@@ -43,16 +42,16 @@ pub struct SimulateArgs {
 /// Arguments of `stickslip reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// Write reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html into this folder
+    /// Folder for reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of seeds: of rigs, sensors and filters [default: 20]
+    /// Number of seeds of rig, sensors and filter, 1 to 1000 [default: 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: Option<u64>,
-    /// Render camera frames and track them, instead of measuring poses with the paper's noise
+    /// Track rendered camera frames, instead of poses with the paper's noise
     #[arg(long)]
     pub from_frames: bool,
-    /// Use no later row for any estimate, as live; else the thumb is tracked from the whole log
+    /// Track the thumb without later rows, as live does
     #[arg(long)]
     pub causal: bool,
     /// Model of the particle filter
@@ -87,10 +86,10 @@ impl ReproduceArgs {
     }
 }
 
-/// What moves the object of a simulation.
+/// Simulator that moves the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PhysicsName {
-    /// A rig with compliant contacts, uneven friction and a drive that lags and stalls
+    /// Rig with compliant contacts, uneven friction, a drive that lags and stalls
     Testbed,
     /// The filter's own contact dynamics, without noise
     Model,
@@ -117,10 +116,10 @@ pub enum PaperName {
     /// Table IV: contact with a fixel and stop
     #[value(name = "4")]
     Fourth,
-    /// Added to them: caught at an edge by a fixel, or not
+    /// Not in the paper: a fixel catches the object at an edge, or misses it
     #[value(name = "5")]
     Edge,
-    /// Added to them: a corner meets a fixel off its middle
+    /// Not in the paper: a corner meets a fixel off its middle
     #[value(name = "6")]
     Corner,
 }

@@ -7,9 +7,8 @@ use stickslip_formats::{TopicMapping, Topics};
 /// Which topic of an MCAP log is which.
 #[derive(Debug, Args)]
 pub struct TopicArgs {
-    /// Read KEY from TOPIC of an MCAP log, as object=/vicon/box/pose, or from frames of its
-    /// transforms, as object=/tf:table.tag_7; keys are object, pusher, wrench (without TOPIC: no
-    /// forces) and fixel_1, fixel_2, ...; may be repeated
+    /// Topic of a KEY in an MCAP log: object=/vicon/box/pose, or object=/tf:table.tag_7 for frames.
+    /// Keys: object, pusher, wrench (empty: no forces), fixel_1, ...; repeatable
     #[arg(long = "topic", value_name = "KEY=TOPIC")]
     mappings: Vec<TopicMapping>,
 }

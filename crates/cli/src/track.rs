@@ -17,10 +17,10 @@ use crate::bag_images::{BagImages, TrackedBag};
 use crate::camera_args::TrackArgs;
 use crate::experiment::text_of;
 use crate::failure::hinted;
-use crate::files::{ready_folder, write_out};
+use crate::files::{Results, ready_folder};
 use crate::frames::FrameFolder;
 use crate::log_files::LogFiles;
-use crate::output::{show_result, talk};
+use crate::output::{counted, show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 
@@ -158,9 +158,15 @@ fn times(args: &TrackArgs, folder: &FrameFolder) -> Result<Vec<f64>> {
             "leave --rate out, or move frames.csv away",
         )),
         (Some(time), None) => Ok(time.clone()),
-        (None, Some(rate)) => Ok((0..folder.names.len())
-            .map(|index| index as f64 / rate)
-            .collect()),
+        (None, Some(rate)) => match &folder.question {
+            Some(question) => Err(hinted(
+                format!("{}: {question}", args.frames.display()),
+                "write frames.csv (time,file) into the folder, or rename the images",
+            )),
+            None => Ok((0..folder.names.len())
+                .map(|index| index as f64 / rate)
+                .collect()),
+        },
         (None, None) => Err(hinted(
             format!(
                 "{}: there is no frames.csv, so the frames have no times",
@@ -230,19 +236,24 @@ fn differs(a: Option<&f64>, b: Option<&f64>) -> bool {
 
 /// Writes log.csv, poses.csv and log.mcap into `folder`; other files there stay as they are.
 fn write(folder: &Path, log: &Log, track: &Track) -> Result<()> {
-    write_out(&folder.join("log.csv"), |file| write_log(file, log))?;
-    write_out(&folder.join("poses.csv"), |file| {
+    let mut results = Results::default();
+    results.add(folder.join("log.csv"), |file| write_log(file, log))?;
+    results.add(folder.join("poses.csv"), |file| {
         write_poses(file, &log.time, track)
     })?;
     let path = folder.join("log.mcap");
     let mut bytes = Cursor::new(Vec::new());
-    write_log_mcap(&mut bytes, log, &Topics::default()).map_err(|error| {
+    let packed = write_log_mcap(&mut bytes, log, &Topics::default()).map_err(|error| {
         hinted(
             format!("{}: {error}", path.display()),
             "log.csv and poses.csv are written; log.mcap needs other times in frames.csv",
         )
-    })?;
-    write_out(&path, |file| file.write_all(&bytes.into_inner()))
+    });
+    if packed.is_ok() {
+        results.add(path, |file| file.write_all(&bytes.into_inner()))?;
+    }
+    results.place()?;
+    packed
 }
 
 fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {
@@ -253,7 +264,7 @@ fn warn_of_size(body: &str, seen: &BodySummary, given: BodyTag) {
         return;
     };
     talk(format_args!(
-        "warning: the {body}'s tag is seen {:.1} mm large at the height {} m, {body}.size says {:.1} mm; measure the edge of its black square, and the height",
+        "warning: {body} tag {:.1} mm wide at height {} m; tags.toml: {body}.size {:.1} mm. Measure the edge of its black square, and its height",
         1e3 * size,
         given.place.height,
         1e3 * given.place.size
@@ -327,8 +338,9 @@ impl Summary {
             table.push([name.to_owned()].into_iter().chain(counts).chain(stds));
         }
         format!(
-            "{} frames, {} of them repeated\n\n{table}",
-            self.frames, self.repeated
+            "{}, {} repeated\n\n{table}",
+            counted(self.frames as u64, "frame"),
+            self.repeated
         )
     }
 }

@@ -20,6 +20,12 @@ pub fn unwrapped(angle: f64, near: f64) -> f64 {
     near + wrapped(angle - near)
 }
 
+/// The angle nearest to `near` that is full turns from `angle` (rad); `angle` itself, to the bit,
+/// if no turn is needed.
+pub fn nearest_winding(angle: f64, near: f64) -> f64 {
+    angle - TAU * ((angle - near) / TAU).round()
+}
+
 /// Difference `to` − `from`, with θ taken on the circle.
 pub fn difference(to: &Pose, from: &Pose) -> Pose {
     Pose {

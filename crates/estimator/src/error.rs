@@ -2,6 +2,7 @@
 
 use stickslip_filter::{SeriesError, SettingsError};
 
+use crate::counted::counted;
 use crate::range::SetupError;
 use crate::row::{LONGEST_PAUSE, RowError};
 
@@ -110,7 +111,9 @@ pub enum RunError {
     Settings(#[from] SettingsError),
     /// More sensors than fixels.
     #[error(
-        "the log has {sensors} tactile columns but the scene has {fixels} fixels; sensor k is the k-th [[fixel]]"
+        "the log has {} but the scene has {}; sensor k is the k-th [[fixel]]",
+        counted(*.sensors as u64, "tactile column"),
+        counted(*.fixels as u64, "fixel")
     )]
     Sensors {
         /// Tactile columns.

@@ -3,7 +3,9 @@
 //! Nothing on a table top is a billion metres wide or weighs a microgram. Numbers like these are
 //! slips. With them arithmetic overflows or a step never ends.
 
+use std::f64::consts::TAU;
 use std::fmt;
+use std::ops::Bound::{self, Excluded, Included};
 
 /// Unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +45,8 @@ pub enum Rule {
     Probability,
     /// In [0, 1].
     Share,
+    /// An angle in [-2π, 2π]; a larger one is in degrees.
+    Turn,
 }
 
 impl Unit {
@@ -126,6 +130,26 @@ impl Rule {
         }
     }
 
+    /// Smallest and largest number that it allows in `unit`, without infinity. [`Rule::broken_by`]
+    /// also refuses some sizes between 0 and the smallest one of the unit.
+    ///
+    /// ```
+    /// use std::ops::Bound::Included;
+    /// use stickslip::{Rule, Unit};
+    /// assert_eq!(Rule::Positive.range(Unit::Kilogram), (Included(1e-6), Included(1e6)));
+    /// ```
+    pub const fn range(self, unit: Unit) -> (Bound<f64>, Bound<f64>) {
+        let [least, most] = unit.limits();
+        match self {
+            Self::Finite => (Included(-most), Included(most)),
+            Self::Positive | Self::PositiveOrInfinite => (Included(least), Included(most)),
+            Self::NotNegative => (Included(0.0), Included(most)),
+            Self::Probability => (Excluded(0.0), Excluded(1.0)),
+            Self::Share => (Included(0.0), Included(1.0)),
+            Self::Turn => (Included(-TAU), Included(TAU)),
+        }
+    }
+
     fn holds(self, value: f64) -> bool {
         match self {
             Self::Finite => true,
@@ -133,13 +157,17 @@ impl Rule {
             Self::NotNegative => value >= 0.0,
             Self::Probability => value > 0.0 && value < 1.0,
             Self::Share => (0.0..=1.0).contains(&value),
+            Self::Turn => value.abs() <= TAU,
         }
     }
 
     /// Returns true if numbers near 0 are refused. A coordinate or a share may be as near to 0 as
     /// it likes; a size may not.
     fn forbids_tiny(self) -> bool {
-        !matches!(self, Self::Finite | Self::Share | Self::Probability)
+        !matches!(
+            self,
+            Self::Finite | Self::Share | Self::Probability | Self::Turn
+        )
     }
 
     fn words(self) -> &'static str {
@@ -150,6 +178,7 @@ impl Rule {
             Self::NotNegative => "zero or positive",
             Self::Probability => "between 0 and 1, both excluded",
             Self::Share => "from 0 to 1",
+            Self::Turn => "an angle in radians, from -2 pi to 2 pi; multiply degrees by pi / 180",
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::Pose;
 
+use crate::counted::counted;
 use crate::covariance::PoseCovariance;
 use crate::range::Unit;
 
@@ -90,7 +91,9 @@ pub enum RowError {
     },
     /// More sensors than fixels.
     #[error(
-        "the row at {time} s has {sensors} tactile readings but the scene has {fixels} fixels; sensor k is on the k-th [[fixel]]"
+        "the row at {time} s has {} but the scene has {}; sensor k is on the k-th [[fixel]]",
+        counted(*.sensors as u64, "tactile reading"),
+        counted(*.fixels as u64, "fixel")
     )]
     Sensors {
         /// Time of the row (s).

@@ -100,7 +100,7 @@ fn scene(scene: &Scene) -> Vec<Number> {
             (
                 "the angle of a fixel",
                 fixel.pose.theta,
-                Finite,
+                Rule::Turn,
                 Unit::Radian,
             ),
         ]);

@@ -69,22 +69,22 @@ impl Ingredient {
     #[must_use]
     pub fn left_out(self) -> &'static str {
         match self {
-            Self::FrictionPriors => "friction as told, no drift",
-            Self::Support => "feet as told",
+            Self::FrictionPriors => "nominal friction, no drift",
+            Self::Support => "nominal feet",
             Self::Variation => "no variation from place to place",
             Self::Force => "a fifth of the force",
             Self::PusherOffset => "pusher where logged",
             Self::PusherAsSensor => "pusher no sensor",
-            Self::FixelPositions => "fixels where told",
-            Self::Outline => "outline as told",
+            Self::FixelPositions => "nominal fixel positions",
+            Self::Outline => "nominal outline",
             Self::Roughness => "all rigs alike",
             Self::WellMeasured => "no rig measured better",
-            Self::CameraNoise => "camera as noisy as told",
-            Self::Latency => "camera as late as told",
+            Self::CameraNoise => "nominal camera noise",
+            Self::Latency => "nominal latency",
             Self::Touch => "no touch",
-            Self::SecondTries => "no second try, (42)",
+            Self::SecondTries => "no re-simulation, (42)",
             Self::SteadyPush => "no exchange of latency, (43)",
-            Self::Waiting => "waiting object not redrawn, (44)",
+            Self::Waiting => "object at rest not redrawn, (44)",
             Self::CameraMoves => "weighing alone, (45)",
         }
     }

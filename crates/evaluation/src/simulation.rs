@@ -60,7 +60,7 @@ pub struct Simulation {
 #[non_exhaustive]
 pub enum SimulationError {
     /// The scene does not say how the experiment begins.
-    #[error("there is no table [start], so nobody knows where the experiment begins")]
+    #[error("there is no table [start], which gives the start of the experiment")]
     NoStart,
     /// The scene has a rigid drive, and the testbed none.
     #[error("pusher.stall_force is inf, and no drive of a rig is rigid")]

@@ -1,6 +1,6 @@
 //! Reason why a fit was refused: [`FitError`].
 
-use stickslip::RunError;
+use stickslip::{RunError, counted};
 use stickslip_dynamics::ShapeError;
 use stickslip_formats::SceneError;
 
@@ -9,7 +9,7 @@ use stickslip_formats::SceneError;
 #[non_exhaustive]
 pub enum FitError {
     /// Too few pushes for the request.
-    #[error("there are {pushes} pushes; at least {least} are needed. Give more folders")]
+    #[error("{} given; at least {least} are needed. Give more folders", counted(*.pushes as u64, "push"))]
     TooFewPushes {
         /// Pushes given.
         pushes: usize,
@@ -37,7 +37,7 @@ pub enum FitError {
     /// The prior leaves nothing open.
     #[error(
         "{push}: {parameter} is {value} with the relative spread {spread}, which leaves nothing to be learnt; \
-         both must be above 0. Give a first guess, and {parameter} in [uncertainty], or take it from the free ones"
+         both must be above 0. Give a nominal value, and {parameter} in [uncertainty], or take it from the free ones"
     )]
     ClosedPrior {
         /// The push whose scene says so.

@@ -1,6 +1,6 @@
 //! A scene file with the learnt values: [`Fit::scene_text`].
 
-use stickslip::Setup;
+use stickslip::{Setup, counted};
 use stickslip_dynamics::Feet;
 use stickslip_formats::{SceneEdit, read_scene};
 
@@ -95,7 +95,11 @@ impl Fit {
                 "{} = {:.6} +- {:.6} {}",
                 fitted.name, fitted.value, fitted.std, fitted.unit
             );
-            let hint = if fitted.determined { "" } else { ", a hint" };
+            let hint = if fitted.determined {
+                ""
+            } else {
+                ", weakly identified"
+            };
             said.trim_end().to_owned() + hint
         };
         let (learnt, left): (Vec<_>, Vec<_>) =
@@ -103,24 +107,24 @@ impl Fit {
         let mut lines = Vec::new();
         if !learnt.is_empty() {
             lines.push(format!(
-                "learnt from {} pushes by `stickslip fit`:",
-                self.pushes
+                "fitted to {} by `stickslip fit`:",
+                counted(self.pushes as u64, "push")
             ));
             lines.extend(learnt.into_iter().map(value));
         }
         if !left.is_empty() {
             let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
-            lines.push(format!("not determined by them: {}", names.join(", ")));
+            lines.push(format!("not identifiable from them: {}", names.join(", ")));
         }
         lines
     }
 }
 
-/// Reason why a scene keeps its first guesses.
+/// Reason why a scene keeps its nominal values.
 fn refusal(validation: &CrossValidation) -> String {
     let [gain, error] = validation.gain_mm;
     format!(
-        "first guesses: with what the others teach, `stickslip fit` predicts pushes left out no better \
+        "nominal values: `stickslip fit` does not improve predictions of pushes left out \
          (gain {gain:.2} +- {error:.2} mm in the mean)"
     )
 }

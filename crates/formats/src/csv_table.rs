@@ -124,6 +124,26 @@ impl CsvTable {
         }
     }
 
+    /// Bytes before the line of `error` if this is the last one and was cut off while it was
+    /// written: it has no end, and cells are missing or the last one cannot be read.
+    pub(crate) fn cut_off(&self, error: &CsvError) -> Option<usize> {
+        let start = self.text.rfind('\n')? + 1;
+        let is_last = self.text[..start].matches('\n').count() + 1 == error.line;
+        let is_short = match &error.problem {
+            CsvProblem::CellCount { found, expected } => found < expected,
+            _ => {
+                let column = error.column.as_ref();
+                column.is_some_and(|column| column.number == self.columns.len())
+            }
+        };
+        (is_last && is_short && !self.text.ends_with('\n')).then_some(start)
+    }
+
+    /// Bytes of the text.
+    pub(crate) fn size(&self) -> usize {
+        self.text.len()
+    }
+
     /// Numbered lines up to the last one that is not blank.
     fn lines(&self) -> impl Iterator<Item = (usize, &str)> {
         let text = self.text.trim_end();

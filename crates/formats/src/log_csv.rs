@@ -13,7 +13,7 @@
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
 
-use stickslip::{Log, PoseCovariance, Rule, Setup, Unit};
+use stickslip::{Log, PoseCovariance, Rule, Setup, Unit, counted};
 use stickslip_dynamics::Pose;
 
 use crate::csv_error::{CsvProblem, LogError};
@@ -37,8 +37,8 @@ pub(crate) const TACTILE: &str = "tactile_";
 /// A log has more tactile sensors than its scene has fixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the log has {sensors} tactile sensors and the scene {fixels} fixels; sensor k is the k-th fixel. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
-    .fixels + 1
+    "the log has {} and the scene {}; sensor k is the k-th fixel. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
+    counted(*.sensors as u64, "tactile sensor"), counted(*.fixels as u64, "fixel"), .fixels + 1
 )]
 pub struct SensorError {
     /// Tactile columns of the log.
@@ -57,7 +57,8 @@ struct Columns {
     covariance: Option<[usize; 6]>,
 }
 
-/// Reads a log; `name` is shown in errors and warnings.
+/// Reads a log; `name` is shown in errors and warnings. A last row that was cut off while it was
+/// written is left out, with a warning.
 ///
 /// # Errors
 /// A required column is missing or named twice, or there is no row. A row has a wrong number of
@@ -77,11 +78,26 @@ pub fn read_log(reader: impl Read, name: &str) -> Result<(Log, Vec<LogWarning>),
         tactile: vec![Vec::new(); columns.tactile.len()],
         ..Log::default()
     };
+    let mut warnings = columns.warnings(&table);
+    let mut rows = 0;
     for row in table.rows()? {
-        columns.read_row(&row?, &mut log)?;
+        let Err(error) = row.and_then(|row| columns.read_row(&row, &mut log)) else {
+            rows += 1;
+            continue;
+        };
+        let Some(at) = table.cut_off(&error).filter(|_| rows > 0) else {
+            return Err(error);
+        };
+        log.truncate(rows);
+        warnings.push(LogWarning::CutOff {
+            file: table.file().to_owned(),
+            at: at as u64,
+            size: table.size() as u64,
+            why: format!("the last row, in line {}, has no end", error.line),
+        });
     }
     forget_empty(&mut log.object_covariance);
-    Ok((log, columns.warnings(&table)))
+    Ok((log, warnings))
 }
 
 /// A column in which nothing stands is none.

@@ -107,7 +107,7 @@ impl fmt::Display for LogWarning {
                 largest,
             } => write!(
                 f,
-                "{file}: {topic}: {count} of {of} poses are tilted by more than 5 deg, the most by {:.1} deg; only their turn about z is read. Look whether the z-axis points up from the table",
+                "{file}: {topic}: {count} of {of} poses are tilted by more than 5 deg, the most by {:.1} deg; only their turn about z is read. Check that the z-axis points up from the table",
                 largest.to_degrees()
             ),
             Self::Unlinked {
@@ -126,7 +126,7 @@ impl fmt::Display for LogWarning {
                 of,
             } => write!(
                 f,
-                "{file}: {topic}: {count} of {of} covariances of x, y and the turn about z are not symmetric and positive definite, with standard deviations of at least 1e-9; these poses are taken to be as noisy as the scene's [camera] says. Publish zeros where the covariance is not known"
+                "{file}: {topic}: {count} of {of} covariances of x, y and the turn about z are not symmetric and positive definite, with standard deviations of at least 1e-9; these poses get the standard deviations of the scene's [camera]. Publish zeros where the covariance is not known"
             ),
             Self::Elsewhere {
                 file,

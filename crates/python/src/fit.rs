@@ -4,7 +4,8 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_fit::{
-    CrossValidation, Fit, FitError, FitOptions, Parameter, Push, cross_validate, default_folds, doubts,
+    CrossValidation, Fit, FitError, FitOptions, Parameter, Push, cross_validate, default_folds,
+    doubts,
 };
 
 use crate::columns::to_dict;

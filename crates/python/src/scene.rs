@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyInt, PyList, PyTuple};
-use stickslip::Setup;
+use stickslip::{Setup, counted};
 use stickslip_dynamics::{Dynamics, Friction};
 use stickslip_formats::{SceneEdit, read_scene};
 use toml_edit::{Array, InlineTable, Value};
@@ -111,7 +111,11 @@ impl Scene {
     }
 
     fn __repr__(&self) -> String {
-        format!("Scene({:?}, {} fixels)", self.name, self.fixels())
+        format!(
+            "Scene({:?}, {})",
+            self.name,
+            counted(self.fixels() as u64, "fixel")
+        )
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (String, String)) {

@@ -1,6 +1,6 @@
 //! A motion to be shown: [`RecordedMotion`].
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{SQRT_2, TAU};
 
 use stickslip_dynamics::{Pose, Scene, Shape};
 
@@ -71,12 +71,22 @@ impl RecordedMotion {
         };
         let pusher = self.pusher[earlier]
             .zip(self.pusher[later])
-            .map(|(a, b)| a.interpolate(b, share));
+            .map(|(a, b)| between(a, b, share));
         (
-            Some(self.object[earlier].interpolate(self.object[later], share)),
+            Some(between(self.object[earlier], self.object[later], share)),
             pusher,
         )
     }
+}
+
+/// The pose on the shorter way round; angles may be wrapped to one turn.
+fn between(from: Pose, to: Pose, share: f64) -> Pose {
+    let turns = ((to.theta - from.theta) / TAU).round();
+    let near = Pose {
+        theta: to.theta - TAU * turns,
+        ..to
+    };
+    from.interpolate(near, share)
 }
 
 /// Distance from a body's origin that its tag's print stays within (m).
@@ -84,4 +94,22 @@ fn tag_radius(mount: &Option<TagMount>) -> f64 {
     mount.map_or(0.0, |m| {
         libm::hypot(m.pose.x, m.pose.y) + m.tag.print_size() / SQRT_2
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_between_wrapped_angles_takes_the_shorter_way() {
+        let at = |theta: f64| Pose::new(0.0, 0.0, theta);
+        let motion = RecordedMotion {
+            time: vec![0.0, 1.0],
+            object: vec![at(3.1), at(-3.1)],
+            pusher: vec![Some(at(-3.0)), Some(at(3.0))],
+        };
+        let (object, pusher) = motion.at(0.5);
+        let turns = [object, pusher].map(|pose| pose.unwrap().theta.abs() - TAU / 2.0);
+        assert!(turns.iter().all(|off| off.abs() < 1e-12), "{turns:?}");
+    }
 }

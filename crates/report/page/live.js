@@ -1,6 +1,10 @@
 // Shows what a tracker thinks while it tracks. Each message of the socket is one row: the estimate's columns, what was measured, some
-// particles; lengths in m, angles in rad, times in s. The newest one is drawn, others are dropped.
+// particles; lengths in m, angles in rad, times in s. The newest one is drawn, others are dropped. A message {silent} gives the age (s) of
+// the row before it.
 "use strict";
+
+/** Time without a row after which the page says so (ms). */
+const SILENCE = 2000;
 
 class Live {
   constructor(root) {
@@ -8,7 +12,10 @@ class Live {
     this.root = root;
     this.data = JSON.parse(this.find("script").textContent);
     this.newest = null;
+    /** Time of the latest row (ms), null before the first one. */
+    this.latest = null;
     this.drawStage();
+    setInterval(() => this.listen(), 500);
     this.connect();
   }
 
@@ -61,23 +68,37 @@ class Live {
   connect() {
     const socket = new WebSocket(`ws://${location.host}/socket${location.search}`);
     socket.addEventListener("message", (event) => {
+      const message = JSON.parse(event.data);
+      this.latest = performance.now() - 1000 * (message.silent ?? 0);
+      if (message.silent !== undefined) return this.listen();
       if (this.newest === null) requestAnimationFrame(() => this.draw());
-      this.newest = event.data;
+      this.newest = message;
     });
     socket.addEventListener("open", () => this.say("waiting for rows"));
     socket.addEventListener("close", () => {
+      this.latest = null;
       this.say("no connection");
       setTimeout(() => this.connect(), 1000);
     });
   }
 
-  say(words) {
-    this.find(".badge").textContent = words;
+  say(words, more = "") {
+    this.find(".badge").textContent = words + more;
     this.root.dataset.state = words;
   }
 
+  /** Says for how long no row has come, if that is long; returns true then. */
+  listen() {
+    const silent = this.latest === null ? 0 : performance.now() - this.latest;
+    // a row that waits to be drawn comes first
+    const isSilent = this.newest === null && silent > SILENCE;
+    this.find(".stage").classList.toggle("silent", isSilent);
+    if (isSilent) this.say("no rows", ` for ${Math.floor(silent / 1000)} s`);
+    return isSilent;
+  }
+
   draw() {
-    const row = JSON.parse(this.newest);
+    const row = this.newest;
     this.newest = null;
     const { estimate } = row;
     const known = estimate.x !== null ? [estimate.x, estimate.y, estimate.theta] : null;
@@ -89,7 +110,7 @@ class Live {
     while (this.bodies.length < row.particles.length) this.bodies.push(add(this.cloud, "path", { d: this.data.object.line }));
     this.bodies.forEach((body, k) => place(body, row.particles[k]));
     this.find(".stage").classList.toggle("blind", row.object === null);
-    this.say(row.object === null ? "camera off" : "camera on");
+    if (!this.listen()) this.say(row.object === null ? "camera off" : "camera on");
     this.find(".clock").textContent = `${estimate.time.toFixed(2)} s`;
     this.root.dataset.time = estimate.time;
     this.touch(row);

@@ -14,7 +14,7 @@ use crate::font::{FAMILY, Weight, width};
 pub(crate) const GRID: Colour = Colour(228, 228, 228);
 
 /// Background of the times while the camera was off.
-pub(crate) const DARK: Colour = Colour(236, 233, 226);
+pub(crate) const DARK: Colour = Colour(223, 219, 209);
 
 /// Width below which a figure does not fill a page (px).
 const NARROW: f64 = 600.0;

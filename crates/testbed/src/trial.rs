@@ -51,6 +51,19 @@ pub enum TrialError {
         /// Depth of the overlap (m).
         depth: f64,
     },
+    /// The steps are too many.
+    #[error(
+        "the experiment takes {steps:.1e} time steps of {length:.1e} s; at most {most:.0e} are made. \
+         A small mass or inertia of the object makes steps short: give them in kg and kg m^2. Or give a shorter duration"
+    )]
+    Steps {
+        /// Number of time steps.
+        steps: f64,
+        /// Their length (s).
+        length: f64,
+        /// Largest number.
+        most: f64,
+    },
     /// The centre of mass is not over the face.
     #[error(
         "the centre of mass (the origin of the object frame) is not over the object's face, so the object would tip. \

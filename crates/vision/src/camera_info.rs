@@ -5,9 +5,6 @@ use serde::Deserialize;
 use crate::config::{ConfigError, Document};
 use crate::lens::Lens;
 
-/// Models of distortion that are Brown–Conrady's, as far as their numbers beyond the fifth are 0.
-const BROWN_CONRADY: [&str; 3] = ["plumb_bob", "rational_polynomial", ""];
-
 /// Map from directions to pixels, called CameraInfo in ROS.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraInfo {
@@ -41,6 +38,18 @@ pub enum CameraInfoError {
         model: String,
         /// Its numbers.
         numbers: Vec<f64>,
+    },
+    /// Numbers of another model under the name of Brown's.
+    #[error(
+        "{of}: the distortion model is plumb_bob with {} numbers, {numbers:?}; plumb_bob has five, k1, k2, p1, p2 and k3, and the others must be 0. These are numbers of {right}, which cannot be read: calibrate with `stickslip calibrate`, or rectify the images", numbers.len()
+    )]
+    MoreNumbers {
+        /// Owner of the numbers.
+        of: String,
+        /// Its numbers.
+        numbers: Vec<f64>,
+        /// Name of the model that has so many.
+        right: &'static str,
     },
     /// A matrix that is none of a camera.
     #[error(
@@ -103,15 +112,25 @@ impl CameraInfo {
             return Err(CameraInfoError::Matrix { of, matrix });
         }
         let numbers = &self.distortion;
-        let counts: &[usize] = match self.model.as_str() {
-            "plumb_bob" => &[4, 5],
-            _ => &[0, 4, 5, 8, 12, 14],
+        let finite = numbers.iter().all(|n| n.is_finite());
+        let only_five = numbers.iter().skip(5).all(|n| *n == 0.0);
+        let is_brown = match self.model.as_str() {
+            "plumb_bob" if finite && !only_five => {
+                let right = match numbers.len() {
+                    ..=8 => "rational_polynomial",
+                    9..=12 => "OpenCV's thin prism model",
+                    _ => "OpenCV's tilted model",
+                };
+                let numbers = numbers.clone();
+                return Err(CameraInfoError::MoreNumbers { of, numbers, right });
+            }
+            // some drivers fill up with zeros
+            "plumb_bob" => numbers.len() >= 4,
+            "rational_polynomial" | "" => [0, 4, 5, 8, 12, 14].contains(&numbers.len()),
+            _ => false,
         };
-        let known = BROWN_CONRADY.contains(&self.model.as_str())
-            && counts.contains(&numbers.len())
-            && numbers.iter().all(|n| n.is_finite())
-            && numbers.iter().skip(5).all(|n| *n == 0.0);
-        if !known && numbers.iter().any(|n| *n != 0.0) {
+        let is_known = is_brown && finite && only_five;
+        if !is_known && numbers.iter().any(|n| *n != 0.0) {
             return Err(CameraInfoError::Model {
                 of,
                 model: self.model.clone(),
@@ -237,6 +256,11 @@ mod tests {
         longer.model = "rational_polynomial".to_owned();
         longer.distortion.extend([0.0; 3]);
         assert_eq!(longer.lens("a").unwrap(), Some(lens));
+        // as drivers fill up the numbers of plumb_bob
+        longer.model = "plumb_bob".to_owned();
+        assert_eq!(longer.lens("a").unwrap(), Some(lens));
+        longer.distortion.push(0.0);
+        assert_eq!(longer.lens("a").unwrap(), Some(lens));
         let none = CameraInfo {
             model: String::new(),
             distortion: Vec::new(),
@@ -284,7 +308,14 @@ mod tests {
                 model("rational_polynomial", &eight),
                 "only that of Brown and Conrady",
             ),
-            (model("plumb_bob", &eight), "only that of Brown and Conrady"),
+            (
+                model("plumb_bob", &eight),
+                "These are numbers of rational_polynomial",
+            ),
+            (
+                model("plumb_bob", &[0.1; 12]),
+                "These are numbers of OpenCV's thin prism model",
+            ),
             (
                 model("plumb_bob", &[f64::NAN; 5]),
                 "only that of Brown and Conrady",

@@ -30,7 +30,7 @@ pub enum ConfigProblem {
     },
     /// A lens that is not that of the images.
     #[error(
-        "`lens` sees some direction {apart} px from where the images' own lens, that of CameraInfo, sees it; the table was found through one lens and the images are seen through the other. Find the table anew with `stickslip calibrate --lens`"
+        "`lens` sees some direction {apart} px from where the images' own lens, that of CameraInfo, sees it; the table was found through one lens and the images are seen through the other. Find the table again with `stickslip calibrate --lens`"
     )]
     OtherLens {
         /// Distance between both directions (px).

@@ -22,7 +22,7 @@ pub enum PictureError {
     },
     /// An image that cannot be decoded.
     #[error(
-        "{file}: the {kind} image cannot be decoded: {reason}. Record or copy it anew, or take it out of the folder"
+        "{file}: the {kind} image cannot be decoded: {reason}. Record or copy it again, or take it out of the folder"
     )]
     Broken {
         /// Display name of the file.
@@ -45,7 +45,7 @@ pub enum PictureError {
     },
     /// A compressed image of a bag that cannot be decoded.
     #[error(
-        "{file}: the compressed image, of the format `{format}`, cannot be decoded: {reason}. Leave the message out of the bag, or record anew"
+        "{file}: the compressed image, of the format `{format}`, cannot be decoded: {reason}. Leave the message out of the bag, or record again"
     )]
     Undecodable {
         /// Display name of the message.
@@ -199,7 +199,7 @@ mod tests {
         assert!(
             text.starts_with("frames/7.pgm: the ")
                 && text.contains("cannot be decoded")
-                && text.contains("anew"),
+                && text.contains("again"),
             "{text}"
         );
         let webp = b"RIFF\x00\x00\x00\x00WEBPVP8 ";

@@ -34,7 +34,7 @@ pub enum PrintError {
     },
     /// It does not fit.
     #[error(
-        "{width:.0} x {height:.0} mm are needed beside margins and ruler, the paper has {has_width:.0} x {has_height:.0} mm for it. Take larger paper or smaller tags"
+        "{width:.0} x {height:.0} mm are needed in addition to margins and ruler, the paper has {has_width:.0} x {has_height:.0} mm for it. Take larger paper or smaller tags"
     )]
     TooLarge {
         /// Width needed (mm).

@@ -53,7 +53,7 @@ pub struct Track {
 pub enum TrackError {
     /// A frame has another size than those of the calibration.
     #[error(
-        "{name}: the image has {found} pixels, the camera was calibrated at {expected}. Use frames of the calibrated camera at its full size, or calibrate anew"
+        "{name}: the image has {found} pixels, the camera was calibrated at {expected}. Use frames of the calibrated camera at its full size, or calibrate again"
     )]
     Size {
         /// The frame.

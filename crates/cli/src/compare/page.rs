@@ -25,15 +25,6 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         touch_gain,
         best_baseline,
     } = comparison;
-    let text = format!(
-        "{}, all variants on each: particle filters with {particles} particles, {}. \
-         Median pose RMSE over the experiments while the camera is off (on all rows if it never is):",
-        counted(folders.len() as u64, "experiment"),
-        match seeds {
-            1 => "with one seed".to_owned(),
-            _ => format!("the median of {seeds} seeds per experiment"),
-        }
-    );
     let gain = touch_gain.map_or_else(String::new, |gain| format!("{} ", gain.to_string().trim()));
     let note = format!(
         "{LEGEND} {REST} Quantiles: {quantile}. {gain}{}",
@@ -77,7 +68,7 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
             .iter()
             .map(|best| Block::Text(best.to_string()))
             .chain([
-                Block::Text(text),
+                Block::Text(runs(comparison)),
                 Block::Fates(story(overall, folders.len())),
             ])
             .collect(),
@@ -87,6 +78,20 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
             ("seeds", seeds.to_string()),
         ]),
     }
+}
+
+/// Runs behind the table over all folders.
+fn runs(comparison: &Comparison) -> String {
+    format!(
+        "{}, all variants on each: particle filters with {} particles, {}. \
+         Median pose RMSE over the experiments while the camera is off (on all rows if it never is):",
+        counted(comparison.folders.len() as u64, "experiment"),
+        comparison.particles,
+        match comparison.seeds {
+            1 => "with one seed".to_owned(),
+            seeds => format!("the median of {seeds} seeds per experiment"),
+        }
+    )
 }
 
 /// Outcome of each variant over so many experiments.

@@ -46,13 +46,13 @@ impl Latencies {
         let [median, late, most] = [last / 2, last * 99 / 100, last].map(|index| taken[index]);
         let missed = self.deadline.map_or(String::new(), |deadline| {
             format!(
-                "; {} missed the deadline of {} ms",
+                "; {} after the deadline of {} ms",
                 self.missed,
                 1e3 * deadline
             )
         });
         Some(format!(
-            "answered within {median:.2} ms (median), {late:.2} ms (99 %), {most:.2} ms (all){missed}"
+            "latency of answers {median:.2} ms (median), {late:.2} ms (99th percentile), {most:.2} ms (longest){missed}"
         ))
     }
 }

@@ -1,7 +1,9 @@
-//! Lines of standard input as they arrive: [`Lines`].
+//! Lines of standard input as they arrive: [`Lines`], until a [`Stop`] ends them.
 
 use std::io::{BufRead, BufReader, Read};
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 use std::time::Instant;
 
@@ -22,13 +24,38 @@ pub struct Line {
 }
 
 /// Lines in the order of their arrival.
-pub struct Lines(Receiver<Line>);
+pub struct Lines {
+    /// `None` is their end.
+    lines: Receiver<Option<Line>>,
+    stop: Stop,
+}
+
+/// Ends the lines before their source ends.
+#[derive(Clone)]
+pub struct Stop {
+    is_set: Arc<AtomicBool>,
+    wake: SyncSender<Option<Line>>,
+}
+
+impl Stop {
+    /// Ends the lines; returns false where they had ended.
+    pub fn set(&self) -> bool {
+        let is_first = !self.is_set.swap(true, Ordering::Relaxed);
+        // where it is full, the reader is awake
+        let _ = self.wake.try_send(None);
+        is_first
+    }
+}
 
 impl Lines {
     /// The lines of a source, read by a thread of their own, so that their time of arrival is
     /// known.
     pub fn read(source: impl Read + Send + 'static) -> Self {
-        let (sender, receiver) = sync_channel(WAITING);
+        let (sender, lines) = sync_channel(WAITING);
+        let stop = Stop {
+            is_set: Arc::new(AtomicBool::new(false)),
+            wake: sender.clone(),
+        };
         thread::spawn(move || {
             let mut source = BufReader::new(source);
             for number in 1.. {
@@ -41,12 +68,18 @@ impl Lines {
                     arrived,
                     text,
                 };
-                if sender.send(line).is_err() {
-                    break;
+                if sender.send(Some(line)).is_err() {
+                    return;
                 }
             }
+            let _ = sender.send(None);
         });
-        Self(receiver)
+        Self { lines, stop }
+    }
+
+    /// Flag that ends them.
+    pub fn stop(&self) -> Stop {
+        self.stop.clone()
     }
 }
 
@@ -54,7 +87,8 @@ impl Iterator for Lines {
     type Item = Line;
 
     fn next(&mut self) -> Option<Line> {
-        self.0.recv().ok()
+        let next = self.lines.recv().ok().flatten();
+        next.filter(|_| !self.stop.is_set.load(Ordering::Relaxed))
     }
 }
 
@@ -122,5 +156,21 @@ mod tests {
         assert_eq!(texts[4].map(str::len), Ok(LONGEST + 1));
         assert!(texts[5].is_err_and(|why| why.contains("from byte 1 on")));
         assert_eq!((texts[6], lines[6].number, lines.len()), (Ok("last"), 7, 7));
+    }
+
+    #[test]
+    fn stop_ends_lines_of_a_source_that_goes_on() {
+        let mut lines = Lines::read(std::io::repeat(b'\n'));
+        assert!(lines.next().is_some());
+        let stop = lines.stop();
+        assert!(stop.set() && !stop.set());
+        assert!(lines.next().is_none());
+
+        // a source that says nothing is waited for, until it is stopped
+        let (silent, _source) = std::io::pipe().unwrap();
+        let mut lines = Lines::read(silent);
+        let stop = lines.stop();
+        let waiting = thread::spawn(move || lines.next().is_none());
+        assert!(stop.set() && waiting.join().unwrap());
     }
 }

@@ -2,15 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use stickslip::Row;
-use stickslip_formats::{CsvRecorder, McapRecorder};
+use stickslip_formats::{CsvRecorder, McapRecorder, McapWriteError};
 
+use super::session::PAUSE;
 use crate::failure::hinted;
-use crate::files::ready_file;
+use crate::files::make_parent;
+use crate::output::counted;
 
 /// Time of rows in a chunk (s); a chunk is lost where the program is killed.
 const CHUNK: f64 = 1.0;
@@ -22,6 +24,8 @@ const REMEMBERED: usize = 10_000;
 pub struct Recording {
     path: PathBuf,
     recorder: Recorder,
+    /// The first row, until the second one shows whether its time is that of the others.
+    first: First,
     /// Time of the latest row (s).
     latest: f64,
     /// Time of the first row of the chunk at hand (s).
@@ -31,6 +35,12 @@ pub struct Recording {
     left_out: u64,
 }
 
+enum First {
+    Awaited,
+    Kept(Box<Row>),
+    Written,
+}
+
 enum Recorder {
     Csv(CsvRecorder<BufWriter<File>>),
     Mcap(Box<McapRecorder<BufWriter<File>>>),
@@ -38,13 +48,9 @@ enum Recorder {
 
 impl Recording {
     /// Begins a recording, as CSV or MCAP by the ending of its name; a file that is there is
-    /// refused.
-    pub fn create(path: &Path, sensors: usize, scene: &Path) -> Result<Self> {
+    /// refused. Of two sessions that begin one file, one is refused.
+    pub fn create(path: &Path, sensors: usize) -> Result<Self> {
         let help = "name a new file that ends in .mcap or .csv";
-        if path.exists() {
-            return Err(hinted(format!("{} is there already", path.display()), help));
-        }
-        ready_file(path, &[scene])?;
         let failed = |error: &dyn std::fmt::Display| {
             hinted(
                 format!("{}: cannot be written: {error}", path.display()),
@@ -52,9 +58,14 @@ impl Recording {
             )
         };
         let file = || {
-            File::create(path)
-                .map(BufWriter::new)
-                .map_err(|error| failed(&error))
+            let file = make_parent(path).and_then(|()| File::create_new(path));
+            file.map(BufWriter::new)
+                .map_err(|error| match error.kind() {
+                    ErrorKind::AlreadyExists => {
+                        hinted(format!("{} is there already", path.display()), help)
+                    }
+                    _ => failed(&error),
+                })
         };
         let recorder = match path.extension().and_then(|ending| ending.to_str()) {
             Some("mcap") => {
@@ -74,6 +85,7 @@ impl Recording {
         Ok(Self {
             path: path.to_owned(),
             recorder,
+            first: First::Awaited,
             latest: f64::NEG_INFINITY,
             chunk: f64::NEG_INFINITY,
             seen: BTreeMap::new(),
@@ -82,11 +94,28 @@ impl Recording {
     }
 
     /// Writes a row, unless the file could not be read with it: a late one into CSV, a second pose
-    /// of a body at one time into MCAP.
+    /// of a body at one time into MCAP. The first row is left out if the second one is far from it.
+    ///
+    /// After an error the file is as far as it got.
     pub fn write(&mut self, row: &Row) -> Result<()> {
+        match std::mem::replace(&mut self.first, First::Written) {
+            First::Awaited => {
+                self.first = First::Kept(Box::new(row.clone()));
+                return Ok(());
+            }
+            First::Kept(first) if (row.time - first.time).abs() > PAUSE => self.left_out += 1,
+            First::Kept(first) => self.append(&first)?,
+            First::Written => {}
+        }
+        self.append(row)
+    }
+
+    fn append(&mut self, row: &Row) -> Result<()> {
         let failed = |error: &dyn std::fmt::Display| {
-            let message = format!("{}: cannot be written: {error}", self.path.display());
-            hinted(message, "what was written before can be read")
+            anyhow!(
+                "{}: cannot be written: {error}; what was written before can be read",
+                self.path.display()
+            )
         };
         match &mut self.recorder {
             Recorder::Csv(csv) if row.time > self.latest => {
@@ -97,7 +126,7 @@ impl Recording {
                 let stamp = (1e9 * row.time).round() as i64;
                 let [object, pusher] = self.seen.entry(stamp).or_default();
                 let again = (*object && row.object.is_some()) || (*pusher && row.pusher.is_some());
-                if again || row.time < 0.0 {
+                if again {
                     self.left_out += 1;
                     return Ok(());
                 }
@@ -108,8 +137,15 @@ impl Recording {
                 if self.seen.len() > REMEMBERED {
                     self.seen.pop_first();
                 }
-                mcap.write(row).map_err(|error| failed(&error))?;
-                if row.time - self.chunk >= CHUNK {
+                match mcap.write(row) {
+                    Err(McapWriteError::Time { .. }) => {
+                        self.left_out += 1;
+                        return Ok(());
+                    }
+                    written => written.map_err(|error| failed(&error))?,
+                }
+                // the clock may be set back
+                if (row.time - self.chunk).abs() >= CHUNK {
                     mcap.flush().map_err(|error| failed(&error))?;
                     self.chunk = row.time;
                 }
@@ -124,14 +160,21 @@ impl Recording {
     }
 
     /// Ends the recording; returns a report of what was written.
-    pub fn finish(self) -> Result<String> {
+    pub fn finish(mut self) -> Result<String> {
+        if let First::Kept(first) = std::mem::replace(&mut self.first, First::Written) {
+            self.append(&first)?;
+        }
+        let path = self.path.display();
         if let Recorder::Mcap(mcap) = self.recorder {
-            mcap.finish()?;
+            mcap.finish().map_err(|error| {
+                anyhow!("{path}: cannot be ended: {error}; what was written before can be read")
+            })?;
         }
         let left_out = match self.left_out {
             0 => String::new(),
             count => format!(
-                " without {count} rows that its format cannot hold, late or at a time that was there"
+                " without {}: late, repeated or negative times",
+                counted(count, "row")
             ),
         };
         Ok(format!("wrote {}{left_out}", self.path.display()))

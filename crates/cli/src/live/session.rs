@@ -9,12 +9,18 @@ use serde::Serialize;
 use stickslip::{ParticleBudget, Row, RowError, Setup, StepSize, Tracker, TrackerOptions};
 use stickslip_formats::{Pace, estimate_json, read_row_json};
 
+use crate::output::counted;
+
 use super::latencies::Latencies;
 use super::lines::Line;
 use super::shown_row::ShownRow;
 
 /// Most rows that are remembered to know repeats by.
 const REMEMBERED: usize = 10_000;
+
+/// Time between two rows above which a filter cannot follow, and the other side of which is another
+/// clock's or comes after a pause (s).
+pub const PAUSE: f64 = 5.0;
 
 /// Answer to one line.
 pub struct Answer {
@@ -31,8 +37,8 @@ pub struct Session<'a> {
     tracker: Tracker<'static>,
     /// Rows as late as they may come, to know repeats by.
     recent: VecDeque<Row>,
-    /// Time of a row that was refused since it came long after the one before (s).
-    ahead: Option<f64>,
+    /// Time of a row that was refused since it is far from the others (s).
+    elsewhere: Option<f64>,
     rows: u64,
     late: u64,
     refused: u64,
@@ -79,7 +85,7 @@ impl<'a> Session<'a> {
             options,
             tracker: Tracker::new(setup, options)?,
             recent: VecDeque::new(),
-            ahead: None,
+            elsewhere: None,
             rows: 0,
             late: 0,
             refused: 0,
@@ -148,16 +154,23 @@ impl<'a> Session<'a> {
     pub fn summary(&self) -> Vec<String> {
         let collapses = self.collapses + u64::from(self.tracker.collapses());
         let rows = format!(
-            "{} rows, {} of them late; {} lines refused; {} restarts after pauses; {collapses} collapses",
-            self.rows, self.late, self.refused, self.restarts
+            "{}, {} late; {} refused; {} after pauses; {}",
+            counted(self.rows, "row"),
+            self.late,
+            counted(self.refused, "line"),
+            counted(self.restarts, "restart"),
+            counted(collapses, "collapse")
         );
         let pacing = self.pacing.as_ref().map(|pacing| {
             let (fewest, most) = (pacing.fewest, self.options.particles);
-            format!("{fewest} to {most} particles, by what was in time")
+            format!("{fewest} to {most} particles, to meet the deadline")
         });
         let left_out = self.left_out + u64::from(self.tracker.pusher_poses_left_out());
         let left_out = (left_out > 0).then(|| {
-            format!("{left_out} pusher poses counted as missing, since the pusher cannot have come there")
+            format!(
+                "{} that the pusher cannot have reached, counted as missing",
+                counted(left_out, "pusher pose")
+            )
         });
         let lines = [Some(rows), left_out, self.latencies.summary(), pacing];
         lines.into_iter().flatten().collect()
@@ -201,22 +214,28 @@ impl<'a> Session<'a> {
         }
         let latest = self.tracker.time();
         match self.push(&row, arrived).err() {
-            None => self.ahead = None,
-            Some(RowError::Pause { to, .. }) if self.follows_a_pause(to) => self.restart(&row)?,
-            Some(error) => return Err(error.to_string()),
+            None => self.elsewhere = None,
+            Some(error) => match far_time(&error) {
+                Some(time) if self.goes_on_from(time) => self.restart(&row)?,
+                Some(_) => {
+                    let next = "The session restarts if the next row follows within 1 s";
+                    return Err(format!("{error}. {next}"));
+                }
+                None => return Err(error.to_string()),
+            },
         }
         self.late += u64::from(latest.is_some_and(|latest| row.time <= latest));
         self.remember(&row);
         Ok(row)
     }
 
-    /// Returns true if the row before came as long after the others, so that this is no single
-    /// wrong time.
-    fn follows_a_pause(&mut self, to: f64) -> bool {
+    /// Returns true if the row before was as far from the others, so that this is no single wrong
+    /// time.
+    fn goes_on_from(&mut self, time: f64) -> bool {
         /// Longest time between the two (s).
         const NEAR: f64 = 1.0;
-        let before = self.ahead.replace(to);
-        before.is_some_and(|before| to >= before && to - before <= NEAR)
+        let before = self.elsewhere.replace(time);
+        before.is_some_and(|before| (0.0..=NEAR).contains(&(time - before)))
     }
 
     /// Starts over, as at the first row.
@@ -229,7 +248,7 @@ impl<'a> Session<'a> {
         self.tracker = tracker;
         self.recent.clear();
         self.restarts += 1;
-        self.ahead = None;
+        self.elsewhere = None;
         Ok(())
     }
 
@@ -241,5 +260,14 @@ impl<'a> Session<'a> {
             self.recent.pop_front();
         }
         self.recent.push_back(row.clone());
+    }
+}
+
+/// Time of a row (s) that is too far before or after the latest one for a filter to follow.
+fn far_time(error: &RowError) -> Option<f64> {
+    match *error {
+        RowError::Pause { to, .. } => Some(to),
+        RowError::TooLate { time, latest, .. } => Some(time).filter(|time| latest - time > PAUSE),
+        _ => None,
     }
 }

@@ -34,7 +34,7 @@ pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
         Figure::new(
             "fig2",
             a.x_errors(),
-            "Figure 2, experiment A: error of x. a) the camera is always on; b) it goes dark.",
+            "Figure 2, experiment A: error of x. a) the camera is always on; b) it turns off.",
         ),
         Figure::new(
             "fig3",
@@ -49,7 +49,7 @@ pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
         Figure::new(
             "fig5",
             b.errors(&[Particle, ParticleNoTouch, Nominal]),
-            "Figure 5, experiment B: errors of x, y and θ; the camera goes dark at row 240.",
+            "Figure 5, experiment B: errors of x, y and θ; the camera turns off at row 240.",
         ),
         Figure::new(
             "fig6",

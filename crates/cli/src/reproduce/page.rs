@@ -13,13 +13,13 @@ use crate::reported_run::reported_run;
 /// Beginning of the page, before and after the description of the seeds.
 const SUMMARY: [&str; 2] = [
     "The evaluation of Zhang & Trinkle (ICRA 2012), repeated on a virtual testbed: the paper's six grasps and two more, 5 and 6, ",
-    ". In each grasp a thumb pushes an object against fixed fingers (fixels); before the first one is touched the camera goes dark. \
-     Below: the paper's tables with ours beside them, its figures, and three of the grasps to be played back.",
+    ". In each grasp a thumb pushes an object against fixed fingers (fixels); the camera turns off before the object touches the first one. \
+     Below: the paper's tables with our numbers, its figures, and playbacks of three grasps.",
 ];
 
 /// Rule by which the orders are judged.
-const ORDERS: &str = "Two methods that the paper's table puts in an order, compared seed by seed: the median of the differences ± its standard \
-    error. It holds, or is reversed, where it exceeds two of them; fewer than six seeds have none.";
+const ORDERS: &str = "Two methods that the paper's table orders, compared seed by seed: median difference ± standard error. \
+    The order holds or is reversed if the median exceeds two standard errors; fewer than six seeds have none.";
 
 /// Tables, figures, and the experiments B, A and 5 played back with the first seed.
 pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Result<Report> {
@@ -28,13 +28,17 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
         title: "The paper's orders, and ours".to_owned(),
         blocks: vec![
             Block::Note(ORDERS.to_owned()),
-            Block::Table(orders(results), "Better less worse, WMSE in mm".to_owned()),
+            Block::Table(
+                orders(results),
+                "Difference of the better and the worse method, pose RMSE in mm (the paper's WMSE)"
+                    .to_owned(),
+            ),
         ],
     };
     let seeds = match made.seeds {
         1 => "with one seed".to_owned(),
         many => {
-            format!("each with {many} seeds, every one of which is another rig with other noise")
+            format!("each with {many} seeds of rig and noise")
         }
     };
     let mut summary = vec![
@@ -93,11 +97,11 @@ fn table_section(table: &ResultsTable) -> Section {
 
 fn row_table(row: &ResultsRow) -> Table {
     let mut table = Table::new([
-        "WMSE (mm)",
+        "pose RMSE (mm)",
         "paper",
         "ours, median",
         "10–90 %",
-        "in the dark",
+        "camera off",
         "10–90 %",
         "against the camera's poses",
     ]);

@@ -10,11 +10,13 @@ use stickslip_report::Table;
 /// Description of the table of [`occlusions`].
 pub fn about_occlusions(results: &[OcclusionResult]) -> String {
     let differences = match too_few_seeds(results) {
-        true => "median difference, of too few seeds for a standard error",
-        false => "median difference ± its standard error; * by more than 2 of them better, ! worse",
+        true => "median difference, too few seeds for a standard error",
+        false => {
+            "median difference ± standard error; * better, ! worse by more than 2 standard errors"
+        }
     };
     format!(
-        "particle filter with tactile data after the blackout begins, WMSE in mm; others: their median (ours less theirs: {differences})"
+        "particle filter with touch while the camera is off, pose RMSE in mm; others: their median (ours minus theirs: {differences})"
     )
 }
 
@@ -27,7 +29,11 @@ fn too_few_seeds(results: &[OcclusionResult]) -> bool {
 pub fn text(results: &Results) -> String {
     let tables = results.tables.iter().map(|table| {
         let rows: Vec<String> = table.rows.iter().map(row).collect();
-        format!("{}, WMSE in mm\n\n{}", table.name, rows.join("\n"))
+        format!(
+            "{}, pose RMSE in mm (the paper's WMSE)\n\n{}",
+            table.name,
+            rows.join("\n")
+        )
     });
     let orders = format!("{}\n{}\n", orders(results), counts(results).join("\n"));
     tables
@@ -50,7 +56,7 @@ fn row(row: &ResultsRow) -> String {
         "paper",
         "all rows",
         "10-90 %",
-        "dark rows",
+        "occluded rows",
         "10-90 %",
         "camera's poses",
         "unsolved",
@@ -141,7 +147,7 @@ pub fn counts(results: &Results) -> Vec<String> {
                 Finding::Holds => format!("{count} hold"),
                 Finding::Unclear => format!("{count} are unclear"),
                 Finding::Reversed => format!("{count} are reversed"),
-                Finding::TooFewSeeds => format!("{count} have too few seeds to say"),
+                Finding::TooFewSeeds => format!("{count} have too few seeds"),
             })
             .collect();
         format!(
@@ -163,7 +169,7 @@ pub fn occlusions(results: &[OcclusionResult]) -> Table {
         "< 0.5 mm",
         "nominal",
         "Kalman",
-        "no tactile",
+        "without touch",
         "camera on",
     ]);
     for result in results {
@@ -194,7 +200,7 @@ pub fn touch(results: &[OcclusionResult]) -> String {
     });
     let all: Vec<(&str, &BaselineComparison)> = all.collect();
     if too_few_seeds(results) {
-        return "Too few seeds to tell what touch gains.".to_owned();
+        return "Too few seeds to measure the gain by touch.".to_owned();
     }
     let names = |of: fn(&BaselineComparison) -> bool| {
         let names = all.iter().filter(|(_, without)| of(without));
@@ -212,7 +218,10 @@ pub fn touch(results: &[OcclusionResult]) -> String {
     let found: Vec<String> = found
         .map(|(what, names)| format!("{what} {names}"))
         .collect();
-    format!("Touch against no touch in the dark: {}.", found.join("; "))
+    format!(
+        "With touch, compared to without, camera off: {}.",
+        found.join("; ")
+    )
 }
 
 fn difference(against: &BaselineComparison) -> String {
@@ -267,7 +276,7 @@ pub fn ratios(ratios: &[Ratio]) -> String {
         "medians from frames over those from poses",
         "method",
         "all rows",
-        "dark rows",
+        "occluded rows",
     ]);
     for Ratio {
         row,
@@ -327,11 +336,11 @@ mod tests {
         ];
         assert_eq!(
             touch(&some),
-            "Touch against no touch in the dark: better in 5; worse in 2; no clear difference in A, 6."
+            "With touch, compared to without, camera off: better in 5; worse in 2; no clear difference in A, 6."
         );
         assert_eq!(
             touch(&[result("A", [-9.0, f64::INFINITY])]),
-            "Too few seeds to tell what touch gains."
+            "Too few seeds to measure the gain by touch."
         );
     }
 }

@@ -106,7 +106,7 @@ fn bag_is_read_like_the_log_with_the_scene_and_the_truth_beside_it() {
     let run = filter(&bag);
     assert_eq!(run.status.code(), Some(1));
     assert!(
-        words(&run).contains("there is no scene.toml in it or beside it"),
+        words(&run).contains("there is no scene.toml in it or next to it"),
         "{}",
         words(&run)
     );
@@ -120,7 +120,7 @@ fn bag_without_all_of_its_files_is_done_with_input_lost() {
     fs::remove_file(&first).unwrap();
     let run = filter(&bag);
     assert_eq!(run.status.code(), Some(3), "{}", words(&run));
-    assert!(words(&run).contains("rosbag2_2026_0.mcap is not there; what it held is lost"));
+    assert!(words(&run).contains("rosbag2_2026_0.mcap is not there; its messages are lost"));
 
     let last = bag.join("rosbag2_2026_2.mcap");
     let whole = fs::read(&last).unwrap();
@@ -129,7 +129,7 @@ fn bag_without_all_of_its_files_is_done_with_input_lost() {
     let run = filter(&bag);
     assert_eq!(run.status.code(), Some(3), "{}", words(&run));
     let told = words(&run);
-    assert!(told.contains("without metadata.yaml"), "{told}");
+    assert!(told.contains("no metadata.yaml"), "{told}");
     assert!(
         told.contains("rosbag2_2026_2.mcap: the recording is cut off"),
         "{told}"
@@ -193,7 +193,7 @@ fn info_names_what_would_do_and_the_command_that_it_prints_runs() {
 
     let text = stickslip().arg("info").arg(&bag).output().unwrap();
     let text = String::from_utf8(text.stdout).unwrap();
-    assert!(text.contains("Go on with\n  stickslip check '"), "{text}");
+    assert!(text.contains("Next steps:\n  stickslip check '"), "{text}");
     let table = stickslip().args(["info", &case.log()]).output().unwrap();
     assert!(
         words(&table).contains("this is no bag"),

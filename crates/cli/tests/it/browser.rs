@@ -120,10 +120,23 @@ fn rows_are_drawn() {
     // the same page goes on: nothing pushes, so while the camera is off the object stays where it
     // was
     source.dark.store(true, Relaxed);
-    let unseen = shown(&mut tab, "camera dark");
+    let unseen = shown(&mut tab, "camera off");
     assert_at_the_object(&unseen["ghost"]);
     assert_eq!(unseen["truthHidden"], true);
-    drop(tab);
+
+    // the source says nothing any more, and the camera is neither on nor off
+    source.ended.store(true, Relaxed);
+    shown(&mut tab, "no rows");
+    let badge = tab.evaluate("document.querySelector('.badge').textContent");
+    let badge = badge.as_str().unwrap();
+    assert!(
+        badge.starts_with("no rows for ") && badge.ends_with(" s"),
+        "{badge}"
+    );
+    // also on a page that is opened later, which shows the last row
+    let mut later = Tab::open(&empty_folder("live_browser/later"), &source.address, 1280);
+    assert_at_the_object(&shown(&mut later, "no rows")["ghost"]);
+    drop((tab, later));
     source.end();
 }
 

@@ -126,6 +126,29 @@ fn track_takes_any_folder_of_images_at_a_rate() {
 }
 
 #[test]
+fn track_asks_about_names_whose_order_is_not_sure() {
+    let (frames, out) = (two_frames("camera/names"), RENDERED.join("names"));
+    let tags = RENDERED.join("tags.toml");
+    let mut names: Vec<PathBuf> = fs::read_dir(&frames)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    names.sort();
+    for (path, name) in names.iter().zip(["12.25.png", "12.5.png"]) {
+        fs::rename(path, frames.join(name)).unwrap();
+    }
+    assert_refused(
+        &mut track(&frames, &tags, &out, &["--rate", "30"]),
+        &[
+            "`12.25.png` comes before `12.5.png` if these are decimal numbers",
+            "write frames.csv",
+        ],
+    );
+    fs::rename(frames.join("12.25.png"), frames.join("12.05.png")).unwrap();
+    succeeds(&mut track(&frames, &tags, &out, &["--rate", "30"]));
+}
+
+#[test]
 fn track_names_an_image_that_cannot_be_read() {
     let (frames, out) = (two_frames("camera/broken"), RENDERED.join("broken"));
     let tags = RENDERED.join("tags.toml");
@@ -135,7 +158,7 @@ fn track_names_an_image_that_cannot_be_read() {
         &mut track(&frames, &tags, &out, &["--rate", "30"]),
         &[
             "000001.png: the PNG image cannot be decoded",
-            "Record or copy it anew",
+            "Record or copy it again",
         ],
     );
     fs::write(frames.join("000001.png"), "not an image").unwrap();
@@ -189,8 +212,7 @@ fn track_names_a_wrong_tag_a_wrong_size_and_no_tag() {
     let run = succeeds(&mut track(&frames, &tags, &out, &["--rate", "30"]));
     let told = String::from_utf8_lossy(&run.stderr);
     assert!(
-        told.contains("warning: the pusher's tag is seen 24.0 mm large")
-            && told.contains("pusher.size says 26.4 mm"),
+        told.contains("warning: pusher tag 24.0 mm wide") && told.contains("pusher.size 26.4 mm"),
         "{told}"
     );
 
@@ -269,7 +291,7 @@ fn calibrate_says_what_is_wrong_with_board_and_frames() {
             .arg("--board")
             .arg(RENDERED.join("board.toml"))
             .args(["--flat", "x.png"]),
-        &["--flat x.png: there is no such frame; they go from 000.png to 007.png"],
+        &["--flat x.png: there is no such image; the first is 000.png, the last 007.png"],
     );
     assert!(!out.join("calibration.toml").exists());
 }

@@ -87,10 +87,7 @@ fn check_names_millimetres_in_the_log() {
 fn check_names_millimetres_in_the_outline() {
     let case = Experiment::copy(STOP, "outline_mm");
     case.edit("scene.toml", |text| text.replace("0.025000", "25.0"));
-    assert_problem(
-        &case,
-        &["units: the object has a radius of 35", "millimetres"],
-    );
+    assert_problem(&case, &["units: object radius 35", "millimetres"]);
 }
 
 #[test]
@@ -134,14 +131,17 @@ fn check_names_small_angles_in_degrees_by_their_noise() {
 }
 
 #[test]
-fn check_names_a_wrapped_angle() {
-    let case = Experiment::copy(STOP, "wrapped");
-    case.edit_rows(|rows| {
-        rows.iter_mut()
-            .skip(200)
-            .for_each(|row| row[6] -= std::f64::consts::TAU)
-    });
-    assert_problem(&case, &["angles: pusher_theta", "full turn", "unwrapped"]);
+fn check_takes_angles_wrapped_to_one_turn_and_names_a_body_seen_the_wrong_way_round() {
+    let turned = |name: &str, by: f64| {
+        let case = Experiment::copy(STOP, name);
+        case.edit_rows(|rows| rows.iter_mut().skip(200).for_each(|row| row[6] -= by));
+        let run = stickslip().args(["check", &case.log()]).output().unwrap();
+        String::from_utf8(run.stdout).unwrap()
+    };
+    let wrapped = turned("wrapped", std::f64::consts::TAU);
+    assert!(wrapped.contains("ok       angles"), "{wrapped}");
+    let half = turned("half_turn", std::f64::consts::PI);
+    assert!(half.contains("pusher_theta jumps by half a turn"), "{half}");
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn check_takes_touches_as_few_as_false_alarms_for_these() {
     });
     assert_eq!(check(&case, "problem"), (Some(0), Vec::new()));
     case.edit_rows(|rows| (0..20).for_each(|k| rows[3 * k][SENSOR] = 1.0));
-    assert_problem(&case, &["sensor 1", "reads touches that cannot be"]);
+    assert_problem(&case, &["sensor 1", "reports touches that cannot be"]);
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn check_measures_a_lag_of_three_rows() {
         });
         let (code, problems) = check(&case, "problem");
         let delay = problems[0]
-            .strip_prefix("latency: object poses are ")
+            .strip_prefix("latency: camera latency ")
             .and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok());
         assert!(
             code == Some(1) && delay.is_some_and(|delay| (delay - 0.1).abs() <= 0.02),
@@ -260,7 +260,9 @@ fn check_warns_of_a_noisy_pusher_that_is_taken_for_exact() {
     case.edit("scene.toml", |text| {
         text.replace("pusher_position_std = 0.0001", "pusher_position_std = 0.0")
     });
-    assert!(check(&case, "warning").1.iter().any(|w| w.contains("noise: pusher poses scatter by 0.1") && w.contains("says 0.00 mm")));
+    assert!(check(&case, "warning").1.iter().any(
+        |w| w.contains("noise: noise of pusher poses 0.1") && w.contains("scene.toml: 0.00 mm")
+    ));
 }
 
 #[test]
@@ -290,7 +292,7 @@ fn check_counts_what_is_missing_and_repeated() {
     )
     .unwrap();
     assert!(
-        text.contains("the pusher is off the plane once: rows 300 to 329"),
+        text.contains("the pusher is lifted off the table 1 time: rows 300 to 329"),
         "{text}"
     );
 }
@@ -355,7 +357,7 @@ fn check_measures_the_delay_of_the_two_finger_logs() {
             .unwrap();
         let text = String::from_utf8(run.stdout).unwrap();
         let delay = text
-            .split_once("object poses are ")
+            .split_once("camera latency ")
             .and_then(|(_, rest)| rest.split_whitespace().next()?.parse::<f64>().ok());
         all += 1;
         near += usize::from(delay.is_some_and(|delay| (delay - 0.16).abs() <= 0.04));

@@ -33,7 +33,7 @@ fn has(warnings: &[String], words: &str) -> bool {
 fn filter_says_when_nothing_was_explained() {
     let case = in_millimetres("doubts/filter");
     let page = case.folder.join("report.html");
-    let arguments = ["--scene", &case.scene(), "--particles", "50"].map(str::to_owned);
+    let arguments = ["--scene", &case.scene(), "--particles", "50", "--force"].map(str::to_owned);
     let filter = || {
         let mut command = stickslip();
         command.arg("filter").arg(case.log()).args(&arguments);
@@ -44,7 +44,7 @@ fn filter_says_when_nothing_was_explained() {
     assert!(collapses > 50, "{collapses}");
     let found = warnings(&result);
     assert!(
-        has(&found, "millimetres") && has(&found, "nothing was explained"),
+        has(&found, "millimetres") && has(&found, "small errors mean nothing"),
         "{found:?}"
     );
 
@@ -53,11 +53,11 @@ fn filter_says_when_nothing_was_explained() {
     assert!(
         text.contains("warning: ")
             && text.contains("millimetres")
-            && text.contains("nothing was explained"),
+            && text.contains("small errors mean nothing"),
         "{text}"
     );
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("Warning: ") && page.contains("nothing was explained"));
+    assert!(page.contains("Warning: ") && page.contains("small errors mean nothing"));
 }
 
 #[test]
@@ -68,13 +68,13 @@ fn compare_says_when_nothing_was_explained() {
         command
             .arg("compare")
             .arg(&case.folder)
-            .args(["--particles", "50"]);
+            .args(["--particles", "50", "--force"]);
         command
     };
     let result = json(compare().arg("--json"));
     let found = warnings(&result["folders"][0]);
     assert!(
-        has(&found, "millimetres") && has(&found, "nothing was explained"),
+        has(&found, "millimetres") && has(&found, "small errors mean nothing"),
         "{found:?}"
     );
     let methods = result["folders"][0]["methods"].as_array().unwrap();

@@ -85,7 +85,11 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
         .unwrap();
     let in_scene: f64 = line.split_whitespace().nth(2).unwrap().parse().unwrap();
     assert!((in_scene - value).abs() < 1e-5 * value, "{line}");
-    for expected in ["# a plate", "[uncertainty]", "not determined by them: mu_f"] {
+    for expected in [
+        "# a plate",
+        "[uncertainty]",
+        "not identifiable from them: mu_f",
+    ] {
         assert!(scene.contains(expected), "{expected} in {scene}");
     }
     let log = folder.join("pushes/push-0/log.csv");
@@ -108,7 +112,7 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
     );
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("pushes of --test, median"), "{text}");
-    assert!(text.contains("not determined by these pushes"), "{text}");
+    assert!(text.contains("not identifiable"), "{text}");
 }
 
 #[test]
@@ -127,7 +131,7 @@ fn fit_refuses_with_the_next_step() {
         "{text}"
     );
     let text = refusal(&mut fit(&pushes.join("push-0"), &out));
-    assert!(text.contains("there are 1 pushes; at least 2"), "{text}");
+    assert!(text.contains("1 push given; at least 2"), "{text}");
     let text = refusal(stickslip().args(["fit", "--out"]).arg(&out));
     assert!(text.contains("<DIR>"), "{text}");
     let text = refusal(&mut fit(&folder.join("nowhere"), &out));
@@ -136,7 +140,7 @@ fn fit_refuses_with_the_next_step() {
     assert!(text.contains("would destroy what is read"), "{text}");
     let text = refusal(fit(&pushes, &out).arg("--test").arg(pushes.join("push-1")));
     assert!(
-        text.contains("push-1: --test names a push that is learnt from"),
+        text.contains("push-1: --test names a push that is also fitted"),
         "{text}"
     );
     let text = refusal(fit(&pushes, &out).args(["--folds", "2"]));

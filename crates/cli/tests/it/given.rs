@@ -116,7 +116,7 @@ fn what_cannot_be_meant_is_answered_with_what_to_type() {
         ),
         (
             "check only.toml",
-            "only.toml: this is a scene, and no log lies beside it",
+            "only.toml: this is a scene, and there is no log next to it",
             "`stickslip check LOG --scene only.toml`",
         ),
         (

@@ -1,6 +1,7 @@
 //! Messages of the program about files that are no logs of its own, and about times in other units.
 
 use std::fs;
+use std::process::{Command, Stdio};
 
 use crate::common::{Experiment, SLIDE, empty_folder, stickslip, succeeds};
 
@@ -13,6 +14,32 @@ fn refusal(case: &Experiment, log: &str) -> String {
     let talk = String::from_utf8(run.stderr).unwrap();
     assert_eq!(run.status.code(), Some(1), "{talk}");
     talk
+}
+
+#[test]
+#[cfg(unix)]
+fn logs_in_pipes_are_refused_and_scenes_in_pipes_read() {
+    let case = Experiment::copy(SLIDE, "inputs/pipes");
+    let run = |arguments: [&str; 2], input: &str| {
+        let file = fs::File::open(input).unwrap();
+        let mut cat = Command::new("cat")
+            .stdin(file)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let pipe = cat.stdout.take().unwrap();
+        let mut command = stickslip();
+        command.arg("check").args(arguments).stdin(pipe);
+        let run = command.output().unwrap();
+        cat.wait().unwrap();
+        (run.status.code(), String::from_utf8(run.stderr).unwrap())
+    };
+    let (log, scene) = (case.log(), case.scene());
+    let (code, told) = run(["/dev/stdin", &scene], &log);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("/dev/stdin: this is a pipe"), "{told}");
+    let (code, told) = run([&log, "--scene=/dev/stdin"], &scene);
+    assert_eq!(code, Some(0), "{told}");
 }
 
 #[test]
@@ -143,7 +170,7 @@ fn new_scene_and_prints_are_ready_to_use() {
     let run = succeeds(stickslip().args(["new", &at("")]));
     let told = String::from_utf8(run.stdout).unwrap();
     assert!(
-        told.contains("object.inertia is missing: 2.083e-4 kg m^2 is taken"),
+        told.contains("object.inertia is missing; 2.083e-4 kg m^2 is assumed"),
         "{told}"
     );
     let again = stickslip().args(["new", &at("")]).output().unwrap();
@@ -210,7 +237,7 @@ fn new_takes_an_outline_from_a_drawing() {
         "0.001",
     ]));
     let warned = String::from_utf8(run.stderr).unwrap();
-    assert!(warned.contains("1 holes are not part"), "{warned}");
+    assert!(warned.contains("1 hole left out"), "{warned}");
 
     for (arguments, words) in [
         (

@@ -16,6 +16,16 @@ use tungstenite::{Message, connect};
 
 /// The first row that a socket shows, if it opens for an origin and a token.
 fn socket(session: &Session, origin: &str, token: &str) -> Result<Value, String> {
+    messages(session, origin, token, 1).map(|mut messages| messages.remove(0))
+}
+
+/// The first messages of a socket.
+fn messages(
+    session: &Session,
+    origin: &str,
+    token: &str,
+    count: usize,
+) -> Result<Vec<Value>, String> {
     let url = format!("ws://{}/socket?{token}", session.host);
     let mut request = url.into_client_request().unwrap();
     request
@@ -26,11 +36,13 @@ fn socket(session: &Session, origin: &str, token: &str) -> Result<Value, String>
         let limit = Some(Duration::from_secs(20));
         stream.set_read_timeout(limit).unwrap();
     }
-    loop {
+    let mut messages = Vec::new();
+    while messages.len() < count {
         if let Message::Text(text) = socket.read().map_err(|error| error.to_string())? {
-            return Ok(serde_json::from_str(&text).unwrap());
+            messages.push(serde_json::from_str(&text).unwrap());
         }
     }
+    Ok(messages)
 }
 
 #[test]
@@ -103,11 +115,43 @@ fn page_that_is_opened_while_the_source_is_silent_shows_what_came_before() {
     let mut session = Session::start(&case);
     let row = r#"{"time": 0, "object_x": 0.01, "object_y": 0, "object_theta": 0}"#;
     writeln!(session.input.as_mut().unwrap(), "{row}").unwrap();
-    // long enough for the row to be taken before the page is opened
-    sleep(Duration::from_millis(500));
+    // long enough for the row to be old before the page is opened
+    sleep(Duration::from_millis(2500));
     let own = format!("http://{}", session.host);
-    let shown = socket(&session, &own, &session.token).unwrap();
-    assert_eq!(shown["object"], serde_json::json!([0.01, 0.0, 0.0]));
+    let shown = messages(&session, &own, &session.token, 2).unwrap();
+    assert_eq!(shown[0]["object"], serde_json::json!([0.01, 0.0, 0.0]));
+    assert!(shown[1]["silent"].as_f64() > Some(2.0), "{}", shown[1]);
+    assert_eq!(session.end(), Some(0));
+}
+
+/// Begins connections that do not say all, more than the server keeps.
+fn strangers(session: &Session) -> Vec<TcpStream> {
+    let stranger = |k: usize| {
+        let mut stream = TcpStream::connect(&session.host).unwrap();
+        let part = ["GET /socket?aaaa", "GET /?aaaa HTTP/1.1\r\n", "G"][k % 3];
+        stream.write_all(part.as_bytes()).unwrap();
+        stream
+    };
+    (0..100).map(stranger).collect()
+}
+
+#[test]
+fn clients_without_a_token_keep_no_owner_out_and_are_ended() {
+    let case = Experiment::copy(SLIDE, "live_page/slow");
+    let session = Session::start(&case);
+    let mut slow = strangers(&session);
+    let page = session.ask("GET /?TOKEN HTTP/1.1\nHost: HOST\n\n");
+    assert!(page.starts_with("HTTP/1.1 200"), "{page}");
+    // those that are left are ended, however often they say a byte
+    let mut left = slow.split_off(90);
+    for _ in 0..100 {
+        left.retain_mut(|stream| stream.write_all(b"a").is_ok());
+        if left.is_empty() {
+            break;
+        }
+        sleep(Duration::from_millis(200));
+    }
+    assert_eq!(left.len(), 0);
     assert_eq!(session.end(), Some(0));
 }
 

@@ -111,9 +111,48 @@ fn a_file_that_cannot_be_finished_leaves_the_old_one() {
     assert_eq!(run.status.code(), Some(1), "{talk}");
     assert!(talk.contains("estimate.csv: cannot be written"), "{talk}");
     // the scores of the run are not lost with the file
-    assert!(String::from_utf8_lossy(&run.stdout).contains("WMSE"));
+    assert!(String::from_utf8_lossy(&run.stdout).contains("pose RMSE"));
     assert_eq!(fs::read(&file).unwrap(), b"old");
     assert_eq!(names(&out), ["estimate.csv"]);
+}
+
+/// A new estimate.csv next to the modes.csv of an older run would be taken for one result.
+#[test]
+fn results_of_which_one_cannot_be_placed_leave_no_new_one_next_to_an_old_one() {
+    let case = Experiment::copy(SLIDE, "outputs/pair");
+    let out = empty_folder("outputs/pair_out");
+    fs::write(out.join("estimate.csv"), "old").unwrap();
+    // no file can take the place of a folder
+    fs::create_dir(out.join("modes.csv")).unwrap();
+    let run = filter(&case).arg("--out").arg(&out).output().unwrap();
+    let talk = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{talk}");
+    assert!(talk.contains("modes.csv: cannot be written"), "{talk}");
+    assert_eq!(fs::read(out.join("estimate.csv")).unwrap(), b"old");
+    assert_eq!(names(&out), ["estimate.csv", "modes.csv"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn files_that_are_there_keep_their_permissions() {
+    use std::os::unix::fs::PermissionsExt;
+    let case = Experiment::copy(SLIDE, "outputs/modes");
+    let page = case.folder.join("page.html");
+    let mode = || fs::metadata(&page).unwrap().permissions().mode() & 0o777;
+    fs::write(&page, "private").unwrap();
+    fs::set_permissions(&page, fs::Permissions::from_mode(0o640)).unwrap();
+    succeeds(filter(&case).arg("--report").arg(&page));
+    assert!(fs::read_to_string(&page).unwrap().starts_with("<!DOCTYPE"));
+    assert_eq!(mode(), 0o640);
+
+    fs::write(&page, "mine").unwrap();
+    fs::set_permissions(&page, fs::Permissions::from_mode(0o400)).unwrap();
+    let run = filter(&case).arg("--report").arg(&page).output().unwrap();
+    assert_refused(&run, "the file there is write-protected");
+    assert_eq!(
+        (fs::read(&page).unwrap(), mode()),
+        (b"mine".to_vec(), 0o400)
+    );
 }
 
 #[test]

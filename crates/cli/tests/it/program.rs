@@ -34,7 +34,7 @@ fn filter_prints_scores_and_writes_only_the_estimate() {
     );
     for line in [
         "against the truth",
-        "WMSE, hidden rows",
+        "pose RMSE, occluded",
         "real-time factor",
         "mu_s",
         "d_tri",

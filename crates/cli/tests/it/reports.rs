@@ -181,7 +181,7 @@ fn filter_writes_a_report_and_the_same_estimate() {
         "download=\"filter_report-estimate.csv\"",
         "--occlude 153",
         "<dt>seed</dt><dd>0</dd>",
-        "Friction: not identifiable from this push; the scene's values were used.",
+        "Not identifiable from this push: mu_f, d_tri.",
     ] {
         assert!(page.contains(text), "{text} is missing");
     }
@@ -211,7 +211,7 @@ fn compare_writes_a_report_of_all_folders() {
         "with one seed",
         "All experiments",
         "class=\"player\"",
-        "number 1 of 1 by the particle filter's WMSE",
+        "number 1 of 1 by the particle filter's pose RMSE",
         "compare_report",
         "particle filter without touch",
     ] {

@@ -84,8 +84,8 @@ fn reproduce_writes_figures_tables_and_report() {
             "Table IV",
             "Figure 7",
             "Experiment B",
-            "Of 49 orders of the paper (dark rows), 49 have too few seeds to say.",
-            "Too few seeds to tell what touch gains.",
+            "Of 49 orders of the paper (occluded rows), 49 have too few seeds.",
+            "Too few seeds to measure the gain by touch.",
             "stickslip reproduce --seeds 1 --particles 8"
         ]
         .iter()

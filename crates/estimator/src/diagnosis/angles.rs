@@ -1,4 +1,4 @@
-//! Angles: radians, not degrees, and not wrapped.
+//! Angles: radians, not degrees, and no body the wrong way round.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,6 +6,9 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
+use crate::angle::wrapped;
+use crate::counted::counted;
+use crate::log::Log;
 
 /// Angle beyond which the values are degrees (rad): no object is turned twice around on a table.
 const LARGEST: f64 = 2.0 * TAU;
@@ -16,20 +19,21 @@ const NOISE_RATIO: f64 = 10.0;
 
 const RADIANS: &str = "give angles in radians: multiply by pi / 180";
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
+/// Judges the angles of the log as it was `given`: unwrapped, degrees would not be large.
+pub(super) fn check(evidence: &Evidence<'_>, given: &Log) -> Vec<Finding> {
     let bodies = [
-        ("object_theta", &evidence.log.object),
-        ("pusher_theta", &evidence.log.pusher),
+        ("object_theta", &given.object),
+        ("pusher_theta", &given.pusher),
     ];
     let mut found: Vec<Finding> = bodies
         .iter()
-        .filter_map(|(name, poses)| in_degrees(name, poses).or_else(|| wrapped(name, poses)))
+        .filter_map(|(name, poses)| in_degrees(name, poses).or_else(|| turned(name, poses)))
         .collect();
     found.extend(noise_in_degrees(evidence).filter(|_| found.is_empty()));
     if found.is_empty() {
-        let words = match range(&evidence.log.object) {
+        let words = match range(&given.object) {
             Some((low, high)) => format!("object_theta goes from {low:.2} to {high:.2} rad"),
-            None => "there is no object_theta".to_owned(),
+            None => "no object_theta in the log".to_owned(),
         };
         found.push(Finding::ok(Subject::Angles, words));
     }
@@ -43,31 +47,20 @@ fn in_degrees(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
         .then(|| Finding::problem(Subject::Angles, found(), RADIANS))
 }
 
-/// Finds a jump by about a full turn from one row to the next, or by about half of one. An angle
-/// may start at any turn after a gap.
-fn wrapped(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
-    let about = |turn: f64| {
-        let jumps = |row: &usize| {
-            let step = || Some(poses[*row]?.theta - poses[row - 1]?.theta);
-            step().is_some_and(|step| (step.abs() - turn).abs() < 0.25 * PI)
-        };
-        (1..poses.len()).filter(jumps).collect::<Vec<usize>>()
+/// Finds a jump by about half a turn from one row to the next. Full turns do not count: angles may
+/// be wrapped to one turn.
+fn turned(name: &str, poses: &[Option<Pose>]) -> Option<Finding> {
+    let jumps = |row: &usize| {
+        let step = || Some(poses[*row]?.theta - poses[row - 1]?.theta);
+        step().is_some_and(|step| wrapped(step).abs() > 0.75 * PI)
     };
-    let (full, half) = (about(TAU), about(PI));
-    if let Some(first) = full.first() {
-        let found = format!(
-            "{name} jumps by a full turn at {} rows, first at row {first}: it is wrapped to one turn",
-            full.len()
-        );
-        let advice = "write angles unwrapped, so that they go on smoothly";
-        return Some(Finding::problem(Subject::Angles, found, advice));
-    }
+    let half: Vec<usize> = (1..poses.len()).filter(jumps).collect();
     half.first().map(|first| {
         let found = format!(
-            "{name} jumps by half a turn at {} rows, first at row {first}: the body is seen the wrong way round",
-            half.len()
+            "{name} jumps by half a turn at {}, first at row {first}: the tracker mistakes the orientation",
+            counted(half.len() as u64, "row")
         );
-        let advice = "leave the cells of such rows empty, or turn them back";
+        let advice = "leave the cells of these rows empty, or correct their angle by pi";
         Finding::warning(Subject::Angles, found, advice)
     })
 }
@@ -83,7 +76,7 @@ fn noise_in_degrees(evidence: &Evidence<'_>) -> Option<Finding> {
     let found = || {
         let twice = "at the object's rim";
         format!(
-            "object_theta scatters by {:.3} from row to row, {twice} {ratio:.0} times the positions' noise: it seems to be in degrees",
+            "object_theta scatters by {:.3} from row to row, {twice} {ratio:.0} times the noise of positions: it seems to be in degrees",
             noise.angle
         )
     };

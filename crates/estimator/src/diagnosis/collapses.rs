@@ -1,6 +1,7 @@
 //! Collapses: rows at which the filter's belief did not explain the camera.
 
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 
 /// Share of the camera's poses from which on collapses are no accidents.
 const MANY: f64 = 0.02;
@@ -17,17 +18,19 @@ const MOST: f64 = 0.2;
 pub fn collapsed(collapses: u32, seen: usize) -> Option<Finding> {
     let share = f64::from(collapses) / seen.max(1) as f64;
     let found = format!(
-        "at {collapses} of {seen} rows with a camera pose the belief did not explain it, and began anew around it"
+        "{} in {seen} camera poses: the estimate did not explain the pose and restarted at it",
+        counted(u64::from(collapses), "collapse")
     );
     if collapses < 2 || share < MANY {
         return None;
     }
     Some(if share < MOST {
-        let advice = "errors on these rows are the camera's own; see what `stickslip check` says";
+        let advice = "the errors at these rows are the camera's own; run `stickslip check`";
         Finding::warning(Subject::Collapses, found, advice)
     } else {
-        let found = format!("{found}: nothing was explained, and small errors mean nothing");
-        let advice = "see what `stickslip check` says of units, frames and noise";
+        let found =
+            format!("{found}. The filter only repeats the camera, and small errors mean nothing");
+        let advice = "run `stickslip check` for units, frames and noise";
         Finding::problem(Subject::Collapses, found, advice)
     })
 }

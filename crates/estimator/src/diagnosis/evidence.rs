@@ -4,6 +4,7 @@ use stickslip_dynamics::{Placed, Pose, Shape};
 
 use super::lasting::Lasting;
 use super::pose_noise::PoseNoise;
+use crate::angle::nearest_winding;
 use crate::gap::gap;
 use crate::log::Log;
 use crate::pusher::tracked_pose::LONGEST_BRIDGE;
@@ -25,6 +26,7 @@ const LEAST_SHARE: f64 = 0.25;
 /// A scene and a log, with what is measured on them once.
 pub(super) struct Evidence<'a> {
     pub setup: &'a Setup,
+    /// The log with angles unwrapped, see [`unwrapped`].
     pub log: &'a Log,
     /// Noise of one object pose, estimated; `None` with too few poses.
     pub noise: Option<PoseNoise>,
@@ -34,6 +36,8 @@ pub(super) struct Evidence<'a> {
     pub lasting: Option<Lasting>,
     /// Rows with an object pose; between them may be rows that other sensors brought.
     pub seen: Vec<usize>,
+    /// Rows with a pusher pose.
+    pusher_seen: Vec<usize>,
     /// Rows in which the object moves.
     pub moving: Vec<bool>,
 }
@@ -41,15 +45,18 @@ pub(super) struct Evidence<'a> {
 impl<'a> Evidence<'a> {
     pub fn new(setup: &'a Setup, log: &'a Log) -> Self {
         let noise = PoseNoise::of(&log.time, &log.object);
+        let rows_with = |poses: &[Option<Pose>]| {
+            let rows = 0..poses.len();
+            rows.filter(|row| poses[*row].is_some()).collect()
+        };
         let mut evidence = Self {
             setup,
             log,
             noise,
             pusher_noise: PoseNoise::of(&log.time, &log.pusher),
             lasting: None,
-            seen: (0..log.len())
-                .filter(|&row| log.object[row].is_some())
-                .collect(),
+            seen: rows_with(&log.object),
+            pusher_seen: rows_with(&log.pusher),
             moving: Vec::new(),
         };
         evidence.lasting = Lasting::of(&evidence);
@@ -87,19 +94,19 @@ impl<'a> Evidence<'a> {
 
     /// The measured pusher at `time`, linear between poses that are near enough.
     pub fn pusher_at(&self, time: f64) -> Option<Pose> {
-        let Log {
-            time: times,
-            pusher,
-            ..
-        } = self.log;
-        let split = times.partition_point(|t| *t < time);
-        let pose_at = |row: usize| Some((times[row], pusher[row]?));
-        let near = |row: &usize| (times[*row] - time).abs() <= LONGEST_BRIDGE;
-        let (t1, after) = (split..times.len()).take_while(near).find_map(pose_at)?;
+        let seen = &self.pusher_seen;
+        let split = seen.partition_point(|row| self.log.time[*row] < time);
+        let near = |index: usize| {
+            let row = *seen.get(index)?;
+            let at = self.log.time[row];
+            let pose = self.log.pusher[row]?;
+            ((at - time).abs() <= LONGEST_BRIDGE).then_some((at, pose))
+        };
+        let (t1, after) = near(split)?;
         if t1 - time < 1e-9 {
             return Some(after);
         }
-        let (t0, before) = (0..split).rev().take_while(near).find_map(pose_at)?;
+        let (t0, before) = near(split.checked_sub(1)?)?;
         (t1 - t0 <= LONGEST_BRIDGE).then(|| before.interpolate(after, (time - t0) / (t1 - t0)))
     }
 
@@ -220,6 +227,25 @@ impl<'a> Evidence<'a> {
     }
 }
 
+/// The log with every angle at the winding nearest to the one before.
+pub(super) fn unwrapped(log: &Log) -> Log {
+    let unwrapped = |poses: &[Option<Pose>]| {
+        let mut near = None;
+        let pose = |pose: &Option<Pose>| {
+            let pose = (*pose)?;
+            let theta = near.map_or(pose.theta, |near| nearest_winding(pose.theta, near));
+            near = Some(theta);
+            Some(Pose { theta, ..pose })
+        };
+        poses.iter().map(pose).collect()
+    };
+    Log {
+        object: unwrapped(&log.object),
+        pusher: unwrapped(&log.pusher),
+        ..log.clone()
+    }
+}
+
 /// Way that the object covers, and its duration.
 struct Way {
     seconds: f64,
@@ -257,5 +283,7 @@ pub(super) fn quantile(values: impl IntoIterator<Item = f64>, q: f64) -> f64 {
 
 /// A length in mm, as text.
 pub(super) fn mm(length: f64) -> String {
-    format!("{:.1} mm", 1e3 * length)
+    // no minus sign before a rounded zero
+    let tenths = (1e4 * length).round() + 0.0;
+    format!("{:.1} mm", tenths / 10.0)
 }

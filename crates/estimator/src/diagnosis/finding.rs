@@ -37,6 +37,8 @@ pub enum Subject {
     Noise,
     /// Frames of object and pusher.
     Frames,
+    /// Contact between object and pusher.
+    Contact,
     /// Overlap at the start.
     Overlap,
     /// Delay of the camera behind the pusher.
@@ -136,6 +138,7 @@ impl fmt::Display for Subject {
             Self::RepeatedFrames => "repeated frames",
             Self::Noise => "noise",
             Self::Frames => "frames",
+            Self::Contact => "contact",
             Self::Overlap => "overlap",
             Self::Latency => "latency",
             Self::PushingGap => "pushing gap",

@@ -95,7 +95,7 @@ fn jumps(
     let farthest = jumps.iter().map(|step| step.way).fold(0.0, f64::max);
     let found = told(body, first, jumps.len(), farthest);
     let advice =
-        "leave the cells of a lost pose empty; where the body was moved by hand, cut the log there";
+        "leave the cells of a lost pose empty; cut the log where the body was moved by hand";
     Some(match farthest > large.min(most) {
         true => Finding::problem(subject, found, advice),
         false => Finding::warning(subject, found, advice),

@@ -2,6 +2,7 @@
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 use crate::pusher::jumps::believed;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
@@ -16,9 +17,9 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
 
 /// Finds that so many poses of the pusher were left out, with the place of the first one in words.
 pub(crate) fn left_out_poses(count: usize, place: &str) -> Option<Finding> {
-    let noun = if count == 1 { "pose" } else { "poses" };
     let found = format!(
-        "{count} pusher {noun} that the pusher cannot have reached{place}: counted as missing"
+        "{} that the pusher cannot have reached{place}: counted as missing",
+        counted(count as u64, "pusher pose")
     );
     let advice = "find the cause (a tag misread, a clock that jumps); the pusher's motion between rare poses is a guess";
     (count > 0).then(|| Finding::warning(Subject::PusherPoses, found, advice))

@@ -28,7 +28,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if found.is_empty() {
         found.push(Finding::ok(
             Subject::Limits,
-            "nominal friction lies within the filter's limits",
+            "nominal friction is within the filter's limits",
         ));
     }
     found
@@ -38,7 +38,7 @@ fn outside(name: &str, value: f64, limits: &Limits) -> Option<Finding> {
     let Limits { min, max } = limits;
     let found = || {
         format!(
-            "the nominal {name} is {value}, outside the filter's limits [{min}, {max}]: particles are moved to the limit"
+            "nominal {name} {value}, limits of the filter [{min}, {max}]: particles are clamped to the limits"
         )
     };
     let advice = || format!("widen `{name}` under [filter] in the scene");

@@ -4,6 +4,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 use crate::pusher::tracked_pose::LONGEST_BRIDGE;
 
 /// Share of missing object poses that is worth a warning.
@@ -40,7 +41,7 @@ fn object(evidence: &Evidence<'_>) -> Finding {
         _ if missing as f64 > MANY * rows as f64 => Finding::warning(
             Subject::ObjectPoses,
             found,
-            "rows without a pose are blacked out: fine if this is meant",
+            "rows without a pose count as occluded; check that this is intended",
         ),
         _ => Finding::ok(Subject::ObjectPoses, found),
     }
@@ -53,7 +54,7 @@ fn pusher(evidence: &Evidence<'_>) -> Finding {
         return Finding::problem(
             Subject::PusherPoses,
             "no row has a pusher pose",
-            "give the pusher's poses: it is what moves the object",
+            "give the pusher's poses: the pusher moves the object",
         );
     }
     let lifted = losses.iter().filter(|loss| loss.seconds > LONGEST_BRIDGE);
@@ -66,7 +67,8 @@ fn pusher(evidence: &Evidence<'_>) -> Finding {
             "the pusher has no pose in {} while the object moves",
             loss.shown()
         );
-        let advice = "without the pusher nothing moves the object: see why its poses are missing";
+        let advice =
+            "find out why the poses are missing: without the pusher nothing moves the object";
         return Finding::warning(Subject::PusherPoses, found, advice);
     }
     let lifted: Vec<String> = lifted.map(Loss::shown).collect();
@@ -74,16 +76,16 @@ fn pusher(evidence: &Evidence<'_>) -> Finding {
         (0, _) => Finding::ok(Subject::PusherPoses, "every row has a pusher pose"),
         (_, 0) => Finding::ok(
             Subject::PusherPoses,
-            format!("{missing} rows have no pusher pose, all bridged"),
-        ),
-        (_, 1) => Finding::ok(
-            Subject::PusherPoses,
-            format!("the pusher is off the plane once: {}", lifted[0]),
+            format!(
+                "no pusher pose in {}, all bridged",
+                counted(missing as u64, "row")
+            ),
         ),
         (_, count) => Finding::ok(
             Subject::PusherPoses,
             format!(
-                "the pusher is off the plane {count} times: {}",
+                "the pusher is lifted off the table {}: {}",
+                counted(count as u64, "time"),
                 lifted.join(", ")
             ),
         ),

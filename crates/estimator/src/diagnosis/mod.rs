@@ -2,11 +2,12 @@
 //!
 //! Each finding measures one thing (a gap, a delay, a share of rows). It compares it with what the
 //! scene says or with what is possible on a table top, and gives advice. Nothing is repaired.
-//! Findings that need the geometry are left out if units or angles are wrong: they would only
-//! repeat that.
+//! A cause is reported without its consequences. Wrong units or angles leave out all that is
+//! measured on poses, wrong frames all that is measured on gaps.
 
 mod angles;
 mod collapses;
+mod contact;
 mod evidence;
 mod finding;
 mod frame;
@@ -31,7 +32,7 @@ pub use finding::{Finding, Severity, Subject};
 pub(crate) use left_out::left_out_poses;
 pub use stall_force::assumed_stall_force;
 
-use evidence::Evidence;
+use evidence::{Evidence, unwrapped};
 
 use crate::log::Log;
 use crate::run::Run;
@@ -63,19 +64,39 @@ use crate::setup::Setup;
 /// # Ok::<(), stickslip::dynamics::ShapeError>(())
 /// ```
 pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let mut findings = plain(&evidence);
-    let geometric = [
-        frame::check,
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = plain(&evidence, log);
+    if !findings.iter().any(is_misread) {
+        findings.extend(frame::check(&evidence));
+    }
+    let of_gaps = [
+        contact::check,
         overlap::check,
         latency::check,
         pushing::check,
         sensors::check,
     ];
-    if !findings.iter().any(is_misread) {
-        findings.extend(geometric.iter().flat_map(|check| check(&evidence)));
+    if findings.iter().any(is_misread) {
+        findings.retain(is_misread);
+    } else {
+        findings.extend(of_gaps.iter().flat_map(|check| check(&evidence)));
     }
     findings
+}
+
+/// Finds what makes an estimate meaningless: wrong units, angles or frames, noise in other units,
+/// swapped columns. Only the first cause is returned.
+pub fn refused(setup: &Setup, log: &Log) -> Option<Finding> {
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = units::check(&evidence);
+    findings.extend(angles::check(&evidence, log));
+    findings.extend(noise::check(&evidence));
+    findings.extend(frame::check(&evidence));
+    findings
+        .into_iter()
+        .find(|finding| finding.severity == Severity::Problem)
 }
 
 /// Finds the problems that are cheap enough to check before every run: numbers in other units or by
@@ -86,8 +107,9 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
 /// impossible. It tracks pusher poses that scatter by more than the scene states by the noise that
 /// they have.
 pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
-    let evidence = Evidence::new(setup, log);
-    let mut findings = plain(&evidence);
+    let whole = unwrapped(log);
+    let evidence = Evidence::new(setup, &whole);
+    let mut findings = plain(&evidence, log);
     if !findings.iter().any(is_misread) {
         findings.extend(overlap::check(&evidence));
     }
@@ -95,6 +117,7 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
     if !findings.iter().any(is_misread) {
         findings.extend(left_out::check(&evidence));
         findings.extend(noise::pusher(&evidence));
+        findings.extend(contact::none(&evidence));
     }
     findings
 }
@@ -107,26 +130,32 @@ pub fn doubts(setup: &Setup, log: &Log, run: &Run) -> Vec<Finding> {
     findings
 }
 
-/// Returns the findings that need no geometry.
-fn plain(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let checks = [
-        units::check,
-        angles::check,
+/// Returns the findings that need no geometry; the causes alone if units or angles are wrong.
+/// Angles are judged as `given`.
+fn plain(evidence: &Evidence<'_>, given: &Log) -> Vec<Finding> {
+    let others = [
         limits::check,
         stall_force::check,
-        timing::check,
         lost_poses::check,
         jumps::check,
         left_out::check,
         repeats::check,
         noise::check,
     ];
-    checks.iter().flat_map(|check| check(evidence)).collect()
+    let mut findings = units::check(evidence);
+    findings.extend(angles::check(evidence, given));
+    findings.extend(timing::check(evidence));
+    if !findings.iter().any(is_misread) {
+        findings.extend(others.iter().flat_map(|check| check(evidence)));
+    }
+    findings
 }
 
-/// Returns true if units or angles are wrong. Findings that need the geometry would only repeat
-/// that.
+/// Returns true for a cause that other findings would only repeat.
 fn is_misread(finding: &Finding) -> bool {
     finding.severity == Severity::Problem
-        && matches!(finding.subject, Subject::Units | Subject::Angles)
+        && matches!(
+            finding.subject,
+            Subject::Units | Subject::Angles | Subject::Timing | Subject::Noise | Subject::Frames
+        )
 }

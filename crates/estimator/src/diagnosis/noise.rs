@@ -21,8 +21,7 @@ const NEGLIGIBLE: PoseNoise = PoseNoise {
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let Some(camera) = &evidence.setup.camera else {
-        let advice =
-            "add position_std and orientation_std: the particle and Kalman methods need them";
+        let advice = "add position_std and orientation_std; particle and Kalman methods need them";
         return vec![Finding::warning(
             Subject::Noise,
             "the scene has no [camera]",
@@ -34,11 +33,8 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         angle: camera.orientation_std,
     };
     let mut findings = vec![match evidence.noise {
-        None => Finding::ok(
-            Subject::Noise,
-            "too few object poses to measure their noise",
-        ),
-        Some(noise) => compared(&noise, &stated),
+        None => Finding::ok(Subject::Noise, "not measured: too few object poses"),
+        Some(noise) => compared(&noise, &stated, evidence.size()),
     }];
     let lasting = evidence.lasting.as_ref();
     findings.extend(lasting.and_then(|errors| lasts(errors, &stated)));
@@ -56,14 +52,20 @@ pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
     let noise = evidence
         .pusher_noise
         .filter(|noise| is_above(noise, &stated, PUSHER_OFF, &NEGLIGIBLE))?;
-    let advice = "set pusher_position_std and pusher_orientation_std under [camera] to what is measured: a recorded log is tracked \
-                  by noise as its poses have it, live and causally what is taken for exact jerks the object at every row";
+    let advice = "set pusher_position_std and pusher_orientation_std under [camera] to the measured values; offline runs use the \
+                  measured noise, but `live` and --causal take the scatter for motion, which jerks the object at every row";
     let found = told("pusher", &noise, &stated);
     Some(Finding::warning(Subject::Noise, found, advice))
 }
 
-fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
+fn compared(noise: &PoseNoise, stated: &PoseNoise, size: f64) -> Finding {
     let found = told("object", noise, stated);
+    if let Some(unit) = in_other_units(noise, stated, size) {
+        let advice =
+            "give position_std in m and orientation_std in rad under [camera], as measured";
+        let found = format!("{found}: the scene's noise seems to be in {unit}");
+        return Finding::problem(Subject::Noise, found, advice);
+    }
     let none = PoseNoise {
         position: 0.0,
         angle: 0.0,
@@ -72,7 +74,7 @@ fn compared(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
         true => Finding::warning(
             Subject::Noise,
             found,
-            "set position_std and orientation_std under [camera] to what is measured",
+            "set position_std and orientation_std under [camera] to the measured values",
         ),
         false => Finding::ok(Subject::Noise, found),
     }
@@ -86,16 +88,27 @@ fn lasts(errors: &Lasting, stated: &PoseNoise) -> Option<Finding> {
         return None;
     }
     let found = format!(
-        "the poses of the waiting object wander by {:.2} mm, more than they scatter from row to row: the camera's errors last over about {rows:.0} rows",
+        "poses of the object at rest wander by {:.2} mm, more than they scatter from row to row: the camera's errors last over about {rows:.0} rows",
         1e3 * wander.position
     );
     let advice = format!(
-        "beliefs are too sure while the camera looks: set position_std = {:.1e} and orientation_std = {:.1e} under [camera], by which \
-         {rows:.0} poses say as much as one with an error of its own",
+        "the filter is overconfident while the camera is on: set position_std = {:.1e} and orientation_std = {:.1e} under [camera], so that \
+         {rows:.0} poses count as one independent pose",
         worth(wander.position),
         worth(wander.angle)
     );
     Some(Finding::warning(Subject::Noise, found, advice))
+}
+
+/// Returns the unit of stated noise that is far above the measured one, and as large as the object:
+/// a quarter of its radius, or 0.2 rad.
+fn in_other_units(noise: &PoseNoise, stated: &PoseNoise, size: f64) -> Option<&'static str> {
+    let above =
+        |stated: f64, measured: f64, large: f64| stated > FAR_OFF * measured && stated > large;
+    if above(stated.position, noise.position, 0.25 * size) {
+        return Some("mm");
+    }
+    above(stated.angle, noise.angle, 0.2).then_some("degrees")
 }
 
 /// Returns true if a noise is above `ratio` times the stated one, and above what needs no
@@ -109,7 +122,7 @@ fn is_above(measured: &PoseNoise, stated: &PoseNoise, ratio: f64, negligible: &P
 
 fn told(body: &str, noise: &PoseNoise, stated: &PoseNoise) -> String {
     format!(
-        "{body} poses scatter by {:.2} mm and {:.4} rad, the scene says {:.2} mm and {:.4} rad",
+        "noise of {body} poses {:.2} mm and {:.4} rad; scene.toml: {:.2} mm and {:.4} rad",
         1e3 * noise.position,
         noise.angle,
         1e3 * stated.position,

@@ -29,10 +29,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         .filter_map(|(name, gap)| Some((name, gap?)))
         .collect();
     let Some(nearest) = gaps.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return vec![Finding::ok(
-            Subject::Overlap,
-            "nothing but the object is there at the start",
-        )];
+        return vec![Finding::ok(Subject::Overlap, "no other body at the start")];
     };
     vec![judge(evidence, object, row, nearest)]
 }
@@ -51,7 +48,8 @@ fn judge(
             mm(-gap)
         )
     };
-    let advice = "correct the outlines, the frames or the start: a step would throw the object out";
+    let advice =
+        "correct the outlines, the frames or the start; the first step would push the object out";
     match gap {
         gap if *gap < -3.0 * evidence.tolerance() => {
             Finding::problem(Subject::Overlap, found(), advice)
@@ -59,7 +57,7 @@ fn judge(
         gap if *gap < -evidence.tolerance() => Finding::warning(Subject::Overlap, found(), advice),
         _ => Finding::ok(
             Subject::Overlap,
-            format!("at the start the nearest body is {name}, {} away", mm(*gap)),
+            format!("nearest body at the start: {name}, {} away", mm(*gap)),
         ),
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if gaps.len() < FEWEST {
         return vec![Finding::ok(
             Subject::PushingGap,
-            "too few poses of a moving object to tell",
+            "not measured: too few poses of a moving object",
         )];
     }
     let all = || gaps.iter().copied();
@@ -23,7 +23,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let drift =
         median(gaps[gaps.len() - third..].iter().copied()) - median(gaps[..third].iter().copied());
     let found = format!(
-        "while the object moves the pusher is {} away (5 to 95 %: {} to {}), drifting by {}",
+        "gap between pusher and moving object {} (5 to 95 %: {} to {}), drift {}",
         mm(middle),
         mm(low),
         mm(high),
@@ -34,7 +34,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         bias if bias > 5.0 * tolerance => Finding::problem(
             Subject::PushingGap,
             found,
-            "correct the outlines or the calibration of camera against pusher",
+            "correct the outlines, or the calibration of camera to pusher",
         ),
         bias if bias > tolerance
             || high - low > 4.0 * tolerance
@@ -43,7 +43,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
             Finding::warning(
                 Subject::PushingGap,
                 found,
-                "check the outlines and the calibration of camera against pusher",
+                "check the outlines and the calibration of camera to pusher",
             )
         }
         _ => Finding::ok(Subject::PushingGap, found),

@@ -80,7 +80,7 @@ fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
             "{:.1} % of pusher poses repeat the one before while it moves",
             1e2 * repeated
         );
-        let advice = "leave the cells of repeated poses empty: the pusher is sampled more slowly than the log, and seems to stand and jump";
+        let advice = "leave the cells of repeated poses empty: the pusher is sampled more slowly than the log, and seems to stop and jump";
         Finding::warning(Subject::RepeatedFrames, found, advice)
     })
 }
@@ -115,10 +115,10 @@ fn frozen(evidence: &Evidence<'_>) -> Option<Finding> {
             && let Some(jump) = jump.filter(|jump| *jump > evidence.tolerance())
         {
             let found = format!(
-                "rows {first} to {last} have one and the same object pose, and the next one is {} from it",
+                "rows {first} to {last} repeat one object pose; the next pose is {} away",
                 mm(jump)
             );
-            let advice = "the camera stood still: leave the cells of these rows empty";
+            let advice = "the camera image froze: leave the cells of these rows empty";
             return Some(Finding::warning(Subject::RepeatedFrames, found, advice));
         }
     }

@@ -2,6 +2,7 @@
 
 use super::evidence::{Evidence, median, mm};
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 
 /// Fewest readings of 1 that tell.
 const FEWEST: usize = 5;
@@ -12,14 +13,27 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         evidence.setup.scene.fixels.len(),
     );
     if sensors > fixels {
-        let found = format!("the log has {sensors} sensors, the scene {fixels} fixels");
+        let found = format!(
+            "the log has {}, the scene {}",
+            counted(sensors as u64, "sensor"),
+            counted(fixels as u64, "fixel")
+        );
         return vec![Finding::problem(
             Subject::Sensor(fixels + 1),
             found,
             "give each sensor its [[fixel]], in the same order",
         )];
     }
-    (0..sensors).map(|sensor| judge(evidence, sensor)).collect()
+    let judged = (0..sensors).map(|sensor| judge(evidence, sensor));
+    let without = (sensors > 0 && sensors < fixels).then(|| {
+        let found = format!(
+            "the log has {}, the scene {}: sensor k is on the k-th fixel, the others have none",
+            counted(sensors as u64, "sensor"),
+            counted(fixels as u64, "fixel")
+        );
+        Finding::ok(Subject::Sensor(sensors + 1), found)
+    });
+    judged.chain(without).collect()
 }
 
 fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
@@ -32,8 +46,8 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     }
     let own = fixel_distance(evidence, &touched, sensor);
     let shown = format!(
-        "it reads 1 in {} rows; fixel {} is then {} from the object",
-        touched.len(),
+        "reads 1 in {}, median gap to fixel {} {}",
+        counted(touched.len() as u64, "row"),
         sensor + 1,
         mm(own)
     );
@@ -42,16 +56,15 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     }
     let readings = touched.len() + clear.len();
     if touched.len() as f64 <= evidence.setup.tactile.false_positive * readings as f64 {
-        let found = format!("{shown}, which may be the false alarms of {readings} readings");
+        let found = format!("{shown}, which may be false positives, of {readings} readings");
         return Finding::ok(subject, found);
     }
     // a sensor that reads 0 for a touch is nearer where it reads 0, if it does so at all
     let may_be_swapped = clear.len() < FEWEST || fixel_distance(evidence, &clear, sensor) < own;
     let (false_touches, free) = free_rows(evidence, sensor, near);
     if may_be_swapped && 2 * false_touches > free {
-        let found = format!(
-            "{shown}, and it reads 1 in {false_touches} of {free} rows without any fixel near"
-        );
+        let found =
+            format!("{shown}, and 1 in {false_touches} of {free} rows without a fixel near");
         let (seems, advice) = inverted(clear.len() < FEWEST);
         return Finding::problem(subject, format!("{found}: {seems}"), advice);
     }
@@ -62,7 +75,7 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
     match nearest {
         Some((fixel, gap)) if gap.abs() < near => {
             let found = format!(
-                "{shown}, and fixel {} only {}: sensors are swapped",
+                "{shown}, to fixel {} only {}: sensors are swapped",
                 fixel + 1,
                 mm(gap)
             );
@@ -84,7 +97,7 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
         _ => Finding::problem(
             subject,
             shown,
-            "the outline, the fixel's position or a tag's place on the object is wrong, or the sensor: it reads touches that cannot be",
+            "the outline, the fixel's position or a tag's place on the object is wrong, or the sensor reports touches that cannot be",
         ),
     }
 }
@@ -94,8 +107,8 @@ fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {
 fn inverted(always: bool) -> (&'static str, &'static str) {
     match always {
         true => (
-            "it is stuck at 1, or 0 and 1 seem to be swapped",
-            "see whether it works, and leave its cells empty if not; 1 is a touch, 0 none",
+            "the sensor is stuck at 1, or 0 and 1 seem to be swapped",
+            "test the sensor, and leave its cells empty if it is broken; 1 is a touch, 0 none",
         ),
         false => (
             "0 and 1 seem to be swapped",
@@ -112,7 +125,7 @@ fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
             .iter()
             .filter_map(|row| evidence.fixel_gap(*row, sensor))
     };
-    let found = format!("it reads 1 in fewer than {FEWEST} rows");
+    let found = format!("reads 1 in fewer than {FEWEST} rows");
     let Some(nearest) = gaps().reduce(f64::min) else {
         let found = format!("{found}, and no row has both a reading and an object pose");
         return Finding::ok(subject, found);
@@ -121,17 +134,17 @@ fn silent(evidence: &Evidence<'_>, sensor: usize, clear: &[usize]) -> Finding {
     let leaning = gaps().filter(|gap| *gap < evidence.position_std()).count();
     if leaning > clear.len() / 10 {
         let found = format!(
-            "{found}, though fixel {} is within {} of the object in {leaning} rows",
+            "{found}, but fixel {} is within {} of the object in {leaning} rows",
             sensor + 1,
             mm(evidence.position_std())
         );
-        let advice = "check the fixel's position and whether the sensor works";
+        let advice = "check the fixel's position and the sensor";
         return Finding::warning(subject, found, advice);
     }
     Finding::ok(
         subject,
         format!(
-            "{found}; fixel {} is never nearer than {}",
+            "{found}, smallest gap to fixel {} {}",
             sensor + 1,
             mm(nearest)
         ),

@@ -16,7 +16,7 @@ pub fn assumed_stall_force(setup: &Setup) -> Option<Finding> {
         .stall_force
         .filter(|_| setup.stall_force_assumed)?;
     let found = format!(
-        "pusher.stall_force is missing in the scene: {} N is assumed, {ASSUMED_STALL} times what slides the object",
+        "pusher.stall_force is missing; {} N is assumed, {ASSUMED_STALL} times the force that slides the object",
         three_digits(force)
     );
     Some(match setup.scene.fixels.is_empty() {
@@ -27,7 +27,7 @@ pub fn assumed_stall_force(setup: &Setup) -> Option<Finding> {
         false => Finding::warning(
             Subject::StallForce,
             found,
-            "write the force in N at which the drive gives way, or inf for a rigid one",
+            "give the force in N at which the drive yields, or inf for a rigid drive",
         ),
     })
 }

@@ -2,6 +2,7 @@
 
 use super::evidence::{Evidence, median};
 use super::finding::{Finding, Subject};
+use crate::counted::counted;
 use crate::row::{LONGEST_PAUSE, unit_of_times};
 
 /// Longest typical step of a camera that follows a push (s).
@@ -23,7 +24,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     if steps.is_empty() {
         return vec![Finding::problem(
             Subject::Timing,
-            "the log has a single row",
+            "the log has one row",
             "record one row per camera frame",
         )];
     }
@@ -66,7 +67,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         ),
         (false, 0) => Finding::ok(Subject::Timing, rate),
         (false, holes) => {
-            let found = format!("{rate}; {holes} steps are more than {HOLE} times the typical one");
+            let found = format!(
+                "{rate}; {} longer than {HOLE} times the median",
+                counted(holes as u64, "step")
+            );
             Finding::warning(
                 Subject::Timing,
                 found,

@@ -20,9 +20,11 @@ const GRAVITY: [f64; 2] = [1.0, 30.0];
 const METRES: &str = "give all lengths in metres";
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
-    let found: Vec<Finding> = [size, positions, fixels, mass, inertia, gravity, tripod]
+    let positions = positions(evidence).or_else(|| fixels(evidence));
+    let found: Vec<Finding> = [size, mass, inertia, gravity, tripod]
         .iter()
         .filter_map(|check| check(evidence))
+        .chain(positions)
         .collect();
     if !found.is_empty() {
         return found;
@@ -34,7 +36,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     vec![Finding::ok(
         Subject::Units,
         format!(
-            "object of {} radius and {mass} kg ({:.0} kg/m^2)",
+            "object radius {}, mass {mass} kg ({:.0} kg/m^2)",
             mm(evidence.size()),
             mass / area
         ),
@@ -53,14 +55,17 @@ fn size(evidence: &Evidence<'_>) -> Option<Finding> {
     let dwarfs = spread > 0.0 && size > 50.0 * spread && size > 1.0;
     if size > SIZE[1] || dwarfs {
         return problem(
-            format!("the object has a radius of {size} m: its outline seems to be in millimetres"),
+            format!("object radius {size} m: the outline seems to be in millimetres"),
             METRES,
         );
     }
     (size < SIZE[0]).then(|| {
         Finding::warning(
             Subject::Units,
-            format!("the object has a radius of only {} mm", 1e3 * size),
+            format!(
+                "object radius {} mm, small for an object on a table",
+                1e3 * size
+            ),
             METRES,
         )
     })
@@ -72,7 +77,7 @@ fn positions(evidence: &Evidence<'_>) -> Option<Finding> {
     let far = |what: &str, spread: f64| {
         let times = spread / evidence.size();
         let found = format!(
-            "{what} spread over {spread:.1} m, {times:.0} times the object's radius: they seem to be in millimetres"
+            "{what} span {spread:.1} m, {times:.0} times the object's radius: they seem to be in millimetres"
         );
         problem(found, "divide these columns of the log by 1000")
     };
@@ -110,7 +115,7 @@ fn mass(evidence: &Evidence<'_>) -> Option<Finding> {
     let density = object.mass / area(&object.shape);
     if density > AREAL_DENSITY[1] {
         let found = format!(
-            "the object weighs {} kg on {:.4} m^2, {density:.0} kg/m^2: its mass seems to be in grams",
+            "object mass {} kg on {:.4} m^2, {density:.0} kg/m^2: the mass seems to be in grams",
             object.mass,
             area(&object.shape)
         );
@@ -118,7 +123,7 @@ fn mass(evidence: &Evidence<'_>) -> Option<Finding> {
     }
     let found = || {
         format!(
-            "the object weighs {} kg, {density:.3} kg/m^2: less than paper",
+            "object mass {} kg, {density:.3} kg/m^2: lighter than paper",
             object.mass
         )
     };
@@ -130,7 +135,7 @@ fn inertia(evidence: &Evidence<'_>) -> Option<Finding> {
     let gyration = evidence.setup.scene.object.gyration_radius();
     let share = gyration / evidence.size();
     let found = format!(
-        "the radius of gyration sqrt(J/m) is {}, {share:.2} times the object's radius",
+        "radius of gyration sqrt(J/m) {}, {share:.2} times the object's radius",
         mm(gyration)
     );
     let advice = "give the inertia about the centre of mass in kg m^2";
@@ -149,8 +154,8 @@ fn gravity(evidence: &Evidence<'_>) -> Option<Finding> {
     absurd.then(|| {
         Finding::problem(
             Subject::Units,
-            format!("gravity is {gravity} m/s^2"),
-            "give it in m/s^2: 9.81 on a level table",
+            format!("gravity {gravity} m/s^2, not that of a table top"),
+            "give gravity in m/s^2: 9.81 on a level table",
         )
     })
 }
@@ -160,17 +165,12 @@ fn tripod(evidence: &Evidence<'_>) -> Option<Finding> {
     let tripod = matches!(evidence.setup.scene.feet, Feet::Tripod { .. });
     let found = || {
         format!(
-            "the support tripod has a radius of {radius} m, the object one of {} m",
+            "tripod radius {radius} m, object radius {} m: the feet are not under the object",
             evidence.size()
         )
     };
-    (tripod && radius > evidence.size()).then(|| {
-        Finding::problem(
-            Subject::Units,
-            found(),
-            "feet stand under the object: give the tripod radius in metres",
-        )
-    })
+    (tripod && radius > evidence.size())
+        .then(|| Finding::problem(Subject::Units, found(), "give the tripod radius in metres"))
 }
 
 /// Diagonal of the box about all positions (m).

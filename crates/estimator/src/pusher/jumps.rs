@@ -1,8 +1,9 @@
-//! Wrong poses of the pusher, which are left out: [`JumpGate`].
+//! Measured poses of the pusher as the tracks take them: [`JumpGate`] leaves wrong ones out, and
+//! unwraps angles.
 
 use stickslip_dynamics::Pose;
 
-use crate::angle::wrapped;
+use crate::angle::nearest_winding;
 use crate::log::Log;
 use crate::setup::Camera;
 
@@ -18,6 +19,10 @@ const SIGMAS: f64 = 20.0;
 
 /// Rejects poses that the pusher cannot have reached since the two before: wrong detections of its
 /// tag. If such poses go on, the time to get there grows, until one is accepted.
+///
+/// The angle of an accepted pose is the winding nearest to that of the pose before, since a tracker
+/// of poses may give angles in one turn. Every pose enters the estimator here, in a run over a
+/// whole log as row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpGate {
     position_std: f64,
@@ -28,7 +33,8 @@ pub(crate) struct JumpGate {
     left_out: u32,
 }
 
-/// Returns the accepted pusher poses of `log`, row by row. Without a `camera` poses count as exact.
+/// Returns the accepted pusher poses of `log`, row by row, angles unwrapped. Without a `camera`
+/// poses count as exact.
 pub(crate) fn believed(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
     let mut gate = JumpGate::new(camera);
     let rows = log.time.iter().zip(&log.pusher);
@@ -49,9 +55,17 @@ impl JumpGate {
         }
     }
 
-    /// Returns the pose measured at `time` (s), which rises; `None` if the pusher cannot be there.
+    /// Returns the pose measured at `time` (s), which rises, its angle unwrapped; `None` if the
+    /// pusher cannot be there.
     pub fn pass(&mut self, time: f64, pose: Option<Pose>) -> Option<Pose> {
-        let pose = pose?;
+        let measured = pose?;
+        let pose = match self.latest[0] {
+            Some((_, last)) => Pose {
+                theta: nearest_winding(measured.theta, last.theta),
+                ..measured
+            },
+            None => measured,
+        };
         if let [Some(last), Some(before)] = self.latest
             && self.is_jump((time, pose), last, before)
         {
@@ -76,7 +90,7 @@ impl JumpGate {
         let h = time - t1;
         let ratio = h / (t1 - t0);
         let off = |now: f64, last: f64, before: f64| now - last - ratio * (last - before);
-        let turn = wrapped(pose.theta - last.theta) - ratio * wrapped(last.theta - before.theta);
+        let turn = off(pose.theta, last.theta, before.theta);
         let away = off(pose.x, last.x, before.x).hypot(off(pose.y, last.y, before.y));
         // uneven steps multiply the noise of the extrapolated pose
         let noise = SIGMAS * (1.0 + ratio);

@@ -184,7 +184,12 @@ fn a_latency_is_told_from_the_stop_of_a_fast_pusher() {
     log.object[3..].rotate_right(3);
     log.object.copy_within(6..9, 3);
     let faults = FAST.faults(&log);
-    assert_only(&faults, Severity::Problem, Subject::Latency, "are 0.10");
+    assert_only(
+        &faults,
+        Severity::Problem,
+        Subject::Latency,
+        "camera latency 0.10",
+    );
 }
 
 #[test]
@@ -242,7 +247,7 @@ fn jumps_are_told_of_a_large_object_and_its_pusher() {
     let also = faults.pop().expect("a finding");
     let words = "the pusher jumps at row 45, 2";
     assert_only(&faults, Severity::Problem, Subject::PusherPoses, words);
-    let words = "cannot have come to its pose in row 45: that pose counts as missing";
+    let words = "1 pusher pose that the pusher cannot have reached, first in row 45";
     assert_only(&[also], Severity::Warning, Subject::PusherPoses, words);
     let mut log = push.log();
     (20..25).for_each(|row| moved(&mut log.object[row], 0.025));
@@ -266,7 +271,7 @@ fn a_run_tells_which_poses_of_the_pusher_it_leaves_out() {
     let told = misread(&FAST.setup(), &log);
     let told = told.last().expect("a finding");
     assert_eq!(told.severity, Severity::Warning);
-    let words = "cannot have come to 3 of its poses, the first in row 20: these count as missing";
+    let words = "3 pusher poses that the pusher cannot have reached, first in row 20";
     assert!(told.found.contains(words), "{told}");
     // live, row by row, these are as many
     let options = TrackerOptions::default();

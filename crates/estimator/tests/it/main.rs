@@ -24,3 +24,4 @@ mod track;
 mod tracker;
 mod turned_table;
 mod unseen_pusher;
+mod wrapped_angles;

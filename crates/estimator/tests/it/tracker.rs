@@ -221,7 +221,7 @@ fn rows_that_cannot_be_used_are_refused_and_change_nothing() {
                 tactile: vec![Some(true)],
                 ..at(0.4)
             },
-            "1 tactile readings but the scene has 0 fixels",
+            "1 tactile reading but the scene has 0 fixels",
         ),
         (at(1000.0), "at most 5 s apart"),
         (at(0.05), "the tracker is at 0.3 s and remembers 0.2 s"),

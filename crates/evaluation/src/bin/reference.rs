@@ -16,10 +16,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let number = |place: usize, default: usize| numbers.get(place).copied().unwrap_or(default);
     let (few, many, seeds) = (number(0, 500), number(1, 1_000_000), number(2, 1));
     println!(
-        "{few} particles that move, {many} that are weighed alone; dark rows, touch, contact mode"
+        "{few} particles that move, {many} that are weighed alone; occluded rows, touch, robust model"
     );
     println!(
-        "experiment seed   WMSE mm: few, many   CRPS mm: few, many   holds: few, many   distance   spread"
+        "experiment seed   RMSE mm: few, many   CRPS mm: few, many   covers: few, many   distance   spread"
     );
     for paper in PaperExperiment::ALL {
         for seed in 0..seeds as u64 {

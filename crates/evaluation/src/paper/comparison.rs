@@ -93,7 +93,7 @@ impl Measure {
     pub fn name(self) -> &'static str {
         match self {
             Self::AllRows => "all rows",
-            Self::DarkRows => "dark rows",
+            Self::DarkRows => "occluded rows",
             Self::CameraPoses => "against camera poses",
         }
     }

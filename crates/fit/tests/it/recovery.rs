@@ -150,7 +150,7 @@ fn other_pushes_are_predicted_as_a_fold_is() {
     let (said, scene): (Vec<&str>, Vec<&str>) =
         text.lines().partition(|line| line.starts_with('#'));
     assert_eq!(scene.join("\n").trim(), common::SCENE.trim());
-    assert!(said.concat().contains("first guesses"), "{text}");
+    assert!(said.concat().contains("nominal values"), "{text}");
 }
 
 #[test]

@@ -37,7 +37,7 @@ pub enum OutlineProblem {
         next: &'static str,
     },
     /// A number that is none.
-    #[error("`{found}` is no {expected}. Save the drawing anew")]
+    #[error("`{found}` is no {expected}. Save the drawing again")]
     Number {
         /// The text found.
         found: String,

@@ -5,12 +5,13 @@
 
 use std::ops::Range;
 
+use stickslip::{Rule, Unit};
+use stickslip_dynamics::Pose;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{SceneError, SceneProblem};
-use super::keys::{keys_of, nearest_key};
-use super::quantity::Quantity;
+use super::keys::{Key, key, names_of, nearest_key};
 
 type Result<T> = std::result::Result<T, SceneError>;
 
@@ -21,17 +22,21 @@ pub(super) struct Source<'a> {
     pub(super) text: &'a str,
 }
 
-/// A table with the keys it may have.
+/// A table of the format.
 pub(super) struct Table<'a> {
     source: Source<'a>,
+    /// Its name in the format, as `fixel`.
+    name: &'static str,
+    /// The way to it in the file, as `fixel[1]`.
     path: String,
     span: Range<usize>,
     entries: &'a DeTable<'a>,
 }
 
-/// A value with the way to it.
+/// A value, or a part of one, with its key and the way to it.
 pub(super) struct Node<'a> {
     source: Source<'a>,
+    key: &'static Key,
     path: String,
     value: &'a Spanned<DeValue<'a>>,
 }
@@ -76,71 +81,62 @@ impl<'a> Table<'a> {
     pub(super) fn root(source: Source<'a>, document: &'a Spanned<DeTable<'a>>) -> Result<Self> {
         let table = Self {
             source,
+            name: "",
             path: String::new(),
             span: 0..0,
             entries: document.get_ref(),
         };
-        table.check_keys(keys_of(""))?;
+        table.check_keys()?;
         Ok(table)
     }
 
     /// The value of a key, if it is there.
-    pub(super) fn optional(&self, key: &str) -> Option<Node<'a>> {
-        let value = self.entries.get(key)?;
+    pub(super) fn optional(&self, name: &str) -> Option<Node<'a>> {
+        let key = key(self.name, name);
+        let value = self.entries.get(name)?;
         Some(Node {
             source: self.source,
-            path: self.path_to(key),
+            key,
+            path: self.path_to(name),
             value,
         })
     }
 
-    /// The value of a key that must be there; `what` completes "Give ...".
-    pub(super) fn required(&self, key: &str, what: &str) -> Result<Node<'a>> {
-        self.optional(key).ok_or_else(|| {
+    /// The value of a key that must be there.
+    pub(super) fn required(&self, name: &str) -> Result<Node<'a>> {
+        self.optional(name).ok_or_else(|| {
             let problem = SceneProblem::Missing {
-                key: self.path_to(key),
-                what: what.to_owned(),
+                key: self.path_to(name),
+                what: key(self.name, name).order(),
             };
             self.source.error(self.span.start, problem)
         })
     }
 
-    /// A table of the format that must be there.
-    pub(super) fn section(&self, key: &str) -> Result<Table<'a>> {
-        let what = format!(
-            "the table [{key}] with keys among {}",
-            keys_of(key).join(", ")
-        );
-        self.required(key, &what)?.table(keys_of(key), &what)
+    /// A table that must be there.
+    pub(super) fn section(&self, name: &str) -> Result<Table<'a>> {
+        self.required(name)?.table()
     }
 
-    /// A table of the format, if it is there.
-    pub(super) fn section_if(&self, key: &str) -> Result<Option<Table<'a>>> {
-        self.optional(key)
-            .map(|node| node.table(keys_of(key), &format!("it as the table [{key}]")))
-            .transpose()
+    /// A table, if it is there.
+    pub(super) fn section_if(&self, name: &str) -> Result<Option<Table<'a>>> {
+        self.optional(name).map(|node| node.table()).transpose()
     }
 
     /// A number that must be there.
-    pub(super) fn number(&self, quantity: &Quantity) -> Result<f64> {
-        self.required(quantity.key, &quantity.order())?
-            .number(quantity)
-    }
-
-    /// A number, if it is there.
-    pub(super) fn number_if(&self, quantity: &Quantity) -> Result<Option<f64>> {
-        self.optional(quantity.key)
-            .map(|node| node.number(quantity))
-            .transpose()
+    pub(super) fn number(&self, name: &str) -> Result<f64> {
+        self.required(name)?.number()
     }
 
     /// A number, or the default where it is not there.
-    pub(super) fn number_or(&self, quantity: &Quantity, default: f64) -> Result<f64> {
-        Ok(self.number_if(quantity)?.unwrap_or(default))
+    pub(super) fn number_or(&self, name: &str, default: f64) -> Result<f64> {
+        self.optional(name)
+            .map_or(Ok(default), |node| node.number())
     }
 
     /// The first key, in the order of the file, that is not known is an error.
-    fn check_keys(&self, known: &[&str]) -> Result<()> {
+    fn check_keys(&self) -> Result<()> {
+        let known = names_of(self.name);
         let unknown = self
             .entries
             .iter()
@@ -148,7 +144,7 @@ impl<'a> Table<'a> {
         let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else {
             return Ok(());
         };
-        let nearest = nearest_key(key.get_ref(), known);
+        let nearest = nearest_key(key.get_ref(), self.name);
         let problem = SceneProblem::UnknownKey {
             key: self.path_to(key.get_ref()),
             nearest,
@@ -181,35 +177,42 @@ impl<'a> Node<'a> {
         self.source.error(self.value.span().start, problem)
     }
 
-    /// The value as a table that has no other keys than `known`; `what` completes "Give ...".
-    pub(super) fn table(&self, known: &[&str], what: &str) -> Result<Table<'a>> {
+    /// The value as the table of the format that its key names.
+    pub(super) fn table(&self) -> Result<Table<'a>> {
+        self.table_of(self.key.name)
+    }
+
+    /// The value as a table of the format.
+    pub(super) fn table_of(&self, name: &'static str) -> Result<Table<'a>> {
         let DeValue::Table(entries) = self.value.get_ref() else {
-            return Err(self.wrong_type("a table", what));
+            return Err(self.wrong_type("a table"));
         };
         let table = Table {
             source: self.source,
+            name,
             path: self.path.clone(),
             span: self.value.span(),
             entries,
         };
-        table.check_keys(known)?;
+        table.check_keys()?;
         Ok(table)
     }
 
-    /// The entries of a table whose keys are free; `what` completes "Give ...".
-    pub(super) fn entries(&self, what: &str) -> Result<Vec<(String, Node<'a>)>> {
+    /// The entries of a table whose keys are free.
+    pub(super) fn entries(&self) -> Result<Vec<(String, Node<'a>)>> {
         let DeValue::Table(entries) = self.value.get_ref() else {
-            return Err(self.wrong_type("a table", what));
+            return Err(self.wrong_type("a table"));
         };
         let node =
-            |key: &Spanned<std::borrow::Cow<'a, str>>, value: &'a Spanned<DeValue<'a>>| Node {
+            |name: &Spanned<std::borrow::Cow<'a, str>>, value: &'a Spanned<DeValue<'a>>| Node {
                 source: self.source,
-                path: format!("{}.{}", self.path, key.get_ref()),
+                key: self.key,
+                path: format!("{}.{}", self.path, name.get_ref()),
                 value,
             };
         let named = entries
             .iter()
-            .map(|(key, value)| (key.get_ref().to_string(), node(key, value)));
+            .map(|(name, value)| (name.get_ref().to_string(), node(name, value)));
         Ok(named.collect())
     }
 
@@ -218,18 +221,19 @@ impl<'a> Node<'a> {
         matches!(self.value.get_ref(), DeValue::Array(_))
     }
 
-    /// The list is empty and must not be; `what` completes "Give ...".
-    pub(super) fn empty(&self, what: &str) -> SceneError {
-        self.wrong("an empty list".to_owned(), "a list with entries", what)
+    /// The list is empty and must not be.
+    pub(super) fn empty(&self) -> SceneError {
+        self.wrong("an empty list".to_owned(), "a list with entries")
     }
 
-    /// The items of a list; `what` completes "Give ...".
-    pub(super) fn items(&self, what: &str) -> Result<Vec<Node<'a>>> {
+    /// The items of a list.
+    pub(super) fn items(&self) -> Result<Vec<Node<'a>>> {
         let DeValue::Array(items) = self.value.get_ref() else {
-            return Err(self.wrong_type("a list", what));
+            return Err(self.wrong_type("a list"));
         };
         let node = |(index, value)| Node {
             source: self.source,
+            key: self.key,
             path: format!("{}[{}]", self.path, index + 1),
             value,
         };
@@ -237,45 +241,57 @@ impl<'a> Node<'a> {
     }
 
     /// A list of exactly N items.
-    pub(super) fn exactly<const N: usize>(&self, what: &str) -> Result<[Node<'a>; N]> {
-        let items = self.items(what)?;
+    pub(super) fn exactly<const N: usize>(&self) -> Result<[Node<'a>; N]> {
+        let items = self.items()?;
         let count = items.len();
-        items.try_into().map_err(|_| {
-            self.wrong(
-                format!("a list of {count}"),
-                &format!("a list of {N}"),
-                what,
-            )
-        })
+        items
+            .try_into()
+            .map_err(|_| self.wrong(format!("a list of {count}"), &format!("a list of {N}")))
     }
 
-    /// A list of two numbers under one rule.
-    pub(super) fn pair(&self, quantity: &Quantity) -> Result<[f64; 2]> {
-        let [first, second] = self.exactly::<2>(&quantity.order())?;
-        Ok([first.number(quantity)?, second.number(quantity)?])
+    /// A list of two numbers under the key's rule.
+    pub(super) fn pair(&self) -> Result<[f64; 2]> {
+        let [first, second] = self.exactly::<2>()?;
+        Ok([first.number()?, second.number()?])
     }
 
-    /// A number, whole numbers included, under the quantity's rule.
-    pub(super) fn number(&self, quantity: &Quantity) -> Result<f64> {
-        let value = self
-            .float()
-            .ok_or_else(|| self.wrong_type("a number", &quantity.order()))?;
-        match quantity.rule.broken_by(value, quantity.unit) {
+    /// A list of x, y (m) and theta (rad).
+    pub(super) fn pose(&self) -> Result<Pose> {
+        let [x, y, theta] = self.exactly::<3>()?;
+        let metres = |node: &Self| node.number_in(Unit::Metre, Rule::Finite);
+        let theta = theta.number_in(Unit::Radian, Rule::Finite);
+        Ok(Pose::new(metres(&x)?, metres(&y)?, theta?))
+    }
+
+    /// A number, whole numbers included, under the key's rule.
+    pub(super) fn number(&self) -> Result<f64> {
+        self.number_in(self.key.unit, self.key.rule)
+    }
+
+    /// A number under a rule.
+    pub(super) fn number_in(&self, unit: Unit, rule: Rule) -> Result<f64> {
+        let value = self.float().ok_or_else(|| self.wrong_type("a number"))?;
+        match rule.broken_by(value, unit) {
             None => Ok(value),
-            Some(rule) => Err(self.out_of_range(&rule, quantity)),
+            Some(rule) => Err(self.out_of_range_in(&rule, unit)),
         }
     }
 
     /// The value is against a rule, put in words.
-    pub(super) fn out_of_range(&self, rule: &str, quantity: &Quantity) -> SceneError {
-        let found = format!("{} {}", self.text(), quantity.unit.symbol())
+    pub(super) fn out_of_range(&self, rule: &str) -> SceneError {
+        self.out_of_range_in(rule, self.key.unit)
+    }
+
+    /// An error about a value in a unit that is not the key's.
+    pub(super) fn out_of_range_in(&self, rule: &str, unit: Unit) -> SceneError {
+        let found = format!("{} {}", self.text(), unit.symbol())
             .trim_end()
             .to_owned();
         self.error(SceneProblem::OutOfRange {
             key: self.path.clone(),
             found,
             rule: rule.to_owned(),
-            what: quantity.order(),
+            what: self.key.order(),
         })
     }
 
@@ -289,16 +305,16 @@ impl<'a> Node<'a> {
         }
     }
 
-    fn wrong_type(&self, expected: &str, what: &str) -> SceneError {
-        self.wrong(self.kind(), expected, what)
+    fn wrong_type(&self, expected: &str) -> SceneError {
+        self.wrong(self.kind(), expected)
     }
 
-    fn wrong(&self, found: String, expected: &str, what: &str) -> SceneError {
+    fn wrong(&self, found: String, expected: &str) -> SceneError {
         self.error(SceneProblem::WrongType {
             key: self.path.clone(),
             found,
             expected: expected.to_owned(),
-            what: what.to_owned(),
+            what: self.key.order(),
         })
     }
 

@@ -21,6 +21,14 @@ pub struct SceneError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneProblem {
+    /// The file is too large for a scene.
+    #[error(
+        "the file has {found} bytes; a scene has at most 1 MB. Give the path of the scene file, or simplify its outlines"
+    )]
+    TooLarge {
+        /// Its size (bytes).
+        found: usize,
+    },
     /// The text is not TOML.
     #[error(
         "`{found}` is not TOML: {message}. Write `key = value` with one value a line, numbers without a unit, and tables as [name]"

@@ -9,7 +9,6 @@ mod feet;
 mod keys;
 mod new_scene;
 mod plate;
-mod quantity;
 mod schema;
 mod sensing;
 mod shapes;
@@ -19,7 +18,7 @@ mod uncertainty;
 
 use std::f64::consts::FRAC_PI_2;
 
-use stickslip::{ASSUMED_STALL, FilterSettings, Rule, Setup, Unit};
+use stickslip::{ASSUMED_STALL, FilterSettings, Setup};
 use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
@@ -28,83 +27,15 @@ use crate::mounts::Mounts;
 use document::{Node, Source, Table};
 pub use edit::{SceneEdit, SceneWayError};
 pub use error::{SceneError, SceneProblem};
-use keys::keys_of;
 pub use new_scene::NEW_SCENE;
 use plate::Plate;
-use quantity::Quantity;
 pub use schema::scene_schema;
 use shapes::shape;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
-const GRAVITY: Quantity = Quantity::new(
-    "gravity",
-    "the gravity that presses the object on the support",
-    Unit::MetrePerSecond2,
-    Rule::Positive,
-);
-const MASS: Quantity = Quantity::new("mass", "the object's mass", Unit::Kilogram, Rule::Positive);
-const INERTIA: Quantity = Quantity::new(
-    "inertia",
-    "the object's moment of inertia about its centre of mass",
-    Unit::KilogramMetre2,
-    Rule::Positive,
-);
-const MU_S: Quantity = Quantity::new(
-    "friction",
-    "the nominal friction coefficient between object and support",
-    Unit::None,
-    Rule::NotNegative,
-);
-const MU_P: Quantity = Quantity::new(
-    "friction",
-    "the nominal friction coefficient between object and pusher",
-    Unit::None,
-    Rule::NotNegative,
-);
-const MU_F: Quantity = Quantity::new(
-    "friction",
-    "the nominal friction coefficient between object and fixels",
-    Unit::None,
-    Rule::NotNegative,
-);
-const TRIPOD_RADIUS: Quantity = Quantity::new(
-    "tripod_radius",
-    "the nominal radius of the support tripod",
-    Unit::Metre,
-    Rule::Positive,
-);
-const TRIPOD_ANGLE: Quantity = Quantity::new(
-    "tripod_angle",
-    "the direction of the first foot in the object frame",
-    Unit::Radian,
-    Rule::Finite,
-);
-const FOOT: Quantity = Quantity::new(
-    "feet",
-    "three feet as [[x, y], [x, y], [x, y]] in the object frame",
-    Unit::Metre,
-    Rule::Finite,
-);
-const FOOT_LOADS: Quantity = Quantity::new(
-    "foot_loads",
-    "the share of the weight on each of the three feet, as far as friction goes",
-    Unit::None,
-    Rule::NotNegative,
-);
-const STALL_FORCE: Quantity = Quantity::new(
-    "stall_force",
-    "the force at which the drive gives way",
-    Unit::Newton,
-    Rule::PositiveOrInfinite,
-);
-const POSITION: Quantity = Quantity::new(
-    "position",
-    "the fixel's position in the world as [x, y]",
-    Unit::Metre,
-    Rule::Finite,
-);
-const ANGLE: Quantity = Quantity::new("angle", "the fixel's angle", Unit::Radian, Rule::Finite);
+/// Largest scene file (bytes).
+const LARGEST: usize = 1_000_000;
 
 /// Reads a scene file; `name` is shown in errors.
 ///
@@ -151,27 +82,27 @@ pub fn read_mounts(text: &str, name: &str) -> Result<Mounts> {
 /// ```
 /// let scene = "[object]\nmass = 0.5\nshape = [ { disc = { radius = 0.02 } } ]\n[support]\nfeet = [[0.01, 0], [-0.01, 0.01], [-0.01, -0.01]]\n";
 /// let assumed = stickslip_formats::scene_assumptions(scene, "scene.toml")?;
-/// assert_eq!(assumed, ["object.inertia is missing: 1.000e-4 kg m^2 is taken, that of a uniform plate"]);
+/// assert_eq!(assumed, ["object.inertia is missing; 1.000e-4 kg m^2 is assumed, that of a uniform plate"]);
 /// # Ok::<(), stickslip_formats::SceneError>(())
 /// ```
 pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
     parsed(text, name, |root| {
         let (table, support) = (root.section("object")?, root.section("support")?);
         let mut lines = Vec::new();
-        if table.optional(INERTIA.key).is_none() {
+        if table.optional("inertia").is_none() {
             let inertia = object(&table)?.inertia;
             lines.push(format!(
-                "object.inertia is missing: {} kg m^2 is taken, that of a uniform plate",
+                "object.inertia is missing; {} kg m^2 is assumed, that of a uniform plate",
                 format_args!("{inertia:.3e}")
             ));
         }
-        if [FOOT.key, TRIPOD_RADIUS.key]
+        if ["feet", "tripod_radius"]
             .iter()
             .all(|key| support.optional(key).is_none())
         {
             let (_, radius) = feet(&support, &table)?;
             lines.push(format!(
-                "support.tripod_radius is missing: {radius:.4} m is taken, the mean distance of the outline's inside from the centre of mass"
+                "support.tripod_radius is missing; {radius:.4} m is assumed, the mean distance of the outline's inside from the centre of mass"
             ));
         }
         Ok(lines)
@@ -181,6 +112,10 @@ pub fn scene_assumptions(text: &str, name: &str) -> Result<Vec<String>> {
 /// Result of `read` on the document.
 fn parsed<T>(text: &str, name: &str, read: impl FnOnce(&Table<'_>) -> Result<T>) -> Result<T> {
     let source = Source { name, text };
+    if text.len() > LARGEST {
+        let found = text.len();
+        return Err(source.error(0, SceneProblem::TooLarge { found }));
+    }
     let document = DeTable::parse(text).map_err(|error| syntax_error(source, &error))?;
     read(&Table::root(source, &document)?)
 }
@@ -207,7 +142,7 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
     let by_default = FilterSettings::around(&scene.nominal);
     let unknown = uncertainty::with_support(&root.section("support")?);
     Ok(Setup {
-        stall_force_assumed: root.section("pusher")?.optional(STALL_FORCE.key).is_none(),
+        stall_force_assumed: root.section("pusher")?.optional("stall_force").is_none(),
         camera: root
             .section_if("camera")?
             .as_ref()
@@ -239,14 +174,14 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
 }
 
 fn scene(root: &Table<'_>) -> Result<Scene> {
-    let gravity = root.number(&GRAVITY)?;
+    let gravity = root.number("gravity")?;
     let body = root.section("object")?;
     let object = object(&body)?;
     let support = root.section("support")?;
-    let (mu_s, (feet, d_tri)) = (support.number(&MU_S)?, feet(&support, &body)?);
+    let (mu_s, (feet, d_tri)) = (support.number("friction")?, feet(&support, &body)?);
     let sliding = mu_s * object.mass * gravity;
     let (mu_p, pusher) = pusher(&root.section("pusher")?, sliding)?;
-    let mu_f = root.section("fixels")?.number(&MU_F)?;
+    let mu_f = root.section("fixels")?.number("friction")?;
     Ok(Scene {
         gravity,
         object,
@@ -263,9 +198,9 @@ fn scene(root: &Table<'_>) -> Result<Scene> {
 }
 
 fn object(table: &Table<'_>) -> Result<Object> {
-    let mass = table.number(&MASS)?;
-    let inertia = match table.optional(INERTIA.key) {
-        Some(_) => table.number(&INERTIA)?,
+    let mass = table.number("mass")?;
+    let inertia = match table.optional("inertia") {
+        Some(inertia) => inertia.number()?,
         None => mass * plate(table, "object.inertia")?.mean_square,
     };
     Ok(Object {
@@ -284,7 +219,7 @@ fn plate(table: &Table<'_>, key: &'static str) -> Result<Plate> {
     let [x, y] = plate.centre;
     if x * x + y * y > OFF * OFF * plate.mean_square {
         let problem = SceneProblem::OffCentre { key, x, y };
-        return Err(table.required("shape", "the outline")?.error(problem));
+        return Err(table.required("shape")?.error(problem));
     }
     Ok(plate)
 }
@@ -295,7 +230,7 @@ fn pusher(table: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
         shape: shape(table)?,
         stall_force: stall_force(table, sliding)?,
     };
-    Ok((table.number(&MU_P)?, pusher))
+    Ok((table.number("friction")?, pusher))
 }
 
 /// The force (N) at which the drive yields; `None` where the file says that it never does.
@@ -306,9 +241,9 @@ fn pusher(table: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
 fn stall_force(table: &Table<'_>, sliding: f64) -> Result<Option<f64>> {
     let assumed = ASSUMED_STALL * sliding;
     let force = if assumed > 0.0 && assumed.is_finite() {
-        table.number_or(&STALL_FORCE, assumed)?
+        table.number_or("stall_force", assumed)?
     } else {
-        table.number(&STALL_FORCE)?
+        table.number("stall_force")?
     };
     Ok(force.is_finite().then_some(force))
 }
@@ -316,12 +251,12 @@ fn stall_force(table: &Table<'_>, sliding: f64) -> Result<Option<f64>> {
 /// The feet with the nominal d_tri; where the file has none, that of a plate of the object's
 /// outline.
 fn feet(support: &Table<'_>, object: &Table<'_>) -> Result<(Feet, f64)> {
-    match support.optional(FOOT.key) {
+    match support.optional("feet") {
         Some(feet) => known_feet(support, &feet),
         None => {
-            let angle = support.number_or(&TRIPOD_ANGLE, FRAC_PI_2)?;
-            let radius = match support.optional(TRIPOD_RADIUS.key) {
-                Some(_) => support.number(&TRIPOD_RADIUS)?,
+            let angle = support.number_or("tripod_angle", FRAC_PI_2)?;
+            let radius = match support.optional("tripod_radius") {
+                Some(radius) => radius.number()?,
                 None => plate(object, "support.tripod_radius")?.mean_radius,
             };
             Ok((Feet::Tripod { angle }, radius))
@@ -331,14 +266,14 @@ fn feet(support: &Table<'_>, object: &Table<'_>) -> Result<(Feet, f64)> {
 
 /// Known feet; their mean radius stands in for the d_tri that nothing uses.
 fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
-    for key in [TRIPOD_RADIUS.key, TRIPOD_ANGLE.key] {
+    for key in ["tripod_radius", "tripod_angle"] {
         if let Some(tripod) = support.optional(key) {
             return Err(tripod.error(SceneProblem::FeetAndTripod { key }));
         }
     }
-    let [a, b, c] = node.exactly::<3>(&format!("{} in {}", FOOT.what, FOOT.unit.symbol()))?;
-    let positions = [a.pair(&FOOT)?, b.pair(&FOOT)?, c.pair(&FOOT)?];
-    let loads = match support.optional(FOOT_LOADS.key) {
+    let [a, b, c] = node.exactly::<3>()?;
+    let positions = [a.pair()?, b.pair()?, c.pair()?];
+    let loads = match support.optional("foot_loads") {
         None => feet::loads(positions).map_err(|problem| node.error(problem))?,
         Some(given) => given_loads(&given)?,
     };
@@ -349,35 +284,25 @@ fn known_feet(support: &Table<'_>, node: &Node<'_>) -> Result<(Feet, f64)> {
 /// Loads that are not those of statics: where friction acts about another point than the centre of
 /// mass.
 fn given_loads(node: &Node<'_>) -> Result<[f64; 3]> {
-    let [a, b, c] = node.exactly::<3>(FOOT_LOADS.what)?;
-    let loads = [
-        a.number(&FOOT_LOADS)?,
-        b.number(&FOOT_LOADS)?,
-        c.number(&FOOT_LOADS)?,
-    ];
+    let [a, b, c] = node.exactly::<3>()?;
+    let loads = [a.number()?, b.number()?, c.number()?];
     if (loads.iter().sum::<f64>() - 1.0).abs() > 1e-6 {
-        return Err(node.out_of_range("three shares that sum to 1", &FOOT_LOADS));
+        return Err(node.out_of_range("three shares that sum to 1"));
     }
     Ok(loads)
 }
 
 fn fixels(root: &Table<'_>) -> Result<Vec<Fixel>> {
-    let what = "each fixel as a table [[fixel]] with the keys position, angle, shape";
     let Some(node) = root.optional("fixel") else {
         return Ok(Vec::new());
     };
     let fixel = |node: &Node<'_>| {
-        let table = node.table(keys_of("fixel"), what)?;
-        let [x, y] = table
-            .required(
-                POSITION.key,
-                &format!("{} in {}", POSITION.what, POSITION.unit.symbol()),
-            )?
-            .pair(&POSITION)?;
+        let table = node.table()?;
+        let [x, y] = table.required("position")?.pair()?;
         Ok(Fixel {
-            pose: Pose::new(x, y, table.number_or(&ANGLE, 0.0)?),
+            pose: Pose::new(x, y, table.number_or("angle", 0.0)?),
             shape: shape(&table)?,
         })
     };
-    node.items(what)?.iter().map(fixel).collect()
+    node.items()?.iter().map(fixel).collect()
 }

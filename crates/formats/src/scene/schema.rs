@@ -1,25 +1,23 @@
 //! The JSON schema of `scene.toml`, by which editors complete and check it: [`scene_schema`].
 
+use std::ops::Bound::{self, Excluded, Included};
+use std::ops::RangeInclusive;
+
 use serde_json::{Map, Value, json};
+use stickslip::{Rule, Unit};
 
-use super::keys::{TABLES, keys_of};
+use super::keys::{Form, Key, Need, keys_of};
+use super::shapes::{MOST_PARTS, MOST_VERTICES};
 
-/// Keys of a table that must be there.
-const REQUIRED: [(&str, &[&str]); 6] = [
-    ("", &["gravity", "object", "support", "pusher", "fixels"]),
-    ("object", &["mass", "shape"]),
-    ("support", &["friction"]),
-    ("pusher", &["shape", "friction"]),
-    ("fixels", &["friction"]),
-    ("fixel", &["position", "shape"]),
-];
-
-/// The JSON schema of `scene.toml`, pretty, with a newline at its end. Its keys are those that the
-/// reader knows; ranges, shapes that cannot be and what excludes what, the reader alone checks.
+/// The JSON schema of `scene.toml`, pretty, with a newline at its end. Each key has its meaning,
+/// unit, default and range. The reader alone checks shapes, keys that exclude each other, and
+/// numbers next to 0 that are too small for their unit.
 ///
 /// ```
 /// let schema: serde_json::Value = serde_json::from_str(&stickslip_formats::scene_schema())?;
-/// assert_eq!(schema["properties"]["object"]["required"][0], "mass");
+/// let object = &schema["properties"]["object"];
+/// assert_eq!(object["required"][0], "mass");
+/// assert_eq!(object["properties"]["mass"]["description"], "The object's mass. Unit: kg. Required.");
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[must_use]
@@ -32,59 +30,110 @@ pub fn scene_schema() -> String {
 
 /// The schema of a table, its tables within it.
 fn table(name: &str) -> Value {
-    let properties = keys_of(name).iter().map(|key| {
-        let of_table = name.is_empty() && TABLES.iter().any(|(table, _)| table == key);
-        let value = match *key {
-            "fixel" => json!({ "type": "array", "items": table(key) }),
-            key if of_table => table(key),
-            key => value(name, key),
-        };
-        ((*key).to_owned(), value)
-    });
-    let required = REQUIRED.iter().find(|(table, _)| *table == name);
+    let keys = keys_of(name).iter();
+    let properties = keys.clone().map(|key| (key.name.to_owned(), property(key)));
+    let required = keys.filter(|key| key.need == Need::Required);
     json!({
         "type": "object",
         "additionalProperties": false,
         "properties": properties.collect::<Map<_, _>>(),
-        "required": required.map_or(&[][..], |(_, keys)| keys),
+        "required": required.map(|key| key.name).collect::<Vec<_>>(),
     })
 }
 
-/// The schema of a value that is no table of the format: a number, but for these.
-fn value(table: &str, key: &str) -> Value {
-    match (table, key) {
-        (_, "shape") => json!({ "type": "array", "minItems": 1, "items": part() }),
-        (_, "tags") => json!({ "type": "object", "additionalProperties": numbers(3) }),
-        ("support", "feet") => {
-            json!({ "type": "array", "items": numbers(2), "minItems": 3, "maxItems": 3 })
+/// The schema of a key: its value, what it means and what it is by default.
+fn property(key: &Key) -> Value {
+    let mut schema = value(key);
+    schema["description"] = description(key).into();
+    if let Need::Or(default) = key.need {
+        schema["default"] = serde_json::from_str(default).expect("a default is a JSON value");
+    }
+    schema
+}
+
+fn description(key: &Key) -> String {
+    let unit = match (key.form, key.unit) {
+        (Form::Pose | Form::Poses, _) => " Unit: m, rad.".to_owned(),
+        (Form::Shape, _) => " Unit: m.".to_owned(),
+        (_, Unit::None) => String::new(),
+        (_, unit) => format!(" Unit: {}.", unit.symbol()),
+    };
+    let default = match key.need {
+        Need::Required => " Required.".to_owned(),
+        Need::Optional => String::new(),
+        Need::Or(default) | Need::Derived(default) => format!(" Default: {default}."),
+    };
+    let mut what = key.what.trim_end_matches(',').to_owned();
+    if let Some(first) = what.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    format!("{what}.{unit}{default} {}", key.note)
+        .trim_end()
+        .to_owned()
+}
+
+/// The schema of a key's value.
+fn value(key: &Key) -> Value {
+    let number = || number(key.unit, key.rule);
+    let point = || list(number(), 2..=2);
+    let pose = || list(self::number(Unit::Metre, Rule::Finite), 3..=3);
+    match key.form {
+        Form::Number => number(),
+        Form::Pair => point(),
+        Form::Triple => list(number(), 3..=3),
+        Form::Pose => pose(),
+        Form::Poses => json!({ "type": "object", "additionalProperties": pose() }),
+        Form::Feet => list(point(), 3..=3),
+        Form::Points => list(point(), 3..=MOST_VERTICES),
+        Form::Speed => {
+            let mut knot = point();
+            knot["items"] = json!([self::number(Unit::Second, Rule::NotNegative), number()]);
+            json!({ "anyOf": [number(), list(knot, 1..=usize::MAX)] })
         }
-        ("support", "foot_loads") | ("start", "object" | "pusher") => numbers(3),
-        ("fixel", "position") | ("filter", "mu_s" | "mu_p" | "mu_f" | "d_tri") => numbers(2),
-        ("start", "speed") => {
-            json!({ "anyOf": [number(), { "type": "array", "items": numbers(2) }] })
-        }
-        _ => number(),
+        Form::Shape => list(part(), 1..=MOST_PARTS),
+        Form::Table => table(key.name),
+        Form::Tables => list(table(key.name), 0..=usize::MAX),
     }
 }
 
-fn number() -> Value {
-    json!({ "type": "number" })
+/// A number within what a rule allows in a unit.
+fn number(unit: Unit, rule: Rule) -> Value {
+    let mut schema = json!({ "type": "number" });
+    if rule == Rule::PositiveOrInfinite {
+        // JSON has no infinity: who turns TOML into JSON makes it null
+        schema["type"] = json!(["number", "null"]);
+    }
+    let mut limit = |limit: Bound<f64>, [included, excluded]: [&str; 2]| match limit {
+        Included(limit) => schema[included] = limit.into(),
+        Excluded(limit) => schema[excluded] = limit.into(),
+        Bound::Unbounded => {}
+    };
+    let (least, most) = rule.range(unit);
+    limit(least, ["minimum", "exclusiveMinimum"]);
+    limit(most, ["maximum", "exclusiveMaximum"]);
+    schema
 }
 
-fn numbers(count: usize) -> Value {
-    json!({ "type": "array", "items": number(), "minItems": count, "maxItems": count })
+fn list(items: Value, count: RangeInclusive<usize>) -> Value {
+    let mut schema = json!({ "type": "array", "items": items });
+    if *count.start() > 0 {
+        schema["minItems"] = (*count.start()).into();
+    }
+    if *count.end() < usize::MAX {
+        schema["maxItems"] = (*count.end()).into();
+    }
+    schema
 }
 
-/// A part of a shape: exactly one of the three kinds.
+/// A part of a shape: exactly one of its kinds.
 fn part() -> Value {
-    let kind = |name: &str, value: Value| json!({ "type": "object", "additionalProperties": false, "properties": { name: value }, "required": [name] });
-    let body = |properties: Value, required: &str| json!({ "type": "object", "additionalProperties": false, "properties": properties, "required": [required] });
-    let vertices = json!({ "type": "array", "items": numbers(2), "minItems": 3 });
-    let disc = json!({ "radius": number(), "centre": numbers(2) });
-    let ellipse = json!({ "semi_axes": numbers(2), "centre": numbers(2), "angle": number() });
-    json!({ "oneOf": [
-        kind("polygon", vertices),
-        kind("disc", body(disc, "radius")),
-        kind("ellipse", body(ellipse, "semi_axes")),
-    ] })
+    let kinds = keys_of("part").iter().map(|key| {
+        json!({
+            "type": "object",
+            "additionalProperties": false,
+            "properties": { key.name: property(key) },
+            "required": [key.name],
+        })
+    });
+    json!({ "oneOf": kinds.collect::<Vec<_>>() })
 }

@@ -35,6 +35,33 @@ fn refused(text: &str, place: &str, words: &[&str]) {
 }
 
 #[test]
+fn log_with_a_cut_last_row_is_read_up_to_there_with_a_warning() {
+    let header = format!("{HEADER},tactile_1,pusher_force_x,pusher_force_y");
+    let whole = "0,1,2,3,4,5,6,1,7,8\n0.03,1,2,3,,,,0,,\n";
+    let row = "0.07,1,2,3,4,5,6,1,7,-8e-3";
+    let (expected, _) = read(&format!("{header}\n{whole}"));
+    for length in 1..row.len() {
+        let cut = &row[..length];
+        let (log, warnings) = read(&format!("{header}\n{whole}{cut}"));
+        if cut.ends_with("-8") {
+            // it may be whole
+            assert_eq!((log.len(), warnings), (3, vec![]));
+            continue;
+        }
+        assert_eq!(log, expected, "{cut}");
+        let [LogWarning::CutOff { at, size, why, .. }] = &warnings[..] else {
+            panic!("{cut}: {warnings:?}");
+        };
+        let before = (header.len() + 1 + whole.len()) as u64;
+        assert_eq!((*at, *size), (before, before + length as u64));
+        assert!(warnings[0].is_loss() && why.contains("line 4"), "{why}");
+    }
+    // a row with an end is judged as it is, and a log of a cut row alone is none
+    refused(&format!("{header}\n{whole}0.07,1\n"), "4", &["2 cells"]);
+    refused(&format!("{header}\n0.07,1"), "2", &["2 cells"]);
+}
+
+#[test]
 fn full_log_arrives() {
     let text = format!(
         "{HEADER},tactile_1,tactile_2,pusher_force_x,pusher_force_y\n0,1,2,3,4,5,6,0,1,7,8\n0.03,,,,,,,,,,\n0.07,1e-3,-2.5,+3,.5,5.,6,1,0,-7,0\n"

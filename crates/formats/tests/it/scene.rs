@@ -40,6 +40,14 @@ fn full_scene_bodies_arrive() {
 }
 
 #[test]
+fn scene_above_1_mb_is_refused_and_at_1_mb_read() {
+    let text = |bytes: usize| format!("{LEAST}#{}", "x".repeat(bytes - LEAST.len() - 1));
+    assert_eq!(read(&text(1_000_000)).scene.gravity, 9.81);
+    let words = ["the file has 1000001 bytes", "at most 1 MB"];
+    refused_text(&text(1_000_001), "1:1", &words);
+}
+
+#[test]
 fn full_scene_shapes_arrive() {
     let scene = read(FULL).scene;
     let corners = vec![
@@ -163,7 +171,7 @@ fn start_that_cannot_be_is_refused() {
         "duration = 12.5 ",
         "# ",
         "55:1",
-        &["`start.duration`", "missing", "how long"],
+        &["`start.duration`", "missing", "the duration"],
     );
     refused(
         "object = [0.01, -0.02, 0.5]",
@@ -338,7 +346,7 @@ fn stall_force_is_the_file_s_or_twenty_times_what_slides_the_object() {
 #[test]
 fn stall_force_must_be_given_where_nothing_resists() {
     let smooth = LEAST.replacen("friction = 0.3", "friction = 0", 1);
-    let missing = ["`pusher.stall_force` is missing", "gives way in N"];
+    let missing = ["`pusher.stall_force` is missing", "yields in N"];
     refused_text(&smooth, "9:1", &missing);
     let given = replaced(&smooth, "[fixels]\n", "stall_force = 2\n[fixels]\n");
     assert_eq!(read(&given).scene.pusher.stall_force, Some(2.0));

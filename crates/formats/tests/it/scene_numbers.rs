@@ -84,7 +84,7 @@ fn stall_forces_that_are_none_are_refused() {
             &[
                 &format!("pusher.stall_force is {value} N"),
                 "positive, or inf",
-                "at which the drive gives way in N",
+                "at which the drive yields in N",
             ],
         );
     }

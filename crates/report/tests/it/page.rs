@@ -185,7 +185,7 @@ fn data_read_back_to_the_numbers_they_were() {
             .map(|p| p.as_u64().unwrap())
             .collect();
         assert_eq!(shares[..30], [least; 30]);
-        assert!(shares.len() == 90 && told.iter().all(|p| (least..=100).contains(p)));
+        assert!(shares.len() == 90 && shares.iter().all(|p| (least..=100).contains(p)));
     }
     assert!(
         data["methods"][2]["contact"].is_null(),

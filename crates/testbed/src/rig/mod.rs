@@ -28,6 +28,10 @@ use crate::touch::TouchSensors;
 use crate::trace::{Frame, Trace};
 use crate::trial::{Trial, TrialError};
 
+/// Most time steps of an experiment: some minutes of computing, and hours of an object of usual
+/// inertia.
+const MOST_STEPS: f64 = 2e8;
+
 /// Friction is averaged over frames in which the object moves faster than this (m/s).
 const MOVING: f64 = 1e-4;
 
@@ -99,7 +103,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start,
-    /// the object would tip.
+    /// the object would tip, or there are too many steps, as with an inertia that is far too small.
     pub fn run(&self, trial: &Trial<'_>) -> Result<Trace, TrialError> {
         self.run_observed(trial, &mut |_| ())
     }
@@ -122,6 +126,14 @@ impl Rig {
         let mut state = RigState::new(self, trial)?;
         let steps = (1.0 / (trial.rate * state.longest_step())).ceil();
         let h = 1.0 / (trial.rate * steps);
+        let all = steps * trial.frames() as f64;
+        if all > MOST_STEPS {
+            return Err(TrialError::Steps {
+                steps: all,
+                length: h,
+                most: MOST_STEPS,
+            });
+        }
 
         let mut frames = vec![state.frame(0.0, 1.0)];
         let mut friction = Mean::default();

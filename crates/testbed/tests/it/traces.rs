@@ -214,6 +214,21 @@ fn bodies_that_overlap_at_the_start_are_refused_in_words() {
 }
 
 #[test]
+fn inertia_far_too_small_is_refused_and_not_simulated_for_days() {
+    let mut scene = bench_scene();
+    scene.object.inertia *= 1e-12;
+    let start = bench_start();
+    let trial = Trial {
+        scene: &scene,
+        start: &start,
+        rate: 30.0,
+        seed: 0,
+    };
+    let words = ["time steps", "at most 2e8", "inertia", "kg m^2"];
+    assert_refused(&Rig::of(&scene), &trial, &words);
+}
+
+#[test]
 #[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
 fn model_follows_the_reference_at_the_frame_s_step() {
     let (scene, start) = (

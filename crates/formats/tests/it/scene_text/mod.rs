@@ -1,6 +1,9 @@
 //! Scene files as text, and the result of reading them.
+
 use stickslip::Setup;
 use stickslip_formats::read_scene;
+
+pub mod lines;
 
 /// Every key of the format, none with its default.
 pub const FULL: &str = include_str!("../full_scene.toml");
