@@ -11,7 +11,7 @@ from typing import Any, Unpack
 
 from stickslip._columns import Columns
 from stickslip._files import Topics, experiments, load_log, load_scene, load_truth, path_of
-from stickslip._filter import FilterOptions, tracked
+from stickslip._filter import FilterOptions, filter
 from stickslip._native import Error, Scene
 from stickslip._score import score
 
@@ -70,7 +70,10 @@ def compare(
     ]
     rows = []
     for done, (experiment, variant, seed) in enumerate(runs):
-        rows.append(experiment.run(variant, seed, options))
+        try:
+            rows.append(experiment.run(variant, seed, options))
+        except Error as error:
+            raise Error(f"{experiment.folder}: {error}") from error
         if progress is not None:
             progress(done + 1, len(runs))
     return rows
@@ -120,8 +123,7 @@ class _Experiment:
         seen = {"occlude": None, "occlude_middle": None}
         hidden = seen if own.pop("camera_on", False) else self.hiding
         run: Any = {**options, **hidden, **own, "seed": seed}
-        asked = options.get("occlude") is not None or options.get("occlude_middle") is not None
-        estimate = tracked(self.log, self.scene, run, must_hide=asked)
+        estimate = filter(self.log, self.scene, **run)
         scores = score(
             estimate,
             self.log,

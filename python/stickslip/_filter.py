@@ -48,6 +48,8 @@ class FilterOptions(TypedDict, total=False):
     occlude: int | tuple[int, int | None] | None
     #: Length of an occlusion about the middle of the log (s).
     occlude_middle: float | None
+    #: True to run also if units, frames or columns are found to be wrong; False by default.
+    force: bool
     #: Number of threads; None: as many as help. Results do not depend on it.
     threads: int | None
     #: Called with the finished rows and all rows, some twenty times a second, and at the end.
@@ -83,16 +85,11 @@ def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[Fi
     - probability of each contact mode: ``stick_pusher``, ``left_pusher``, ``right_pusher``,
       ``stick_1``, ...
 
-    Raises :class:`stickslip.Error` if log, scene or options are invalid.
+    Raises :class:`stickslip.Error` if log, scene or options are invalid, and without ``force`` also
+    if units, frames or columns are found to be wrong.
     """
     known = scene_of(scene)
-    return tracked(log_of(log, known), known, options)
-
-
-def tracked(log: Columns, scene: Scene, options: FilterOptions, *, must_hide: bool = True) -> Estimate:
-    """Runs a method; ``must_hide`` refuses an occlusion that hides none or all of the poses."""
-    given = arguments(options) | {"must_hide": must_hide}
-    columns, facts = _native.filter(log, scene, given, options.get("progress"))
+    columns, facts = _native.filter(log_of(log, known), known, arguments(options), options.get("progress"))
     return Estimate(columns, facts)
 
 
@@ -223,7 +220,7 @@ def arguments(options: FilterOptions) -> RunArguments:
         "substeps": options.get("substeps"),
         "occlude": _rows(options.get("occlude")),
         "occlude_middle": options.get("occlude_middle"),
-        "must_hide": True,
+        "force": options.get("force", False),
         "threads": options.get("threads"),
     }
 

@@ -65,7 +65,7 @@ class RunArguments(TypedDict):
     substeps: int | None
     occlude: tuple[int, int | None] | None
     occlude_middle: float | None
-    must_hide: bool
+    force: bool
     threads: int | None
 
 @final

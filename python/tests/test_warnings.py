@@ -31,18 +31,33 @@ def test_check_log_in_millimetres_is_a_problem_with_advice(demo, scene):
     assert problems[0].advice and str(problems[0]).startswith("problem: units: ")
 
 
-def test_filter_of_a_log_in_millimetres_warns_as_the_program_does(program, demo, scene, tmp_path):
-    log = _in_millimetres(demo)
-    pd.DataFrame(log).to_csv(tmp_path / "log.csv", index=False)
+def test_filter_and_compare_refuse_a_log_in_millimetres_as_the_program_does(program, demo, scene, tmp_path):
+    (tmp_path / "scene.toml").write_text(scene.text)
+    pd.DataFrame(_in_millimetres(demo)).to_csv(tmp_path / "log.csv", index=False)
+    done = subprocess.run([program, "filter", tmp_path], capture_output=True, text=True)
+    (found,) = [line.removeprefix("error: ") for line in done.stderr.splitlines() if line.startswith("error: ")]
+    calls = (
+        lambda: stickslip.filter(tmp_path, scene, particles=16),
+        lambda: stickslip.particles(tmp_path, scene, particles=16),
+        lambda: stickslip.compare([tmp_path], variants=["nominal"]),
+    )
+    for call in calls:
+        with pytest.raises(stickslip.Error, match="millimetres.*force=True runs all the same") as refusal:
+            call()
+        assert found.split(": ", 1)[1] in str(refusal.value)
+    assert str(tmp_path) in str(refusal.value)
+
+
+def test_forced_filter_of_a_log_in_millimetres_warns_as_the_program_does(program, demo, scene, tmp_path):
+    pd.DataFrame(_in_millimetres(demo)).to_csv(tmp_path / "log.csv", index=False)
     with pytest.warns(stickslip.Warning, match="millimetres") as issued:
-        estimate = stickslip.filter(tmp_path / "log.csv", scene, particles=16)
+        estimate = stickslip.filter(tmp_path / "log.csv", scene, particles=16, force=True)
     assert [str(warning.message) for warning in issued] == list(estimate.warnings)
     assert {warning.filename for warning in issued} == {__file__}
     assert issubclass(stickslip.Warning, UserWarning)
-    command = [program, "filter", tmp_path / "log.csv", "--scene", demo / "scene.toml", "--particles", "16", "--json"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode == 0:
-        assert json.loads(done.stdout)["warnings"] == list(estimate.warnings)
+    command = [program, "filter", tmp_path / "log.csv", "--scene", demo / "scene.toml", "--particles", "16"]
+    done = subprocess.run([*command, "--force", "--json"], check=True, capture_output=True, text=True)
+    assert json.loads(done.stdout)["warnings"] == list(estimate.warnings)
 
 
 def test_facts_of_a_run_are_those_of_the_program(program, demo, scene):

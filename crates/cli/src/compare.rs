@@ -157,7 +157,10 @@ fn read(
         asked => asked,
     };
     check_occlusion(occlusion, &experiment.log)
-        .and_then(|()| check_sense(&args.shared, &experiment))
+        .and_then(|()| match args.shared.force {
+            true => Ok(()),
+            false => check_sense(&experiment.setup, &experiment.log, "--force"),
+        })
         .map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {
         path,

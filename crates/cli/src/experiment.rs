@@ -13,7 +13,6 @@ use stickslip_formats::{
     read_truth_csv, read_truth_json, scene_assumptions,
 };
 
-use crate::args::SharedArgs;
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
 use crate::output::talk;
@@ -108,14 +107,14 @@ pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<()> {
     }
 }
 
-/// Refuses an experiment whose units, frames or columns are found to be wrong, unless `--force`
-/// asks for a run.
-pub fn check_sense(shared: &SharedArgs, experiment: &Experiment) -> Result<()> {
-    let found = refused(&experiment.setup, &experiment.log).filter(|_| !shared.force);
+/// Refuses a log whose units, frames or columns are found to be wrong. `force` is the option that
+/// runs all the same.
+pub fn check_sense(setup: &Setup, log: &Log, force: &str) -> Result<()> {
+    let found = refused(setup, log);
     found.map_or(Ok(()), |finding| {
         let advice = finding.advice.unwrap_or_default();
         let help =
-            format!("{advice}. `stickslip check` shows all findings; --force runs all the same");
+            format!("{advice}. `stickslip check` shows all findings; {force} runs all the same");
         Err(hinted(finding.found, help))
     })
 }

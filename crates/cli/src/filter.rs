@@ -74,7 +74,10 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
         args.truth.as_deref(),
     )?;
     check_occlusion(args.shared.occlusion(), &experiment.log)?;
-    check_sense(&args.shared, &experiment).with_context(|| given.log.display().to_string())?;
+    if !args.shared.force {
+        check_sense(&experiment.setup, &experiment.log, "--force")
+            .with_context(|| given.log.display().to_string())?;
+    }
     check_places(args, &given)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =

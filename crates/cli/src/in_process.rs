@@ -1,10 +1,11 @@
 //! Files of logs for callers in this process, with what the program would write to standard error:
-//! [`read_log_at`], [`bag_info`], [`log_files`], [`check_occlusion`].
+//! [`read_log_at`], [`bag_info`], [`log_files`], [`check_occlusion`],
+//! [`check_sense`].
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use stickslip::{Log, Occlusion};
+use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{BagOptions, LogWarning};
 
 use crate::experiment;
@@ -52,6 +53,14 @@ pub fn log_files(path: &Path) -> Result<Vec<PathBuf>, String> {
 /// The occlusion is refused; in words, with the next step.
 pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<(), String> {
     experiment::check_occlusion(occlusion, log).map_err(|error| words(&error))
+}
+
+/// Refuses a log whose units, frames or columns are found to be wrong.
+///
+/// # Errors
+/// The log is refused; in words, with the next step.
+pub fn check_sense(setup: &Setup, log: &Log) -> Result<(), String> {
+    experiment::check_sense(setup, log, "force=True").map_err(|error| words(&error))
 }
 
 fn at<T>(

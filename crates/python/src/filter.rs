@@ -94,8 +94,9 @@ pub fn run_log(
 ) -> PyResult<Run> {
     check_sensors(log, &scene.setup).map_err(refused)?;
     let options = arguments.options()?;
-    if arguments.must_hide {
-        stickslip_cli::check_occlusion(options.occlusion, log).map_err(refused)?;
+    stickslip_cli::check_occlusion(options.occlusion, log).map_err(refused)?;
+    if !arguments.force {
+        stickslip_cli::check_sense(&scene.setup, log).map_err(refused)?;
     }
     let threads = Threads {
         asked: arguments.threads,

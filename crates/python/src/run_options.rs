@@ -18,8 +18,8 @@ pub struct RunArguments {
     substeps: Option<u32>,
     occlude: Option<(usize, Option<usize>)>,
     occlude_middle: Option<f64>,
-    /// True to refuse an occlusion that hides none or all of the object poses.
-    pub must_hide: bool,
+    /// True to run also if units, frames or columns are found to be wrong.
+    pub force: bool,
     pub threads: Option<usize>,
 }
 
