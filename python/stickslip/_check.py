@@ -1,4 +1,4 @@
-"""Faults of a scene and a log."""
+"""Faults of a log and its scene."""
 
 from __future__ import annotations
 
@@ -31,14 +31,11 @@ class Finding:
         return f"{self.severity}: {self.subject}: {self.found}{advice}"
 
 
-def check(scene: Scene | str | os.PathLike[str], log: Log) -> list[Finding]:
-    """Returns the findings of ``stickslip check`` about a scene and a log.
+def check(log: Log, scene: Scene | str | os.PathLike[str]) -> list[Finding]:
+    """Returns the findings of ``stickslip check`` about a log and its scene.
 
-    ``scene`` and ``log`` are those of :func:`stickslip.filter`, in either order. Nothing is
-    repaired.
+    ``log`` and ``scene`` are those of :func:`stickslip.filter`. Nothing is repaired.
     """
-    if isinstance(log, Scene) or (isinstance(log, str | os.PathLike) and os.fspath(log).endswith(".toml")):
-        scene, log = log, scene
     known = scene_of(scene)
     found: Any = _native.check(log_of(log, known), known)
     return [Finding(*parts) for parts in found]

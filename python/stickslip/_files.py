@@ -50,9 +50,9 @@ def load_log(
     ``tactile_1``, ... (0 or 1), ``pusher_force_x``, ``pusher_force_y`` (N). NaN is a missing
     measurement. Lost parts of a bag are issued as :class:`stickslip.Warning`.
     """
-    path = path_of(path, "the log")
+    path, mappings = path_of(path, "the log"), _mappings(topics)
     path.stat()
-    return _native.read_log(path, None if scene is None else scene_of(scene), _mappings(topics))
+    return _native.read_log(path, None if scene is None else scene_of(scene), mappings)
 
 
 def info(bag: str | os.PathLike[str]) -> dict[str, Any]:

@@ -1,8 +1,10 @@
 """Long calls hear Ctrl-C and show their progress."""
 
+import os
 import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ folder = sys.argv[1]
 scene = stickslip.load_scene(folder + "/scene.toml")
 progress = lambda done, total: print("begun", flush=True)
 push = np.linspace([-0.06, 0, 0], [0.02, 0, 0], 3001)
+START = {"object": [0, 0, 0], "pusher": [-0.06, 0, 0], "speed": 1e-5, "duration": 3000.0}
 try:
     {call}
 except KeyboardInterrupt:
@@ -27,7 +30,7 @@ CALLS = {
     "particles": "stickslip.particles(folder + '/log.csv', scene, rows=[3], particles=300_000, progress=progress)",
     "compare": "stickslip.compare([folder], variants=['nominal', 'particle'], particles=300_000, progress=progress)",
     "rollout": "stickslip.rollout(scene, np.zeros((6400, 3)), push, progress=progress)",
-    "simulate": "stickslip.simulate(scene.replace(start={'duration': 3000.0}), progress=progress)",
+    "simulate": "stickslip.simulate(scene.replace(start=START), progress=progress)",
     "fit": "stickslip.fit(20 * [(scene, folder + '/log.csv')], ['mu_p', 'outline_scale'], progress=progress)",
 }
 
@@ -44,6 +47,25 @@ def test_interrupted_call_ends_as_a_keyboard_interrupt(demo, call):
     finally:
         process.kill()
     assert printed.splitlines()[-1] == "heard" and process.returncode == 0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
+@pytest.mark.parametrize("call", ["load_log", "info"])
+def test_interrupted_reader_of_a_file_that_does_not_come_ends(tmp_path, call):
+    (tmp_path / "bag").mkdir()
+    os.mkfifo(tmp_path / "bag" / "push.mcap")
+    script = f"import sys, stickslip\nprint('begun', flush=True)\nstickslip.{call}(sys.argv[1])"
+    process = subprocess.Popen(
+        [sys.executable, "-c", script, tmp_path / "bag"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "begun\n"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    try:
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert said.rstrip().endswith("KeyboardInterrupt")
 
 
 @pytest.fixture

@@ -75,7 +75,7 @@ impl<'a> Posterior<'a> {
         })
     }
 
-    /// The same pushes with other free parameters.
+    /// Posterior of other free parameters by these pushes.
     ///
     /// # Errors
     /// Those of [`Posterior::new`].

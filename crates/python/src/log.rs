@@ -12,6 +12,7 @@ use stickslip_formats::{
 
 use crate::columns::{Columns, to_dict};
 use crate::error::{refused, warn};
+use crate::long_call::left_behind;
 use crate::scene::Scene;
 
 /// The columns of the log at a path; of a bag by the scene's tags and by topics, as `KEY=TOPIC`.
@@ -33,8 +34,8 @@ pub fn read_log<'py>(
         options.mounts = read_mounts(&scene.text, &scene.name).map_err(refused)?;
         options.touch_force = scene.setup.tactile.touch_force;
     }
-    let read = py.detach(|| stickslip_cli::read_log_at(&path, &options));
-    let (log, warnings) = read.map_err(refused)?;
+    let read = left_behind(py, move || stickslip_cli::read_log_at(&path, &options));
+    let (log, warnings) = read?.map_err(refused)?;
     warn(py, &warnings)?;
     to_dict(py, log_columns(&log))
 }
@@ -42,9 +43,8 @@ pub fn read_log<'py>(
 /// The description of the bag at a path, as JSON.
 #[pyfunction]
 pub fn bag_info(py: Python<'_>, path: PathBuf) -> PyResult<String> {
-    let (info, warnings) = py
-        .detach(|| stickslip_cli::bag_info(&path))
-        .map_err(refused)?;
+    let described = left_behind(py, move || stickslip_cli::bag_info(&path));
+    let (info, warnings) = described?.map_err(refused)?;
     warn(py, &warnings)?;
     Ok(info)
 }

@@ -1,9 +1,10 @@
 //! Calls that may last long: [`long_call`] runs them on threads, ends them at Ctrl-C and shows
-//! their progress by a [`Watch`].
+//! their progress by a [`Watch`]. [`left_behind`] is for work that cannot be ended.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread;
 use std::time::Duration;
 
 use pyo3::prelude::*;
@@ -56,37 +57,48 @@ pub fn long_call<T: Send>(
 ) -> PyResult<T> {
     let pool = threads.pool()?;
     let watch = Watch::default();
-    let (outcome, failure) = py.detach(|| {
+    let outcome = py.detach(|| {
         let (sender, receiver) = sync_channel(1);
+        // the scope ends after the work
         pool.in_place_scope(|scope| {
             scope.spawn(|_| {
-                // the receiver waits for it
-                let _ = sender.send(catch_unwind(AssertUnwindSafe(|| work(&watch))));
+                sender
+                    .send(catch_unwind(AssertUnwindSafe(|| work(&watch))))
+                    .ok();
             });
-            let mut failure = None;
-            loop {
-                match receiver.recv_timeout(TICK) {
-                    Ok(outcome) => return (outcome, failure),
-                    Err(RecvTimeoutError::Timeout) if failure.is_none() => {
-                        failure = look(&watch, progress.as_ref()).err();
-                        let interrupted = failure.is_some();
-                        watch.interrupted.store(interrupted, Ordering::Relaxed);
-                    }
-                    Err(RecvTimeoutError::Timeout) => {}
-                    Err(RecvTimeoutError::Disconnected) => unreachable!("the work sends its end"),
-                }
-            }
+            let waited = wait(&receiver, || look(&watch, progress.as_ref()));
+            watch.interrupted.store(waited.is_err(), Ordering::Relaxed);
+            waited
         })
-    });
-    match (failure, outcome) {
-        (Some(failure), _) => Err(failure),
-        (None, Err(panic)) => resume_unwind(panic),
-        (None, Ok(result)) => {
-            let total = watch.total.load(Ordering::Relaxed);
-            if let Some(progress) = progress.filter(|_| total > 0) {
-                progress.call1(py, (total, total))?;
-            }
-            Ok(result)
+    })?;
+    let result = outcome.unwrap_or_else(|panic| resume_unwind(panic));
+    let total = watch.total.load(Ordering::Relaxed);
+    if let Some(progress) = progress.filter(|_| total > 0) {
+        progress.call1(py, (total, total))?;
+    }
+    Ok(result)
+}
+
+/// Runs `work`, which only reads, on a thread of its own. An interrupted call leaves it behind.
+pub fn left_behind<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, receiver) = sync_channel(1);
+    // an interrupted call has dropped the receiver
+    thread::spawn(move || sender.send(catch_unwind(AssertUnwindSafe(work))).ok());
+    let tick = || Python::attach(|py| py.check_signals());
+    let outcome = py.detach(move || wait(&receiver, tick))?;
+    Ok(outcome.unwrap_or_else(|panic| resume_unwind(panic)))
+}
+
+/// Waits for an outcome; `tick` is called meanwhile, and its exception ends the wait.
+fn wait<T>(receiver: &Receiver<T>, mut tick: impl FnMut() -> PyResult<()>) -> PyResult<T> {
+    loop {
+        match receiver.recv_timeout(TICK) {
+            Ok(outcome) => return Ok(outcome),
+            Err(RecvTimeoutError::Timeout) => tick()?,
+            Err(RecvTimeoutError::Disconnected) => unreachable!("the work sends its end"),
         }
     }
 }

@@ -168,9 +168,7 @@ impl Propagation {
                 #[inline(always)]
                 || self.note_contacts(transition, chunks),
             );
-            if let Some(observer) = transition.observer
-                && observer.wants_steps()
-            {
+            if let Some(observer) = transition.observer.filter(|o| o.wants_steps()) {
                 self.show(observer, block.len());
             }
         }
