@@ -33,9 +33,9 @@ def numbers(values: Any, name: str) -> NDArray[np.float64]:
             values = values.to_numpy(dtype=np.float64, na_value=np.nan)
         elif isinstance(values, list | tuple) and any(isinstance(value, np.ma.MaskedArray) for value in values):
             values = np.ma.array(values, dtype=np.float64)
-        elif isinstance(values, list | tuple) or getattr(values, "dtype", None) == object:
-            cells = np.asarray(values, dtype=object)
-            values = np.where(_is_na(cells).astype(bool), None, cells)
+        elif isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.dtype.kind == "O"):
+            values = np.array(values, dtype=object)
+            values[np.vectorize(_is_na, otypes=[bool])(values)] = None
         if isinstance(values, np.ma.MaskedArray):
             values = np.ma.filled(values.astype(np.float64), np.nan)
         return np.require(values, np.float64, ["C", "A"])
@@ -43,13 +43,14 @@ def numbers(values: Any, name: str) -> NDArray[np.float64]:
         raise Error(f"{name} holds something that is no number ({error})") from error
 
 
-#: True for each cell of an array of objects that is pandas' NA, which is no float.
-_is_na = np.frompyfunc(lambda cell: type(cell).__name__ == "NAType", 1, 1)
+def _is_na(value: Any) -> bool:
+    """Returns True for pandas' NA, which is no float."""
+    return type(value).__name__ == "NAType"
 
 
 def is_missing(value: Any) -> bool:
     """Returns True for None, a masked value, pandas' NA, and an array whose values are all masked."""
-    if value is None or _is_na(value) is True:
+    if value is None or _is_na(value):
         return True
     return isinstance(value, np.ma.MaskedArray) and bool(np.ma.getmaskarray(value).all())
 

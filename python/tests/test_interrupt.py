@@ -19,7 +19,7 @@ progress = lambda done, total: print("begun", flush=True)
 push = np.linspace([-0.06, 0, 0], [0.02, 0, 0], 3001)
 START = {"object": [0, 0, 0], "pusher": [-0.06, 0, 0], "speed": 1e-5, "duration": 3000.0}
 try:
-    {call}
+    CALL
 except KeyboardInterrupt:
     print("heard")
 """
@@ -38,7 +38,7 @@ CALLS = {
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
 @pytest.mark.parametrize("call", CALLS)
 def test_interrupted_call_ends_as_a_keyboard_interrupt(demo, call):
-    script = BEGIN.format(call=CALLS[call])
+    script = BEGIN.replace("CALL", CALLS[call])
     process = subprocess.Popen([sys.executable, "-c", script, demo], stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "begun\n"
     process.send_signal(signal.SIGINT)
@@ -52,12 +52,10 @@ def test_interrupted_call_ends_as_a_keyboard_interrupt(demo, call):
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
 @pytest.mark.parametrize("call", ["load_log", "info"])
 def test_interrupted_reader_of_a_file_that_does_not_come_ends(tmp_path, call):
-    (tmp_path / "bag").mkdir()
-    os.mkfifo(tmp_path / "bag" / "push.mcap")
+    os.mkfifo(tmp_path / "push.mcap")
     script = f"import sys, stickslip\nprint('begun', flush=True)\nstickslip.{call}(sys.argv[1])"
-    process = subprocess.Popen(
-        [sys.executable, "-c", script, tmp_path / "bag"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    command = [sys.executable, "-c", script, tmp_path / "push.mcap"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "begun\n"
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)

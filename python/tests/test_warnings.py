@@ -61,11 +61,12 @@ def test_forced_filter_of_a_log_in_millimetres_warns_as_the_program_does(program
 
 
 def test_facts_of_a_run_are_those_of_the_program(program, demo, scene):
-    command = [program, "filter", demo / "log.csv", "--scene", demo / "scene.toml", "--occlude", "200", "--json"]
-    theirs = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    options = ["--occlude", "250", "--particles", "100", "--causal", "--json"]
+    done = subprocess.run([program, "filter", demo, *options], check=True, capture_output=True, text=True)
+    theirs = json.loads(done.stdout)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        estimate = stickslip.filter(demo / "log.csv", scene, occlude=200)
+        estimate = stickslip.filter(demo / "log.csv", scene, occlude=250, particles=100, causal=True)
     assert estimate.warnings == () and estimate.collapses == theirs["collapses"]
     assert estimate.observed == {name: learned["observed"] for name, learned in theirs["friction"].items()}
     assert any(estimate.observed.values())
