@@ -66,7 +66,7 @@ def errors(program, seed, folder):
         if json.loads((out / "truth.json").read_text()).get("occlude_from") is None:
             return None
     run = subprocess.run([program, "compare", "--json", *rigs], check=True, capture_output=True)
-    overall = json.loads(run.stdout)["overall"]
+    overall = json.loads(run.stdout)["sets"][0]["methods"]
     return {row["method"]: (row["median"]["wmse_mm"], row["mean"]["covered_90"]) for row in overall}
 
 

@@ -2,6 +2,7 @@
 //! folders.
 
 mod best_baseline;
+mod folder_set;
 mod folders;
 mod page;
 mod played;

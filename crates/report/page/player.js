@@ -227,7 +227,7 @@ class Player {
       cancelAnimationFrame(this.playing);
       this.playing = null;
     } else {
-      if (this.row >= this.data.poster) this.show(this.data.start);
+      if (this.row === this.data.poster || this.row === this.rows - 1) this.show(this.data.start);
       let last = null;
       let time = this.data.time[this.row];
       const tick = (now) => {
@@ -266,7 +266,7 @@ class Player {
     this.showContacts(row);
     const seconds = (data.time[row] / 1000).toFixed(2);
     const camera = blind ? "camera off" : "camera on";
-    this.find(".clock").textContent = `${seconds} s · row ${data.first + row}`;
+    this.find(".clock").textContent = `${seconds} s · row ${data.stride * row}`;
     this.find(".badge").textContent = camera;
     this.slider.value = row;
     this.slider.setAttribute("aria-valuetext", `${seconds} s, ${camera}`);

@@ -82,19 +82,40 @@ impl ReportedExperiment<'_> {
             let text = "Particles at these instants. The ellipse covers 95 % of a normal distribution with their covariance.";
             Figure::new("cloud", drawing, text)
         });
-        let shown = [
+        let against_time = [
             Some(errors),
-            Some(poses),
-            cloud,
             contacts,
             self.slips(),
             friction,
             self.particles(),
         ];
-        shown.into_iter().flatten().collect()
+        let part = self.part_shown();
+        let mut figures: Vec<Figure> = against_time.into_iter().flatten().collect();
+        for figure in &mut figures {
+            figure.caption.push_str(&part);
+        }
+        figures.splice(1..1, [Some(poses), cloud].into_iter().flatten());
+        if !part.is_empty() {
+            let whole = TimeFigure {
+                span: self.whole_span(),
+                ..self.errors()
+            };
+            let text = "Errors against time over the whole log.";
+            figures.insert(0, Figure::new("errors-whole", whole.drawing(), text));
+        }
+        figures
     }
 
-    /// Errors of all runs against time.
+    /// " Shown: 2.0 to 9.1 s of 0.0 to 60.0 s."; empty if the whole log is shown.
+    fn part_shown(&self) -> String {
+        let ([from, to], [first, last]) = (self.span(), self.whole_span());
+        if [from, to] == [first, last] {
+            return String::new();
+        }
+        format!(" Shown: {from:.1} to {to:.1} s of {first:.1} to {last:.1} s.")
+    }
+
+    /// Errors of all runs against time, in the part about the contacts.
     #[must_use]
     pub fn errors(&self) -> TimeFigure {
         let panel = |label: &str, of: fn(&PoseError) -> f64, spread: fn(&Pose) -> f64| {

@@ -33,6 +33,7 @@ mod reported_experiment;
 mod reported_run;
 mod story;
 mod table;
+mod thinning;
 mod time_figure;
 mod touch;
 

@@ -1,5 +1,8 @@
 //! An experiment that a page plays back: [`Playback`].
 
+use std::iter::StepBy;
+use std::ops::Range;
+
 use maud::{Markup, PreEscaped, html};
 use stickslip::dynamics::{Pose, Scene};
 use stickslip::{Estimate, Log};
@@ -11,6 +14,9 @@ use crate::marks::Mark;
 use crate::outline::Outline;
 use crate::playback_data::{data, has_cloud, knows_contacts};
 
+/// The most rows that a page plays back; of a longer log every second, third, … row is taken.
+const MOST_ROWS: usize = 3000;
+
 /// Data of an experiment that is shown row by row; every column has one entry per row of the log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Playback {
@@ -18,8 +24,8 @@ pub struct Playback {
     pub name: String,
     /// Time of each row (s).
     pub time: Vec<f64>,
-    /// Rows that are played back; the others are left out.
-    pub rows: std::ops::Range<usize>,
+    /// The part that is played first and that the picture fits; all rows can be seen.
+    pub focus: Range<usize>,
     /// The row that is shown first.
     pub poster: usize,
     /// The object in its own frame (m).
@@ -121,7 +127,7 @@ impl Playback {
         Self {
             name: "the experiment".to_owned(),
             time: log.time.clone(),
-            rows: 0..log.len(),
+            focus: 0..log.len(),
             poster: log.len().saturating_sub(1),
             object: Outline::new(&scene.object.shape, f64::INFINITY),
             pusher: Outline::new(&scene.pusher.shape, f64::INFINITY),
@@ -151,7 +157,7 @@ impl Playback {
     pub(crate) fn html(&self) -> Markup {
         // the only place in a script element where text could end it
         let data = data(self).to_string().replace('<', "\\u003c");
-        let last = self.shown().len().saturating_sub(1);
+        let last = self.shown().count().saturating_sub(1);
         html! {
             section class="player" tabindex="0" aria-label={ "Playback of " (self.name) ". Space plays, arrow keys step." } {
                 div class="stage" {
@@ -204,17 +210,27 @@ impl Playback {
             true => " Rims turn yellow with the estimated probability of contact.",
             false => "",
         };
+        let every = match self.stride() {
+            1 => String::new(),
+            stride => format!(
+                " One row in {stride} of {} is played back.",
+                self.time.len()
+            ),
+        };
         format!(
-            "Filled: the {}, dashed while the camera is off. Coloured outlines: estimates{particles}.{yellow}{rims}",
+            "Filled: the {}, dashed while the camera is off. Coloured outlines: estimates{particles}.{yellow}{rims}{every}",
             self.reference_name
         )
     }
 
-    /// The rows played back, among those there are.
-    pub(crate) fn shown(&self) -> std::ops::Range<usize> {
-        let rows = self.time.len();
-        let from = self.rows.start.min(rows);
-        from..self.rows.end.clamp(from, rows)
+    /// Rows played back: all, or every [`Self::stride`]-th.
+    pub(crate) fn shown(&self) -> StepBy<Range<usize>> {
+        (0..self.time.len()).step_by(self.stride())
+    }
+
+    /// Rows from one that is played back to the next, so that a page stays small.
+    pub(crate) fn stride(&self) -> usize {
+        self.time.len().div_ceil(MOST_ROWS).max(1)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A playback as compact JSON, as `crates/report/page/player.js` reads it: whole numbers in small
 //! units.
 
+use std::iter::StepBy;
 use std::ops::Range;
 
 use serde_json::{Value, json};
@@ -21,11 +22,15 @@ const ERROR: f64 = 1e3;
 /// The least height of the picture as a share of its width, and the most.
 const ASPECT: [f64; 2] = [0.62, 0.8];
 
+/// Rows that are played back.
+type Rows = StepBy<Range<usize>>;
+
 /// All that is played back.
 pub(crate) fn data(playback: &Playback) -> Value {
     // the times of the rows shown, and the events among them
     let rows = playback.shown();
-    let time = &playback.time[rows.clone()];
+    let stride = playback.stride();
+    let time: Vec<f64> = rows.clone().map(|row| playback.time[row]).collect();
     let within = |mark: &&Mark| {
         let ends = time.first().zip(time.last());
         ends.is_some_and(|(first, last)| (*first..=*last).contains(&mark.time))
@@ -42,15 +47,14 @@ pub(crate) fn data(playback: &Playback) -> Value {
     // the bodies, and how far the object reaches from its origin (mm)
     let corners = playback.object.areas.iter().flatten();
     let reach = 1e3 * corners.map(|[x, y]| x.hypot(*y)).fold(0.001, f64::max);
-    let poster = playback
-        .poster
-        .clamp(rows.start, rows.end.max(rows.start + 1) - 1);
+    let last = time.len().saturating_sub(1);
+    let place = |row: usize| (row / stride).min(last);
     let bodies = playback.touches.len();
     json!({
         "time": time.iter().map(|time| whole(*time, 1e3)).collect::<Vec<_>>(),
-        "first": rows.start,
-        "poster": poster - rows.start,
-        "start": 0,
+        "stride": stride,
+        "poster": place(playback.poster),
+        "start": place(playback.focus.start),
         "view": view(playback),
         "reach": reach,
         "object": body(&playback.object),
@@ -103,7 +107,7 @@ pub(crate) fn body(outline: &Outline) -> Value {
     json!({ "area": text(&outline.areas, true), "line": text(&outline.lines, false), "middle": middle })
 }
 
-fn poses(poses: &[Option<Pose>], rows: Range<usize>) -> Value {
+fn poses(poses: &[Option<Pose>], rows: Rows) -> Value {
     let column = |of: fn(&Pose) -> f64, units: f64| -> Vec<Value> {
         let pose = |row: usize| poses.get(row).copied()?.filter(Pose::is_finite);
         let cell = |row| pose(row).map_or(Value::Null, |pose| whole(of(&pose), units));
@@ -112,7 +116,7 @@ fn poses(poses: &[Option<Pose>], rows: Range<usize>) -> Value {
     json!({ "x": column(|p| p.x, LENGTH), "y": column(|p| p.y, LENGTH), "theta": column(|p| p.theta, ANGLE) })
 }
 
-fn run(run: &PlaybackRun, bodies: usize, rows: Range<usize>) -> Value {
+fn run(run: &PlaybackRun, bodies: usize, rows: Rows) -> Value {
     let error = |of: fn(&PoseError) -> f64| -> Vec<Value> {
         let error = |row| run.errors.get(row).map(|error| whole(of(error), ERROR));
         rows.clone().map(|row| json!(error(row))).collect()
@@ -169,7 +173,7 @@ fn cloud(run: &PlaybackRun, row: usize) -> Value {
     Value::Array(numbers.collect())
 }
 
-fn contact(touch: &Touch, rows: Range<usize>) -> Value {
+fn contact(touch: &Touch, rows: Rows) -> Value {
     let truth = |truth: &Vec<bool>| -> Vec<Option<u8>> {
         let touches = |row| truth.get(row).map(|touches| u8::from(*touches));
         rows.clone().map(touches).collect()
@@ -181,11 +185,11 @@ fn contact(touch: &Touch, rows: Range<usize>) -> Value {
     json!({ "name": touch.name, "truth": touch.truth.as_ref().map(truth), "sensed": touch.sensed.as_ref().map(sensed) })
 }
 
-/// Left, low, width and height (mm) of the box that contains the object and the pusher on their
-/// way, and the fixels. Without a reference, the object's way is that of the run whose contacts are
+/// Left, low, width and height (mm) of the box that contains the object and the pusher in the part
+/// that is played first, and the fixels. Without a reference, the object's way is that of the run whose contacts are
 /// shown, or of the first run.
 fn view(playback: &Playback) -> [f64; 4] {
-    let rows = playback.shown();
+    let rows = playback.focus.clone();
     let swept = |outline: &Outline, poses: &[Option<Pose>]| -> Vec<[f64; 2]> {
         let poses = rows
             .clone()

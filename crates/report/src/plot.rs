@@ -6,6 +6,7 @@ use crate::axis::{Axis, Tick};
 use crate::colour::{Colour, Line};
 use crate::drawing::{Anchor, DARK, GRID, LABEL, Text, path, px};
 use crate::font::{Weight, width};
+use crate::thinning::thinned;
 
 /// Space between ticks (px).
 const SPACING: [f64; 2] = [80.0, 38.0];
@@ -152,6 +153,7 @@ impl Plot<'_> {
     /// dot.
     pub fn curve(&self, points: &[[f64; 2]], colour: Colour, line: Line) -> Markup {
         let pixels: Vec<[f64; 2]> = points.iter().map(|point| self.at(*point)).collect();
+        let pixels = thinned(&pixels, self.x.pixels);
         let is_drawn = |k: usize| {
             let point = pixels.get(k);
             point.is_some_and(|point| point.iter().all(|value| value.is_finite()))
@@ -176,10 +178,14 @@ impl Plot<'_> {
             .copied()
             .filter(|point| point.iter().all(|value| value.is_finite()))
             .collect();
-        let upper = whole.iter().map(|[x, _, high]| self.at([*x, *high]));
-        let lower = whole.iter().rev().map(|[x, low, _]| self.at([*x, *low]));
+        let edge = |of: fn(&[f64; 3]) -> [f64; 2]| -> Vec<[f64; 2]> {
+            let pixels: Vec<[f64; 2]> = whole.iter().map(|point| self.at(of(point))).collect();
+            thinned(&pixels, self.x.pixels)
+        };
+        let upper = edge(|[x, _, high]| [*x, *high]);
+        let lower = edge(|[x, low, _]| [*x, *low]);
         html! {
-            path d=(path(upper.chain(lower), true)) fill=(colour.hex()) fill-opacity="0.2" {}
+            path d=(path(upper.into_iter().chain(lower.into_iter().rev()), true)) fill=(colour.hex()) fill-opacity="0.2" {}
         }
     }
 

@@ -53,6 +53,9 @@ pub struct ReportedExperiment<'a> {
     pub runs: Vec<ReportedRun>,
 }
 
+/// The largest table that a page holds (bytes).
+const MOST_DOWNLOAD: usize = 1_000_000;
+
 impl<'a> ReportedExperiment<'a> {
     /// An experiment with runs under an `occlusion`.
     #[must_use]
@@ -157,6 +160,13 @@ impl<'a> ReportedExperiment<'a> {
             let mut csv = Vec::new();
             let written = stickslip_formats::write_estimate(&mut csv, &run.scored.estimate);
             written.expect("memory can be written to");
+            if csv.len() > MOST_DOWNLOAD {
+                return Block::Note(format!(
+                    "The table of every row of the {} has {:.0} MB and is not in this page; stickslip filter writes it.",
+                    run.title(),
+                    1e-6 * csv.len() as f64
+                ));
+            }
             Block::Download {
                 name: format!("{}-estimate.csv", self.name),
                 what: format!("every row of the {}", run.title()),
@@ -278,7 +288,7 @@ impl<'a> ReportedExperiment<'a> {
         };
         Playback {
             name: name.clone(),
-            rows: self.row_at(from)..self.row_at(to) + 1,
+            focus: self.row_at(from)..self.row_at(to) + 1,
             poster: self.poster(),
             reference_name: self.reference_name.clone(),
             marks: self.contacts.iter().cloned().chain(off).collect(),
@@ -325,8 +335,7 @@ impl<'a> ReportedExperiment<'a> {
     /// to the next reference pose; all times if no contact is known.
     pub(crate) fn span(&self) -> [f64; 2] {
         let time = &self.log.time;
-        let first = time.first().copied().unwrap_or(0.0);
-        let last = time.last().copied().unwrap_or(1.0);
+        let [first, last] = self.whole_span();
         let contacts = self.contacts.iter().map(|mark| mark.time);
         let contacts = contacts.filter(|time| time.is_finite());
         let Some(start) = contacts.clone().reduce(f64::min) else {
@@ -339,6 +348,13 @@ impl<'a> ReportedExperiment<'a> {
             (start - BEFORE).max(first),
             compared.map_or(end, |time| time.max(end)).min(last),
         ]
+    }
+
+    /// First and last time of the log.
+    pub(crate) fn whole_span(&self) -> [f64; 2] {
+        let time = &self.log.time;
+        let ends = time.first().zip(time.last());
+        ends.map_or([0.0, 1.0], |(first, last)| [*first, *last])
     }
 
     /// The last row up to a time.

@@ -46,15 +46,15 @@ impl BestBaseline {
             .into_iter()
             .filter(|variant| variant.method() != Method::Particle && !variant.camera_on());
         let all = baselines.filter_map(|variant| Self::against(variant, folders));
+        // medians over fewer folders do not compare
+        let all: Vec<Self> = all.collect();
+        let most = all.iter().map(|baseline| baseline.folders).max()?;
+        let all = all.into_iter().filter(|baseline| baseline.folders == most);
         all.min_by(|a, b| a.median_mm.total_cmp(&b.median_mm))
     }
 
     fn against(variant: Variant, folders: &[FolderResult]) -> Option<Self> {
-        let error = |folder: &FolderResult, variant: Variant| {
-            let mut methods = folder.methods.iter();
-            let found = methods.find(|entry| entry.variant == variant)?;
-            found.scores.wmse_mm
-        };
+        let error = |folder: &FolderResult, variant| folder.scores(variant)?.wmse_mm;
         let pairs = folders.iter().filter_map(|folder| {
             Some((error(folder, Variant::Particle)?, error(folder, variant)?))
         });

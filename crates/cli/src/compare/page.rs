@@ -3,7 +3,8 @@
 use stickslip_evaluation::Variant;
 use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
 
-use super::results::{Comparison, LEGEND, Overall};
+use super::folder_set::{FolderSet, Overall};
+use super::results::{Comparison, LEGEND};
 use super::tables;
 use crate::origin::origin;
 use crate::output::counted;
@@ -20,7 +21,7 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         seeds,
         quantile,
         folders,
-        overall,
+        sets,
         errors,
         touch_gain,
         best_baseline,
@@ -30,13 +31,14 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         "{LEGEND} {REST} Quantiles: {quantile}. {gain}{}",
         Fate::rule()
     );
-    let all = [
+    let table = |set: &FolderSet| {
+        let title = tables::set_title(set, folders.len());
         Block::Table(
-            tables::overall(overall, Variant::title),
-            "Over all experiments: median (90th percentile)".to_owned(),
-        ),
-        Block::Note(note),
-    ];
+            tables::overall(&set.methods, Variant::title),
+            format!("Over {title}: median (90th percentile)"),
+        )
+    };
+    let all = sets.iter().map(table).chain([Block::Note(note)]);
     let each = folders.iter().flat_map(|folder| {
         let table = Block::Table(
             tables::entries(&folder.methods, Variant::title),
@@ -46,8 +48,8 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
         [table].into_iter().chain(notes.cloned().map(Block::Note))
     });
     let lost = errors.iter().map(|lost| Block::Text(lost.error.clone()));
-    let sections = [
-        ("All experiments", all.to_vec()),
+    let sections: [(&str, Vec<Block>); 3] = [
+        ("All experiments", all.collect()),
         ("Each experiment", each.collect()),
         ("Without a result", lost.collect()),
     ];
@@ -69,7 +71,7 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
             .map(|best| Block::Text(best.to_string()))
             .chain([
                 Block::Text(runs(comparison)),
-                Block::Fates(story(overall, folders.len())),
+                Block::Fates(story(sets.first())),
             ])
             .collect(),
         sections,
@@ -94,19 +96,16 @@ fn runs(comparison: &Comparison) -> String {
     )
 }
 
-/// Outcome of each variant over so many experiments.
-fn story(overall: &[Overall], experiments: usize) -> Story {
+/// Outcome of each variant that ran on all experiments.
+fn story(all: Option<&FolderSet>) -> Story {
     let outcome = |row: &Overall| Outcome {
-        // medians over other experiments than the rest are not comparable with theirs
-        name: match row.folders == experiments {
-            true => row.variant.title().to_owned(),
-            false => format!("{} on {} of them", row.variant.title(), row.folders),
-        },
+        name: row.variant.title().to_owned(),
         camera_on: row.variant.camera_on(),
         wmse_mm: row.median.wmse_mm,
     };
+    let rows = all.into_iter().flat_map(|set| &set.methods);
     Story {
-        outcomes: overall.iter().map(outcome).collect(),
+        outcomes: rows.map(outcome).collect(),
         ..Story::default()
     }
 }

@@ -9,6 +9,7 @@ use stickslip_evaluation::{ScoredRun, Variant, quantile};
 use stickslip_formats::Experiment;
 
 use super::best_baseline::BestBaseline;
+use super::folder_set::FolderSet;
 use crate::args::CompareArgs;
 use crate::failure::one_line;
 
@@ -103,26 +104,6 @@ pub struct LostFolder {
     pub error: String,
 }
 
-/// A variant's median and 90th percentile over folders.
-#[derive(Clone, Debug, Serialize)]
-pub struct Overall {
-    /// The variant.
-    #[serde(skip)]
-    pub variant: Variant,
-    /// Its name in JSON.
-    pub method: &'static str,
-    /// Number of folders it ran on.
-    pub folders: usize,
-    /// Medians over folders.
-    pub median: ShownScores,
-    /// 90th percentiles over folders.
-    pub p90: ShownScores,
-    /// Means over folders.
-    pub mean: ShownScores,
-    /// Unsolved particle steps over all folders and seeds.
-    pub unsolved: u64,
-}
-
 /// All that a comparison found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
@@ -134,8 +115,8 @@ pub struct Comparison {
     pub quantile: &'static str,
     /// Per folder.
     pub folders: Vec<FolderResult>,
-    /// Over folders.
-    pub overall: Vec<Overall>,
+    /// Over folders; every set compares methods that ran on all of its folders.
+    pub sets: Vec<FolderSet>,
     /// Best baseline against the particle filter; `None` if either has no score.
     pub best_baseline: Option<BestBaseline>,
     /// Gain by touch; `None` if fewer than two folders have sensors.
@@ -230,12 +211,12 @@ impl ShownScores {
     }
 
     /// The `q`-quantile of each score, and all unsolved steps and collapses.
-    fn quantile(of: &[Self], q: f64) -> Self {
+    pub fn quantile(of: &[Self], q: f64) -> Self {
         Self::each(of, |values| quantile(values, q))
     }
 
     /// The mean of each score, and all unsolved steps and collapses.
-    fn mean(of: &[Self]) -> Self {
+    pub fn mean(of: &[Self]) -> Self {
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         Self::each(of, |values| (!values.is_empty()).then(|| mean(values)))
     }
@@ -264,13 +245,7 @@ impl ShownScores {
 
 impl TouchGain {
     fn of(folders: &[FolderResult]) -> Option<Self> {
-        let crps = |folder: &FolderResult, variant: Variant| {
-            let mut methods = folder.methods.iter();
-            methods
-                .find(|entry| entry.variant == variant)?
-                .scores
-                .crps_mm
-        };
+        let crps = |folder: &FolderResult, variant| folder.scores(variant)?.crps_mm;
         let gains = folders.iter().filter_map(|folder| {
             Some(crps(folder, Variant::Particle)? - crps(folder, Variant::ParticleNoTouch)?)
         });
@@ -298,6 +273,13 @@ impl VariantScores {
 }
 
 impl FolderResult {
+    /// Scores of a variant; `None` if it did not run here.
+    pub fn scores(&self, variant: Variant) -> Option<ShownScores> {
+        let mut methods = self.methods.iter();
+        let found = methods.find(|entry| entry.variant == variant)?;
+        Some(found.scores)
+    }
+
     /// Medians over the runs of each variant; the first failed run is the folder's error.
     pub fn gather<'a>(
         folder: &Path,
@@ -353,10 +335,6 @@ impl LostFolder {
 impl Comparison {
     /// The folders' results with quantiles over them.
     pub fn new(args: &CompareArgs, folders: Vec<FolderResult>, errors: Vec<LostFolder>) -> Self {
-        let overall = Variant::COMPARED
-            .into_iter()
-            .filter_map(|variant| Overall::new(variant, &folders))
-            .collect();
         let quantile = "linear between order statistics: position q (n - 1) from the smallest";
         Self {
             particles: args.shared.particles,
@@ -364,34 +342,9 @@ impl Comparison {
             quantile,
             best_baseline: BestBaseline::of(&folders),
             touch_gain: TouchGain::of(&folders),
+            sets: FolderSet::all(&folders),
             folders,
-            overall,
             errors,
         }
-    }
-}
-
-impl Overall {
-    /// `None` where the variant ran on no folder.
-    fn new(variant: Variant, folders: &[FolderResult]) -> Option<Self> {
-        let entries = folders
-            .iter()
-            .flat_map(|folder| &folder.methods)
-            .filter(|entry| entry.variant == variant);
-        let scores: Vec<ShownScores> = entries.map(|entry| entry.scores).collect();
-        let (median, p90) = (
-            ShownScores::quantile(&scores, 0.5),
-            ShownScores::quantile(&scores, 0.9),
-        );
-        let result = Self {
-            variant,
-            method: variant.key(),
-            folders: scores.len(),
-            median,
-            p90,
-            mean: ShownScores::mean(&scores),
-            unsolved: median.unsolved,
-        };
-        (!scores.is_empty()).then_some(result)
     }
 }

@@ -3,9 +3,8 @@
 use stickslip_evaluation::Variant;
 use stickslip_report::{Colour, Table, number};
 
-use super::results::{
-    COLUMNS, Column, Comparison, LEGEND, Over, Overall, TouchGain, VariantScores,
-};
+use super::folder_set::{Difference, FolderSet, Overall};
+use super::results::{COLUMNS, Column, Comparison, LEGEND, Over, TouchGain, VariantScores};
 use crate::output::counted;
 
 /// A table per folder, then one over all of them; nothing where there is no folder.
@@ -23,26 +22,35 @@ pub fn text(comparison: &Comparison) -> String {
         let table = entries(&folder.methods, Variant::name);
         format!("{}\n{table}{}", folder.folder, notes.collect::<String>())
     });
-    let overall = (!folders.is_empty()).then(|| {
+    let sets = comparison.sets.iter().map(|set| {
         format!(
-            "{}: median (90th percentile){}\n{}\n{}\
-             {LEGEND} Quantiles: {quantile}.\n{}",
-            counted(folders.len() as u64, "experiment"),
+            "{}: median (90th percentile){}\n{}",
+            set_title(set, folders.len()),
             match seeds {
                 1 => String::new(),
                 seeds => format!(", of the median over {seeds} seeds"),
             },
-            overall(&comparison.overall, Variant::name),
-            comparison
-                .best_baseline
-                .as_ref()
-                .map_or_else(String::new, |best| format!("{best}\n")),
-            comparison
-                .touch_gain
-                .map_or_else(String::new, |gain| gain.to_string())
+            overall(&set.methods, Variant::name),
         )
     });
-    folder_tables.chain(overall).collect::<Vec<_>>().join("\n")
+    let notes = (!folders.is_empty()).then(|| {
+        let best = comparison.best_baseline.as_ref();
+        let best = best.map_or_else(String::new, |best| format!("{best}\n"));
+        let gain = comparison.touch_gain;
+        let gain = gain.map_or_else(String::new, |gain| gain.to_string());
+        format!("{LEGEND} Quantiles: {quantile}.\n{best}{gain}")
+    });
+    let tables = folder_tables.chain(sets).collect::<Vec<_>>().join("\n");
+    format!("{tables}{}", notes.unwrap_or_default())
+}
+
+/// "20 experiments", or "the 12 of 20 experiments on which these methods ran".
+pub fn set_title(set: &FolderSet, experiments: usize) -> String {
+    let all = counted(experiments as u64, "experiment");
+    match set.folders.len() {
+        count if count == experiments => all,
+        count => format!("the {count} of {all} on which all of these ran"),
+    }
 }
 
 /// The scores of each variant on one experiment, by their `names`.
@@ -68,7 +76,11 @@ pub fn entries(entries: &[VariantScores], names: fn(Variant) -> &'static str) ->
 
 /// Each variant over all folders, by their `names`: median (90th percentile).
 pub fn overall(rows: &[Overall], names: fn(Variant) -> &'static str) -> Table {
-    let mut table = Table::new(titles(["method"], ["unsolved", "collapses", "folders"]));
+    let counts = ["unsolved", "collapses"];
+    let mut table = Table::new(titles(
+        ["method"],
+        ["minus filter mm"].into_iter().chain(counts),
+    ));
     for row in rows {
         let both = |column: &Column| match column.over {
             Over::Quantiles => format!(
@@ -79,9 +91,9 @@ pub fn overall(rows: &[Overall], names: fn(Variant) -> &'static str) -> Table {
             Over::Mean => number((column.of)(&row.mean), 2),
         };
         let counts = [
-            row.unsolved.to_string(),
+            row.difference.map_or_else(String::new, difference),
+            row.median.unsolved.to_string(),
             row.median.collapses.to_string(),
-            row.folders.to_string(),
         ];
         table.push_coloured(
             Colour::of(row.variant),
@@ -104,7 +116,17 @@ impl std::fmt::Display for TouchGain {
     }
 }
 
-fn titles<const A: usize, const B: usize>(before: [&str; A], after: [&str; B]) -> Vec<String> {
+/// "+0.21 ± 0.05".
+fn difference(difference: Difference) -> String {
+    let error = difference.standard_error_mm;
+    let error = error.map_or_else(String::new, |error| format!(" ± {error:.2}"));
+    format!("{:+.2}{error}", difference.median_mm)
+}
+
+fn titles<'a>(
+    before: impl IntoIterator<Item = &'a str>,
+    after: impl IntoIterator<Item = &'a str>,
+) -> Vec<String> {
     before
         .into_iter()
         .chain(COLUMNS.iter().map(|column| column.title))

@@ -51,7 +51,7 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
         ]
     );
     assert_eq!(report["errors"].as_array().unwrap().len(), 1);
-    let overall = &report["overall"][0];
+    let overall = &report["sets"][0]["methods"][0];
     assert_eq!(
         overall["median"]["wmse_mm"],
         report["folders"][0]["methods"][0]["wmse_mm"]
@@ -275,4 +275,46 @@ fn compare_says_which_stall_force_it_assumes() {
     let folder = &report["folders"][0];
     assert_eq!(folder["stall_force_assumed"], true);
     assert!((folder["stall_force"].as_f64().unwrap() - 31.9826).abs() < 1e-3);
+}
+
+/// A log without touch sensors has no filter without touch: it is not pooled with logs that do.
+#[test]
+fn compare_sets_methods_side_by_side_on_equal_folders() {
+    let felt = Experiment::copy(STOP, "compare_sets/felt");
+    let unfelt = Experiment::copy(STOP, "compare_sets/unfelt");
+    unfelt.edit("log.csv", |text| {
+        let rows = text.lines().map(|row| row.split(',').collect::<Vec<_>>());
+        let rows: Vec<Vec<&str>> = rows.collect();
+        let kept = |k: &usize| !rows[0][*k].starts_with("tactile");
+        let row = |row: &Vec<&str>| {
+            let cells = (0..row.len()).filter(kept).map(|k| row[k]);
+            cells.collect::<Vec<_>>().join(",") + "\n"
+        };
+        rows.iter().map(row).collect()
+    });
+    let run = stickslip()
+        .arg("compare")
+        .args([&felt.folder, &unfelt.folder])
+        .arg("--json")
+        .args(FEW)
+        .output()
+        .unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+    let sets = report["sets"].as_array().unwrap();
+    let counts = |key: &str| -> Vec<usize> {
+        let of = sets.iter().map(|set| set[key].as_array().unwrap().len());
+        of.collect()
+    };
+    // "stops at touch" and "no touch" need sensors
+    assert_eq!(counts("folders"), [2, 1]);
+    assert_eq!(counts("methods"), [8, 10]);
+    let own = |folder: usize, method: usize| {
+        report["folders"][folder]["methods"][method]["wmse_mm"]
+            .as_f64()
+            .unwrap()
+    };
+    let nominal = &sets[1]["methods"][0];
+    let difference = nominal["difference"]["median_mm"].as_f64().unwrap();
+    assert!((difference - (own(0, 0) - own(0, 6))).abs() < 1e-12);
+    assert!(sets[1]["methods"][6]["difference"].is_null());
 }

@@ -3,6 +3,7 @@
 
 use std::io::{Seek, Write};
 
+use mcap::Compression;
 use stickslip::{Estimate, EstimateRow, Setup};
 use stickslip_dynamics::{Friction, Pose};
 
@@ -73,7 +74,8 @@ struct Messages<W: Write + Seek> {
 
 impl<W: Write + Seek> Messages<W> {
     fn new(writer: W, has_particles: bool, has_tripod: bool) -> Result<Self, McapWriteError> {
-        let mut recorder = Recorder::new(writer)?;
+        // markers and transforms repeat themselves; packed they take a fifth
+        let mut recorder = Recorder::new(writer, Some(Compression::Zstd))?;
         let pose = recorder.topic::<PoseWithCovarianceStamped>("/stickslip/pose")?;
         let tf = recorder.topic::<TfMessage>("/tf")?;
         let markers = recorder.topic::<MarkerArray>("/stickslip/markers")?;

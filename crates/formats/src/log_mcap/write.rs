@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
 use mcap::records::MessageHeader;
-use mcap::{WriteOptions, Writer};
+use mcap::{Compression, WriteOptions, Writer};
 use stickslip::{Log, PoseCovariance};
 use stickslip_dynamics::Pose;
 
@@ -110,7 +110,8 @@ pub(crate) struct LogMessages<W: Write + Seek> {
 impl<W: Write + Seek> LogMessages<W> {
     /// Begins a recording with a channel for each column that `log` has.
     pub(crate) fn new(writer: W, log: &Log, topics: &Topics) -> Result<Self, McapWriteError> {
-        let mut recorder = Recorder::new(writer)?;
+        // plain: a log whose end is lost can then be read up to there by any tool
+        let mut recorder = Recorder::new(writer, None)?;
         let object = match log.object_covariance.is_empty() {
             true => recorder.channel::<PoseStamped>(topics, Topic::Object)?,
             false => recorder.channel::<PoseWithCovarianceStamped>(topics, Topic::Object)?,
@@ -193,11 +194,10 @@ pub(crate) fn stamps(time: &[f64]) -> Result<Vec<i64>, McapWriteError> {
 pub(crate) struct Recorder<W: Write + Seek>(Writer<W>);
 
 impl<W: Write + Seek> Recorder<W> {
-    /// Begins a recording.
-    pub(crate) fn new(writer: W) -> Result<Self, McapWriteError> {
-        // without compression, whose output may change from one version to the next
+    /// Begins a recording whose chunks may be packed.
+    pub(crate) fn new(writer: W, compression: Option<Compression>) -> Result<Self, McapWriteError> {
         let options = WriteOptions::new()
-            .compression(None)
+            .compression(compression)
             .profile("ros2")
             .library("stickslip")
             .chunk_size(Some(CHUNK));

@@ -131,16 +131,36 @@ fn hostile_names_stay_text() {
     assert_eq!(data(&text)["marks"][0][1], format!("pusher {HOSTILE}"));
 }
 
+/// Ten minutes at 30 Hz: the player covers them all, figures say their part, the page stays small.
+#[test]
+fn page_of_ten_minutes_shows_all_and_stays_small() {
+    let rows = 18_000;
+    let text = page(rows, 30, "long");
+    assert!(text.len() < 5_000_000, "{} bytes", text.len());
+    let data = data(&text);
+    let time = data["time"].as_array().unwrap();
+    let (stride, last) = (data["stride"].as_u64().unwrap(), time.last().unwrap());
+    assert_eq!((stride, time.len()), (6, 3000));
+    assert!(last.as_f64().unwrap() > 1e3 * 599.7, "{last}");
+    for words in [
+        "One row in 6 of 18000 is played back.",
+        "Errors against time over the whole log.",
+        " s of 0.0 to 600.0 s.",
+        "is not in this page",
+    ] {
+        assert!(text.contains(words), "{words}");
+    }
+}
+
 #[test]
 fn data_read_back_to_the_numbers_they_were() {
     let rows = 90;
     let data = data(&page(rows, 4, "test"));
     let number = |value: &Value| value.as_f64().unwrap();
-    let (first, shown) = (
-        data["first"].as_u64().unwrap() as usize,
-        data["time"].as_array().unwrap().len(),
+    assert_eq!(
+        (&data["stride"], data["time"].as_array().unwrap().len()),
+        (&1.into(), rows)
     );
-    assert!(first == 0 && shown == rows, "{first} {shown}");
     for row in [0, 31, 89] {
         let pose = truth(row, rows);
         let at = |key: &str| number(&data["truth"][key][row]);
