@@ -82,9 +82,9 @@ impl Physics {
 }
 
 impl Simulation {
-    /// Simulates the experiment of `setup`. `known` has the true friction and the first hidden row.
-    /// The defaults are the scene's friction, and five frames at 30 Hz before the first contact with
-    /// a fixel. `progress` gets the number of finished frames, and of all.
+    /// Simulates the experiment of `setup`. `known` has the true friction and the first hidden
+    /// row. The defaults are the scene's friction, and five frames at 30 Hz before the first
+    /// contact with a fixel. `progress` gets the number of finished frames, and of all.
     ///
     /// # Errors
     /// The setup has no start, bodies overlap there, the testbed is to have a rigid drive, or a

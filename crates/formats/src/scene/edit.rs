@@ -115,11 +115,12 @@ impl SceneEdit {
         }
         let item = Item::Value(value);
         let item = match keys.len() {
-            1 => item
-                .into_table()
-                .map(Item::Table)
-                .or_else(|item| item.into_array_of_tables().map(Item::ArrayOfTables))
-                .unwrap_or_else(|item| item),
+            1 => match item.into_table() {
+                Ok(table) => Item::Table(table),
+                Err(item) => item
+                    .into_array_of_tables()
+                    .map_or_else(|item| item, Item::ArrayOfTables),
+            },
             _ => item,
         };
         table.insert(key, item);
