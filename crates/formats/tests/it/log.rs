@@ -116,7 +116,7 @@ fn columns_are_found_by_name_in_any_order() {
 #[test]
 fn columns_with_an_infinite_pose_are_refused() {
     let names = HEADER.split(',').map(str::to_owned);
-    let mut columns = vec![[0.0, 1.0]; 7];
+    let mut columns = [[0.0, 1.0]; 7];
     columns[2][1] = f64::NEG_INFINITY;
     let named = names
         .zip(columns.iter().map(|column| &column[..]))
