@@ -50,6 +50,14 @@ impl Spread {
         }
     }
 
+    /// Adds independent errors of these standard deviations.
+    pub(crate) fn add(&mut self, errors: Pose) {
+        let errors = errors.fields().into_iter();
+        for (std, error) in self.pose.fields_mut().into_iter().zip(errors) {
+            *std = std.hypot(*error);
+        }
+    }
+
     /// Converts deviations about a mean to those about a pose that is `way` from it.
     pub(crate) fn move_centre(&mut self, way: Pose) {
         let Pose { x, y, theta } = way;

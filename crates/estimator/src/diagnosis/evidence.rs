@@ -4,6 +4,7 @@ use stickslip_dynamics::{Placed, Pose, Shape};
 
 use super::lasting::Lasting;
 use super::pose_noise::PoseNoise;
+use super::two_places::TwoPlaces;
 use crate::angle::nearest_winding;
 use crate::gap::gap;
 use crate::log::Log;
@@ -32,6 +33,8 @@ pub(super) struct Evidence<'a> {
     pub noise: Option<PoseNoise>,
     /// Noise of one pusher pose, estimated; `None` with too few poses.
     pub pusher_noise: Option<PoseNoise>,
+    /// Two places between which object poses go back and forth.
+    pub two_places: Option<TwoPlaces>,
     /// Errors of the camera that last over several rows.
     pub lasting: Option<Lasting>,
     /// Rows with an object pose; between them may be rows that other sensors brought.
@@ -54,11 +57,13 @@ impl<'a> Evidence<'a> {
             log,
             noise,
             pusher_noise: PoseNoise::of(&log.time, &log.pusher),
+            two_places: None,
             lasting: None,
             seen: rows_with(&log.object),
             pusher_seen: rows_with(&log.pusher),
             moving: Vec::new(),
         };
+        evidence.two_places = TwoPlaces::of(&evidence);
         evidence.lasting = Lasting::of(&evidence);
         evidence.moving = evidence.moving();
         evidence
@@ -218,7 +223,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Noise that the scene states.
-    fn stated(&self) -> PoseNoise {
+    pub fn stated(&self) -> PoseNoise {
         let camera = self.setup.camera.as_ref();
         PoseNoise {
             position: camera.map_or(0.0, |camera| camera.position_std),

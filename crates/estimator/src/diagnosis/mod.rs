@@ -25,6 +25,7 @@ mod repeats;
 mod sensors;
 mod stall_force;
 mod timing;
+mod two_places;
 mod units;
 
 pub use collapses::collapsed;
@@ -138,6 +139,7 @@ fn plain(evidence: &Evidence<'_>, given: &Log) -> Vec<Finding> {
         stall_force::check,
         lost_poses::check,
         jumps::check,
+        two_places::check,
         left_out::check,
         repeats::check,
         noise::check,

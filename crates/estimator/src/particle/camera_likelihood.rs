@@ -129,6 +129,18 @@ impl CameraLikelihood {
         [position, position, angle]
     }
 
+    /// Returns the standard deviations of the camera's errors that particles which have estimated
+    /// its noise like this, on average, do not average out.
+    pub fn unsettled(&self, noise: [f64; 3]) -> Pose {
+        let [position, angle] = self.noise.map_or([0.0; 2], |prior| prior.unsettled(noise));
+        let (position, angle) = (position.sqrt(), angle.sqrt());
+        Pose {
+            x: position / (self.per_metre * self.widened),
+            y: position / (self.per_metre * self.widened),
+            theta: angle / (self.per_radian * self.widened),
+        }
+    }
+
     /// Returns the poses that one chunk's particles show minus the measured one, as independent
     /// numbers in units of the nominal noise.
     #[inline(always)]

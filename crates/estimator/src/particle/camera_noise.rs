@@ -6,6 +6,7 @@ use stickslip_filter::{Block, BlockMut, Draw};
 
 use crate::particle::chunk::{Column, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
+use crate::particle::rig::MOST_SPREADS;
 
 /// Prior of the camera's noise. Its variance, in units of the nominal one, is ν₀ over a χ² number
 /// of ν₀ degrees of freedom (docs/method.md (41)).
@@ -13,6 +14,8 @@ use crate::particle::columns::Columns;
 pub(crate) struct NoisePrior {
     /// ν₀.
     freedom: f64,
+    /// Largest variance that this prior explains.
+    most: f64,
 }
 
 impl NoisePrior {
@@ -20,7 +23,8 @@ impl NoisePrior {
     /// noise is exact.
     pub fn new(camera_noise: f64) -> Option<Self> {
         let freedom = 1.0 + 0.5 / (camera_noise * camera_noise);
-        freedom.is_finite().then_some(Self { freedom })
+        let most = libm::exp(2.0 * MOST_SPREADS * camera_noise);
+        freedom.is_finite().then_some(Self { freedom, most })
     }
 
     /// Draws the variance of one sensor's noise from this prior, in units of the nominal one, by
@@ -47,6 +51,20 @@ impl NoisePrior {
         [
             (self.freedom + position) / of_position,
             (self.freedom + angle) / of_angle,
+        ]
+    }
+
+    /// Returns the variances of the camera's errors, of position along any axis and of angle, that
+    /// do not average out after so many poses with these sums of squared residuals.
+    ///
+    /// Poses that scatter by more than the prior explains have no independent errors: two cameras
+    /// whose frames differ, say, alternate. What is beyond the prior then stays in every mean of
+    /// them. It may all lie along one axis.
+    pub fn unsettled(&self, [poses, position, angle]: [f64; 3]) -> [f64; 2] {
+        let [of_position, of_angle] = self.variances(poses, position, angle);
+        [
+            2.0 * (of_position - self.most).max(0.0),
+            (of_angle - self.most).max(0.0),
         ]
     }
 

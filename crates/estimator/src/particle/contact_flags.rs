@@ -3,13 +3,12 @@
 use stickslip_dynamics::{Body, Lanes, Mask};
 
 use crate::filter_model::FilterModel;
-use crate::particle::chunk::{FlagsMut, LANES};
+use crate::particle::chunk::{Column, FlagsMut, LANES};
 use crate::particle::columns::{Columns, SlipFlags};
 use crate::particle::propagation::{Propagation, Transition, moving};
 use crate::particle::step_plan::StepPlan;
 
-/// Slip velocity (m/s) above which a contact slides. A standing pusher seems to creep by less,
-/// since its track is smoothed from noisy poses.
+/// Slip velocity (m/s) above which a contact slides.
 const SLIDING: f64 = 1e-4;
 
 impl Propagation {
@@ -42,7 +41,13 @@ impl Propagation {
         let carried = moving(&self.carried[chunk], rho);
         let touches = pusher | self.close(transition, chunk, Body::Pusher) | goes_on | carried;
         flags.set(Columns::CONTACT_PUSHER, touches);
-        self.store_slip(flags, Columns::SLIP_PUSHER, touches, (chunk, Body::Pusher));
+        // what a standing pusher seems to move is the noise of its track
+        let slides_from = Lanes::splat(match plan.pusher_stands() {
+            true => f64::INFINITY,
+            false => SLIDING,
+        });
+        let slip = self.work.slips(chunk, Body::Pusher);
+        store_slip(flags, Columns::SLIP_PUSHER, touches, (slip, slides_from));
         flags.set(Columns::PUSHER_WAS_NEAR, pusher_was_near | near | carried);
         let pressed = moves | pusher;
         flags.set(Columns::IDLE, !(pressed & Mask::splat(plan.driven)));
@@ -57,7 +62,8 @@ impl Propagation {
             let goes_on = rests & near & flags.get(columns.contact_fixel(j));
             let touches = felt | self.close(transition, chunk, body) | goes_on;
             flags.set(columns.contact_fixel(j), touches);
-            self.store_slip(flags, columns.slip_fixel(j), touches, (chunk, body));
+            let slip = self.work.slips(chunk, body);
+            store_slip(flags, columns.slip_fixel(j), touches, (slip, slides_from));
             let before = flags.get(columns.fixel_was_near(j));
             flags.set(columns.fixel_was_near(j), before | near);
             let against = columns.driven_contact_fixel(j);
@@ -65,23 +71,21 @@ impl Propagation {
             flags.set(against, pressed & felt | !pressed & before);
         }
     }
+}
 
-    /// Stores how the object slips on a body in the lanes that touch it. Flags of the other lanes
-    /// mean nothing.
-    #[inline(always)]
-    fn store_slip(
-        &self,
-        flags: &mut FlagsMut<'_, '_>,
-        which: SlipFlags,
-        touches: Mask<LANES>,
-        (chunk, body): (usize, Body),
-    ) {
-        if !touches.any() {
-            return;
-        }
-        let slip = self.work.slips(chunk, body);
-        let slides = slip.abs().gt(Lanes::splat(SLIDING));
-        flags.set(which.stick, !slides);
-        flags.set(which.left, slides & slip.gt(Lanes::ZERO));
+/// Stores how the object slips on a body in the lanes that touch it, and from which slip velocity
+/// on it slides. Flags of the other lanes mean nothing.
+#[inline(always)]
+fn store_slip(
+    flags: &mut FlagsMut<'_, '_>,
+    which: SlipFlags,
+    touches: Mask<LANES>,
+    (slip, slides_from): (Column, Column),
+) {
+    if !touches.any() {
+        return;
     }
+    let slides = slip.abs().gt(slides_from);
+    flags.set(which.stick, !slides);
+    flags.set(which.left, slides & slip.gt(Lanes::ZERO));
 }

@@ -27,9 +27,9 @@ const CREEP_SPREAD: f64 = 1.2;
 /// Clamp on that logarithm, in standard deviations; ensemble updates are unbounded.
 const MOST_CREEP: f64 = 3.0;
 
-/// Clamp on ln of the factor of the random force, in standard deviations; ensemble updates are
-/// unbounded.
-const MOST_SPREADS: f64 = 3.0;
+/// Standard deviations up to which a prior explains the logarithm of a factor. That of the random
+/// force is clamped there, since ensemble updates are unbounded.
+pub(crate) const MOST_SPREADS: f64 = 3.0;
 
 /// Share of its mean by which the camera's latency wanders.
 const LATENCY_STEP: f64 = 0.02;
@@ -148,7 +148,7 @@ impl Propagation {
     }
 
     /// Returns the factor of each particle's random force: that of its push and, while the camera
-    /// is off, that of its rig.
+    /// is off, that of its rig. 0 at rest with the camera off.
     ///
     /// While the camera is on, the rig does not count: what the force does not allow for would pass
     /// for friction. Nor does it count in a re-simulated step, since the rig may not be what it
@@ -161,6 +161,9 @@ impl Propagation {
         chunk: usize,
     ) -> Column {
         let unsure = &setup.uncertainty;
+        if !plan.unknowns_wander() {
+            return Lanes::splat(0.0);
+        }
         let mut factor = Lanes::splat(1.0);
         if unsure.force_spread > 0.0 {
             let most = Lanes::splat(MOST_SPREADS * unsure.force_spread);

@@ -107,10 +107,15 @@ impl StepPlan {
         self.driven || !self.is_dark()
     }
 
+    /// Returns true if the pusher is tracked and stands: nothing slides then.
+    pub(crate) fn pusher_stands(&self) -> bool {
+        !self.driven && self.unseen_pusher.is_none()
+    }
+
     /// Returns true if the camera sees where the object rests. Only errors of the rig then keep it
     /// from the poses that are seen.
     pub(crate) fn shows_rest(&self) -> bool {
-        !self.driven && self.unseen_pusher.is_none() && !self.is_dark()
+        self.pusher_stands() && !self.is_dark()
     }
 
     /// A plan of no step at all.

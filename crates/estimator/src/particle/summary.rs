@@ -60,6 +60,7 @@ pub(crate) fn summarise(
             published.theta + way.theta,
         );
         spread.move_centre(way);
+        spread.add(unsettled(filter));
     }
     row.pose = Some(published);
     row.twist = Some(sums.twist);
@@ -73,4 +74,11 @@ pub(crate) fn summarise(
     row.unsolved = Some(sums.unsolved as u32);
     row.failed = Some(sums.failed as u32);
     row.ess = Some(filter.weights().effective_sample_size());
+}
+
+/// Standard deviations of the camera's errors that poses of the present kind do not average out.
+fn unsettled(filter: &ParticleFilter<ContactModel<'_>>) -> Pose {
+    let first = filter.model().columns().camera_noise();
+    let noise = [0, 1, 2].map(|k| filter.expectation(first + k, |number| number));
+    filter.model().camera_likelihood().unsettled(noise)
 }

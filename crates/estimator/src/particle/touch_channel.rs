@@ -40,7 +40,9 @@ impl<const W: usize> SensorBelief<W> {
 /// contact is felt if its probability of being so exceeds a number between 0 and 1 that stays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TouchChannel {
-    /// Probability that a working sensor reads 1 without touch, and with it.
+    /// Probability that a sensor reads 1 without touch, and with it. One that is stuck at 0 or 1
+    /// reads as if it were never touched, or always: equal readings never tell it from a contact
+    /// that stays as it is.
     reads_one: [f64; 2],
     /// Share of time for which a sensor is stuck at 0 and at 1.
     share: [f64; 2],
@@ -109,8 +111,7 @@ impl TouchChannel {
         let [of_untouched, of_touched] = self
             .reads_one
             .map(|one| if reading { one } else { 1.0 - one });
-        let of_stuck_at = |at: bool| if reading == at { 1.0 - SLIP } else { SLIP };
-        let (of_zero, of_one) = (stuck[0] * of_stuck_at(false), stuck[1] * of_stuck_at(true));
+        let (of_zero, of_one) = (stuck[0] * of_untouched, stuck[1] * of_touched);
         let works = one - stuck[0] - stuck[1];
         let mut of_quarters = felt_from;
         for (k, share) in of_quarters.iter_mut().enumerate() {
@@ -150,8 +151,7 @@ impl TouchChannel {
         };
         let reading = match state {
             SensorState::Works => self.drawn_working(touch, [felt_from, read]),
-            SensorState::StuckAt(false) => read < SLIP,
-            SensorState::StuckAt(true) => read < 1.0 - SLIP,
+            SensorState::StuckAt(one) => read < self.reads_one[usize::from(one)],
         };
         (DrawnSensor { state, felt_from }, reading)
     }
@@ -225,9 +225,6 @@ const QUARTER: f64 = 1.0 / QUARTERS as f64;
 
 /// Rate at which a stuck sensor gets free, and `felt_from` changes (1/s).
 const RECOVERY: f64 = 0.5;
-
-/// Probability that a stuck sensor reads the other value after all.
-const SLIP: f64 = 0.01;
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,6 @@
 //! The estimator on scenes whose answer is known.
 
+mod at_rest;
 mod belief;
 mod common;
 mod contact_mode;
@@ -23,5 +24,6 @@ mod tactile;
 mod track;
 mod tracker;
 mod turned_table;
+mod two_cameras;
 mod unseen_pusher;
 mod wrapped_angles;
