@@ -157,7 +157,7 @@ fn read(
         Occlusion::None => experiment.facts.occlusion(),
         asked => asked,
     };
-    check_occlusion(occlusion, &experiment)
+    check_occlusion(occlusion, &experiment.log)
         .and_then(|()| check_sense(&args.shared.force, &experiment))
         .map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {

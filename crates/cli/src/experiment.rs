@@ -89,22 +89,20 @@ pub fn read_folder(
 
 /// An occlusion that hides no pose is a slip of the pen, and one that hides every pose leaves
 /// nothing to start from.
-pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
+pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<()> {
     if occlusion == Occlusion::None {
         return Ok(());
     }
-    let rows = experiment.log.len();
-    let hidden = occlusion.hidden(&experiment.log);
-    let measured: Vec<usize> = (0..rows)
-        .filter(|row| experiment.log.object[*row].is_some())
-        .collect();
+    let rows = log.len();
+    let hidden = occlusion.hidden(log);
+    let measured: Vec<usize> = (0..rows).filter(|row| log.object[*row].is_some()).collect();
     let hides = measured.iter().filter(|row| hidden[**row]).count();
     match measured.as_slice() {
         [first, ..] if hides == measured.len() => Err(hinted(
             format!(
                 "the occlusion hides all {hides} object poses of the log; one is needed to start from"
             ),
-            format!("hide rows from {0} on: `--occlude {0}`", first + 1),
+            format!("hide rows from {} on", first + 1),
         )),
         _ if hides == 0 => Err(hinted(
             format!("the occlusion hides no object pose of the log's {rows} rows"),
@@ -117,11 +115,20 @@ pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<
 /// Refuses an experiment whose units, frames or columns are found to be wrong, unless `--force`
 /// asks for a run.
 pub fn check_sense(force: &ForceArgs, experiment: &Experiment) -> Result<()> {
-    let found = refused(&experiment.setup, &experiment.log).filter(|_| !force.force);
+    match force.force {
+        true => Ok(()),
+        false => refuse_nonsense(&experiment.setup, &experiment.log, "--force"),
+    }
+}
+
+/// Refuses a log whose units, frames or columns are found to be wrong. `force` is the option that
+/// runs all the same.
+pub fn refuse_nonsense(setup: &Setup, log: &Log, force: &str) -> Result<()> {
+    let found = refused(setup, log);
     found.map_or(Ok(()), |finding| {
         let advice = finding.advice.unwrap_or_default();
         let help =
-            format!("{advice}. `stickslip check` shows all findings; --force runs all the same");
+            format!("{advice}. `stickslip check` shows all findings; {force} runs all the same");
         Err(hinted(finding.found, help))
     })
 }

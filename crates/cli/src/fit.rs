@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use stickslip_fit::{
     Constant, CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
-    predict,
+    doubts, predict,
 };
 use stickslip_formats::BagOptions;
 use stickslip_report::{Block, Report, Section, Table};
@@ -39,6 +39,8 @@ struct FitResult {
     fit: Fit,
     /// None where there are too few pushes, or none was asked for.
     cross_validation: Option<CrossValidation>,
+    /// Reasons to doubt the fit.
+    warnings: Vec<String>,
     /// The pushes of `--test`, predicted by this fit; none where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     test: Option<CrossValidation>,
@@ -124,12 +126,12 @@ fn learn(
     options: &FitOptions,
 ) -> Result<FitResult> {
     let progress = stage(format!("fitting {}", counted(pushes.len() as u64, "push")));
-    let fit = stickslip_fit::fit(pushes, options)?;
+    let fit = stickslip_fit::fit(pushes, options, &|_, _| ())?;
     let folds = args.folds.unwrap_or(default_folds(pushes.len()));
     progress.set_message(format!(
         "predicting each of {folds} parts by a fit to the others"
     ));
-    let validate = || stickslip_fit::cross_validate(pushes, folds, options);
+    let validate = || stickslip_fit::cross_validate(pushes, folds, options, &|_, _| ());
     let cross_validation = (folds > 0).then(validate).transpose()?;
     let predict = || predict(test, &fit, cross_validation.as_ref(), options);
     let test = (!test.is_empty()).then(predict).transpose()?;
@@ -140,6 +142,7 @@ fn learn(
             .map(|path| path.display().to_string())
             .collect(),
         seed: args.seed,
+        warnings: doubts(pushes, &fit),
         fit,
         cross_validation,
         test,
@@ -283,12 +286,8 @@ fn remarks(result: &FitResult) -> Vec<String> {
         100.0 * fit.noise.drift,
         fit.noise.camera_scale
     ));
-    if !fit.sampling.settled {
-        remarks.push(format!(
-            "warning: the chains have not converged (split R-hat {:.2}); the spreads are rough",
-            fit.sampling.split_rhat
-        ));
-    }
+    let warnings = result.warnings.iter();
+    remarks.extend(warnings.map(|text| format!("warning: {text}")));
     if fit
         .parameters
         .iter()

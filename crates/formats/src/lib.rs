@@ -62,8 +62,8 @@ pub use outline::{
 pub use recorder::{CsvRecorder, McapRecorder};
 pub use row_json::{RowJsonError, read_row_json};
 pub use scene::{
-    NEW_SCENE, SceneEdit, SceneError, SceneProblem, read_mounts, read_scene, scene_assumptions,
-    scene_schema,
+    NEW_SCENE, SceneEdit, SceneError, SceneProblem, SceneWayError, read_mounts, read_scene,
+    scene_assumptions, scene_schema,
 };
 pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

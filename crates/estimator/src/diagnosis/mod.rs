@@ -30,11 +30,13 @@ mod units;
 
 pub use collapses::collapsed;
 pub use finding::{Finding, Severity, Subject};
+pub(crate) use left_out::left_out_poses;
 pub use stall_force::assumed_stall_force;
 
 use evidence::{Evidence, unwrapped};
 
 use crate::log::Log;
+use crate::run::Run;
 use crate::setup::Setup;
 
 /// Checks a log against its scene.
@@ -123,6 +125,14 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
         findings.extend(noise::pusher(&evidence));
         findings.extend(contact::none(&evidence));
     }
+    findings
+}
+
+/// Finds reasons to doubt the estimate of a run: those of [`misread`] and of [`collapsed`].
+pub fn doubts(setup: &Setup, log: &Log, run: &Run) -> Vec<Finding> {
+    let seen = run.estimate.rows.iter().filter(|row| row.visual).count();
+    let mut findings = misread(setup, log);
+    findings.extend(collapsed(run.collapses, seen));
     findings
 }
 
